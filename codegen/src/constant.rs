@@ -12,7 +12,7 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 
 /// `coefficient · √radicand`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Eq)]
 pub struct Constant {
     coefficient: Rational,
     /// At least one; free of the squares of small primes, so that equal constants are equal in this form too.
@@ -21,6 +21,13 @@ pub struct Constant {
 
 /// Rationals are in lowest terms, so that their parts tell them apart: to expand them into continued fractions, as [`Rational`]
 /// does for the sake of others, takes long.
+impl PartialEq for Constant {
+    fn eq(&self, other: &Self) -> bool {
+        let (own, others) = (&self.coefficient, &other.coefficient);
+        own.numer() == others.numer() && own.denom() == others.denom() && self.radicand == other.radicand
+    }
+}
+
 impl Hash for Constant {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.coefficient.numer().hash(state);

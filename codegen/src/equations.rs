@@ -4,6 +4,7 @@ use crate::Elimination;
 use crate::closing::closing_rows;
 use crate::definitions::Expansion;
 use crate::dynamics::Dynamics;
+use crate::finish::Finish;
 use crate::graph::{ExprId, Graph};
 use crate::joint_space::JointSpace;
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
@@ -11,7 +12,6 @@ use crate::linear::{Mat3, Vec4};
 use crate::normal_form::vanishes;
 use crate::outputs::{self, Sources};
 use crate::partition::Partition;
-use crate::schedule::cheapest;
 use crate::sheet::Form;
 use crate::symbol::Symbol;
 use crate::system::System;
@@ -66,6 +66,7 @@ pub struct Equations<'m> {
     pub joint_space: Option<JointSpace>,
     /// Charts, where the mechanism is a tree that they cover.
     pub charts: Option<Charts>,
+    pub finish: Finish,
 }
 
 /// The partition by charts.
@@ -102,15 +103,17 @@ impl<'m> Equations<'m> {
         let mut doubled_relative = relative_rotations(&mut system, Graph::rotation_by_doubles);
         doubled_relative.extend(doubled.clone());
         let definitions = system.definitions.clone();
-        let mut rotations = Rotations(
-            [
+        let finish = Finish::of(&system);
+        let mut rotations = Rotations {
+            finish,
+            ways: [
                 ("rotations of the bodies", HashMap::default()),
                 ("rotations of the bodies, doubled", doubled),
                 ("relative Euler parameters", relative),
                 ("relative Euler parameters, doubled", doubled_relative),
             ]
             .map(|(name, values)| (name, Expansion::with_values(&definitions, values))),
-        );
+        };
         let solved: Vec<_> = solution.accelerations.iter().chain(&solution.closing).copied().collect();
         let (mut solved, forms) = rotations.of_unit_parameters(&mut system.graph, &solved);
         let closing = solved.split_off(solution.accelerations.len());
@@ -155,6 +158,7 @@ impl<'m> Equations<'m> {
             charts: partition.map(|partition| Charts::expand(&mut rotations, graph, &partition)),
             tables: system.tables,
             graph: system.graph,
+            finish,
         }
     }
 
@@ -172,7 +176,10 @@ impl<'m> Equations<'m> {
 }
 
 /// The ways of writing rotation matrices: by Euler parameters or their doubles, of bodies or of one body relative to another.
-struct Rotations<'d>([(&'static str, Expansion<'d>); 4]);
+struct Rotations<'d> {
+    ways: [(&'static str, Expansion<'d>); 4],
+    finish: Finish,
+}
 
 impl Rotations<'_> {
     /// The cheaper of those that mean the same for any p.
@@ -193,10 +200,10 @@ impl Rotations<'_> {
     }
 
     fn cheapest(&mut self, graph: &mut Graph, roots: &[ExprId], n: usize) -> (Vec<ExprId>, Vec<Form>) {
-        let ways = self.0[..n].iter_mut();
+        let ways = self.ways[..n].iter_mut();
         let candidates = ways.map(|(name, way)| ((*name).to_owned(), way.all(graph, roots)));
         let candidates = candidates.collect();
-        cheapest(graph, candidates)
+        self.finish.cheapest(graph, candidates)
     }
 }
 

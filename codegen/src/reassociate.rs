@@ -1,26 +1,18 @@
 //! Products of a constant and two numbers, `k (x y)` and `k (x z)`, share a factor as `(k x) y` and `(k x) z`.
 
-use crate::functions::Functions;
 use crate::graph::{ExprId, Graph, Node};
 use crate::schedule::{Operations, Uses};
 use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeMap;
 
-/// Rewrites the functions in which that saves operations.
-pub fn reassociate(graph: &mut Graph, functions: &mut Functions) {
-    for roots in functions.recurring_mut() {
-        let better = reassociated(graph, roots);
-        if better == *roots {
-            continue;
-        }
-        let [now, then] = [&*roots, &better].map(|roots| Operations::recurring(graph, roots).total());
-        if then < now {
-            *roots = better;
-        }
-    }
+/// The roots, or what is shorter.
+pub fn reassociated(graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+    let better = written(graph, roots);
+    let [now, then] = [roots, &better].map(|roots| Operations::recurring(graph, roots).total());
+    if then < now { better } else { roots.to_vec() }
 }
 
-fn reassociated(graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+fn written(graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
     let uses = Uses::count(graph, roots);
     let shared = shared_factors(graph, &uses);
     if shared.is_empty() {
@@ -93,11 +85,11 @@ mod tests {
             graph.mul(three, product)
         };
         let roots = [product(x, y), product(x, z), product(y, y)];
-        let better = reassociated(&mut graph, &roots);
+        let better = written(&mut graph, &roots);
         assert_eq!(Operations::count(&graph, &roots).total(), 6);
         assert_eq!(Operations::count(&graph, &better).total(), 5);
         // Once a product is used elsewhere too, there is nothing to be had.
         let used = [graph.mul(x, y), roots[0], roots[1]];
-        assert_eq!(reassociated(&mut graph, &used), used);
+        assert_eq!(written(&mut graph, &used), used);
     }
 }

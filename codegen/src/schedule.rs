@@ -1,7 +1,6 @@
 //! From a set of expressions to a straight-line program: what gets a name, in which order, and what it costs.
 
 use crate::graph::{ExprId, Graph, Node};
-use crate::sheet::Form;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::fmt;
 
@@ -91,20 +90,6 @@ impl Passes {
             emitted: Operations::count(graph, roots).total(),
         }
     }
-}
-
-/// The set of roots that takes the fewest operations, and what each would have taken.
-pub fn cheapest(graph: &Graph, candidates: Vec<(String, Vec<ExprId>)>) -> (Vec<ExprId>, Vec<Form>) {
-    let costs: Vec<_> = candidates.iter().map(|(_, roots)| Operations::recurring(graph, roots)).collect();
-    let cost = |&k: &usize| (costs[k].functions, costs[k].total());
-    let taken = (0..candidates.len()).min_by_key(cost).expect("there is a candidate");
-    let form = |(k, (name, _)): (usize, &(String, _))| Form {
-        name: name.clone(),
-        operations: costs[k],
-        is_taken: k == taken,
-    };
-    let forms = candidates.iter().enumerate().map(form).collect();
-    (candidates.into_iter().nth(taken).expect("it is one of them").1, forms)
 }
 
 /// How often each reachable expression is used.

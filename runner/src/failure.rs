@@ -124,6 +124,8 @@ fn joint_element<M: Mechanism>(mechanism: &M, index: usize) -> String {
     let all = positions.map(|name| ("position", name)).chain(rates.map(|name| ("rate", name)));
     match all.into_iter().nth(index) {
         Some((what, name)) => format!("the {what} of joint `{name}`"),
+        // Each joint of a tree carries one body, the others are free.
+        None if mechanism.n_joints() == mechanism.n_bodies() => "the work done".to_owned(),
         None => "a free body's motion or the work done".to_owned(),
     }
 }

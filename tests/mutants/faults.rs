@@ -124,7 +124,6 @@ const FAULTS: &[Fault] = &[
     fault("orthogonal.rs", "gyroscope-light-rings", "let yielded = graph.mul(share, all[rate]);\n                all[other] = «graph.sub(all[other], yielded)»;", "all[other]"),
     fault("orthogonal.rs", "carried", "let passed_on = graph.mul(share, forces[other]);\n                forces[rate] = «graph.sub(forces[rate], passed_on)»;", "forces[rate]"),
     fault("orthogonal.rs", "gyroscope-light-rings", ".map(|((body, motion), bias)| «body.times(graph, motion).plus(graph, bias)».negated(graph))", "body.times(graph, motion)"),
-    fault("joint_space/maps.rs", "gyroscope-light-rings", "let (difference, sum) = («graph.sub(cosine, sine)», graph.add(cosine, sine));", "graph.sub(sine, cosine)"),
     // The coordinate partition.
     fault("partition.rs", "bob", "let factor = «graph.mul(half, difference)»;", "difference"),
     fault("partition.rs", "spherical", "let (residual, two) = (graph.sub(Graph::ONE, square), «graph.integer(2)»);", "graph.integer(1)"),
@@ -152,7 +151,13 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/maps.rs", "pair", "let r = «graph.sub_vec(&point, &own_arm)»;", "graph.add_vec(&point, &own_arm)"),
     fault("joint_space/maps.rs", "pair", "let on_body = «graph.sub_vec(&slid.on_body, &turned)»;", "graph.add_vec(&slid.on_body, &turned)"),
     fault("joint_space/maps.rs", "pair", "let inverse = «graph.recip(norm)»;", "norm"),
-    fault("joint_space/maps.rs", "pair", "(whole, «graph.sub(Graph::ONE, versed)»)", "versed"),
+    fault("joint_space/maps.rs", "pair", "let (difference, sum) = («graph.sub(cosine, sine)», graph.add(cosine, sine));", "graph.sub(sine, cosine)"),
+    // The last passes.
+    fault("scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),
+    fault("scales.rs", "pair", "let (c, x) = self.known[&a].clone();\n                («c.neg()», x)", "c"),
+    fault("scales.rs", "bob", "let c = «c.mul(&inverse)»;", "c"),
+    fault("scales.rs", "bob", "terms[first..].iter_mut().for_each(|(c, _)| *c = «c.neg()»);", "c.clone()"),
+    fault("scales.rs", "bob", "total.map_or(constant, |total| «self.graph.add(total, constant)»)", "total"),
     fault("joint_space/mod.rs", "pair", "let linear = if is_global { motion.t } else { «system.graph.mat_vec(&a, &motion.t)» };", "motion.t"),
     fault("joint_space/mod.rs", "pair", "motion = «motion.plus(graph, &yielded)»;", "yielded"),
     fault("joint_space/mod.rs", "spherical", "let p_rate = «graph.euler_rate(&p, &w)»;", "p"),

@@ -127,7 +127,7 @@ struct Judge<'a> {
     tally: &'a mut Tally,
 }
 
-/// What an error may say after its time, and whether a joint or a body has to be named.
+/// What an error may say after its time, and whether a joint, a body or the work has to be named.
 const REASONS: [(&str, bool); 8] = [
     ("is no longer finite", true),
     ("would need steps as short as", true),
@@ -148,7 +148,8 @@ fn reason(words: &str, t_end: f64) -> Option<&'static str> {
         return Some(reason);
     }
     let t: f64 = words.strip_prefix("at t = ")?.split(' ').next()?.parse().ok()?;
-    let is_named = [" joint `", " body `", "joint's turns"].iter().any(|name| words.contains(name));
+    let is_named =
+        [" joint `", " body `", "joint's turns", " s the work done "].iter().any(|name| words.contains(name));
     (t >= 0.0 && t <= t_end * 1.001 && (is_named || !is_somewhere)).then_some(reason)
 }
 

@@ -15,9 +15,9 @@ use super::maps::Values;
 use super::{MAX_FACTORED, NORMAL_FORM, expanded};
 use crate::definitions::{Definitions, Expansion};
 use crate::differentiate::{Derivative, gradient};
+use crate::finish::Finish;
 use crate::graph::{ExprId, Graph, Node};
 use crate::normal_form::normal_form;
-use crate::schedule::cheapest;
 use crate::sheet::Form;
 use crate::symbol::Symbol;
 use crate::system::{Direction, System};
@@ -52,6 +52,7 @@ pub struct JointForm<'a> {
     /// What u̇ is the solution of.
     pub reduced: &'a Reduced,
     pub unit: &'a [Vec<ExprId>],
+    pub finish: Finish,
 }
 
 /// The columns of a matrix.
@@ -85,13 +86,13 @@ impl Jacobian {
             of_inputs.push((name, by_inputs.copied().collect::<Vec<_>>()));
         }
         let factored = |graph: &mut Graph, candidates: Vec<(String, Vec<ExprId>)>| {
-            let (taken, _) = cheapest(graph, candidates.clone());
+            let (taken, _) = form.finish.cheapest(graph, candidates.clone());
             let mut candidates = candidates;
             if layout.n_rates <= MAX_FACTORED {
                 let unit = form.unit;
                 candidates.push((format!("{NORMAL_FORM} of that"), normal_form(graph, unit, &taken)));
             }
-            cheapest(graph, candidates)
+            form.finish.cheapest(graph, candidates)
         };
         let (mut by_state, forms) = factored(graph, of_state);
         let (by_inputs, forms_of_inputs) = factored(graph, of_inputs);

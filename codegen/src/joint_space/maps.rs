@@ -5,7 +5,6 @@ use super::dynamics;
 use super::layout::{Layout, LinkCoordinates, Scalar};
 use crate::coordinate::{self, relative_spin};
 use crate::definitions::Expansion;
-use crate::digits;
 use crate::evaluate::evaluate;
 use crate::graph::{ExprId, Graph};
 use crate::linear::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
@@ -167,20 +166,14 @@ fn whole(graph: &mut Graph, x: usize) -> (ExprId, ExprId) {
     doubled(graph, half, Graph::ONE)
 }
 
-/// `2 s c / square` and `1 − 2 s² / square`.
+/// `2 s c / square` and `(c² − s²) / square`: near a right angle, where it vanishes, a cosine in factors keeps its digits.
 fn doubled(graph: &mut Graph, (sine, cosine): (ExprId, ExprId), square: ExprId) -> (ExprId, ExprId) {
     let two = graph.integer(2);
     let factor = graph.div(two, square);
     let twice = graph.mul(factor, sine);
-    let (whole, versed) = (graph.mul(twice, cosine), graph.mul(twice, sine));
-    (whole, graph.sub(Graph::ONE, versed))
-}
-
-/// `(c² − s²) / square`: near a right angle, where it vanishes, it keeps the digits of s and c.
-fn difference_of_squares(graph: &mut Graph, (sine, cosine): (ExprId, ExprId), square: ExprId) -> ExprId {
     let (difference, sum) = (graph.sub(cosine, sine), graph.add(cosine, sine));
     let product = graph.mul(difference, sum);
-    graph.div(product, square)
+    (graph.mul(twice, cosine), graph.div(product, square))
 }
 
 /// Euler parameters, up to a factor, of the second body in the first's frame where all angles are zero: of the four ways to read
@@ -221,10 +214,9 @@ fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
 /// only the sine and cosine are given.
 pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
     let mut values = Values::default();
-    let digits = digits::are_at_stake(system);
     for link in &layout.links {
         for scalar in &link.scalars {
-            scalar_of_joint(system, scalar, digits, &mut values);
+            scalar_of_joint(system, scalar, &mut values);
         }
         let slot = system.slot_of(link.link.body).expect("links have coordinates");
         let pose = system.poses[link.link.body];
@@ -249,7 +241,7 @@ pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
     expanded(system, Values::default(), values)
 }
 
-fn scalar_of_joint(system: &mut System, scalar: &Scalar, digits: bool, values: &mut Values) {
+fn scalar_of_joint(system: &mut System, scalar: &Scalar, values: &mut Values) {
     let (coordinate, x) = (scalar.coordinate, scalar.place.x);
     let rate = coordinate::rate(system, coordinate);
     values.insert(Symbol::Rate(scalar.place.u), rate);
@@ -267,8 +259,7 @@ fn scalar_of_joint(system: &mut System, scalar: &Scalar, digits: bool, values: &
         let quarter = graph.compose(&at_zero, &[Graph::ZERO, x, y, z]);
         let half = (graph.dot(&quarter, &relative), graph.dot(&at_zero, &relative));
         let square = graph.dot(&at_zero, &at_zero);
-        let (sine, cosine) = doubled(graph, half, square);
-        if digits { (sine, difference_of_squares(graph, half, square)) } else { (sine, cosine) }
+        doubled(graph, half, square)
     } else {
         coordinate::sine_and_cosine(&mut system.graph, scalar.kind, &joint, &joint.relative)
     };

@@ -20,13 +20,13 @@ use crate::definitions::Expansion;
 use crate::digits::{self, Trials};
 use crate::dynamics::Dynamics;
 use crate::evaluate::evaluate;
+use crate::finish::Finish;
 use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{UNIT3, Vec3, ZERO3, transposed};
 use crate::null_space::Arm;
 use crate::orthogonal;
-use crate::schedule::cheapest;
 use crate::sheet::{Form, Reduction};
 use crate::symbol::Symbol;
 use crate::system::System;
@@ -106,7 +106,7 @@ impl JointSpace {
         power: Option<ExprId>,
         start: &Start,
     ) -> Self {
-        let layout = Layout::of(system);
+        let (layout, finish) = (Layout::of(system), Finish::of(system));
         let carriages = carriages(system, &layout, &|_| true);
         let maximal = maps::of_bodies(system, &layout, &carriages);
         let in_joints = in_joints(system, &layout, &maximal);
@@ -133,7 +133,7 @@ impl JointSpace {
             candidates.iter().map(expanded).collect::<Vec<_>>()
         };
         let of_balance = in_terms_of(system, &in_joints, &candidates);
-        let (of_balance, _) = cheapest(&system.graph, of_balance);
+        let (of_balance, _) = finish.cheapest(&mut system.graph, of_balance);
         // A maximal state has the angular velocities at hand.
         let spins = spins_at_hand(system, &layout, &carriages_of_dynamics, &invariant);
         let from_spins = reduced(system, &spins);
@@ -153,9 +153,9 @@ impl JointSpace {
             candidates_at.push(("orthogonal motions on the bodies' spins", from_spins.orthogonal(system)));
         }
         let of_rates = in_terms_of(system, &in_joints, &candidates);
-        let (accelerations, forms) = cheapest(&system.graph, of_rates);
+        let (accelerations, forms) = finish.cheapest(&mut system.graph, of_rates);
         let at = in_terms_of(system, &of_joints, &candidates_at);
-        let (accelerations_at, forms_at) = cheapest(&system.graph, at.clone());
+        let (accelerations_at, forms_at) = finish.cheapest(&mut system.graph, at.clone());
         let corrected = at.iter().flat_map(|(name, rates)| {
             let frames = ["the bodies' frames", "the global frame"].map(|frame| format!("{name} in {frame}"));
             frames.into_iter().zip(outward(system, &carriages, &of_joints, rates))
@@ -165,7 +165,7 @@ impl JointSpace {
             "elimination in maximal coordinates".to_owned(),
             expanded(system, &Values::default(), exact),
         ));
-        let (corrected, forms_corrected) = cheapest(&system.graph, corrected);
+        let (corrected, forms_corrected) = finish.cheapest(&mut system.graph, corrected);
 
         let tree = (&layout, &carriages[..]);
         let multipliers = multipliers::of(system, kinematics, dynamics, tree, &unit);
@@ -194,6 +194,7 @@ impl JointSpace {
             power: power_at(system, &rates_of_rates),
             reduced: &from_rates,
             unit: &unit,
+            finish,
         };
         let jacobian = Jacobian::derive(system, &form);
         let is_invariant = |link: &&layout::LinkCoordinates| {
@@ -492,8 +493,9 @@ mod tests {
     fn cost(page: &str, elimination: Elimination, names: &[&str]) -> usize {
         let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
         let start = model.assemble().expect("a start");
-        let equations = Equations::derive(&model, elimination, &start);
-        let functions = Functions::of(&equations);
+        let mut equations = Equations::derive(&model, elimination, &start);
+        let mut functions = Functions::of(&equations);
+        equations.finish.all(&mut equations.graph, &mut functions);
         let of = |name: &&str| {
             let functions = functions.list();
             let (.., roots) = functions.iter().find(|(known, ..)| known == name).expect("a function");
@@ -510,11 +512,11 @@ mod tests {
             let cost = cost(page, Elimination::NullSpace, names);
             assert!(cost <= allowed, "{names:?}: {cost} operations, more than {allowed}");
         };
-        check(&["joint_accelerations"], 20);
-        check(&["joint_accelerations_at"], 40);
-        check(&["corrected_accelerations"], 150);
-        check(&["corrected_solution"], 250);
-        check(&["accelerations"], 440);
+        check(&["joint_accelerations"], 19);
+        check(&["joint_accelerations_at"], 39);
+        check(&["corrected_accelerations"], 140);
+        check(&["corrected_solution"], 210);
+        check(&["accelerations"], 407);
         let saddle = cost(page, Elimination::Saddle, &["accelerations"]);
         assert!(saddle <= 860, "saddle: {saddle}");
     }

@@ -14,7 +14,6 @@ use crate::emit::{self, Body};
 use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::ExprId;
-use crate::reassociate::reassociate;
 use crate::schedule::Operations;
 use crate::set_up;
 use crate::sheet::Sheet;
@@ -48,7 +47,7 @@ pub struct Text {
 /// Writes the files.
 pub fn write(file_name: &str, type_name: &str, mut equations: Equations, start: &Start) -> Text {
     let mut functions = Functions::of(&equations);
-    reassociate(&mut equations.graph, &mut functions);
+    equations.finish.all(&mut equations.graph, &mut functions);
     set_up::separate(&mut equations.graph, &mut functions);
     let (equations, constants) = (&equations, RefCell::default());
     let module = ModuleWriter { equations, type_name, functions, constants };

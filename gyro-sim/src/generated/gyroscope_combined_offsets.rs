@@ -11,41 +11,41 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 762 operations by relative Euler parameters, doubled; 783 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 635 operations by rotations of the bodies, doubled; 656 operations by rotations of the bodies; 2 more compared
+//! * accelerations: 760 operations by relative Euler parameters, doubled; 781 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 635 operations by rotations of the bodies, doubled; 641 operations by rotations of the bodies; 2 more compared
 //! * joint_accelerations: 138 operations by normal form; 285 operations by orthogonal motions; 1 more compared
-//! * joint_accelerations_at: 176 operations by normal form; 323 operations by orthogonal motions; 3 more compared
-//! * corrected_accelerations: 321 operations by normal form in the bodies' frames; 421 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 430 operations by derivatives of u̇, from its leaves; 430 operations by normal form of that; 7 more compared
+//! * joint_accelerations_at: 178 operations by normal form; 325 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 323 operations by normal form in the bodies' frames; 423 operations by normal form in the global frame; 9 more compared
+//! * joint_jacobian: 425 operations by derivatives of u̇, from its leaves; 425 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 73 | 75 | 0 | 148 | 0 of 18 | 258 | 148 |
+//! | phi | Φ | 71 | 66 | 0 | 137 | 0 of 18 | 238 | 137 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 102 | 152 | 0 | 254 | 0 of 91 | 754 | 254 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 120 | 0 | 196 | 0 of 53 | 860 | 196 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 163 | 240 | 0 | 403 | 6 of 15 | 2161 | 403 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 158 | 0 | 272 | 0 of 15 | 936 | 272 |
+//! | gamma | γ | 163 | 234 | 0 | 397 | 6 of 15 | 1567 | 397 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 152 | 0 | 266 | 0 of 15 | 670 | 266 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 318 | 437 | 5 | 760 | 6 of 18 | 6.6e7 | 764 |
-//! | multipliers | λ, the accelerations being known | 138 | 214 | 3 | 355 | 0 of 15 | 7677 | 355 |
+//! | multipliers | λ, the accelerations being known | 138 | 200 | 3 | 341 | 0 of 15 | 5270 | 341 |
 //! | project | (δr, δπ') that changes the rows as given | 261 | 368 | 6 | 635 | 0 of 18 | 1.8e7 | 636 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 220 | 343 | 3 | 566 | 6 of 21 | 1.0e10 | 566 |
-//! | solve_velocities | dependent velocities, eq. (19) | 126 | 203 | 3 | 332 | 6 of 18 | 55373 | 332 |
+//! | newton_step | dependent positions, one Newton step | 220 | 322 | 3 | 545 | 6 of 21 | 9.4e9 | 545 |
+//! | solve_velocities | dependent velocities, eq. (19) | 126 | 176 | 3 | 305 | 6 of 18 | 45397 | 305 |
 //! | joint_accelerations | u̇ in joint coordinates | 57 | 79 | 2 | 138 | 0 of 3 | 2690 | 139 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 69 | 113 | 0 | 182 | 16 of 39 | 1695 | 182 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 | 23451 | 177 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 | 458822 | 322 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 | 1747 | 233 |
-//! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 | 1.4e7 | 481 |
+//! | to_maximal | (q, v) of a joint state | 71 | 96 | 0 | 167 | 16 of 39 | 1738 | 167 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 75 | 101 | 2 | 178 | 0 of 3 | 33041 | 179 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 134 | 187 | 2 | 323 | 6 of 18 | 645988 | 324 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 103 | 131 | 0 | 234 | 0 of 15 | 1754 | 234 |
+//! | corrected_solution | both | 201 | 280 | 2 | 483 | 6 of 33 | 2.0e7 | 484 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 170 | 253 | 2 | 425 | 24 of 42 | 27498 | 425 |
 //!
 //! # Proof
@@ -458,7 +458,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 148 operations (73 ±, 75 ×, 0 ÷).
+    /// Writes Φ: 137 operations (71 ±, 66 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -482,116 +482,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = inner_ring_e0 * inner_ring_e2;
-        let t5 = inner_ring_e1 * inner_ring_e3;
-        let t6 = t5 + t4;
-        let t7 = k(2.0) * t6;
-        let t8 = outer_ring_e0 * outer_ring_e0;
-        let t9 = T::fused(outer_ring_e1, outer_ring_e1, t8);
-        let t10 = inner_ring_e0 * inner_ring_e1;
-        let t11 = inner_ring_e2 * inner_ring_e3;
-        let t12 = t11 - t10;
-        let t13 = k(2.0) * t12;
-        let t14 = T::fused(-(k(2.0) * (k(0.5) - t9)), t7, k(2.0) * (t2 + t1) * t13);
-        let t15 = inner_ring_e3 * inner_ring_e3;
-        let t16 = inner_ring_e0 * inner_ring_e0;
-        let t17 = k(0.5) - (t16 + t15);
-        let t18 = k(2.0) * t17;
-        let t19 = outer_ring_e2 * outer_ring_e2;
-        let t20 = T::fused(
-            t0,
-            t18,
-            -T::fused(-(k(2.0) * (k(0.5) - (t8 + t19))), t13, t3 * t7),
+        let t3 = t2 - t1;
+        let t4 = inner_ring_e0 * inner_ring_e0;
+        let t5 = k(0.5) - t4;
+        let t6 = inner_ring_e3 * inner_ring_e3;
+        let t7 = t6 - t5;
+        let t8 = inner_ring_e0 * inner_ring_e1;
+        let t9 = inner_ring_e2 * inner_ring_e3;
+        let t10 = t9 - t8;
+        let t11 = T::fused(
+            T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t7,
+            (t2 + t1) * t10,
         );
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t16);
-        let t22 = inner_ring_e0 * inner_ring_e3;
-        let t23 = inner_ring_e1 * inner_ring_e2;
-        let t24 = t23 - t22;
-        let t25 = inner_ring_rx
-            - T::fused(
-                k(6e-5),
-                t6,
-                -T::fused(-k(0.00025), k(0.5) - t21, k(0.0001) * t24),
-            );
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = T::fused(rotor_e1, rotor_e1, t26);
-        let t28 = k(0.5) - t27;
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = rotor_e0 * rotor_e2;
-        let t32 = rotor_e1 * rotor_e3;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(0.5) - t12;
+        let t14 = outer_ring_e1 * outer_ring_e1;
+        let t15 = inner_ring_e0 * inner_ring_e2;
+        let t16 = inner_ring_e1 * inner_ring_e3;
+        let t17 = t16 + t15;
+        let t18 = outer_ring_e2 * outer_ring_e2;
+        let t19 = k(4.0) * T::fused(t3, t17, T::fused(t0, t7, t10 * (t18 - t13)));
+        let t20 = rotor_e0 * rotor_e0;
+        let t21 = k(0.5) - t20;
+        let t22 = rotor_e1 * rotor_e1;
+        let t23 = t22 - t21;
+        let t24 = rotor_e0 * rotor_e2;
+        let t25 = rotor_e1 * rotor_e3;
+        let t26 = rotor_e0 * rotor_e3;
+        let t27 = rotor_e1 * rotor_e2;
+        let t28 = T::fused(
+            k(0.0002),
+            t23,
+            T::fused(k(0.0004), t27 - t26, T::fused(-k(0.0003), t25 + t24, rotor_rx)),
+        );
+        let t29 = inner_ring_e0 * inner_ring_e3;
+        let t30 = inner_ring_e1 * inner_ring_e2;
+        let t31 = t30 - t29;
+        let t32 = inner_ring_e1 * inner_ring_e1;
         let t33 = T::fused(
-            k(0.0003),
-            t32 + t31,
-            -T::fused(-k(0.0002), t28, k(0.0004) * (t30 - t29)),
+            k(0.00025),
+            t32 - t5,
+            T::fused(k(0.0001), t31, -T::fused(k(6e-5), t17, -(inner_ring_rx - t28))),
         );
-        let t34 = inner_ring_e2 * inner_ring_e2;
-        let t35 = k(0.5) - (t16 + t34);
-        let t36 = inner_ring_ry
-            - T::fused(k(6e-5), t12, T::fused(-k(0.00025), t23 + t22, k(0.0001) * t35));
-        let t37 = t30 + t29;
-        let t38 = rotor_e2 * rotor_e2;
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
+        let t34 = rotor_e2 * rotor_e2;
+        let t35 = rotor_e0 * rotor_e1;
+        let t36 = rotor_e2 * rotor_e3;
+        let t37 = t27 + t26;
+        let t38 = T::fused(
+            k(0.0002),
+            t37,
+            T::fused(k(0.0004), t34 - t21, T::fused(-k(0.0003), t36 - t35, rotor_ry)),
+        );
+        let t39 = inner_ring_e2 * inner_ring_e2;
+        let t40 = t39 - t5;
         let t41 = T::fused(
-            k(0.0003),
-            t40 - t39,
-            T::fused(-k(0.0002), t37, k(0.0004) * (k(0.5) - (t26 + t38))),
+            k(0.00025),
+            t30 + t29,
+            T::fused(k(0.0001), t40, -T::fused(k(6e-5), t10, -(inner_ring_ry - t38))),
         );
-        let t42 = t11 + t10;
-        let t43 = inner_ring_rz
-            + T::fused(k(6e-5), t17, T::fused(k(0.00025), t5 - t4, k(0.0001) * t42));
-        let t44 = t32 - t31;
-        let t45 = rotor_e3 * rotor_e3;
+        let t42 = rotor_e3 * rotor_e3;
+        let t43 = t25 - t24;
+        let t44 = T::fused(
+            k(0.0002),
+            t43,
+            T::fused(k(0.0004), t36 + t35, T::fused(-k(0.0003), t42 - t21, rotor_rz)),
+        );
+        let t45 = t9 + t8;
         let t46 = T::fused(
-            k(0.0003),
-            k(0.5) - (t26 + t45),
-            T::fused(k(0.0002), t44, k(0.0004) * (t40 + t39)),
-        );
-        let t47 = k(2.0) * t28;
-        let t48 = k(2.0) * t37;
-        let t49 = k(2.0) * t44;
-        let t50 = T::fused(
-            k(2.0) * t42,
-            t49,
-            -T::fused(k(2.0) * t24, t47, k(2.0) * t35 * t48),
+            k(0.00025),
+            t16 - t15,
+            T::fused(k(0.0001), t45, -T::fused(k(6e-5), t7, -(inner_ring_rz - t44))),
         );
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            t0,
-            t3,
+            k(2.0) * t0,
+            k(2.0) * t3,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t18,
-                t14,
-            ),
-            -t20,
-            rotor_rx - t33 - t25,
-            rotor_ry - t41 - t36,
-            rotor_rz + t46 - t43,
-            t50,
-            T::fused(-t18, t49, T::fused(-t7, t47, t13 * t48)),
-            T::fused(outer_ring_e3, outer_ring_e3, t9 + t19) - k(1.0),
-            t15 + (t21 + t34) - k(1.0),
-            t45 + (t27 + t38) - k(1.0),
+            k(4.0) * T::fused(t17, t14 - t13, t11),
+            t19,
+            -t33,
+            -t41,
+            -t46,
+            k(4.0) * T::fused(t31, t23, T::fused(t37, t40, t45 * t43)),
+            k(4.0) * T::fused(t17, t23, T::fused(t43, t7, t10 * t37)),
+            t18 + (t14 + T::fused(outer_ring_e3, outer_ring_e3, t12)) - k(1.0),
+            t39 + (t32 + (t4 + t6)) - k(1.0),
+            t34 + (t22 + (t20 + t42)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 272 operations (114 ±, 158 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 266 operations (114 ±, 152 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -624,165 +611,186 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
-        let t7 = T::fused(-outer_ring_e1, t2, t5);
-        let t8 = t3 + t1;
-        let t9 = k(2.0) * inner_ring_e0;
-        let t10 = inner_ring_e2 * t9;
-        let t11 = k(2.0) * inner_ring_e1;
-        let t12 = inner_ring_e3 * t11;
-        let t13 = t12 + t10;
-        let t14 = outer_ring_e3 * t0;
-        let t15 = outer_ring_e2 * t2;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e1 * t9;
-        let t18 = k(2.0) * inner_ring_e2;
-        let t19 = inner_ring_e3 * t18;
-        let t20 = t19 - t17;
-        let t21 = k(2.0) * outer_ring_e2;
-        let t22 = T::fused(-outer_ring_e2, t21, t5);
-        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
-        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
-        let t25 = outer_ring_e1 * t0;
-        let t26 = outer_ring_e3 * t21;
-        let t27 = t26 + t25;
-        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t6 = t3 + t2;
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(t6, t16, T::fused(t8, t1, (t13 - t12) * t11));
+        let t18 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = t20 + t19;
+        let t22 = t10 + t9;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t27 = t15 - t14;
+        let t28 = t24 + t23;
         let t29 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t5, T::fused(t21, t18, t4 * t22)),
+            inner_ring_wy * T::fused(t26, t5, T::fused(t4, t27, t21 * t28)),
+        );
+        let t30 = t13 + t12;
+        let t31 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t32 = t20 - t19;
+        let t33 = T::fused(
             outer_ring_wz,
-            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
-            outer_ring_wy * t28,
+            T::fused(t32, t16, T::fused(t30, t8, t11 * t31)),
+            T::fused(-outer_ring_wy, t17, t29),
         );
-        let t30 = T::fused(-inner_ring_e1, t11, t23);
-        let t31 = inner_ring_e3 * t9;
-        let t32 = inner_ring_e2 * t11;
-        let t33 = t32 + t31;
-        let t34 = t15 + t14;
-        let t35 = t12 - t10;
-        let t36 = t32 - t31;
-        let t37 = T::fused(-inner_ring_e2, t18, t23);
-        let t38 = t19 + t17;
-        let t39 = T::fused(
-            -inner_ring_wy,
-            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
-            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
+        let t34 = T::fused(
+            -inner_ring_wx,
+            T::fused(t32, t25, T::fused(t31, t18, t30 * t22)),
+            inner_ring_wy * T::fused(t32, t26, T::fused(t28, t31, t30 * t27)),
         );
-        let t40 = T::fused(
+        let t35 = T::fused(
             outer_ring_wz,
-            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
-            outer_ring_wx * t28,
+            T::fused(t16, t5, T::fused(t4, t8, t21 * t11)),
+            -T::fused(outer_ring_wx, t17, t34),
         );
-        let t41 = T::fused(
-            -inner_ring_wy,
-            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
-            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
+        let t36 = T::fused(
+            k(0.0001),
+            T::fused(-inner_ring_wz, t26, t16 * inner_ring_wx),
+            T::fused(
+                -k(0.00025),
+                T::fused(-t25, inner_ring_wz, t16 * inner_ring_wy),
+                inner_ring_sx,
+            ),
         );
-        let t42 = k(2.0) * rotor_e1;
-        let t43 = k(2.0) * rotor_e0;
-        let t44 = T::fused(-rotor_e0, t43, k(1.0));
-        let t45 = T::fused(-rotor_e1, t42, t44);
-        let t46 = rotor_e3 * t43;
-        let t47 = rotor_e2 * t42;
-        let t48 = t47 - t46;
-        let t49 = rotor_e2 * t43;
-        let t50 = rotor_e3 * t42;
-        let t51 = t50 + t49;
+        let t37 = rotor_e0 * rotor_e2;
+        let t38 = rotor_e1 * rotor_e3;
+        let t39 = t38 + t37;
+        let t40 = rotor_e0 * rotor_e3;
+        let t41 = rotor_e1 * rotor_e2;
+        let t42 = t41 - t40;
+        let t43 = T::fused(
+            k(0.0002),
+            T::fused(-t39, rotor_wy, t42 * rotor_wz),
+            rotor_sx
+                - T::fused(
+                    k(6e-5),
+                    T::fused(-inner_ring_wy, t26, t25 * inner_ring_wx),
+                    t36,
+                ),
+        );
+        let t44 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t45 = T::fused(rotor_e1, rotor_e1, -t44);
+        let t46 = T::fused(
+            k(0.0003),
+            T::fused(-rotor_wy, t45, t42 * rotor_wx),
+            T::fused(k(0.0004), T::fused(-rotor_wz, t45, t39 * rotor_wx), t43),
+        );
+        let t47 = T::fused(
+            k(0.0001),
+            T::fused(-t28, inner_ring_wz, t11 * inner_ring_wx),
+            T::fused(
+                -k(0.00025),
+                T::fused(-inner_ring_wz, t18, t11 * inner_ring_wy),
+                inner_ring_sy,
+            ),
+        );
+        let t48 = T::fused(rotor_e2, rotor_e2, -t44);
+        let t49 = rotor_e0 * rotor_e1;
+        let t50 = rotor_e2 * rotor_e3;
+        let t51 = t50 - t49;
         let t52 = T::fused(
-            -k(0.0002),
-            T::fused(rotor_wz, t45, rotor_wx * t51),
-            k(0.0001) * T::fused(-rotor_wz, t48, rotor_wy * t51),
+            k(0.0002),
+            T::fused(-rotor_wz, t48, t51 * rotor_wy),
+            -(rotor_sy
+                - T::fused(
+                    -k(6e-5),
+                    T::fused(-inner_ring_wx, t18, t28 * inner_ring_wy),
+                    t47,
+                )),
         );
-        let t53 = T::fused(
-            -k(5e-5),
-            T::fused(inner_ring_wz, t30, inner_ring_wx * t13),
-            k(0.000125) * T::fused(-inner_ring_wz, t36, inner_ring_wy * t13),
+        let t53 = t41 + t40;
+        let t54 = T::fused(
+            k(0.0003),
+            T::fused(-rotor_wx, t48, t53 * rotor_wy),
+            T::fused(k(0.0004), T::fused(-t51, rotor_wx, t53 * rotor_wz), t52),
         );
-        let t54 = inner_ring_sx
-            - T::fused(-k(3e-5), T::fused(inner_ring_wy, t30, inner_ring_wx * t36), t53)
-            - (rotor_sx
-                - T::fused(-k(0.00015), T::fused(rotor_wy, t45, rotor_wx * t48), t52));
-        let t55 = t47 + t46;
-        let t56 = k(2.0) * rotor_e2;
-        let t57 = T::fused(-rotor_e2, t56, t44);
-        let t58 = rotor_e1 * t43;
-        let t59 = rotor_e3 * t56;
-        let t60 = t59 - t58;
+        let t55 = T::fused(
+            -k(0.0001),
+            T::fused(-inner_ring_wx, t8, t27 * inner_ring_wz),
+            T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wy, t8, t22 * inner_ring_wz),
+                inner_ring_sz,
+            ),
+        );
+        let t56 = T::fused(rotor_e3, rotor_e3, -t44);
+        let t57 = t50 + t49;
+        let t58 = T::fused(
+            k(0.0002),
+            T::fused(-rotor_wy, t56, t57 * rotor_wz),
+            rotor_sz
+                + T::fused(
+                    k(6e-5),
+                    T::fused(-t22, inner_ring_wx, t27 * inner_ring_wy),
+                    -t55,
+                ),
+        );
+        let t59 = t38 - t37;
+        let t60 = T::fused(
+            k(0.0003),
+            T::fused(-t57, rotor_wx, t59 * rotor_wy),
+            T::fused(k(0.0004), T::fused(-rotor_wx, t56, t59 * rotor_wz), -t58),
+        );
         let t61 = T::fused(
-            -k(0.0002),
-            T::fused(-rotor_wz, t55, rotor_wx * t60),
-            k(0.0001) * T::fused(rotor_wz, t57, rotor_wy * t60),
+            -rotor_wy,
+            T::fused(t25, t39, T::fused(t22, t56, t51 * t18)),
+            rotor_wz * T::fused(t25, t42, T::fused(t48, t18, t22 * t57)),
         );
         let t62 = T::fused(
-            -k(5e-5),
-            T::fused(-inner_ring_wz, t33, inner_ring_wx * t20),
-            k(0.000125) * T::fused(inner_ring_wz, t37, inner_ring_wy * t20),
+            inner_ring_wx,
+            T::fused(t16, t45, T::fused(t59, t8, t11 * t53)),
+            t61,
         );
-        let t63 = inner_ring_sy
-            - T::fused(k(3e-5), T::fused(inner_ring_wy, t33, inner_ring_wx * t37), t62)
-            - (rotor_sy
-                - T::fused(k(0.00015), T::fused(rotor_wy, t55, rotor_wx * t57), t61));
-        let t64 = t50 - t49;
-        let t65 = t59 + t58;
-        let t66 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
-        let t67 = T::fused(
-            -k(0.0002),
-            T::fused(rotor_wz, t64, rotor_wx * t66),
-            k(0.0001) * T::fused(rotor_wz, t65, rotor_wy * t66),
+        let t63 = T::fused(t26, t45, T::fused(t27, t59, t28 * t53));
+        let t64 = T::fused(
+            -rotor_wy,
+            T::fused(t16, t39, T::fused(t56, t8, t11 * t51)),
+            rotor_wz * T::fused(t16, t42, T::fused(t57, t8, t11 * t48)),
         );
-        let t68 = T::fused(
-            -k(5e-5),
-            T::fused(inner_ring_wz, t35, inner_ring_wx * t24),
-            k(0.000125) * T::fused(inner_ring_wz, t38, inner_ring_wy * t24),
-        );
-        let t69 = inner_ring_sz
-            + T::fused(k(3e-5), T::fused(-inner_ring_wy, t35, inner_ring_wx * t38), t68)
-            - (rotor_sz
-                + T::fused(k(0.00015), T::fused(-rotor_wy, t64, rotor_wx * t65), t67));
-        let t70 = T::fused(t35, t64, T::fused(t30, t45, t33 * t55));
-        let t71 = T::fused(
-            inner_ring_wz,
-            t70,
-            inner_ring_wx * T::fused(t24, t64, -T::fused(-t13, t45, t20 * t55)),
-        );
-        let t72 = T::fused(
-            rotor_wz,
-            T::fused(t38, t65, T::fused(t36, t48, t37 * t57)),
-            rotor_wy * T::fused(t38, t66, T::fused(-t36, t51, t37 * t60)),
-        );
-        let t73 = T::fused(
-            -inner_ring_wy,
-            t70,
-            inner_ring_wx * T::fused(t38, t64, -T::fused(t36, t45, t37 * t55)),
-        );
-        let t74 = T::fused(
-            rotor_wz,
-            T::fused(t24, t65, T::fused(-t13, t48, t20 * t57)),
-            rotor_wy * T::fused(t24, t66, T::fused(t13, t51, t20 * t60)),
+        let t65 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t45, T::fused(t53, t18, t22 * t59)),
+            t64,
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
-            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
+            -(k(2.0) * T::fused(-outer_ring_wx, t1, t4 * outer_ring_wz)),
+            k(2.0) * T::fused(-outer_ring_wz, t5, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t39 + t29),
-            t40 - t41,
+            k(4.0) * t33,
+            -(k(4.0) * t35),
+            t46,
             -t54,
-            -t63,
-            -t69,
-            t72 - t71,
-            -(t74 + t73),
+            -t60,
+            -(k(4.0) * T::fused(inner_ring_wz, t63, -t62)),
+            k(4.0) * T::fused(inner_ring_wy, t63, t65),
         ];
     }
-    /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
+    /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -807,65 +815,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
-        );
-        let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.01),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t2),
+            ),
+        );
+        let t4 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t3,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: T::fused(
-                k(0.8),
-                rotor_ry,
-                k(0.1) * (outer_ring_ry + inner_ring_ry),
-            ),
+            kinetic: k(5e-7) * t4,
+            potential: k(0.1) * T::fused(k(8.0), rotor_ry, outer_ring_ry + inner_ring_ry),
         }
     }
-    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
+    /// Writes the joint readings: 104 operations (54 ±, 50 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -887,71 +894,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e3 * outer_ring_e3;
         let t3 = outer_ring_e0 * outer_ring_e0;
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
-        let t5 = outer_ring_e3 * outer_ring_e3;
-        let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
-            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
-        );
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = k(0.5) * (k(1.0) - (t5 + (t4 + t2)));
+        let t7 = inner_ring_e3 * inner_ring_e3;
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = T::fused(inner_ring_e1, inner_ring_e1, t8);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = k(0.5) * (k(1.0) - (t10 + (t9 + t7)));
+        let t12 = k(0.5) - t9 - t11;
+        let t13 = outer_ring_e0 * outer_ring_e3;
+        let t14 = outer_ring_e1 * outer_ring_e2;
+        let t15 = inner_ring_e0 * inner_ring_e3;
+        let t16 = inner_ring_e1 * inner_ring_e2;
+        let t17 = t16 + t15;
+        let t18 = T::fused(t14 - t13, t12, t17 * (k(0.5) - (t3 + t5) - t6));
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = t20 - t19;
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            t1 - t0,
+            t21,
+            T::fused(t12, k(0.5) - t4 - t6, (t14 + t13) * t17),
         );
-        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t24 = rotor_e2 * rotor_e2;
-        let t25 = rotor_e0 * rotor_e0;
-        let t26 = T::fused(
-            k(2.0),
-            k(0.5) - (t25 + t24),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        let t23 = rotor_e2 * rotor_e2;
+        let t24 = rotor_e0 * rotor_e0;
+        let t25 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t24 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t24 + t23))),
         );
+        let t26 = k(0.5) * (k(1.0) - (t23 + t25));
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t29 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
-            t26,
-            k(2.0) * (t11 - t10) * t29,
+            t30,
+            k(0.5) - (t8 + t7) - t11,
+            -T::fused(t28 - t27, t26, (t20 + t19) * t29),
         );
+        let t32 = T::fused(-(k(0.5) - (t8 + t10) - t11), t26, (t16 - t15) * t29);
         *out = [
             k(2.0) * (t1 + t0),
-            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
+            -(k(2.0) * (k(0.5) - (t3 + t2) - t6)),
             outer_ring_wy,
-            T::fused(
-                k(2.0)
-                    * T::fused(
+            k(4.0)
+                * T::fused(
+                    T::fused(
                         outer_ring_e0,
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
-            ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+                    t21,
+                    -t18,
+                ),
+            k(4.0) * t22,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
-            T::fused(k(2.0) * (t28 + t27), t23, t31),
+            -(k(4.0) * t31),
+            k(4.0) * T::fused(t28 + t27, t30, t32),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1095,7 +1098,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeCombinedOffsets<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 566 operations (220 ±, 343 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 545 operations (220 ±, 322 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1123,338 +1126,343 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeCombinedOffsets<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-        let t11 = t2 * t4;
-        let t12 = t3 * t5;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-        let t16 = k(2.0) * (t12 - t11);
-        let t17 = T::fused(t9, t15, t16 * t13);
-        let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t9 = T::fused(t2, t3, t7 * t6);
+        let t10 = t3 * t6;
+        let t11 = t2 * t7;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t3, t7, t2 * t6);
+        let t14 = t11 + t10;
+        let t15 = k(2.0) - T::fused(t7, t7, t4);
+        let t16 = T::fused(-t14, t12, t15 * t5);
+        let t17 = k(1.0) / (t8 * t16);
+        let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+        let t19 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
+        );
         let t20 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t19),
         );
         let t21 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t22 = k(0.5) * t21;
+        let t22 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t23 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            t9,
+            T::fused(t5, t21, t14 * t22),
+            t13 * T::fused(t15, t22, t12 * t21),
         );
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(
-            t10,
-            T::fused(t16, t22, t9 * t24),
-            t14 * T::fused(-t13, t24, t15 * t22),
-        );
-        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
-        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
-        let t28 = T::fused(
+        let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+        let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)), t3);
+        let t27 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)), t2);
+        let t28 = T::fused(k(0.5), T::fused(t2, t25, T::fused(t7, t18, t3 * t24)), t6);
+        let t29 = T::fused(
             -k(0.5),
-            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-            t3,
+            T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+            t7,
         );
-        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
-        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
-        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
-        let t32 = t29 * t30;
-        let t33 = t28 * t31;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t30 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t36 = k(0.5) * (t35 - k(3.0));
-        let t37 = inner_ring_e2 * t36;
-        let t38 = inner_ring_e1 * t36;
-        let t39 = t38 * t37;
-        let t40 = inner_ring_e3 * t36;
-        let t41 = inner_ring_e0 * t36;
-        let t42 = t41 * t40;
-        let t43 = k(2.0) * (t42 - t39);
-        let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
-        let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
-        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
-        let t49 = t37 * t40;
-        let t50 = t41 * t38;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
-        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
-        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
-        let t55 = k(2.0) * (t42 + t39);
-        let t56 = k(2.0) * (t33 + t32);
-        let t57 = t38 * t40;
-        let t58 = t41 * t37;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
-        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
-        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
-        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
-        let t64 = T::fused(-t61, t52, t63 * t62);
-        let t65 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t37,
-            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
-        );
-        let t66 = T::fused(
-            -chart1_3,
-            t38,
-            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
-        );
-        let t67 = k(0.5) * t66;
-        let t68 = T::fused(
+        let t31 = k(3.0) - t30;
+        let t32 = inner_ring_e3 * t31;
+        let t33 = inner_ring_e2 * t31;
+        let t34 = inner_ring_e1 * t31;
+        let t35 = inner_ring_e0 * t31;
+        let t36 = T::fused(
             chart1_3,
-            t37,
-            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+            t35,
+            -T::fused(chart1_2, t34, -T::fused(-chart1_0, t32, chart1_1 * t33)),
         );
-        let t69 = k(0.5) * t68;
-        let t70 = k(2.0) * (t58 + t57);
-        let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
-        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
-        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t37 = t33 * t35;
+        let t38 = t34 * t32;
+        let t39 = t38 - t37;
+        let t40 = T::fused(t26, t27, t28 * t29);
+        let t41 = t32 * t35;
+        let t42 = t33 * t34;
+        let t43 = t42 + t41;
+        let t44 = t26 * t26;
+        let t45 = k(2.0) - T::fused(t28, t28, t44);
+        let t46 = t35 * t35;
+        let t47 = k(2.0) - T::fused(t34, t34, t46);
+        let t48 = t26 * t29;
+        let t49 = t27 * t28;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t47, T::fused(-t40, t39, t45 * t43));
+        let t52 = k(2.0) - T::fused(t32, t32, t46);
+        let t53 = T::fused(-t26, t28, t27 * t29);
+        let t54 = t34 * t35;
+        let t55 = t33 * t32;
+        let t56 = t55 - t54;
+        let t57 = t49 + t48;
+        let t58 = t38 + t37;
+        let t59 = k(2.0) - T::fused(t27, t27, t44);
+        let t60 = T::fused(t59, t58, -T::fused(-t53, t52, t57 * t56));
+        let t61 = T::fused(t47, t59, T::fused(t39, t53, t43 * t57));
+        let t62 = T::fused(t50, t58, -T::fused(t40, t52, t45 * t56));
+        let t63 = t55 + t54;
+        let t64 = k(2.0) - T::fused(t33, t33, t46);
+        let t65 = t42 - t41;
+        let t66 = T::fused(t65, t59, T::fused(-t63, t53, t64 * t57));
+        let t67 = T::fused(t50, t65, T::fused(t40, t63, t45 * t64));
+        let t68 = T::fused(-t51, t66, t67 * t61);
+        let t69 = k(1.0) / (t68 * t36);
+        let t70 = t69 * T::fused(-t60, t51 * t36, t62 * (t61 * t36));
+        let t71 = t69 * T::fused(-t60, t67 * t36, t62 * (t66 * t36));
+        let t72 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t35, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t34, inner_ring_e1),
+        );
+        let t73 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t32, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t33, inner_ring_e2), t72),
+        );
+        let t74 = T::fused(
+            chart1_3,
+            t34,
+            T::fused(chart1_2, t35, -T::fused(chart1_0, t33, chart1_1 * t32)),
+        );
         let t75 = T::fused(
-            t73,
-            T::fused(-t63, t67, t61 * t69),
-            t74 * T::fused(-t62, t69, t52 * t67),
+            chart1_3,
+            t33,
+            -T::fused(chart1_2, t32, T::fused(-chart1_0, t34, chart1_1 * t35)),
         );
         let t76 = T::fused(
-            -chart1_3,
-            t41,
-            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+            -T::fused(t67, t74, t51 * t75),
+            t60,
+            T::fused(t61, t75, t66 * t74) * t62,
         );
-        let t77 = k(0.5) * t76;
-        let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
-        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
-        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
-        let t82 = T::fused(
-            k(0.5),
-            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
-            t41,
-        );
-        let t83 = T::fused(
+        let t77 = T::fused(k(4.0), t68 * t73, t76) * t69;
+        let t78 = T::fused(
             -k(0.5),
-            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
-            t38,
+            T::fused(t32, t77, -T::fused(-t34, t70, t33 * t71)),
+            t35,
         );
-        let t84 = T::fused(
-            -k(0.5),
-            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
-            t37,
-        );
-        let t85 = T::fused(
+        let t79 = T::fused(
             k(0.5),
-            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
-            t40,
+            T::fused(t33, t77, T::fused(t35, t70, t32 * t71)),
+            t34,
         );
-        let t86 = t82 * t82;
-        let t87 = t83 * t84;
-        let t88 = t82 * t85;
-        let t89 = t88 - t87;
-        let t90 = t83 * t85;
-        let t91 = t82 * t84;
-        let t92 = t91 + t90;
-        let t93 = T::fused(
-            k(6e-5),
-            t92,
-            T::fused(k(0.00025), k(0.5) - T::fused(t83, t83, t86), k(0.0001) * t89),
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t34, t77, T::fused(-t32, t70, t35 * t71)),
+            t33,
         );
-        let t94 = T::fused(
-            rotor_e3,
-            rotor_e3,
+        let t81 = T::fused(
+            k(0.5),
+            T::fused(t35, t77, -T::fused(t33, t70, t34 * t71)),
+            t32,
+        );
+        let t82 = t78 * t78;
+        let t83 = t78 * t81;
+        let t84 = t79 * t80;
+        let t85 = t84 - t83;
+        let t86 = t78 * t80;
+        let t87 = t79 * t81;
+        let t88 = t87 + t86;
+        let t89 = T::fused(
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t95 = k(0.5) * (t94 - k(3.0));
-        let t96 = rotor_e2 * t95;
-        let t97 = rotor_e3 * t95;
-        let t98 = rotor_e0 * t95;
-        let t99 = rotor_e1 * t95;
-        let t100 = T::fused(
+        let t90 = k(3.0) - t89;
+        let t91 = rotor_e0 * t90;
+        let t92 = rotor_e1 * t90;
+        let t93 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t91, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t92, rotor_e1),
+        );
+        let t94 = rotor_e2 * t90;
+        let t95 = rotor_e3 * t90;
+        let t96 = T::fused(
             chart2_3,
-            t96,
-            T::fused(-chart2_2, t97, T::fused(-chart2_1, t98, chart2_0 * t99)),
+            T::fused(-k(0.5), t95, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t94, rotor_e2), t93),
         );
-        let t101 = k(0.5) * t100;
-        let t102 = k(2.0) * t89;
-        let t103 = t99 * t97;
-        let t104 = t98 * t96;
-        let t105 = k(2.0) * (t104 + t103);
-        let t106 = k(0.5) - T::fused(t84, t84, t86);
-        let t107 = k(2.0) * t106;
-        let t108 = t96 * t97;
-        let t109 = t98 * t99;
-        let t110 = k(2.0) * (t109 - t108);
-        let t111 = t84 * t85;
-        let t112 = t82 * t83;
-        let t113 = t112 + t111;
-        let t114 = k(2.0) * t113;
-        let t115 = t98 * t98;
-        let t116 = k(2.0) * (k(0.5) - T::fused(t97, t97, t115));
-        let t117 = T::fused(t116, t114, -T::fused(-t105, t102, t110 * t107));
-        let t118 = k(2.0) * t92;
-        let t119 = k(2.0) * (k(0.5) - T::fused(t99, t99, t115));
-        let t120 = t112 - t111;
-        let t121 = k(2.0) * t120;
-        let t122 = t99 * t96;
-        let t123 = t98 * t97;
-        let t124 = k(2.0) * (t123 + t122);
-        let t125 = k(0.5) - T::fused(t85, t85, t86);
-        let t126 = k(2.0) * t125;
-        let t127 = k(2.0) * (t104 - t103);
-        let t128 = T::fused(t127, t126, -T::fused(t119, t118, t124 * t121));
-        let t129 = T::fused(t116, t126, T::fused(t105, t118, t110 * t121));
-        let t130 = T::fused(t114, t127, T::fused(-t102, t119, t107 * t124));
-        let t131 = k(2.0) * (t123 - t122);
-        let t132 = k(2.0) * (k(0.5) - T::fused(t96, t96, t115));
-        let t133 = k(2.0) * (t109 + t108);
-        let t134 = T::fused(t114, t133, T::fused(t102, t131, t107 * t132));
-        let t135 = T::fused(t133, t126, -T::fused(-t131, t118, t132 * t121));
-        let t136 = T::fused(-t134, t129, t117 * t135);
-        let t137 = k(1.0) / (t101 * t136);
-        let t138 = t137 * T::fused(-t128, t117 * t101, t130 * (t129 * t101));
-        let t139 = t137 * T::fused(-t128, t134 * t101, t130 * (t135 * t101));
-        let t140 = T::fused(
-            chart2_2,
-            rotor_e2 + t96,
-            T::fused(chart2_1, rotor_e1 + t99, chart2_0 * (rotor_e0 + t98)),
+        let t97 = t91 * t92;
+        let t98 = t94 * t95;
+        let t99 = t98 + t97;
+        let t100 = k(2.0) - T::fused(t81, t81, t82);
+        let t101 = t91 * t91;
+        let t102 = k(2.0) - T::fused(t94, t94, t101);
+        let t103 = t78 * t79;
+        let t104 = t80 * t81;
+        let t105 = t104 - t103;
+        let t106 = t95 * t91;
+        let t107 = t94 * t92;
+        let t108 = t107 - t106;
+        let t109 = T::fused(t88, t108, -T::fused(t100, t99, t105 * t102));
+        let t110 = k(2.0) - T::fused(t95, t95, t101);
+        let t111 = t104 + t103;
+        let t112 = t98 - t97;
+        let t113 = k(2.0) - T::fused(t80, t80, t82);
+        let t114 = t94 * t91;
+        let t115 = t95 * t92;
+        let t116 = t115 + t114;
+        let t117 = T::fused(t85, t116, -T::fused(t111, t110, t113 * t112));
+        let t118 = T::fused(t85, t108, T::fused(t111, t99, t113 * t102));
+        let t119 = T::fused(t88, t116, T::fused(t110, t100, t112 * t105));
+        let t120 = T::fused(-t117, t109, t119 * t118);
+        let t121 = T::fused(
+            chart2_3,
+            t91,
+            -T::fused(chart2_2, t92, -T::fused(-chart2_0, t95, chart2_1 * t94)),
         );
-        let t141 = T::fused(
-            -chart2_3,
-            t98,
-            T::fused(chart2_2, t99, T::fused(-chart2_1, t96, chart2_0 * t97)),
+        let t122 = T::fused(
+            chart2_3,
+            t92,
+            T::fused(chart2_2, t91, -T::fused(chart2_0, t94, chart2_1 * t95)),
         );
-        let t142 = k(0.5) * t141;
-        let t143 = T::fused(
-            -chart2_3,
-            t99,
-            T::fused(-chart2_2, t98, T::fused(chart2_1, t97, chart2_0 * t96)),
+        let t123 = t115 - t114;
+        let t124 = t107 + t106;
+        let t125 = k(2.0) - T::fused(t92, t92, t101);
+        let t126 = T::fused(t85, t125, T::fused(-t111, t123, t113 * t124));
+        let t127 = T::fused(t88, t125, -T::fused(-t100, t123, t105 * t124));
+        let t128 = T::fused(
+            -t126,
+            T::fused(t119, t121, t109 * t122),
+            t127 * T::fused(t118, t122, t117 * t121),
         );
-        let t144 = k(0.5) * t143;
-        let t145 = T::fused(
-            t128,
-            T::fused(-t117, t142, t134 * t144),
-            t130 * T::fused(-t135, t144, t129 * t142),
+        let t129 = T::fused(
+            chart2_3,
+            t94,
+            -T::fused(chart2_2, t95, T::fused(-chart2_0, t92, chart2_1 * t91)),
         );
-        let t146 = t137 * T::fused(T::fused(chart2_3, rotor_e3 + t97, t140), t136, t145);
-        let t147 = T::fused(
+        let t130 = k(1.0) / (t129 * t120);
+        let t131 = t130 * T::fused(k(4.0), t120 * t96, t128);
+        let t132 = t130 * T::fused(-t126, t129 * t109, t127 * (t129 * t118));
+        let t133 = T::fused(-(t129 * t119), t126, t129 * t117 * t127) * t130;
+        let t134 = T::fused(
             -k(0.5),
-            T::fused(-t97, t138, T::fused(t96, t139, t99 * t146)),
-            t98,
+            T::fused(t94, t133, -T::fused(-t91, t131, t95 * t132)),
+            t92,
         );
-        let t148 = t147 * t147;
-        let t149 = T::fused(
+        let t135 = T::fused(
             k(0.5),
-            T::fused(-t96, t138, T::fused(-t97, t139, t98 * t146)),
-            t99,
+            T::fused(t95, t133, T::fused(t92, t131, t94 * t132)),
+            t91,
+        );
+        let t136 = t135 * t135;
+        let t137 = T::fused(
+            -k(0.5),
+            T::fused(t91, t133, T::fused(-t94, t131, t92 * t132)),
+            t95,
+        );
+        let t138 = t135 * t137;
+        let t139 = T::fused(
+            k(0.5),
+            T::fused(t92, t133, -T::fused(t95, t131, t91 * t132)),
+            t94,
+        );
+        let t140 = t134 * t139;
+        let t141 = t135 * t139;
+        let t142 = t134 * t137;
+        let t143 = T::fused(
+            k(0.6666666666666666),
+            k(2.0) - T::fused(t134, t134, t136),
+            T::fused(-k(1.3333333333333333), t140 - t138, t142 + t141),
+        );
+        let t144 = T::fused(
+            -k(0.8333333333333334),
+            k(2.0) - T::fused(t79, t79, t82),
+            T::fused(k(0.3333333333333333), t85, T::fused(-k(0.2), t88, t143)),
+        );
+        let t145 = t135 * t134;
+        let t146 = t139 * t137;
+        let t147 = T::fused(
+            -k(0.6666666666666666),
+            t140 + t138,
+            T::fused(
+                k(1.3333333333333333),
+                k(2.0) - T::fused(t139, t139, t136),
+                t146 - t145,
+            ),
+        );
+        let t148 = T::fused(
+            k(0.8333333333333334),
+            t84 + t83,
+            T::fused(-k(0.3333333333333333), t113, T::fused(-k(0.2), t105, t147)),
+        );
+        let t149 = T::fused(
+            k(0.6666666666666666),
+            t142 - t141,
+            T::fused(
+                k(1.3333333333333333),
+                t146 + t145,
+                k(2.0) - T::fused(t137, t137, t136),
+            ),
         );
         let t150 = T::fused(
-            k(0.5),
-            T::fused(t99, t138, T::fused(t98, t139, t97 * t146)),
-            t96,
+            -k(0.8333333333333334),
+            t87 - t86,
+            T::fused(-k(0.3333333333333333), t111, T::fused(-k(0.2), t100, t149)),
         );
-        let t151 = t149 * t150;
-        let t152 = T::fused(
-            -k(0.5),
-            T::fused(t98, t138, T::fused(-t99, t139, t96 * t146)),
-            t97,
-        );
-        let t153 = t147 * t152;
-        let t154 = T::fused(
-            k(0.0002),
-            k(0.5) - T::fused(t149, t149, t148),
-            k(0.0004) * (t153 - t151),
-        );
-        let t155 = t149 * t152;
-        let t156 = t147 * t150;
-        let t157 = T::fused(
-            -k(0.0002),
-            t153 + t151,
-            k(0.0004) * (k(0.5) - T::fused(t150, t150, t148)),
-        );
-        let t158 = t150 * t152;
-        let t159 = t147 * t149;
-        let t160 = T::fused(k(0.0003), t159 - t158, -t157)
-            - T::fused(
-                k(6e-5),
-                t120,
-                -T::fused(-k(0.00025), t88 + t87, k(0.0001) * t106),
-            );
-        let t161 = T::fused(
-            k(0.0003),
-            k(0.5) - T::fused(t152, t152, t148),
-            T::fused(-k(0.0002), t156 - t155, k(0.0004) * (t159 + t158)),
-        );
-        let t162 = t161
-            - T::fused(
-                k(6e-5),
-                t125,
-                T::fused(-k(0.00025), t91 - t90, k(0.0001) * t113),
-            );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t28;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t31;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t27;
+        y[5] = k(0.5) * t28;
+        y[6] = k(0.5) * t29;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t82;
-        y[11] = -t83;
-        y[12] = -t84;
-        y[13] = -t85;
-        y[14] = T::fused(k(0.0003), t156 + t155, t154) - t93;
-        y[15] = -t160;
-        y[16] = -t162;
-        y[17] = -t147;
-        y[18] = -t149;
-        y[19] = -t150;
-        y[20] = -t152;
+        y[10] = k(0.5) * t78;
+        y[11] = k(0.5) * t79;
+        y[12] = k(0.5) * t80;
+        y[13] = k(0.5) * t81;
+        y[14] = k(7.5e-5) * t144;
+        y[15] = k(7.5e-5) * t148;
+        y[16] = -(k(7.5e-5) * t150);
+        y[17] = k(0.5) * t135;
+        y[18] = k(0.5) * t134;
+        y[19] = k(0.5) * t139;
+        y[20] = k(0.5) * t137;
     }
-    /// Solves eq. (19) for the dependent velocities: 332 operations (126 ±, 203 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 305 operations (126 ±, 176 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1479,148 +1487,157 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
-        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
-        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
-        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
+        let t1 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(t1, outer_ring_wx, t4 * outer_ring_wz);
+        let t6 = t3 + t2;
+        let t7 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, outer_ring_wx, t7 * outer_ring_wz);
+        let t10 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, outer_ring_wx));
+        let t11 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t21 = inner_ring_e0 * inner_ring_e2;
-        let t22 = inner_ring_e1 * inner_ring_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = outer_ring_e0 * outer_ring_e1;
-        let t25 = outer_ring_e2 * outer_ring_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
-        let t30 = k(2.0) * (t15 + t14);
-        let t31 = inner_ring_e0 * inner_ring_e1;
-        let t32 = inner_ring_e2 * inner_ring_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
-        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
-        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
-        let t38 = k(2.0) * (t22 + t21);
-        let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
-        let t42 = T::fused(
+        let t13 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12);
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e0 * inner_ring_e1;
+        let t24 = inner_ring_e2 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0);
+        let t27 = T::fused(t1, t13, T::fused(t6, t19, (t15 - t14) * t25));
+        let t28 = T::fused(
+            -T::fused(t26, t25, -T::fused(-t16, t13, t22 * t19)),
             t11,
-            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            outer_ring_wy * t27,
         );
-        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t29 = t24 + t23;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12);
+        let t31 = t21 + t20;
+        let t32 = inner_ring_e0 * inner_ring_e3;
+        let t33 = inner_ring_e1 * inner_ring_e2;
+        let t34 = t33 - t32;
+        let t35 = T::fused(t7, t34, T::fused(-t4, t29, t31 * t30));
+        let t36 = t18 - t17;
+        let t37 = t33 + t32;
+        let t38 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12);
+        let t39 = T::fused(t7, t38, T::fused(t4, t36, t31 * t37));
+        let t40 = T::fused(inner_ring_wy, t39, T::fused(inner_ring_wx, t35, -t28));
+        let t41 = T::fused(t26, t30, T::fused(t16, t29, t22 * t34));
+        let t42 = T::fused(t22, t38, T::fused(-t16, t36, t26 * t37));
+        let t43 = k(1.0) / T::fused(-t41, t39, t42 * t35);
         let t44 = T::fused(
-            t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
-            outer_ring_wy * t41,
+            -t27,
+            t10,
+            T::fused(t7, t19, -T::fused(-t4, t13, t31 * t25)) * t11,
         );
-        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
-        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
-        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
-        let t53 = rotor_e0 * rotor_e1;
-        let t54 = rotor_e2 * rotor_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
-        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
-        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
-        let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        let t45 = T::fused(inner_ring_wy, t42, T::fused(inner_ring_wx, t41, t44));
+        let t46 = T::fused(t39 * t43, t45, T::fused(-(t42 * t43), t40, inner_ring_wx));
+        let t47 = T::fused(t35 * t43, t45, -T::fused(t41 * t43, t40, inner_ring_wy));
+        let t48 = rotor_e0 * rotor_e2;
+        let t49 = rotor_e1 * rotor_e3;
+        let t50 = t49 - t48;
+        let t51 = rotor_e0 * rotor_e3;
+        let t52 = rotor_e1 * rotor_e2;
+        let t53 = t52 + t51;
+        let t54 = rotor_e0 * rotor_e0;
+        let t55 = k(0.5) - T::fused(rotor_e1, rotor_e1, t54);
+        let t56 = T::fused(t38, t55, T::fused(t36, t50, t37 * t53));
+        let t57 = T::fused(
+            T::fused(t19, t55, -T::fused(-t13, t50, t25 * t53)),
+            t46,
+            inner_ring_wz * t56,
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t58 = k(0.5) - T::fused(rotor_e3, rotor_e3, t54);
+        let t59 = t49 + t48;
+        let t60 = rotor_e0 * rotor_e1;
+        let t61 = rotor_e2 * rotor_e3;
+        let t62 = t61 - t60;
+        let t63 = T::fused(t30, t62, -T::fused(-t29, t58, t34 * t59));
+        let t64 = t61 + t60;
+        let t65 = t52 - t51;
+        let t66 = k(0.5) - T::fused(rotor_e2, rotor_e2, t54);
+        let t67 = T::fused(t30, t66, T::fused(t29, t64, t34 * t65));
+        let t68 = T::fused(rotor_wz, t67, T::fused(rotor_wy, t63, -t57));
+        let t69 = T::fused(t13, t58, T::fused(t19, t59, t25 * t62));
+        let t70 = T::fused(t25, t66, -T::fused(-t13, t64, t19 * t65));
+        let t71 = k(1.0) / T::fused(-t67, t69, t63 * t70);
         let t72 = T::fused(
-            inner_ring_wz,
-            t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+            -T::fused(t34, t55, T::fused(-t29, t50, t30 * t53)),
+            t46,
+            t56 * t47,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
-        let t74 = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        let t75 = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        let t73 = T::fused(rotor_wz, t70, T::fused(rotor_wy, t69, t72));
+        let t74 = T::fused(t67 * t71, t73, T::fused(-(t70 * t71), t68, rotor_wy));
+        let t75 = T::fused(t63 * t71, t73, -T::fused(t69 * t71, t68, rotor_wz));
         let t76 = T::fused(
-            -k(0.0002),
-            T::fused(t66, t75, t60 * rotor_wx),
-            k(0.0001) * T::fused(-t52, t75, t60 * t74),
+            k(0.4),
+            T::fused(t19, t46, t38 * inner_ring_wz),
+            T::fused(t19, t47, t34 * inner_ring_wz),
         );
         let t77 = T::fused(
-            -k(5e-5),
-            T::fused(t13, inner_ring_wz, t38 * t46),
-            k(0.000125) * T::fused(-t28, inner_ring_wz, t38 * t47),
+            k(0.8),
+            T::fused(t59, t74, t65 * t75),
+            T::fused(-k(0.24), T::fused(-t34, t46, t38 * t47), t76),
         );
-        let t78 = T::fused(-k(3e-5), T::fused(t13, t47, t28 * t46), t77)
-            - T::fused(-k(0.00015), T::fused(t66, t74, t52 * rotor_wx), t76);
+        let t78 = T::fused(
+            -k(1.2),
+            T::fused(t55, t74, t65 * rotor_wx),
+            T::fused(-k(1.6), T::fused(-t55, t75, t59 * rotor_wx), t77),
+        );
         let t79 = T::fused(
-            -k(0.0002),
-            T::fused(-t67, t75, t57 * rotor_wx),
-            k(0.0001) * T::fused(t49, t75, t57 * t74),
+            k(0.4),
+            T::fused(-t25, t46, t37 * inner_ring_wz),
+            T::fused(-t25, t47, t30 * inner_ring_wz),
         );
         let t80 = T::fused(
-            -k(5e-5),
-            T::fused(-t19, inner_ring_wz, t39 * t46),
-            k(0.000125) * T::fused(t29, inner_ring_wz, t39 * t47),
+            k(0.8),
+            T::fused(-t62, t74, t66 * t75),
+            T::fused(-k(0.24), T::fused(-t30, t46, t37 * t47), t79),
         );
-        let t81 = T::fused(k(3e-5), T::fused(t19, t47, t29 * t46), t80)
-            - T::fused(k(0.00015), T::fused(t67, t74, t49 * rotor_wx), t79);
+        let t81 = T::fused(
+            -k(1.2),
+            T::fused(t53, t74, t66 * rotor_wx),
+            T::fused(k(1.6), T::fused(t53, t75, t62 * rotor_wx), t80),
+        );
         let t82 = T::fused(
-            -k(0.0002),
-            T::fused(t68, t75, t61 * rotor_wx),
-            k(0.0001) * T::fused(t55, t75, t61 * t74),
+            -k(0.4),
+            T::fused(t13, t46, t36 * inner_ring_wz),
+            T::fused(-t13, t47, t29 * inner_ring_wz),
         );
         let t83 = T::fused(
-            -k(5e-5),
-            T::fused(t23, inner_ring_wz, t40 * t46),
-            k(0.000125) * T::fused(t33, inner_ring_wz, t40 * t47),
+            k(0.8),
+            T::fused(-t58, t74, t64 * t75),
+            T::fused(k(0.24), T::fused(t29, t46, t36 * t47), t82),
         );
-        let t84 = T::fused(k(3e-5), T::fused(-t23, t47, t33 * t46), t83)
-            - T::fused(k(0.00015), T::fused(-t68, t74, t55 * rotor_wx), t82);
+        let t84 = T::fused(
+            -k(1.2),
+            T::fused(-t50, t74, t64 * rotor_wx),
+            T::fused(k(1.6), T::fused(-t50, t75, t58 * rotor_wx), t83),
+        );
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
         y[24] = t10;
-        y[26] = t11;
+        y[26] = -t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = t46;
-        y[31] = t47;
-        y[33] = -t78;
-        y[34] = -t81;
-        y[35] = t84;
+        y[31] = -t47;
+        y[33] = k(0.00025) * t78;
+        y[34] = -(k(0.00025) * t81);
+        y[35] = k(0.00025) * t84;
         y[37] = t74;
-        y[38] = t75;
+        y[38] = -t75;
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
@@ -2157,7 +2174,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 403 operations (163 ±, 240 ×, 0 ÷).
+    /// Writes γ: 397 operations (163 ±, 234 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2181,226 +2198,238 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = outer_ring_wx * outer_ring_wy;
-        let t6 = outer_ring_e1 * t0;
-        let t7 = k(2.0) * outer_ring_e2;
-        let t8 = outer_ring_e3 * t7;
-        let t9 = t8 + t6;
-        let t10 = outer_ring_wz * outer_ring_wz;
-        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
-        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
-        let t14 = outer_ring_wy * outer_ring_wz;
-        let t15 = T::fused(-outer_ring_e1, t2, t12);
-        let t16 = outer_ring_e3 * t0;
-        let t17 = outer_ring_e2 * t2;
-        let t18 = t17 - t16;
-        let t19 = t3 + t1;
-        let t20 = k(2.0) * inner_ring_e0;
-        let t21 = inner_ring_e2 * t20;
-        let t22 = k(2.0) * inner_ring_e1;
-        let t23 = inner_ring_e3 * t22;
-        let t24 = t23 + t21;
-        let t25 = inner_ring_e1 * t20;
-        let t26 = k(2.0) * inner_ring_e2;
-        let t27 = inner_ring_e3 * t26;
-        let t28 = t27 - t25;
-        let t29 = t17 + t16;
-        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
-        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
-        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
-        let t33 = T::fused(-outer_ring_e2, t7, t12);
-        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
-        let t35 = t8 - t6;
-        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
-        let t37 = T::fused(
-            outer_ring_wx * outer_ring_wz,
-            t36,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_wy * outer_ring_wz;
+        let t3 = outer_ring_wz * outer_ring_wz;
+        let t4 = T::fused(outer_ring_wx, outer_ring_wx, t3);
+        let t5 = outer_ring_e0 * outer_ring_e1;
+        let t6 = outer_ring_e2 * outer_ring_e3;
+        let t7 = t6 + t5;
+        let t8 = outer_ring_wx * outer_ring_wy;
+        let t9 = outer_ring_e0 * outer_ring_e2;
+        let t10 = outer_ring_e1 * outer_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t13 = t10 + t9;
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e1;
+        let t18 = inner_ring_e2 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t21 = T::fused(inner_ring_e2, inner_ring_e2, -t20);
+        let t22 = t6 - t5;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = t24 + t23;
+        let t30 = T::fused(inner_ring_e1, inner_ring_e1, -t20);
+        let t31 = T::fused(
+            -inner_ring_wx,
+            T::fused(t13, t25, T::fused(t19, t1, t22 * t21)),
+            inner_ring_wy * T::fused(t13, t30, T::fused(t28, t1, t22 * t29)),
         );
-        let t38 = T::fused(-inner_ring_e1, t22, t30);
-        let t39 = inner_ring_e3 * t20;
-        let t40 = inner_ring_e2 * t22;
-        let t41 = t40 + t39;
-        let t42 = t23 - t21;
-        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
-        let t44 = t40 - t39;
-        let t45 = T::fused(-inner_ring_e2, t26, t30);
-        let t46 = t27 + t25;
-        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
-        let t48 = T::fused(
-            -inner_ring_wy,
-            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
-            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
-        );
-        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
-        let t50 = inner_ring_wx * inner_ring_wz;
-        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
-        let t52 = inner_ring_wy * inner_ring_wz;
-        let t53 = inner_ring_wx * inner_ring_wx;
-        let t54 = inner_ring_wy * inner_ring_wy;
-        let t55 = t54 + t53;
-        let t56 = T::fused(
-            -k(2.0),
-            T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
-                outer_ring_wy * t48,
-            ),
-            T::fused(t55, t32, T::fused(t50, t49, t52 * t51)),
-        );
-        let t57 = T::fused(
+        let t32 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t33 = T::fused(t16, t25, T::fused(t32, t21, t7 * t19));
+        let t34 = T::fused(t16, t30, T::fused(t29, t32, t7 * t28));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t20);
+        let t36 = t18 - t17;
+        let t37 = t15 + t14;
+        let t38 = t27 + t26;
+        let t39 = T::fused(t38, t12, T::fused(t11, t35, t37 * t36));
+        let t40 = inner_ring_wx * inner_ring_wx;
+        let t41 = inner_ring_wy * inner_ring_wy;
+        let t42 = t41 + t40;
+        let t43 = T::fused(t25, t12, T::fused(t37, t21, t11 * t19));
+        let t44 = inner_ring_wy * inner_ring_wz;
+        let t45 = T::fused(t30, t12, T::fused(t11, t28, t37 * t29));
+        let t46 = inner_ring_wx * inner_ring_wz;
+        let t47 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
-                outer_ring_wx * t48,
+                -outer_ring_wy,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t33, inner_ring_wy * t34),
             ),
-            T::fused(t55, t34, T::fused(t50, t43, t52 * t47)),
+            T::fused(t46, t45, T::fused(-t42, t39, t44 * t43)),
         );
-        let t58 = inner_ring_wz * inner_ring_wz;
-        let t59 = t58 + t54;
-        let t60 = inner_ring_wx * inner_ring_wy;
-        let t61 = t58 + t53;
-        let t62 = T::fused(
-            k(0.000125),
-            T::fused(t50, t24, T::fused(t59, t38, t60 * t44)),
-            k(5e-5) * T::fused(t52, t24, -T::fused(t60, t38, t61 * t44)),
+        let t48 = T::fused(t13, t38, T::fused(t35, t1, t22 * t36));
+        let t49 = T::fused(t16, t38, T::fused(t7, t35, t36 * t32));
+        let t50 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t3),
+            t39,
+            -T::fused(t8, t49, T::fused(outer_ring_wx * outer_ring_wz, t48, t47)),
         );
-        let t63 = T::fused(
-            k(3e-5),
-            T::fused(t55, t24, -T::fused(-t50, t38, t52 * t44)),
-            t62,
+        let t51 = T::fused(
+            -k(2.0),
+            T::fused(
+                -outer_ring_wx,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t43, inner_ring_wy * t45),
+            ),
+            T::fused(t46, t34, T::fused(-t42, t49, t44 * t33)),
         );
-        let t64 = k(2.0) * rotor_e1;
-        let t65 = k(2.0) * rotor_e0;
-        let t66 = T::fused(-rotor_e0, t65, k(1.0));
-        let t67 = T::fused(-rotor_e1, t64, t66);
-        let t68 = rotor_wy * rotor_wy;
-        let t69 = rotor_wz * rotor_wz;
-        let t70 = t69 + t68;
-        let t71 = rotor_e3 * t65;
-        let t72 = rotor_e2 * t64;
-        let t73 = t72 - t71;
-        let t74 = rotor_wx * rotor_wy;
-        let t75 = rotor_e2 * t65;
-        let t76 = rotor_e3 * t64;
-        let t77 = t76 + t75;
-        let t78 = rotor_wx * rotor_wz;
-        let t79 = rotor_wx * rotor_wx;
-        let t80 = t69 + t79;
-        let t81 = rotor_wy * rotor_wz;
-        let t82 = T::fused(
-            k(0.0001),
-            T::fused(t78, t77, T::fused(t70, t67, t74 * t73)),
-            k(0.0002) * T::fused(t81, t77, -T::fused(t74, t67, t80 * t73)),
+        let t52 = k(4.0)
+            * T::fused(t8, t39, -T::fused(t4, t49, -T::fused(t2, t48, t51)));
+        let t53 = inner_ring_wz * inner_ring_wz;
+        let t54 = t53 + t41;
+        let t55 = inner_ring_wx * inner_ring_wy;
+        let t56 = t53 + t40;
+        let t57 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t58 = T::fused(rotor_e1, rotor_e1, -t57);
+        let t59 = rotor_wy * rotor_wy;
+        let t60 = rotor_wz * rotor_wz;
+        let t61 = t60 + t59;
+        let t62 = rotor_wx * rotor_wz;
+        let t63 = rotor_e0 * rotor_e2;
+        let t64 = rotor_e1 * rotor_e3;
+        let t65 = t64 + t63;
+        let t66 = rotor_wx * rotor_wy;
+        let t67 = rotor_e0 * rotor_e3;
+        let t68 = rotor_e1 * rotor_e2;
+        let t69 = t68 - t67;
+        let t70 = rotor_wy * rotor_wz;
+        let t71 = rotor_wx * rotor_wx;
+        let t72 = t60 + t71;
+        let t73 = t59 + t71;
+        let t74 = T::fused(
+            k(1.3333333333333333),
+            T::fused(-t66, t58, T::fused(-t65, t70, t69 * t72)),
+            T::fused(t62, t58, T::fused(-t65, t73, t69 * t70)),
         );
-        let t83 = t68 + t79;
+        let t75 = T::fused(
+            -k(0.6666666666666666),
+            T::fused(-t61, t58, T::fused(t65, t62, t69 * t66)),
+            t74,
+        );
+        let t76 = T::fused(
+            -k(0.2),
+            T::fused(t46, t30, T::fused(-t38, t42, t25 * t44)),
+            t75,
+        );
+        let t77 = T::fused(
+            -k(0.3333333333333333),
+            T::fused(-t55, t30, T::fused(-t38, t44, t25 * t56)),
+            t76,
+        );
+        let t78 = T::fused(
+            k(0.8333333333333334),
+            T::fused(-t54, t30, T::fused(t38, t46, t25 * t55)),
+            t77,
+        );
+        let t79 = T::fused(rotor_e2, rotor_e2, -t57);
+        let t80 = rotor_e0 * rotor_e1;
+        let t81 = rotor_e2 * rotor_e3;
+        let t82 = t81 - t80;
+        let t83 = t68 + t67;
         let t84 = T::fused(
-            k(0.00015),
-            T::fused(t83, t77, -T::fused(-t78, t67, t81 * t73)),
-            t82,
+            -k(1.3333333333333333),
+            T::fused(t83, t66, T::fused(-t72, t79, t82 * t70)),
+            T::fused(t83, t62, -T::fused(-t70, t79, t82 * t73)),
         );
         let t85 = T::fused(
-            k(0.000125),
-            T::fused(t50, t28, -T::fused(t59, t41, t60 * t45)),
-            k(5e-5) * T::fused(t52, t28, T::fused(t60, t41, t61 * t45)),
+            k(0.6666666666666666),
+            T::fused(t83, t61, -T::fused(t66, t79, t82 * t62)),
+            t84,
         );
         let t86 = T::fused(
-            k(3e-5),
-            T::fused(t55, t28, T::fused(-t50, t41, t52 * t45)),
+            -k(0.2),
+            T::fused(t29, t46, -T::fused(-t44, t21, t36 * t42)),
             t85,
         );
-        let t87 = t72 + t71;
-        let t88 = k(2.0) * rotor_e2;
-        let t89 = T::fused(-rotor_e2, t88, t66);
-        let t90 = rotor_e1 * t65;
-        let t91 = rotor_e3 * t88;
-        let t92 = t91 - t90;
+        let t87 = T::fused(
+            k(0.3333333333333333),
+            T::fused(t29, t55, T::fused(-t56, t21, t36 * t44)),
+            t86,
+        );
+        let t88 = T::fused(
+            -k(0.8333333333333334),
+            T::fused(t29, t54, -T::fused(t55, t21, t36 * t46)),
+            t87,
+        );
+        let t89 = T::fused(rotor_e3, rotor_e3, -t57);
+        let t90 = t81 + t80;
+        let t91 = t64 - t63;
+        let t92 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(t91, t66, -T::fused(-t70, t89, t90 * t72)),
+            T::fused(t91, t62, T::fused(-t73, t89, t90 * t70)),
+        );
         let t93 = T::fused(
-            k(0.0001),
-            T::fused(t78, t92, -T::fused(t70, t87, t74 * t89)),
-            k(0.0002) * T::fused(t81, t92, T::fused(t74, t87, t80 * t89)),
+            k(0.6666666666666666),
+            T::fused(t91, t61, -T::fused(t62, t89, t90 * t66)),
+            t92,
         );
         let t94 = T::fused(
-            k(0.00015),
-            T::fused(t83, t92, T::fused(-t78, t87, t81 * t89)),
+            -k(0.2),
+            T::fused(t28, t46, T::fused(-t42, t35, t19 * t44)),
             t93,
         );
         let t95 = T::fused(
-            k(0.000125),
-            T::fused(t50, t31, -T::fused(-t59, t42, t60 * t46)),
-            k(5e-5) * T::fused(t52, t31, T::fused(-t60, t42, t61 * t46)),
+            k(0.3333333333333333),
+            T::fused(t28, t55, -T::fused(-t44, t35, t19 * t56)),
+            t94,
         );
         let t96 = T::fused(
-            k(3e-5),
-            T::fused(t55, t31, T::fused(t50, t42, t52 * t46)),
+            -k(0.8333333333333334),
+            T::fused(t28, t54, -T::fused(t46, t35, t19 * t55)),
             t95,
         );
-        let t97 = t76 - t75;
-        let t98 = t91 + t90;
-        let t99 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t66);
-        let t100 = T::fused(
-            k(0.0001),
-            T::fused(t78, t99, -T::fused(-t70, t97, t74 * t98)),
-            k(0.0002) * T::fused(t81, t99, T::fused(-t74, t97, t80 * t98)),
+        let t97 = T::fused(t38, t65, T::fused(t89, t35, t36 * t82));
+        let t98 = T::fused(t38, t69, T::fused(t90, t35, t36 * t79));
+        let t99 = T::fused(
+            -rotor_wy,
+            T::fused(t65, t30, T::fused(t28, t89, t29 * t82)),
+            rotor_wz * T::fused(t69, t30, T::fused(t29, t79, t28 * t90)),
         );
-        let t101 = T::fused(
-            k(0.00015),
-            T::fused(t83, t99, T::fused(t78, t97, t81 * t98)),
-            t100,
-        );
-        let t102 = T::fused(t42, t97, T::fused(t38, t67, t41 * t87));
-        let t103 = T::fused(t46, t97, -T::fused(t44, t67, t45 * t87));
-        let t104 = T::fused(t31, t97, -T::fused(-t24, t67, t28 * t87));
-        let t105 = T::fused(
-            rotor_wz,
-            T::fused(t42, t98, -T::fused(t38, t73, t41 * t89)),
-            rotor_wy * T::fused(t42, t99, -T::fused(-t38, t77, t41 * t92)),
-        );
-        let t106 = T::fused(t31, t98, T::fused(-t24, t73, t28 * t89));
-        let t107 = T::fused(t31, t99, T::fused(t24, t77, t28 * t92));
-        let t108 = T::fused(t46, t98, T::fused(t44, t73, t45 * t89));
-        let t109 = T::fused(t46, t99, T::fused(-t44, t77, t45 * t92));
-        let t110 = T::fused(
+        let t100 = T::fused(t25, t65, T::fused(t19, t89, t82 * t21));
+        let t101 = T::fused(t25, t69, T::fused(t79, t21, t19 * t90));
+        let t102 = T::fused(t25, t58, T::fused(t83, t21, t19 * t91));
+        let t103 = T::fused(
             k(2.0),
             T::fused(
-                inner_ring_wz,
-                t105,
-                inner_ring_wx * T::fused(rotor_wz, t106, rotor_wy * t107),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t97, rotor_wz * t98),
+                inner_ring_wz * t99,
             ),
-            T::fused(t78, t109, -T::fused(-t70, t103, t74 * t108)),
+            T::fused(t61, t102, -T::fused(t62, t100, t66 * t101)),
         );
-        let t111 = T::fused(
+        let t104 = T::fused(t38, t58, T::fused(t91, t35, t36 * t83));
+        let t105 = T::fused(t30, t58, T::fused(t28, t91, t29 * t83));
+        let t106 = k(4.0)
+            * T::fused(t55, t105, -T::fused(t56, t102, -T::fused(t44, t104, -t103)));
+        let t107 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t105,
-                inner_ring_wx * T::fused(rotor_wz, t108, rotor_wy * t109),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t100, rotor_wz * t101),
+                inner_ring_wy * t99,
             ),
-            T::fused(t78, t107, -T::fused(-t70, t104, t74 * t106)),
+            T::fused(t61, t104, -T::fused(t62, t97, t66 * t98)),
         );
+        let t108 = k(4.0)
+            * T::fused(t46, t105, T::fused(t44, t102, -T::fused(t42, t104, t107)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
-            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
+            -(k(2.0) * T::fused(t11, t8, -T::fused(-t2, t1, t7 * t4))),
+            k(2.0) * T::fused(-t8, t12, T::fused(-t13, t2, t16 * t4)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t56 + t37),
-            -(t57 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
-            t63 - t84,
-            t86 - t94,
-            t101 - t96,
-            t110 + T::fused(t52, t104, T::fused(-t60, t102, t61 * t103)),
-            -(t111 + T::fused(t55, t104, T::fused(t50, t102, t52 * t103))),
+            k(4.0) * t50,
+            -t52,
+            k(0.0003) * t78,
+            k(0.0003) * t88,
+            k(0.0003) * t96,
+            -t106,
+            -t108,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
@@ -2902,7 +2931,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             -t173,
         ];
     }
-    /// Writes λ: 355 operations (138 ±, 214 ×, 3 ÷).
+    /// Writes λ: 341 operations (138 ±, 200 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2948,193 +2977,179 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = k(2.0) * rotor_e0;
-        let t7 = rotor_e3 * t6;
-        let t8 = k(2.0) * rotor_e1;
-        let t9 = rotor_e2 * t8;
-        let t10 = t9 - t7;
-        let t11 = rotor_e2 * t6;
-        let t12 = rotor_e3 * t8;
-        let t13 = t12 + t11;
-        let t14 = k(2.0) * rotor_e2;
-        let t15 = T::fused(-rotor_e0, t6, k(1.0));
-        let t16 = T::fused(-rotor_e2, t14, t15);
-        let t17 = rotor_e1 * t6;
-        let t18 = rotor_e3 * t14;
-        let t19 = t18 - t17;
-        let t20 = T::fused(
-            t0,
-            T::fused(k(0.00015), t10, k(0.0002) * t13),
-            t2 * T::fused(-k(0.00015), t16, k(0.0002) * t19),
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = rotor_dsy + k(10.0);
+        let t2 = k(10.0) + T::fused(k(8.0), t1, inner_ring_dsy);
+        let t3 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t4 = inner_ring_e0 * inner_ring_e1;
+        let t5 = inner_ring_e2 * inner_ring_e3;
+        let t6 = t5 + t4;
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t9 = T::fused(
+            -rotor_dsz,
+            T::fused(k(0.6), t6, t8),
+            k(0.125) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t21 = t18 + t17;
-        let t22 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t15);
-        let t23 = T::fused(
-            k(1e-5),
-            rotor_dwx,
-            T::fused(t4, T::fused(-k(0.00015), t21, k(0.0002) * t22), -t20),
+        let t10 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t11 = t5 - t4;
+        let t12 = inner_ring_e0 * inner_ring_e3;
+        let t13 = inner_ring_e1 * inner_ring_e2;
+        let t14 = t13 - t12;
+        let t15 = inner_ring_e0 * inner_ring_e2;
+        let t16 = inner_ring_e1 * inner_ring_e3;
+        let t17 = t16 + t15;
+        let t18 = T::fused(
+            rotor_dsx,
+            T::fused(k(0.6), t14, t17),
+            T::fused(T::fused(k(0.6), t10, t11), t1, -t9),
         );
-        let t24 = T::fused(-rotor_e1, t8, t15);
-        let t25 = k(2.0) * inner_ring_e1;
-        let t26 = k(2.0) * inner_ring_e0;
-        let t27 = T::fused(-inner_ring_e0, t26, k(1.0));
-        let t28 = T::fused(-inner_ring_e1, t25, t27);
-        let t29 = t9 + t7;
-        let t30 = inner_ring_e3 * t26;
-        let t31 = inner_ring_e2 * t25;
-        let t32 = t31 + t30;
-        let t33 = t12 - t11;
-        let t34 = inner_ring_e2 * t26;
-        let t35 = inner_ring_e3 * t25;
-        let t36 = t35 - t34;
-        let t37 = T::fused(
-            t0,
-            T::fused(-k(0.00015), t24, k(0.0001) * t13),
-            t2 * T::fused(k(0.00015), t29, k(0.0001) * t19),
+        let t19 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t20 = T::fused(rotor_e2, rotor_e2, -t19);
+        let t21 = rotor_e0 * rotor_e3;
+        let t22 = rotor_e1 * rotor_e2;
+        let t23 = t22 + t21;
+        let t24 = rotor_e0 * rotor_e1;
+        let t25 = rotor_e2 * rotor_e3;
+        let t26 = t25 + t24;
+        let t27 = rotor_e0 * rotor_e2;
+        let t28 = rotor_e1 * rotor_e3;
+        let t29 = t28 - t27;
+        let t30 = T::fused(
+            -k(0.3125),
+            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
+            rotor_dsz * T::fused(k(2.0), t29, -t26),
         );
-        let t38 = T::fused(
-            k(5e-6),
-            T::fused(rotor_wx, rotor_wz, rotor_dwy),
-            -T::fused(t4, T::fused(-k(0.00015), t33, k(0.0001) * t22), -t37),
+        let t31 = T::fused(rotor_e1, rotor_e1, -t19);
+        let t32 = t22 - t21;
+        let t33 = T::fused(
+            rotor_dsx,
+            T::fused(-k(2.0), t31, t32),
+            -T::fused(T::fused(k(2.0), t23, -t20), t1, t30),
         );
-        let t39 = T::fused(
-            T::fused(t36, t33, T::fused(t28, t24, t32 * t29)),
-            t23,
-            T::fused(t36, t21, -T::fused(t28, t10, t32 * t16)) * t38,
-        );
+        let t34 = T::fused(rotor_e3, rotor_e3, -t19);
+        let t35 = t16 - t15;
+        let t36 = t25 - t24;
+        let t37 = t13 + t12;
+        let t38 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t39 = t28 + t27;
         let t40 = T::fused(
-            -t0,
-            T::fused(k(0.0002), t24, k(0.0001) * t10),
-            t2 * T::fused(k(0.0002), t29, k(0.0001) * t16),
+            k(8.0),
+            T::fused(t39, t38, T::fused(t35, t34, t37 * t36)) * t33,
+            -t18,
         );
         let t41 = T::fused(
-            k(5e-6),
-            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
-            T::fused(t4, T::fused(-k(0.0002), t33, k(0.0001) * t21), -t40),
+            rotor_dsz,
+            T::fused(k(1.5), t29, t34),
+            k(0.3125) * T::fused(rotor_wx, rotor_wz, rotor_dwy),
         );
         let t42 = T::fused(
-            T::fused(t36, t22, -T::fused(-t28, t13, t32 * t19)),
-            t41,
-            t39,
+            rotor_dsx,
+            T::fused(k(1.5), t31, t39),
+            T::fused(T::fused(k(1.5), t23, t36), t1, t41),
         );
-        let t43 = t31 - t30;
-        let t44 = t35 + t34;
-        let t45 = k(2.0) * inner_ring_e2;
-        let t46 = T::fused(-inner_ring_e2, t45, t27);
-        let t47 = inner_ring_e1 * t26;
-        let t48 = inner_ring_e3 * t45;
-        let t49 = t48 - t47;
-        let t50 = T::fused(
-            t0,
-            T::fused(k(3e-5), t43, k(5e-5) * t44),
-            t2 * T::fused(-k(3e-5), t46, k(5e-5) * t49),
+        let t43 = T::fused(
+            k(8.0),
+            T::fused(t32, t38, T::fused(t37, t20, t35 * t26)) * t42,
+            -t40,
         );
-        let t51 = t48 + t47;
-        let t52 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t27);
-        let t53 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            T::fused(t4, T::fused(-k(3e-5), t51, k(5e-5) * t52), -t50) - t42,
+        let t44 = T::fused(
+            T::fused(k(0.75), t20, t36),
+            t1,
+            -T::fused(-rotor_dsz, T::fused(k(0.75), t26, t34), k(0.3125) * rotor_dwx),
         );
-        let t54 = k(2.0) * outer_ring_e1;
-        let t55 = k(2.0) * outer_ring_e0;
-        let t56 = T::fused(-outer_ring_e0, t55, k(1.0));
-        let t57 = T::fused(-outer_ring_e1, t54, t56);
-        let t58 = outer_ring_e3 * t55;
-        let t59 = outer_ring_e2 * t54;
-        let t60 = t59 + t58;
-        let t61 = outer_ring_e2 * t55;
-        let t62 = outer_ring_e3 * t54;
-        let t63 = t62 - t61;
-        let t64 = T::fused(t63, t36, T::fused(t57, t28, t60 * t32));
-        let t65 = T::fused(t51, t21, T::fused(t43, t10, t46 * t16));
-        let t66 = T::fused(
-            T::fused(t51, t33, -T::fused(t43, t24, t46 * t29)),
-            t23,
-            t65 * t38,
+        let t45 = T::fused(rotor_dsx, T::fused(k(0.75), t32, t39), t44);
+        let t46 = T::fused(
+            k(16.0),
+            T::fused(t38, t31, T::fused(t35, t29, t37 * t23)) * t45,
+            -t43,
         );
-        let t67 = T::fused(t51, t22, T::fused(-t43, t13, t46 * t19));
+        let t47 = k(0.4) * t46;
+        let t48 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t49 = T::fused(outer_ring_e1, outer_ring_e1, -t48);
+        let t50 = outer_ring_e0 * outer_ring_e2;
+        let t51 = outer_ring_e1 * outer_ring_e3;
+        let t52 = t51 - t50;
+        let t53 = outer_ring_e0 * outer_ring_e3;
+        let t54 = outer_ring_e1 * outer_ring_e2;
+        let t55 = t54 + t53;
+        let t56 = T::fused(t38, t49, T::fused(t52, t35, t55 * t37));
+        let t57 = k(6.4) * t45;
+        let t58 = k(3.2) * t42;
+        let t59 = T::fused(t14, t32, T::fused(t20, t10, t6 * t26));
+        let t60 = k(3.2) * t33;
+        let t61 = T::fused(t14, t39, T::fused(t6, t34, t36 * t10));
+        let t62 = T::fused(
+            T::fused(k(0.24), t37, t11),
+            t1,
+            -T::fused(-rotor_dsz, T::fused(k(0.24), t35, t8), k(0.1) * inner_ring_dwy),
+        );
+        let t63 = T::fused(
+            -t59,
+            t58,
+            T::fused(t61, t60, T::fused(rotor_dsx, T::fused(k(0.24), t38, t17), t62)),
+        );
+        let t64 = T::fused(T::fused(t14, t31, T::fused(t23, t10, t6 * t29)), t57, t63);
+        let t65 = T::fused(t14, t49, T::fused(t55, t10, t52 * t6));
+        let t66 = T::fused(t17, t32, T::fused(t26, t8, t11 * t20));
+        let t67 = T::fused(t17, t39, T::fused(t34, t8, t11 * t36));
         let t68 = T::fused(
-            t0,
-            T::fused(-k(3e-5), t28, k(0.000125) * t44),
-            t2 * T::fused(k(3e-5), t32, k(0.000125) * t49),
-        );
-        let t69 = T::fused(t4, T::fused(-k(3e-5), t36, k(0.000125) * t52), -t68)
-            + T::fused(t67, t41, t66);
-        let t70 = T::fused(k(2e-6), inner_ring_dwy, t69);
-        let t71 = T::fused(t63, t51, -T::fused(t57, t43, t60 * t46));
-        let t72 = T::fused(t52, t21, T::fused(-t44, t10, t49 * t16));
-        let t73 = T::fused(
-            T::fused(t52, t33, -T::fused(-t44, t24, t49 * t29)),
-            t23,
-            t72 * t38,
-        );
-        let t74 = T::fused(t52, t22, T::fused(t44, t13, t49 * t19));
-        let t75 = T::fused(
-            -t0,
-            T::fused(k(5e-5), t28, k(0.000125) * t43),
-            t2 * T::fused(k(5e-5), t32, k(0.000125) * t46),
-        );
-        let t76 = T::fused(t4, T::fused(-k(5e-5), t36, k(0.000125) * t51), -t75)
-            - T::fused(t74, t41, t73);
-        let t77 = T::fused(
-            k(1e-6),
+            k(0.05),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t76,
+            rotor_dsz * T::fused(-k(0.4), t35, t6),
         );
-        let t78 = T::fused(
-            T::fused(t63, t52, -T::fused(-t57, t44, t60 * t49)),
-            t77,
-            -T::fused(-t64, t53, t71 * t70),
+        let t69 = T::fused(
+            rotor_dsx,
+            T::fused(-k(0.4), t38, t14),
+            T::fused(T::fused(-k(0.4), t37, t10), t1, t68),
         );
-        let t79 = T::fused(k(2e-6), outer_ring_dwx, -t78);
-        let t80 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t56);
-        let t81 = t62 + t61;
-        let t82 = k(1.0) / T::fused(-t57, t80, t81 * t63);
-        let t83 = outer_ring_e1 * t55;
-        let t84 = k(2.0) * outer_ring_e2;
-        let t85 = outer_ring_e3 * t84;
-        let t86 = t85 - t83;
-        let t87 = T::fused(
-            -T::fused(t80, t36, -T::fused(-t81, t28, t86 * t32)),
-            t53,
-            T::fused(t80, t51, T::fused(-t81, t43, t86 * t46)) * t70,
+        let t70 = T::fused(
+            -T::fused(t17, t31, T::fused(t29, t8, t11 * t23)),
+            t57,
+            T::fused(t66, t58, T::fused(-t67, t60, t69)),
         );
-        let t88 = T::fused(T::fused(t80, t52, T::fused(t81, t44, t86 * t49)), t77, -t87);
-        let t89 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t88,
+        let t71 = T::fused(
+            T::fused(t17, t49, T::fused(t52, t8, t55 * t11)),
+            t70,
+            k(0.025) * outer_ring_dwx,
         );
-        let t90 = t59 - t58;
-        let t91 = T::fused(-outer_ring_e2, t84, t56);
-        let t92 = t85 + t83;
-        let t93 = T::fused(t92, t36, -T::fused(t90, t28, t91 * t32));
-        let t94 = T::fused(t92, t51, T::fused(t90, t43, t91 * t46));
-        let t95 = k(1.0) / T::fused(-t93, t71, t94 * t64);
-        let t96 = k(1.0) / T::fused(-t67, t72, t65 * t74);
+        let t72 = T::fused(-t56, t47, T::fused(-t65, t64, t71));
+        let t73 = T::fused(outer_ring_e3, outer_ring_e3, -t48);
+        let t74 = t51 + t50;
+        let t75 = k(1.0) / T::fused(-t49, t73, t74 * t52);
+        let t76 = outer_ring_e0 * outer_ring_e1;
+        let t77 = outer_ring_e2 * outer_ring_e3;
+        let t78 = t77 - t76;
+        let t79 = T::fused(
+            -T::fused(t74, t17, T::fused(t8, t73, t78 * t11)),
+            t70,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+        );
+        let t80 = T::fused(T::fused(t74, t14, T::fused(t6, t73, t78 * t10)), t64, t79);
+        let t81 = T::fused(T::fused(t74, t38, T::fused(t35, t73, t78 * t37)), t47, t80);
+        let t82 = T::fused(outer_ring_e2, outer_ring_e2, -t48);
+        let t83 = t77 + t76;
+        let t84 = t54 - t53;
+        let t85 = T::fused(t84, t14, T::fused(t82, t10, t83 * t6));
+        let t86 = T::fused(t84, t38, T::fused(t37, t82, t83 * t35));
+        let t87 = k(1.0) / T::fused(-t85, t56, t86 * t65);
+        let t88 = k(1.0) / T::fused(-t59, t67, t61 * t66);
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t57 * t82, t79, t81 * t82 * t89),
-            -T::fused(t63 * t82, t79, t80 * t82 * t89),
-            -t1,
-            -t3,
-            -t5,
-            T::fused(-(t94 * t95), t70, t93 * t95 * t53),
-            T::fused(-(t64 * t95), t53, t71 * t95 * t70),
-            -t0,
-            -t2,
-            -t4,
-            T::fused(t72 * t96, t38, t74 * t96 * t41),
-            T::fused(t65 * t96, t38, t67 * t96 * t41),
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (k(10.0) + (outer_ring_dsy + t2))),
+            -(k(0.01) * (outer_ring_dsz + t3)),
+            -(k(4e-5) * T::fused(-(t49 * t75), t72, t74 * t75 * t81)),
+            k(4e-5) * T::fused(-(t52 * t75), t72, t73 * t75 * t81),
+            -(k(0.01) * t0),
+            -(k(0.01) * t2),
+            -(k(0.01) * t3),
+            -(k(5e-6) * T::fused(t85 * t87, t64, t86 * t87 * t47)),
+            k(5e-6) * T::fused(t65 * t87, t64, t56 * t87 * t47),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t1),
+            -(k(0.08) * rotor_dsz),
+            k(4e-6) * T::fused(-(t67 * t88), t33, t66 * t88 * t42),
+            -(k(4e-6) * T::fused(-(t61 * t88), t33, t59 * t88 * t42)),
         ];
     }
 }
@@ -3563,7 +3578,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 182 operations (69 ±, 113 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 167 operations (71 ±, 96 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -3605,8 +3620,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t30 = t29 - t28;
         let t31 = t5 * t5;
         let t32 = k(0.5) - T::fused(t7, t7, t31);
-        let t33 = T::fused(k(6e-5), t27, T::fused(-k(0.0001), t30, k(0.00025) * t32))
-            - T::fused(k(0.0003), t19, T::fused(-k(0.0004), t22, k(0.0002) * t24));
+        let t33 = T::fused(
+            k(1.6),
+            t22,
+            T::fused(-k(0.8), t24, T::fused(k(0.24), t27, T::fused(-k(0.4), t30, t32))),
+        );
         let t34 = t14 * t17;
         let t35 = t13 * t16;
         let t36 = t35 - t34;
@@ -3617,60 +3635,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t41 = t40 - t39;
         let t42 = k(0.5) - T::fused(t8, t8, t31);
         let t43 = t29 + t28;
-        let t44 = T::fused(-k(6e-5), t41, T::fused(-k(0.0001), t42, k(0.00025) * t43))
-            - T::fused(-k(0.0003), t36, T::fused(-k(0.0004), t37, k(0.0002) * t38));
+        let t44 = T::fused(
+            k(1.6),
+            t37,
+            T::fused(-k(0.8), t38, T::fused(-k(0.24), t41, T::fused(-k(0.4), t42, t43))),
+        );
         let t45 = k(0.5) - T::fused(t16, t16, t23);
         let t46 = t35 + t34;
         let t47 = t18 - t15;
         let t48 = k(0.5) - T::fused(t9, t9, t31);
         let t49 = t40 + t39;
         let t50 = t26 - t25;
-        let t51 = T::fused(k(6e-5), t48, T::fused(k(0.0001), t49, k(0.00025) * t50))
-            - T::fused(k(0.0003), t45, T::fused(k(0.0004), t46, k(0.0002) * t47));
-        let t52 = k(2.0) * t6;
-        let t53 = u0 * (t4 * t52);
-        let t54 = u0 * T::fused(-t6, t52, k(1.0));
-        let t55 = T::fused(k(3e-5), t54, k(5e-5) * u1);
-        let t56 = T::fused(k(3e-5), t53, k(0.000125) * u1);
-        let t57 = T::fused(-k(5e-5), t53, k(0.000125) * t54);
-        let t58 = T::fused(
-            k(2.0) * t27,
-            t57,
-            -T::fused(k(2.0) * t32, t55, k(2.0) * t30 * t56),
+        let t51 = T::fused(
+            -k(1.6),
+            t46,
+            T::fused(-k(0.8), t47, T::fused(k(0.24), t48, T::fused(k(0.4), t49, t50))),
         );
-        let t59 = k(2.0) * t11;
-        let t60 = T::fused(-t11, t59, k(1.0));
-        let t61 = t12 * t59;
-        let t62 = T::fused(t60, t54, u1 * t61);
-        let t63 = T::fused(-t61, t54, u1 * t60);
-        let t64 = T::fused(k(0.00015), t62, k(0.0002) * t63);
-        let t65 = u2 + t53;
-        let t66 = T::fused(k(0.0001), t63, k(0.00015) * t65);
-        let t67 = T::fused(-k(0.0002), t65, k(0.0001) * t62);
+        let t52 = u0 * (t6 * t4);
+        let t53 = k(2.0) * t52;
+        let t54 = u0 * ((t6 - t4) * (t6 + t4));
+        let t55 = k(0.4) * T::fused(-k(0.6), t54, u1);
+        let t56 = k(2.0) * (t11 * t12);
+        let t57 = (t11 - t12) * (t11 + t12);
+        let t58 = T::fused(u1, t56, t57 * t54);
+        let t59 = u2 + t53;
+        let t60 = k(0.8) * T::fused(k(2.0), t59, -t58);
+        let t61 = T::fused(-t54, t56, u1 * t57);
+        let t62 = k(1.2) * T::fused(-k(0.6666666666666666), t61, t59);
+        let t63 = k(1.6) * T::fused(k(0.75), t58, -t61);
+        let t64 = T::fused(k(0.8), t52, t54);
+        let t65 = T::fused(t27, t64, -T::fused(t24, t63, T::fused(t19, t60, t22 * t62)));
+        let t66 = T::fused(k(0.48), t52, u1);
+        let t67 = T::fused(t41, t64, T::fused(t38, t63, T::fused(-t36, t60, t37 * t62)));
         let t68 = T::fused(
-            k(2.0) * t19,
-            t67,
-            -T::fused(k(2.0) * t24, t64, k(2.0) * t22 * t66),
-        );
-        let t69 = T::fused(
-            k(2.0) * t41,
-            t57,
-            T::fused(k(2.0) * t43, t55, k(2.0) * t42 * t56),
-        );
-        let t70 = T::fused(
-            k(2.0) * t36,
-            t67,
-            T::fused(k(2.0) * t38, t64, k(2.0) * t37 * t66),
-        );
-        let t71 = T::fused(
-            k(2.0) * t48,
-            t57,
-            T::fused(-(k(2.0) * t50), t55, k(2.0) * t49 * t56),
-        );
-        let t72 = T::fused(
-            k(2.0) * t45,
-            t67,
-            T::fused(-(k(2.0) * t47), t64, k(2.0) * t46 * t66),
+            t48,
+            t64,
+            -T::fused(t47, t63, -T::fused(-t45, t60, t46 * t62)),
         );
         *y = [
             k(0.0),
@@ -3687,9 +3687,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             t7,
             t8,
             t9,
-            -t33,
-            t44,
-            t51,
+            -(k(0.00025) * T::fused(-k(1.2), t19, t33)),
+            k(0.00025) * T::fused(k(1.2), t36, t44),
+            k(0.00025) * T::fused(-k(1.2), t45, t51),
             t14,
             t17,
             t13,
@@ -3704,17 +3704,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             k(0.0),
             k(0.0),
             t53,
-            t54,
+            -t54,
             u1,
-            t68 - t58,
-            t70 - t69,
-            t71 - t72,
-            t65,
-            t62,
-            t63,
+            k(0.00025) * T::fused(t32, t55, T::fused(t30, t66, t65)),
+            -(k(0.00025) * T::fused(t43, t55, T::fused(t42, t66, -t67))),
+            k(0.00025) * T::fused(-t50, t55, T::fused(t49, t66, -t68)),
+            t59,
+            t58,
+            -t61,
         ];
     }
-    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    /// Writes the joint state of a maximal state: 125 operations (63 ±, 62 ×, 0 ÷) and 9 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3737,83 +3737,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = x0.cos();
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
-        let t8 = outer_ring_e3 * outer_ring_e3;
-        let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
-        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
-        let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
+        let t6 = x0.cos();
+        let t7 = x0.sin();
+        let t8 = outer_ring_e0 * outer_ring_e2;
+        let t9 = outer_ring_e1 * outer_ring_e3;
+        let t10 = t9 + t8;
+        let t11 = (k(2.0) * T::fused(t7, t5, t10 * t6))
+            .atan2(k(2.0) * T::fused(-t6, t5, t10 * t7));
+        let t12 = inner_ring_e3 * inner_ring_e3;
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = T::fused(inner_ring_e1, inner_ring_e1, t13);
+        let t15 = inner_ring_e2 * inner_ring_e2;
+        let t16 = k(0.5) * (k(1.0) - (t15 + (t14 + t12)));
+        let t17 = k(0.5) - t14 - t16;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = outer_ring_e0 * outer_ring_e3;
+        let t22 = outer_ring_e1 * outer_ring_e2;
+        let t23 = inner_ring_e0 * inner_ring_e2;
+        let t24 = inner_ring_e1 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(
+            t9 - t8,
+            t25,
+            T::fused(t17, k(0.5) - t2 - t4, (t22 + t21) * t20),
         );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
-            t15,
-            t27,
+        let t27 = x1.cos();
+        let t28 = T::fused(t22 - t21, t17, t20 * (k(0.5) - (t1 + t3) - t4));
+        let t29 = T::fused(
+            T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
+            t25,
+            -t28,
         );
-        let t29 = x1.cos();
-        let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        let t30 = x1.sin();
+        let t31 = (k(4.0) * T::fused(-t30, t26, t27 * t29))
+            .atan2(k(4.0) * T::fused(t27, t26, t30 * t29));
+        let t32 = rotor_e2 * rotor_e2;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t33 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t33 + t32))),
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
-        let t33 = x2.sin();
-        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t35 = rotor_e2 * rotor_e2;
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = T::fused(
-            k(2.0),
-            k(0.5) - (t36 + t35),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        let t35 = k(0.5) * (k(1.0) - (t32 + t34));
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t39 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t40 = T::fused(
+            t39,
+            k(0.5) - (t13 + t12) - t16,
+            -T::fused(t37 - t36, t35, (t24 + t23) * t38),
         );
-        let t38 = inner_ring_e0 * inner_ring_e1;
-        let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
-        let t43 = x2.cos();
-        let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
-            t37,
-            k(2.0) * (t17 - t16) * t40,
-        );
-        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
-        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
+        let t41 = x2.sin();
+        let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
+        let t43 = T::fused(t37 + t36, t39, t42);
+        let t44 = x2.cos();
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
+            .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
-        x[1] = x1 + t32;
-        x[2] = x2 + t46;
+        x[1] = x1 + t31;
+        x[2] = x2 + t45;
         x[3] = outer_ring_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 176 operations (73 ±, 101 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 178 operations (75 ±, 101 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3842,8 +3838,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(
+        let t1 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3852,11 +3847,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t3 = t2 * t1;
-        let t4 = T::fused(-t0, t1, k(1.0));
-        let t5 = t4 * T::fused(k(4.8e-9), t4, k(1.4e-9) * t3);
-        let t6 = k(2.28e-9) + T::fused(k(1.08e-9), t4, -T::fused(-k(4.4e-10), t3, t5));
-        let t7 = T::fused(
+        let t2 = t1 * (k(2.0) * t0);
+        let t3 = (t1 + t0) * (t1 - t0);
+        let t4 = t3 * T::fused(k(4.8e-9), t3, k(1.4e-9) * t2);
+        let t5 = k(2.28e-9) + T::fused(k(1.08e-9), t3, -T::fused(-k(4.4e-10), t2, t4));
+        let t6 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -3865,8 +3860,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3875,84 +3869,84 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t10 = t9 * t8;
-        let t11 = T::fused(k(3e-10), t4, k(4e-10) * t3);
-        let t12 = k(6e-11) - t11;
-        let t13 = T::fused(-t7, t8, k(1.0));
-        let t14 = outer_ring_wz - inner_ring_wz;
-        let t15 = T::fused(-k(1.6e-9), t4, k(1.2e-9) * t3);
-        let t16 = t4 * T::fused(-k(1.4e-9), t4, k(4.8e-9) * t3);
-        let t17 = t16 - t15;
-        let t18 = k(4.00195e-6) - t17;
-        let t19 = k(0.5) * t15;
-        let t20 = k(2e-10) + t19;
-        let t21 = t10 * t20;
-        let t22 = outer_ring_wy * T::fused(-k(2.0), t10 * T::fused(-t13, t18, t21), t20);
-        let t23 = t13 * t11;
-        let t24 = inner_ring_wx - rotor_wx;
-        let t25 = k(2.4e-9) - t5;
-        let t26 = T::fused(k(2.0), t11, t25);
-        let t27 = outer_ring_wy
-            * (t25 - T::fused(k(0.3), t15, t10 * T::fused(t10, t26, t23)));
-        let t28 = T::fused(
-            -t24,
-            T::fused(k(1.2e-10), t10 * T::fused(k(9.666666666666666), t3, t4), t23),
+        let t8 = t7 * (k(2.0) * t6);
+        let t9 = T::fused(k(3e-10), t3, k(4e-10) * t2);
+        let t10 = k(6e-11) - t9;
+        let t11 = (t7 + t6) * (t7 - t6);
+        let t12 = outer_ring_wz - inner_ring_wz;
+        let t13 = T::fused(-k(1.6e-9), t3, k(1.2e-9) * t2);
+        let t14 = t3 * T::fused(-k(1.4e-9), t3, k(4.8e-9) * t2);
+        let t15 = t14 - t13;
+        let t16 = k(4.00195e-6) - t15;
+        let t17 = k(0.5) * t13;
+        let t18 = k(2e-10) + t17;
+        let t19 = t8 * t18;
+        let t20 = outer_ring_wy * T::fused(-k(2.0), t8 * T::fused(-t11, t16, t19), t18);
+        let t21 = t11 * t9;
+        let t22 = inner_ring_wx - rotor_wx;
+        let t23 = k(2.4e-9) - t4;
+        let t24 = T::fused(k(2.0), t9, t23);
+        let t25 = outer_ring_wy
+            * (t23 - T::fused(k(0.3), t13, t8 * T::fused(t8, t24, t21)));
+        let t26 = T::fused(
+            -t22,
+            T::fused(k(1.2e-10), t8 * T::fused(k(9.666666666666666), t2, t3), t21),
             k(2.0)
                 * T::fused(
-                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t11, t16),
-                    t14 * t13,
-                    t27,
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t9, t14),
+                    t12 * t11,
+                    t25,
                 ),
         );
-        let t29 = T::fused(
-            -t14,
-            T::fused(t14, T::fused(-t10, t6, t13 * t12), t22),
-            t24 * t28,
+        let t27 = T::fused(
+            -t12,
+            T::fused(t12, T::fused(-t8, t5, t11 * t10), t20),
+            t22 * t26,
         );
-        let t30 = t14 * t26;
-        let t31 = t13 * t15;
-        let t32 = outer_ring_wy
-            * (t31 - T::fused(-t13, T::fused(-k(2.0), t16, k(1.00036e-5)), t10 * t19));
-        let t33 = T::fused(
+        let t28 = t12 * t24;
+        let t29 = t11 * t13;
+        let t30 = outer_ring_wy
+            * (t29 - T::fused(-t11, T::fused(-k(2.0), t14, k(1.00036e-5)), t8 * t17));
+        let t31 = T::fused(
             outer_ring_wy,
-            t27,
-            T::fused(t14, t32 - t30, k(400000.0) * t23),
+            t25,
+            T::fused(t12, t30 - t28, k(400000.0) * t21),
         );
-        let t34 = T::fused(
+        let t32 = T::fused(
             k(1.16e-9),
-            t10 * T::fused(k(0.10344827586206896), t3, -(t4 - k(8625.0))),
-            k(0.25) * t31,
+            t8 * T::fused(k(0.10344827586206896), t2, -(t3 - k(8625.0))),
+            k(0.25) * t29,
         );
-        let t35 = k(99950.02498750624) * t34;
-        let t36 = T::fused(
+        let t33 = k(99950.02498750624) * t32;
+        let t34 = T::fused(
             k(2e-5),
-            t13,
-            t24 * T::fused(-k(0.25), t24 * t15, T::fused(-k(2.0), t30, t32)),
+            t11,
+            t22 * T::fused(-k(0.25), t22 * t13, T::fused(-k(2.0), t28, t30)),
         );
-        let t37 = k(99950.02498750624) * t11;
-        let t38 = T::fused(
-            t37,
-            t33,
-            -T::fused(k(200000.0), t21, T::fused(k(0.5), outer_ring_wy * t22, t36)),
+        let t35 = k(99950.02498750624) * t9;
+        let t36 = T::fused(
+            t35,
+            t31,
+            -T::fused(k(200000.0), t19, T::fused(k(0.5), outer_ring_wy * t20, t34)),
         );
-        let t39 = T::fused(t37, t34, T::fused(t10, t12, t13 * t6));
-        let t40 = k(1.0) / T::fused(t11, t37, -(k(6.00205e-6) - t17));
-        let t41 = t40 * t39;
-        let t42 = T::fused(
-            t10,
-            T::fused(t10, t18, t13 * t20),
-            T::fused(-k(2.4), t11, k(8.003322e-6)),
+        let t37 = T::fused(t35, t32, T::fused(t8, t10, t11 * t5));
+        let t38 = k(1.0) / T::fused(t9, t35, -(k(6.00205e-6) - t15));
+        let t39 = t38 * t37;
+        let t40 = T::fused(
+            t8,
+            T::fused(t8, t16, t11 * t18),
+            T::fused(-k(2.4), t9, k(8.003322e-6)),
         );
-        let t43 = T::fused(t41, t38, -T::fused(t35, t33, t29))
-            / T::fused(t39, t41, -T::fused(t34, t35, -(t16 + t42)));
-        let t44 = T::fused(-t40, t38, t41 * t43);
+        let t41 = T::fused(t39, t36, -T::fused(t33, t31, t27))
+            / T::fused(t37, t39, -T::fused(t32, t33, -(t14 + t40)));
+        let t42 = T::fused(-t38, t36, t39 * t41);
         *out = [
-            -t43,
-            t44,
-            T::fused(t37, t44, -T::fused(-k(99950.02498750624), t33, t35 * t43)),
+            -t41,
+            t42,
+            T::fused(t35, t42, -T::fused(-k(99950.02498750624), t31, t33 * t41)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 321 operations (132 ±, 187 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 323 operations (134 ±, 187 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3991,8 +3985,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4001,11 +3994,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t4 = t3 * t2;
-        let t5 = T::fused(-t1, t2, k(1.0));
-        let t6 = t5 * T::fused(k(4.8e-9), t5, k(1.4e-9) * t4);
-        let t7 = k(2.28e-9) + T::fused(k(1.08e-9), t5, -T::fused(-k(4.4e-10), t4, t6));
-        let t8 = T::fused(
+        let t3 = t2 * (k(2.0) * t1);
+        let t4 = (t2 + t1) * (t2 - t1);
+        let t5 = t4 * T::fused(k(4.8e-9), t4, k(1.4e-9) * t3);
+        let t6 = k(2.28e-9) + T::fused(k(1.08e-9), t4, -T::fused(-k(4.4e-10), t3, t5));
+        let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4014,8 +4007,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t9 = k(2.0) * t8;
-        let t10 = T::fused(
+        let t8 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4024,145 +4016,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t11 = t10 * t9;
-        let t12 = T::fused(k(3e-10), t5, k(4e-10) * t4);
-        let t13 = k(6e-11) - t12;
-        let t14 = T::fused(-t8, t9, k(1.0));
-        let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = T::fused(-k(1.6e-9), t5, k(1.2e-9) * t4);
-        let t17 = t5 * T::fused(-k(1.4e-9), t5, k(4.8e-9) * t4);
-        let t18 = t17 - t16;
-        let t19 = k(4.00195e-6) - t18;
-        let t20 = k(0.5) * t16;
-        let t21 = k(2e-10) + t20;
-        let t22 = t11 * t21;
-        let t23 = outer_ring_wy * T::fused(-k(2.0), t11 * T::fused(-t14, t19, t22), t21);
-        let t24 = t14 * t12;
-        let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) - t6;
-        let t27 = T::fused(k(2.0), t12, t26);
-        let t28 = outer_ring_wy
-            * (t26 - T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
-        let t29 = T::fused(
-            -t25,
-            T::fused(k(1.2e-10), t11 * T::fused(k(9.666666666666666), t4, t5), t24),
+        let t9 = t8 * (k(2.0) * t7);
+        let t10 = T::fused(k(3e-10), t4, k(4e-10) * t3);
+        let t11 = k(6e-11) - t10;
+        let t12 = (t8 + t7) * (t8 - t7);
+        let t13 = outer_ring_wz - inner_ring_wz;
+        let t14 = T::fused(-k(1.6e-9), t4, k(1.2e-9) * t3);
+        let t15 = t4 * T::fused(-k(1.4e-9), t4, k(4.8e-9) * t3);
+        let t16 = t15 - t14;
+        let t17 = k(4.00195e-6) - t16;
+        let t18 = k(0.5) * t14;
+        let t19 = k(2e-10) + t18;
+        let t20 = t9 * t19;
+        let t21 = outer_ring_wy * T::fused(-k(2.0), t9 * T::fused(-t12, t17, t20), t19);
+        let t22 = t12 * t10;
+        let t23 = inner_ring_wx - rotor_wx;
+        let t24 = k(2.4e-9) - t5;
+        let t25 = T::fused(k(2.0), t10, t24);
+        let t26 = outer_ring_wy
+            * (t24 - T::fused(k(0.3), t14, t9 * T::fused(t9, t25, t22)));
+        let t27 = T::fused(
+            -t23,
+            T::fused(k(1.2e-10), t9 * T::fused(k(9.666666666666666), t3, t4), t22),
             k(2.0)
                 * T::fused(
-                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t12, t17),
-                    t15 * t14,
-                    t28,
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t10, t15),
+                    t13 * t12,
+                    t26,
                 ),
         );
-        let t30 = T::fused(
-            -t15,
-            T::fused(t15, T::fused(-t11, t7, t14 * t13), t23),
-            t25 * t29,
+        let t28 = T::fused(
+            -t13,
+            T::fused(t13, T::fused(-t9, t6, t12 * t11), t21),
+            t23 * t27,
         );
-        let t31 = t15 * t27;
-        let t32 = t14 * t16;
-        let t33 = outer_ring_wy
-            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00036e-5)), t11 * t20));
-        let t34 = T::fused(
+        let t29 = t13 * t25;
+        let t30 = t12 * t14;
+        let t31 = outer_ring_wy
+            * (t30 - T::fused(-t12, T::fused(-k(2.0), t15, k(1.00036e-5)), t9 * t18));
+        let t32 = T::fused(
             outer_ring_wy,
-            t28,
-            T::fused(t15, t33 - t31, k(400000.0) * t24),
+            t26,
+            T::fused(t13, t31 - t29, k(400000.0) * t22),
         );
-        let t35 = T::fused(
+        let t33 = T::fused(
             k(1.16e-9),
-            t11 * T::fused(k(0.10344827586206896), t4, -(t5 - k(8625.0))),
-            k(0.25) * t32,
+            t9 * T::fused(k(0.10344827586206896), t3, -(t4 - k(8625.0))),
+            k(0.25) * t30,
         );
-        let t36 = k(99950.02498750624) * t35;
-        let t37 = T::fused(
+        let t34 = k(99950.02498750624) * t33;
+        let t35 = T::fused(
             k(2e-5),
-            t14,
-            t25 * T::fused(-k(0.25), t25 * t16, T::fused(-k(2.0), t31, t33)),
+            t12,
+            t23 * T::fused(-k(0.25), t23 * t14, T::fused(-k(2.0), t29, t31)),
         );
-        let t38 = k(99950.02498750624) * t12;
-        let t39 = T::fused(
-            t38,
-            t34,
-            -T::fused(k(200000.0), t22, T::fused(k(0.5), outer_ring_wy * t23, t37)),
+        let t36 = k(99950.02498750624) * t10;
+        let t37 = T::fused(
+            t36,
+            t32,
+            -T::fused(k(200000.0), t20, T::fused(k(0.5), outer_ring_wy * t21, t35)),
         );
-        let t40 = T::fused(t38, t35, T::fused(t11, t13, t14 * t7));
-        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00205e-6) - t18));
-        let t42 = t41 * t40;
-        let t43 = T::fused(
-            t11,
-            T::fused(t11, t19, t14 * t21),
-            T::fused(-k(2.4), t12, k(8.003322e-6)),
+        let t38 = T::fused(t36, t33, T::fused(t9, t11, t12 * t6));
+        let t39 = k(1.0) / T::fused(t10, t36, -(k(6.00205e-6) - t16));
+        let t40 = t39 * t38;
+        let t41 = T::fused(
+            t9,
+            T::fused(t9, t17, t12 * t19),
+            T::fused(-k(2.4), t10, k(8.003322e-6)),
         );
-        let t44 = T::fused(t42, t39, -T::fused(t36, t34, t30))
-            / T::fused(t40, t42, -T::fused(t35, t36, -(t17 + t43)));
-        let t45 = outer_ring_wx * outer_ring_wy;
-        let t46 = T::fused(inner_ring_wy, t15, T::fused(-t11, t44, t0 * t14));
-        let t47 = T::fused(inner_ring_wx, t15, -T::fused(t14, t44, t0 * t11));
-        let t48 = T::fused(-t41, t39, t42 * t44);
-        let t49 = t45 + t48;
-        let t50 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
-        let t51 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
-        let t52 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
-        let t53 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
-        let t54 = T::fused(-inner_ring_wz, t52, inner_ring_wy * t53)
-            - T::fused(-rotor_wz, t50, rotor_wy * t51);
-        let t55 = T::fused(rotor_wz, t25, T::fused(-t5, t47, t4 * t49));
-        let t56 = T::fused(rotor_wy, t25, T::fused(t4, t47, t5 * t49));
-        let t57 = T::fused(-k(0.00015), t55, k(0.0002) * t56)
-            + (t54 - T::fused(k(3e-5), t47, k(5e-5) * t49));
-        let t58 = rotor_e0 * rotor_e0;
-        let t59 = T::fused(-k(3e-5), t46, k(0.000125) * t49);
-        let t60 = T::fused(k(5e-5), t46, k(0.000125) * t47);
-        let t61 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
-        let t62 = T::fused(inner_ring_wx, t53, inner_ring_wz * t61);
-        let t63 = T::fused(inner_ring_wy, t61, inner_ring_wx * t52);
-        let t64 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
-        let t65 = T::fused(rotor_wx, t51, rotor_wz * t64) - T::fused(t62, t5, t63 * t4);
-        let t66 = T::fused(t38, t48, -T::fused(-k(99950.02498750624), t34, t36 * t44))
-            - t46;
-        let t67 = T::fused(k(0.00015), t66, k(0.0001) * t56)
-            - (t65 + T::fused(t5, t59, t4 * t60));
-        let t68 = rotor_e0 * rotor_e3;
-        let t69 = rotor_e1 * rotor_e2;
-        let t70 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t58)),
-            t57,
-            k(2.0) * (t69 - t68) * t67,
+        let t42 = T::fused(t40, t37, -T::fused(t34, t32, t28))
+            / T::fused(t38, t40, -T::fused(t33, t34, -(t15 + t41)));
+        let t43 = outer_ring_wx * outer_ring_wy;
+        let t44 = T::fused(inner_ring_wy, t13, T::fused(-t9, t42, t0 * t12));
+        let t45 = T::fused(inner_ring_wx, t13, -T::fused(t12, t42, t0 * t9));
+        let t46 = T::fused(-t39, t37, t40 * t42);
+        let t47 = t43 + t46;
+        let t48 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
+        let t49 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
+        let t50 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
+        let t51 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
+        let t52 = T::fused(-inner_ring_wz, t50, inner_ring_wy * t51)
+            - T::fused(-rotor_wz, t48, rotor_wy * t49);
+        let t53 = T::fused(rotor_wz, t23, T::fused(-t4, t45, t3 * t47));
+        let t54 = T::fused(rotor_wy, t23, T::fused(t3, t45, t4 * t47));
+        let t55 = T::fused(-k(0.00015), t53, k(0.0002) * t54)
+            + (t52 - T::fused(k(3e-5), t45, k(5e-5) * t47));
+        let t56 = rotor_e0 * rotor_e0;
+        let t57 = T::fused(-k(3e-5), t44, k(0.000125) * t47);
+        let t58 = T::fused(k(5e-5), t44, k(0.000125) * t45);
+        let t59 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
+        let t60 = T::fused(inner_ring_wx, t51, inner_ring_wz * t59);
+        let t61 = T::fused(inner_ring_wy, t59, inner_ring_wx * t50);
+        let t62 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
+        let t63 = T::fused(rotor_wx, t49, rotor_wz * t62) - T::fused(t60, t4, t61 * t3);
+        let t64 = T::fused(t36, t46, -T::fused(-k(99950.02498750624), t32, t34 * t42))
+            - t44;
+        let t65 = T::fused(k(0.00015), t64, k(0.0001) * t54)
+            - (t63 + T::fused(t4, t57, t3 * t58));
+        let t66 = rotor_e0 * rotor_e3;
+        let t67 = rotor_e1 * rotor_e2;
+        let t68 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t56)),
+            t55,
+            k(2.0) * (t67 - t66) * t65,
         );
-        let t71 = T::fused(rotor_wy, t64, rotor_wx * t50) - T::fused(-t62, t4, t63 * t5);
-        let t72 = T::fused(k(0.0002), t66, k(0.0001) * t55)
-            + (t71 + T::fused(-t4, t59, t5 * t60));
-        let t73 = rotor_e0 * rotor_e2;
-        let t74 = rotor_e1 * rotor_e3;
-        let t75 = T::fused(
-            k(2.0) * (t69 + t68),
-            t57,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t58)) * t67,
+        let t69 = T::fused(rotor_wy, t62, rotor_wx * t48) - T::fused(-t60, t3, t61 * t4);
+        let t70 = T::fused(k(0.0002), t64, k(0.0001) * t53)
+            + (t69 + T::fused(-t3, t57, t4 * t58));
+        let t71 = rotor_e0 * rotor_e2;
+        let t72 = rotor_e1 * rotor_e3;
+        let t73 = T::fused(
+            k(2.0) * (t67 + t66),
+            t55,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t56)) * t65,
         );
-        let t76 = rotor_e0 * rotor_e1;
-        let t77 = rotor_e2 * rotor_e3;
-        let t78 = T::fused(-(k(2.0) * (t74 - t73)), t57, k(2.0) * (t77 + t76) * t67);
+        let t74 = rotor_e0 * rotor_e1;
+        let t75 = rotor_e2 * rotor_e3;
+        let t76 = T::fused(-(k(2.0) * (t72 - t71)), t55, k(2.0) * (t75 + t74) * t65);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -t42,
+            t43,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t44,
             t45,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t46,
             t47,
-            t49,
-            -T::fused(k(2.0) * (t74 + t73), t72, t70),
-            T::fused(-(k(2.0) * (t77 - t76)), t72, t75),
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t58)), t72, -t78),
-            t66,
-            -t55,
-            t56,
+            -T::fused(k(2.0) * (t72 + t71), t70, t68),
+            T::fused(-(k(2.0) * (t75 - t74)), t70, t73),
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t56)), t70, -t76),
+            t64,
+            -t53,
+            t54,
         ];
     }
-    /// Writes λ: 233 operations (100 ±, 133 ×, 0 ÷).
+    /// Writes λ: 234 operations (103 ±, 131 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -4208,59 +4200,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e3;
-        let t7 = rotor_e1 * rotor_e2;
-        let t8 = t7 - t6;
-        let t9 = rotor_e0 * rotor_e2;
-        let t10 = rotor_e1 * rotor_e3;
-        let t11 = t10 + t9;
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(0.5) - T::fused(rotor_e2, rotor_e2, t12);
-        let t14 = rotor_e0 * rotor_e1;
-        let t15 = rotor_e2 * rotor_e3;
-        let t16 = t15 - t14;
-        let t17 = T::fused(
-            t0,
-            T::fused(k(0.0003), t8, k(0.0004) * t11),
-            t2 * T::fused(-k(0.0003), t13, k(0.0004) * t16),
-        );
-        let t18 = t15 + t14;
-        let t19 = k(0.5) - T::fused(rotor_e3, rotor_e3, t12);
-        let t20 = T::fused(
-            k(1e-5),
-            rotor_dwx,
-            T::fused(t4, T::fused(-k(0.0003), t18, k(0.0004) * t19), -t17),
-        );
-        let t21 = inner_ring_e0 * inner_ring_e3;
-        let t22 = inner_ring_e1 * inner_ring_e2;
-        let t23 = t22 - t21;
-        let t24 = inner_ring_e0 * inner_ring_e2;
-        let t25 = inner_ring_e1 * inner_ring_e3;
-        let t26 = t25 + t24;
-        let t27 = inner_ring_e0 * inner_ring_e0;
-        let t28 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t27);
-        let t29 = inner_ring_e0 * inner_ring_e1;
-        let t30 = inner_ring_e2 * inner_ring_e3;
-        let t31 = t30 - t29;
-        let t32 = T::fused(
-            t0,
-            T::fused(k(6e-5), t23, k(0.0001) * t26),
-            t2 * T::fused(-k(6e-5), t28, k(0.0001) * t31),
-        );
-        let t33 = t30 + t29;
-        let t34 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t27);
-        let t35 = T::fused(
-            k(1e-6),
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = rotor_dsy + k(10.0);
+        let t2 = k(10.0) + T::fused(k(8.0), t1, inner_ring_dsy);
+        let t3 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t4 = inner_ring_e0 * inner_ring_e1;
+        let t5 = inner_ring_e2 * inner_ring_e3;
+        let t6 = t5 + t4;
+        let t7 = inner_ring_e0 * inner_ring_e0;
+        let t8 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7);
+        let t9 = T::fused(
+            k(0.125),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            T::fused(t4, T::fused(-k(6e-5), t33, k(0.0001) * t34), -t32) - t20,
+            rotor_dsz * T::fused(-k(0.6), t6, t8),
         );
-        let t36 = T::fused(
+        let t10 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7);
+        let t11 = t5 - t4;
+        let t12 = inner_ring_e0 * inner_ring_e3;
+        let t13 = inner_ring_e1 * inner_ring_e2;
+        let t14 = t13 - t12;
+        let t15 = inner_ring_e0 * inner_ring_e2;
+        let t16 = inner_ring_e1 * inner_ring_e3;
+        let t17 = t16 + t15;
+        let t18 = T::fused(
+            rotor_dsx,
+            T::fused(k(0.6), t14, t17),
+            T::fused(T::fused(-k(0.6), t10, t11), t1, -t9),
+        );
+        let t19 = rotor_e0 * rotor_e1;
+        let t20 = rotor_e2 * rotor_e3;
+        let t21 = t20 + t19;
+        let t22 = rotor_e0 * rotor_e0;
+        let t23 = k(0.5) - T::fused(rotor_e3, rotor_e3, t22);
+        let t24 = T::fused(
+            k(4.0),
+            rotor_dsz * T::fused(-k(0.75), t21, t23),
+            T::fused(k(1.25), rotor_dwx, t18),
+        );
+        let t25 = k(0.5) - T::fused(rotor_e2, rotor_e2, t22);
+        let t26 = t20 - t19;
+        let t27 = rotor_e0 * rotor_e3;
+        let t28 = rotor_e1 * rotor_e2;
+        let t29 = t28 - t27;
+        let t30 = rotor_e0 * rotor_e2;
+        let t31 = rotor_e1 * rotor_e3;
+        let t32 = t31 + t30;
+        let t33 = T::fused(
+            k(4.0),
+            rotor_dsx * T::fused(k(0.75), t29, t32),
+            T::fused(k(4.0), T::fused(-k(0.75), t25, t26) * t1, -t24),
+        );
+        let t34 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4269,67 +4259,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t37 = k(2.0) * t36;
-        let t38 = T::fused(-t36, t37, k(1.0));
-        let t39 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t27);
-        let t40 = t22 + t21;
-        let t41 = T::fused(
-            t0,
-            T::fused(-k(6e-5), t39, k(0.00025) * t26),
-            t2 * T::fused(k(6e-5), t40, k(0.00025) * t31),
-        );
-        let t42 = t25 - t24;
-        let t43 = k(0.5) - T::fused(rotor_e1, rotor_e1, t12);
-        let t44 = t7 + t6;
-        let t45 = T::fused(
-            t0,
-            T::fused(-k(0.0003), t43, k(0.0002) * t11),
-            t2 * T::fused(k(0.0003), t44, k(0.0002) * t16),
-        );
-        let t46 = t10 - t9;
-        let t47 = T::fused(
-            k(5e-6),
-            T::fused(rotor_wx, rotor_wz, rotor_dwy),
-            -T::fused(t4, T::fused(-k(0.0003), t46, k(0.0002) * t19), -t45),
-        );
-        let t48 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t49 = k(2.0) * t48;
-        let t50 = T::fused(-t48, t49, k(1.0));
-        let t51 = T::fused(
-            -t0,
-            T::fused(k(0.0004), t43, k(0.0002) * t8),
-            t2 * T::fused(k(0.0004), t44, k(0.0002) * t13),
-        );
-        let t52 = T::fused(
-            k(5e-6),
-            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
-            T::fused(t4, T::fused(-k(0.0004), t46, k(0.0002) * t18), -t51),
-        );
-        let t53 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t54 = t53 * t49;
-        let t55 = T::fused(-t50, t47, t54 * t52);
-        let t56 = T::fused(
-            k(2e-6),
-            inner_ring_dwy,
-            -(t55 - T::fused(t4, T::fused(-k(6e-5), t42, k(0.00025) * t34), -t41)),
-        );
-        let t57 = T::fused(
+        let t35 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4338,47 +4268,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t58 = t57 * t37;
-        let t59 = T::fused(-t38, t35, t58 * t56);
-        let t60 = T::fused(k(2e-6), outer_ring_dwx, t59);
-        let t61 = k(2.0) * outer_ring_e2;
-        let t62 = T::fused(-outer_ring_e2, t61, k(1.0));
-        let t63 = T::fused(
-            -t0,
-            T::fused(k(0.0001), t39, k(0.00025) * t23),
-            t2 * T::fused(k(0.0001), t40, k(0.00025) * t28),
+        let t36 = (t35 + t34) * (t35 - t34);
+        let t37 = t31 - t30;
+        let t38 = T::fused(
+            -k(0.3125),
+            T::fused(rotor_wx, rotor_wz, rotor_dwy),
+            rotor_dsz * T::fused(-k(1.5), t37, t23),
         );
-        let t64 = T::fused(t54, t47, t50 * t52);
-        let t65 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t64 - T::fused(t4, T::fused(-k(0.0001), t42, k(0.00025) * t33), -t63)),
+        let t39 = t28 + t27;
+        let t40 = k(0.5) - T::fused(rotor_e1, rotor_e1, t22);
+        let t41 = T::fused(
+            rotor_dsx,
+            T::fused(-k(1.5), t40, t32),
+            T::fused(T::fused(k(1.5), t39, t26), t1, -t38),
         );
-        let t66 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t65,
+        let t42 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
         );
-        let t67 = outer_ring_e0 * t61;
+        let t43 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t44 = (t43 + t42) * (t43 - t42);
+        let t45 = T::fused(
+            -k(0.3125),
+            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
+            rotor_dsz * T::fused(k(2.0), t37, -t21),
+        );
+        let t46 = T::fused(
+            rotor_dsx,
+            T::fused(k(2.0), t40, t29),
+            -T::fused(T::fused(k(2.0), t39, t25), t1, t45),
+        );
+        let t47 = t43 * t42;
+        let t48 = T::fused(-k(0.5), t44 * t41, t47 * t46);
+        let t49 = t16 - t15;
+        let t50 = T::fused(
+            rotor_dsz,
+            T::fused(-k(0.24), t49, t8),
+            T::fused(-k(1.6), t48, k(0.1) * inner_ring_dwy),
+        );
+        let t51 = t13 + t12;
+        let t52 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7);
+        let t53 = T::fused(
+            rotor_dsx,
+            T::fused(-k(0.24), t52, t17),
+            T::fused(T::fused(k(0.24), t51, t11), t1, -t50),
+        );
+        let t54 = t35 * t34;
+        let t55 = T::fused(k(0.2), t36 * t33, t54 * t53);
+        let t56 = T::fused(-k(20.0), t55, outer_ring_dwx);
+        let t57 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t58 = T::fused(k(2.0), t47 * t41, t44 * t46);
+        let t59 = T::fused(
+            k(0.05),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz)
+                - T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            k(0.8) * t58,
+        );
+        let t60 = T::fused(
+            T::fused(k(0.4), t51, t10),
+            t1,
+            -T::fused(rotor_dsz, T::fused(-k(0.4), t49, t6), -t59),
+        );
+        let t61 = T::fused(rotor_dsx, T::fused(k(0.4), t52, t14), -t60);
+        let t62 = outer_ring_e0 * outer_ring_e2;
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t62, t60, t67 * t66),
-            -T::fused(t67, t60, t62 * t66),
-            -t1,
-            -t3,
-            -t5,
-            -T::fused(t58, t35, t38 * t56),
-            t59,
-            -t0,
-            -t2,
-            -t4,
-            t64,
-            -t55,
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (k(10.0) + (outer_ring_dsy + t2))),
+            -(k(0.01) * (outer_ring_dsz + t3)),
+            -(k(4e-5) * T::fused(k(0.05), t57 * t56, t62 * t61)),
+            k(2e-5) * T::fused(-k(0.2), t62 * t56, t57 * t61),
+            -(k(0.01) * t0),
+            -(k(0.01) * t2),
+            -(k(0.01) * t3),
+            k(2e-5) * T::fused(-k(0.8), t54 * t33, t36 * t53),
+            -(k(4e-5) * t55),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t1),
+            -(k(0.08) * rotor_dsz),
+            k(1.6e-5) * t58,
+            -(k(3.2e-5) * t48),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 480 operations (198 ±, 280 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 483 operations (201 ±, 280 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4412,8 +4396,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4422,11 +4405,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t4 = t3 * t2;
-        let t5 = T::fused(-t1, t2, k(1.0));
-        let t6 = t5 * T::fused(k(4.8e-9), t5, k(1.4e-9) * t4);
-        let t7 = k(2.28e-9) + T::fused(k(1.08e-9), t5, -T::fused(-k(4.4e-10), t4, t6));
-        let t8 = T::fused(
+        let t3 = t2 * (k(2.0) * t1);
+        let t4 = (t2 + t1) * (t2 - t1);
+        let t5 = t4 * T::fused(k(4.8e-9), t4, k(1.4e-9) * t3);
+        let t6 = k(2.28e-9) + T::fused(k(1.08e-9), t4, -T::fused(-k(4.4e-10), t3, t5));
+        let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4435,8 +4418,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t9 = k(2.0) * t8;
-        let t10 = T::fused(
+        let t8 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4445,257 +4427,256 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t11 = t10 * t9;
-        let t12 = T::fused(k(3e-10), t5, k(4e-10) * t4);
-        let t13 = k(6e-11) - t12;
-        let t14 = T::fused(-t8, t9, k(1.0));
-        let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = T::fused(-k(1.6e-9), t5, k(1.2e-9) * t4);
-        let t17 = t5 * T::fused(-k(1.4e-9), t5, k(4.8e-9) * t4);
-        let t18 = t17 - t16;
-        let t19 = k(4.00195e-6) - t18;
-        let t20 = k(0.5) * t16;
-        let t21 = k(2e-10) + t20;
-        let t22 = t11 * t21;
-        let t23 = outer_ring_wy * T::fused(-k(2.0), t11 * T::fused(-t14, t19, t22), t21);
-        let t24 = t14 * t12;
-        let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) - t6;
-        let t27 = T::fused(k(2.0), t12, t26);
-        let t28 = outer_ring_wy
-            * (t26 - T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
-        let t29 = T::fused(
-            -t25,
-            T::fused(k(1.2e-10), t11 * T::fused(k(9.666666666666666), t4, t5), t24),
+        let t9 = t8 * (k(2.0) * t7);
+        let t10 = T::fused(k(3e-10), t4, k(4e-10) * t3);
+        let t11 = k(6e-11) - t10;
+        let t12 = (t8 + t7) * (t8 - t7);
+        let t13 = outer_ring_wz - inner_ring_wz;
+        let t14 = T::fused(-k(1.6e-9), t4, k(1.2e-9) * t3);
+        let t15 = t4 * T::fused(-k(1.4e-9), t4, k(4.8e-9) * t3);
+        let t16 = t15 - t14;
+        let t17 = k(4.00195e-6) - t16;
+        let t18 = k(0.5) * t14;
+        let t19 = k(2e-10) + t18;
+        let t20 = t9 * t19;
+        let t21 = outer_ring_wy * T::fused(-k(2.0), t9 * T::fused(-t12, t17, t20), t19);
+        let t22 = t12 * t10;
+        let t23 = inner_ring_wx - rotor_wx;
+        let t24 = k(2.4e-9) - t5;
+        let t25 = T::fused(k(2.0), t10, t24);
+        let t26 = outer_ring_wy
+            * (t24 - T::fused(k(0.3), t14, t9 * T::fused(t9, t25, t22)));
+        let t27 = T::fused(
+            -t23,
+            T::fused(k(1.2e-10), t9 * T::fused(k(9.666666666666666), t3, t4), t22),
             k(2.0)
                 * T::fused(
-                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t12, t17),
-                    t15 * t14,
-                    t28,
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t10, t15),
+                    t13 * t12,
+                    t26,
                 ),
         );
-        let t30 = T::fused(
-            -t15,
-            T::fused(t15, T::fused(-t11, t7, t14 * t13), t23),
-            t25 * t29,
+        let t28 = T::fused(
+            -t13,
+            T::fused(t13, T::fused(-t9, t6, t12 * t11), t21),
+            t23 * t27,
         );
-        let t31 = t15 * t27;
-        let t32 = t14 * t16;
-        let t33 = outer_ring_wy
-            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00036e-5)), t11 * t20));
-        let t34 = T::fused(
+        let t29 = t13 * t25;
+        let t30 = t12 * t14;
+        let t31 = outer_ring_wy
+            * (t30 - T::fused(-t12, T::fused(-k(2.0), t15, k(1.00036e-5)), t9 * t18));
+        let t32 = T::fused(
             outer_ring_wy,
-            t28,
-            T::fused(t15, t33 - t31, k(400000.0) * t24),
+            t26,
+            T::fused(t13, t31 - t29, k(400000.0) * t22),
         );
-        let t35 = T::fused(
+        let t33 = T::fused(
             k(1.16e-9),
-            t11 * T::fused(k(0.10344827586206896), t4, -(t5 - k(8625.0))),
-            k(0.25) * t32,
+            t9 * T::fused(k(0.10344827586206896), t3, -(t4 - k(8625.0))),
+            k(0.25) * t30,
         );
-        let t36 = k(99950.02498750624) * t35;
-        let t37 = T::fused(
+        let t34 = k(99950.02498750624) * t33;
+        let t35 = T::fused(
             k(2e-5),
-            t14,
-            t25 * T::fused(-k(0.25), t25 * t16, T::fused(-k(2.0), t31, t33)),
+            t12,
+            t23 * T::fused(-k(0.25), t23 * t14, T::fused(-k(2.0), t29, t31)),
         );
-        let t38 = k(99950.02498750624) * t12;
-        let t39 = T::fused(
-            t38,
-            t34,
-            -T::fused(k(200000.0), t22, T::fused(k(0.5), outer_ring_wy * t23, t37)),
+        let t36 = k(99950.02498750624) * t10;
+        let t37 = T::fused(
+            t36,
+            t32,
+            -T::fused(k(200000.0), t20, T::fused(k(0.5), outer_ring_wy * t21, t35)),
         );
-        let t40 = T::fused(t38, t35, T::fused(t11, t13, t14 * t7));
-        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00205e-6) - t18));
-        let t42 = t41 * t40;
-        let t43 = T::fused(
-            t11,
-            T::fused(t11, t19, t14 * t21),
-            T::fused(-k(2.4), t12, k(8.003322e-6)),
+        let t38 = T::fused(t36, t33, T::fused(t9, t11, t12 * t6));
+        let t39 = k(1.0) / T::fused(t10, t36, -(k(6.00205e-6) - t16));
+        let t40 = t39 * t38;
+        let t41 = T::fused(
+            t9,
+            T::fused(t9, t17, t12 * t19),
+            T::fused(-k(2.4), t10, k(8.003322e-6)),
         );
-        let t44 = T::fused(t42, t39, -T::fused(t36, t34, t30))
-            / T::fused(t40, t42, -T::fused(t35, t36, -(t17 + t43)));
-        let t45 = outer_ring_wx * outer_ring_wy;
-        let t46 = T::fused(inner_ring_wy, t15, T::fused(-t11, t44, t0 * t14));
-        let t47 = T::fused(inner_ring_wx, t15, -T::fused(t14, t44, t0 * t11));
-        let t48 = T::fused(-t41, t39, t42 * t44);
-        let t49 = t45 + t48;
-        let t50 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
-        let t51 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
-        let t52 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
-        let t53 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
-        let t54 = T::fused(-inner_ring_wz, t52, inner_ring_wy * t53)
-            - T::fused(-rotor_wz, t50, rotor_wy * t51);
-        let t55 = T::fused(rotor_wz, t25, T::fused(-t5, t47, t4 * t49));
-        let t56 = T::fused(rotor_wy, t25, T::fused(t4, t47, t5 * t49));
-        let t57 = T::fused(-k(0.00015), t55, k(0.0002) * t56)
-            + (t54 - T::fused(k(3e-5), t47, k(5e-5) * t49));
-        let t58 = rotor_e0 * rotor_e0;
-        let t59 = k(0.5) - T::fused(rotor_e1, rotor_e1, t58);
-        let t60 = T::fused(-k(3e-5), t46, k(0.000125) * t49);
-        let t61 = T::fused(k(5e-5), t46, k(0.000125) * t47);
-        let t62 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
-        let t63 = T::fused(inner_ring_wx, t53, inner_ring_wz * t62);
-        let t64 = T::fused(inner_ring_wy, t62, inner_ring_wx * t52);
-        let t65 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
-        let t66 = T::fused(rotor_wx, t51, rotor_wz * t65) - T::fused(t63, t5, t64 * t4);
-        let t67 = T::fused(t38, t48, -T::fused(-k(99950.02498750624), t34, t36 * t44))
-            - t46;
-        let t68 = T::fused(k(0.00015), t67, k(0.0001) * t56)
-            - (t66 + T::fused(t5, t60, t4 * t61));
-        let t69 = rotor_e0 * rotor_e3;
-        let t70 = rotor_e1 * rotor_e2;
-        let t71 = t70 - t69;
-        let t72 = T::fused(rotor_wy, t65, rotor_wx * t50) - T::fused(-t63, t4, t64 * t5);
-        let t73 = T::fused(k(0.0002), t67, k(0.0001) * t55)
-            + (t72 + T::fused(-t4, t60, t5 * t61));
-        let t74 = rotor_e0 * rotor_e2;
-        let t75 = rotor_e1 * rotor_e3;
-        let t76 = t75 + t74;
-        let t77 = T::fused(
-            k(2.0) * t76,
-            t73,
-            T::fused(k(2.0) * t59, t57, k(2.0) * t71 * t68),
+        let t42 = T::fused(t40, t37, -T::fused(t34, t32, t28))
+            / T::fused(t38, t40, -T::fused(t33, t34, -(t15 + t41)));
+        let t43 = outer_ring_wx * outer_ring_wy;
+        let t44 = T::fused(inner_ring_wy, t13, T::fused(-t9, t42, t0 * t12));
+        let t45 = T::fused(inner_ring_wx, t13, -T::fused(t12, t42, t0 * t9));
+        let t46 = T::fused(-t39, t37, t40 * t42);
+        let t47 = t43 + t46;
+        let t48 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
+        let t49 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
+        let t50 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
+        let t51 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
+        let t52 = T::fused(-inner_ring_wz, t50, inner_ring_wy * t51)
+            - T::fused(-rotor_wz, t48, rotor_wy * t49);
+        let t53 = T::fused(rotor_wz, t23, T::fused(-t4, t45, t3 * t47));
+        let t54 = T::fused(rotor_wy, t23, T::fused(t3, t45, t4 * t47));
+        let t55 = T::fused(-k(0.00015), t53, k(0.0002) * t54)
+            + (t52 - T::fused(k(3e-5), t45, k(5e-5) * t47));
+        let t56 = rotor_e0 * rotor_e0;
+        let t57 = k(0.5) - T::fused(rotor_e1, rotor_e1, t56);
+        let t58 = T::fused(-k(3e-5), t44, k(0.000125) * t47);
+        let t59 = T::fused(k(5e-5), t44, k(0.000125) * t45);
+        let t60 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
+        let t61 = T::fused(inner_ring_wx, t51, inner_ring_wz * t60);
+        let t62 = T::fused(inner_ring_wy, t60, inner_ring_wx * t50);
+        let t63 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
+        let t64 = T::fused(rotor_wx, t49, rotor_wz * t63) - T::fused(t61, t4, t62 * t3);
+        let t65 = T::fused(t36, t46, -T::fused(-k(99950.02498750624), t32, t34 * t42))
+            - t44;
+        let t66 = T::fused(k(0.00015), t65, k(0.0001) * t54)
+            - (t64 + T::fused(t4, t58, t3 * t59));
+        let t67 = rotor_e0 * rotor_e3;
+        let t68 = rotor_e1 * rotor_e2;
+        let t69 = t68 - t67;
+        let t70 = T::fused(rotor_wy, t63, rotor_wx * t48) - T::fused(-t61, t3, t62 * t4);
+        let t71 = T::fused(k(0.0002), t65, k(0.0001) * t53)
+            + (t70 + T::fused(-t3, t58, t4 * t59));
+        let t72 = rotor_e0 * rotor_e2;
+        let t73 = rotor_e1 * rotor_e3;
+        let t74 = t73 + t72;
+        let t75 = T::fused(
+            k(2.0) * t74,
+            t71,
+            T::fused(k(2.0) * t57, t55, k(2.0) * t69 * t66),
         );
-        let t78 = t70 + t69;
-        let t79 = k(0.5) - T::fused(rotor_e2, rotor_e2, t58);
-        let t80 = rotor_e0 * rotor_e1;
-        let t81 = rotor_e2 * rotor_e3;
-        let t82 = t81 - t80;
-        let t83 = T::fused(
-            k(2.0) * t82,
-            t73,
-            -T::fused(k(2.0) * t78, t57, k(2.0) * t79 * t68),
+        let t76 = t68 + t67;
+        let t77 = k(0.5) - T::fused(rotor_e2, rotor_e2, t56);
+        let t78 = rotor_e0 * rotor_e1;
+        let t79 = rotor_e2 * rotor_e3;
+        let t80 = t79 - t78;
+        let t81 = T::fused(
+            k(2.0) * t80,
+            t71,
+            -T::fused(k(2.0) * t76, t55, k(2.0) * t77 * t66),
         );
-        let t84 = t75 - t74;
-        let t85 = t81 + t80;
-        let t86 = k(0.5) - T::fused(rotor_e3, rotor_e3, t58);
-        let t87 = T::fused(
-            k(2.0) * t86,
-            t73,
-            -T::fused(-(k(2.0) * t84), t57, k(2.0) * t85 * t68),
+        let t82 = t73 - t72;
+        let t83 = t79 + t78;
+        let t84 = k(0.5) - T::fused(rotor_e3, rotor_e3, t56);
+        let t85 = T::fused(
+            k(2.0) * t84,
+            t71,
+            -T::fused(-(k(2.0) * t82), t55, k(2.0) * t83 * t66),
         );
-        let t88 = k(0.08) * t77;
-        let t89 = T::fused(-k(0.08), t83, k(0.8));
-        let t90 = k(0.1) + t89;
-        let t91 = k(0.08) * t87;
+        let t86 = k(0.08) * t75;
+        let t87 = T::fused(-k(0.08), t81, k(0.8));
+        let t88 = k(0.1) + t87;
+        let t89 = k(0.08) * t85;
+        let t90 = T::fused(
+            T::fused(k(0.0004), t76, k(0.0002) * t77),
+            t87,
+            T::fused(k(0.0004), t57, k(0.0002) * t69) * t86,
+        );
+        let t91 = T::fused(
+            -k(5e-6),
+            T::fused(rotor_wx, rotor_wy, -t54),
+            T::fused(-T::fused(-k(0.0004), t82, k(0.0002) * t83), t89, t90),
+        );
         let t92 = T::fused(
-            T::fused(k(0.0004), t78, k(0.0002) * t79),
-            t89,
-            T::fused(k(0.0004), t59, k(0.0002) * t71) * t88,
+            -T::fused(k(0.0003), t76, k(0.0002) * t80),
+            t87,
+            T::fused(-k(0.0003), t57, k(0.0002) * t74) * t86,
         );
         let t93 = T::fused(
             -k(5e-6),
-            T::fused(rotor_wx, rotor_wy, -t56),
-            T::fused(-T::fused(-k(0.0004), t84, k(0.0002) * t85), t91, t92),
+            T::fused(rotor_wx, rotor_wz, -t53),
+            T::fused(T::fused(-k(0.0003), t82, k(0.0002) * t84), t89, t92),
         );
-        let t94 = T::fused(
-            -T::fused(k(0.0003), t78, k(0.0002) * t82),
-            t89,
-            T::fused(-k(0.0003), t59, k(0.0002) * t76) * t88,
+        let t94 = T::fused(t4, t91, t3 * t93);
+        let t95 = inner_ring_e0 * inner_ring_e2;
+        let t96 = inner_ring_e1 * inner_ring_e3;
+        let t97 = t96 - t95;
+        let t98 = inner_ring_e0 * inner_ring_e1;
+        let t99 = inner_ring_e2 * inner_ring_e3;
+        let t100 = t99 + t98;
+        let t101 = inner_ring_e0 * inner_ring_e3;
+        let t102 = inner_ring_e1 * inner_ring_e2;
+        let t103 = t102 + t101;
+        let t104 = inner_ring_e0 * inner_ring_e0;
+        let t105 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t104);
+        let t106 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t104);
+        let t107 = t102 - t101;
+        let t108 = T::fused(
+            T::fused(k(0.0001), t103, k(0.00025) * t105),
+            t87,
+            T::fused(k(0.0001), t106, k(0.00025) * t107) * t86,
         );
-        let t95 = T::fused(
-            -k(5e-6),
-            T::fused(rotor_wx, rotor_wz, -t55),
-            T::fused(T::fused(-k(0.0003), t84, k(0.0002) * t86), t91, t94),
-        );
-        let t96 = T::fused(t5, t93, t4 * t95);
-        let t97 = inner_ring_e0 * inner_ring_e2;
-        let t98 = inner_ring_e1 * inner_ring_e3;
-        let t99 = t98 - t97;
-        let t100 = inner_ring_e0 * inner_ring_e1;
-        let t101 = inner_ring_e2 * inner_ring_e3;
-        let t102 = t101 + t100;
-        let t103 = inner_ring_e0 * inner_ring_e3;
-        let t104 = inner_ring_e1 * inner_ring_e2;
-        let t105 = t104 + t103;
-        let t106 = inner_ring_e0 * inner_ring_e0;
-        let t107 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t106);
-        let t108 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t106);
-        let t109 = t104 - t103;
-        let t110 = T::fused(
-            T::fused(k(0.0001), t105, k(0.00025) * t107),
-            t89,
-            T::fused(k(0.0001), t108, k(0.00025) * t109) * t88,
-        );
-        let t111 = T::fused(
+        let t109 = T::fused(
             -k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t49),
-            T::fused(-T::fused(-k(0.0001), t99, k(0.00025) * t102), t91, t110) - t96,
+            T::fused(inner_ring_wx, inner_ring_wy, t47),
+            T::fused(-T::fused(-k(0.0001), t97, k(0.00025) * t100), t89, t108) - t94,
         );
-        let t112 = k(2.0) * outer_ring_e2;
-        let t113 = outer_ring_e0 * t112;
-        let t114 = T::fused(-t4, t93, t5 * t95);
-        let t115 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t106);
-        let t116 = t101 - t100;
-        let t117 = t98 + t97;
+        let t110 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
+        let t111 = T::fused(-t3, t91, t4 * t93);
+        let t112 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t104);
+        let t113 = t99 - t98;
+        let t114 = t96 + t95;
+        let t115 = T::fused(
+            -T::fused(k(6e-5), t103, k(0.00025) * t113),
+            t87,
+            T::fused(-k(6e-5), t106, k(0.00025) * t114) * t86,
+        );
+        let t116 = T::fused(
+            k(2e-6),
+            t45,
+            T::fused(T::fused(-k(6e-5), t97, k(0.00025) * t112), t89, t115) - t111,
+        );
+        let t117 = T::fused(
+            -T::fused(-k(6e-5), t105, k(0.0001) * t113),
+            t87,
+            T::fused(k(6e-5), t107, k(0.0001) * t114) * t86,
+        );
         let t118 = T::fused(
-            -T::fused(k(6e-5), t105, k(0.00025) * t116),
-            t89,
-            T::fused(-k(6e-5), t108, k(0.00025) * t117) * t88,
+            -T::fused(-k(0.0003), t77, k(0.0004) * t80),
+            t87,
+            T::fused(k(0.0003), t69, k(0.0004) * t74) * t86,
         );
         let t119 = T::fused(
-            k(2e-6),
-            t47,
-            T::fused(T::fused(-k(6e-5), t99, k(0.00025) * t115), t91, t118) - t114,
+            k(1e-5),
+            t65,
+            T::fused(T::fused(-k(0.0003), t83, k(0.0004) * t84), t89, t118),
         );
         let t120 = T::fused(
-            -T::fused(-k(6e-5), t107, k(0.0001) * t116),
-            t89,
-            T::fused(k(6e-5), t109, k(0.0001) * t117) * t88,
-        );
-        let t121 = T::fused(
-            -T::fused(-k(0.0003), t79, k(0.0004) * t82),
-            t89,
-            T::fused(k(0.0003), t71, k(0.0004) * t76) * t88,
-        );
-        let t122 = T::fused(
-            k(1e-5),
-            t67,
-            T::fused(T::fused(-k(0.0003), t85, k(0.0004) * t86), t91, t121),
-        );
-        let t123 = T::fused(
             -k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t46),
-            t122 - T::fused(T::fused(-k(6e-5), t102, k(0.0001) * t115), t91, t120),
+            T::fused(inner_ring_wy, inner_ring_wz, t44),
+            t119 - T::fused(T::fused(-k(6e-5), t100, k(0.0001) * t112), t89, t117),
         );
-        let t124 = T::fused(t11, t119, t14 * t123);
-        let t125 = T::fused(-k(2e-6), t0, t124);
-        let t126 = T::fused(-outer_ring_e2, t112, k(1.0));
+        let t121 = T::fused(t9, t116, t12 * t120);
+        let t122 = T::fused(-k(2e-6), t0, t121);
+        let t123 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -t42,
+            t43,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t44,
             t45,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t46,
             t47,
-            t49,
-            -t77,
-            -t83,
-            t87,
-            t67,
-            -t55,
-            t56,
-            t88,
-            -(k(0.1) + t90),
-            -t91,
-            T::fused(-t126, t125, t113 * t111),
-            -T::fused(t126, t111, t113 * t125),
-            t88,
-            -t90,
-            -t91,
-            T::fused(-t14, t119, t11 * t123),
-            t124,
-            t88,
+            -t75,
+            -t81,
+            t85,
+            t65,
+            -t53,
+            t54,
+            t86,
+            -(k(0.1) + t88),
             -t89,
-            -t91,
-            -t96,
-            -t114,
+            T::fused(-t123, t122, t110 * t109),
+            -T::fused(t123, t109, t110 * t122),
+            t86,
+            -t88,
+            -t89,
+            T::fused(-t12, t116, t9 * t120),
+            t121,
+            t86,
+            -t87,
+            -t89,
+            -t94,
+            -t111,
         ];
     }
 }

@@ -13,41 +13,41 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 331 operations by relative Euler parameters, doubled; 347 operations by relative Euler parameters; 2 more compared
-//! * project: 275 operations by relative Euler parameters, doubled; 284 operations by relative Euler parameters; 2 more compared
-//! * joint_accelerations: 19 operations by normal form; 29 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 39 operations by normal form; 49 operations by recursion; 3 more compared
-//! * corrected_accelerations: 80 operations by normal form in the bodies' frames; 80 operations by normal form in the global frame; 9 more compared
+//! * accelerations: 330 operations by relative Euler parameters, doubled; 335 operations by relative Euler parameters; 2 more compared
+//! * project: 271 operations by relative Euler parameters, doubled; 274 operations by relative Euler parameters; 2 more compared
+//! * joint_accelerations: 18 operations by normal form; 26 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 38 operations by normal form; 49 operations by recursion; 3 more compared
+//! * corrected_accelerations: 82 operations by normal form in the bodies' frames; 82 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 55 operations by normal form of that; 56 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 44 | 55 | 0 | 99 | 0 of 18 | 162 | 99 |
+//! | phi | Φ | 43 | 46 | 0 | 89 | 0 of 18 | 142 | 89 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 116 | 0 | 182 | 0 of 67 | 660 | 182 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 84 | 0 | 142 | 0 of 35 | 614 | 142 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 109 | 166 | 0 | 275 | 9 of 15 | 1660 | 275 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 78 | 104 | 0 | 182 | 0 of 15 | 654 | 182 |
+//! | gamma | γ | 109 | 160 | 0 | 269 | 9 of 15 | 1174 | 269 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 78 | 98 | 0 | 176 | 0 of 15 | 460 | 176 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 12 of 18 | 12 | 9 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 134 | 191 | 5 | 330 | 10 of 18 | 303876 | 334 |
-//! | multipliers | λ, the accelerations being known | 99 | 160 | 3 | 262 | 0 of 15 | 4203 | 262 |
-//! | project | (δr, δπ') that changes the rows as given | 104 | 166 | 5 | 275 | 1 of 18 | 204496 | 276 |
+//! | multipliers | λ, the accelerations being known | 99 | 155 | 3 | 257 | 0 of 15 | 2930 | 257 |
+//! | project | (δr, δπ') that changes the rows as given | 104 | 162 | 5 | 271 | 1 of 18 | 190146 | 272 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 | 48 | 48 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | energy | T and V | 17 | 27 | 0 | 44 | 1 of 2 | 44 | 44 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 | 1.0e9 | 506 |
-//! | solve_velocities | dependent velocities, eq. (19) | 93 | 149 | 3 | 245 | 9 of 18 | 8018 | 245 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 14 | 1 | 19 | 0 of 3 | 35 | 20 |
+//! | newton_step | dependent positions, one Newton step | 189 | 293 | 3 | 485 | 9 of 21 | 9.4e8 | 485 |
+//! | solve_velocities | dependent velocities, eq. (19) | 93 | 122 | 3 | 218 | 9 of 18 | 6574 | 218 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 13 | 1 | 18 | 0 of 3 | 30 | 19 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 9 | 27 | 0 | 36 | 22 of 39 | 111 | 36 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 25 | 1 | 39 | 0 of 3 | 241 | 40 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 49 | 1 | 80 | 9 of 18 | 1010 | 81 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 | 571 | 96 |
-//! | corrected_solution | both | 45 | 75 | 1 | 121 | 18 of 33 | 6790 | 122 |
+//! | to_maximal | (q, v) of a joint state | 11 | 27 | 0 | 38 | 22 of 39 | 121 | 38 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 | 344 | 39 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 32 | 49 | 1 | 82 | 9 of 18 | 1458 | 83 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 40 | 59 | 0 | 99 | 0 of 15 | 739 | 99 |
+//! | corrected_solution | both | 48 | 75 | 1 | 124 | 18 of 33 | 9674 | 125 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 39 | 1 | 55 | 28 of 42 | 151 | 55 |
 //!
 //! # Proof
@@ -460,7 +460,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 99 operations (44 ±, 55 ×, 0 ÷).
+    /// Writes Φ: 89 operations (43 ±, 46 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -484,70 +484,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = T::fused(outer_ring_e1, outer_ring_e1, t5);
+        let t3 = t2 - t1;
+        let t4 = inner_ring_e0 * inner_ring_e0;
+        let t5 = T::fused(inner_ring_e3, inner_ring_e3, t4);
+        let t6 = k(0.5) - t5;
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = T::fused(-(k(2.0) * (k(0.5) - t6)), t4, k(2.0) * (t2 + t1) * t9);
-        let t11 = inner_ring_e3 * inner_ring_e3;
-        let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + t11));
+        let t9 = t8 - t7;
+        let t10 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t6,
+            (t2 + t1) * t9,
+        );
+        let t11 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = T::fused(outer_ring_e1, outer_ring_e1, t12);
         let t14 = outer_ring_e2 * outer_ring_e2;
-        let t15 = T::fused(
-            t0,
-            t13,
-            -T::fused(-(k(2.0) * (k(0.5) - (t5 + t14))), t9, t3 * t4),
+        let t15 = T::fused(k(0.5) - (t12 + t14), t9, -T::fused(-t0, t6, t3 * t11));
+        let t16 = T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t17 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t18 = inner_ring_e2 * inner_ring_e2;
+        let t19 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
+        let t20 = k(0.5) - t19;
+        let t21 = T::fused(
+            T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t20,
+            T::fused(-(t8 + t7), t16, (k(0.5) - (t4 + t18)) * t17),
         );
-        let t16 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
-        let t17 = k(2.0) * (k(0.5) - t16);
-        let t18 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = T::fused(
-            k(2.0)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
-            t17,
-            k(2.0) * (k(0.5) - (t12 + t19)) * t18,
-        );
-        let t21 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            t0,
-            t3,
+            k(2.0) * t0,
+            k(2.0) * t3,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t13,
-                t10,
-            ),
-            -t15,
+            -(k(4.0) * T::fused(k(0.5) - t13, t11, -t10)),
+            -(k(4.0) * t15),
             rotor_rx - inner_ring_rx,
             rotor_ry - inner_ring_ry,
             rotor_rz - inner_ring_rz,
-            T::fused(k(2.0) * (t8 + t7), t21, -t20),
-            T::fused(-t13, t21, T::fused(-t4, t17, t9 * t18)),
-            T::fused(outer_ring_e3, outer_ring_e3, t6 + t14) - k(1.0),
-            t11 + (T::fused(inner_ring_e1, inner_ring_e1, t12) + t19) - k(1.0),
-            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t16)) - k(1.0),
+            -(k(4.0) * t21),
+            -(k(4.0) * T::fused(t11, t20, -T::fused(-t6, t16, t9 * t17))),
+            t14 + T::fused(outer_ring_e3, outer_ring_e3, t13) - k(1.0),
+            t18 + T::fused(inner_ring_e1, inner_ring_e1, t5) - k(1.0),
+            T::fused(rotor_e2, rotor_e2, T::fused(rotor_e3, rotor_e3, t19)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 182 operations (78 ±, 104 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 176 operations (78 ±, 98 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -579,123 +567,114 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
-        let t7 = T::fused(-outer_ring_e1, t2, t5);
-        let t8 = t3 + t1;
-        let t9 = k(2.0) * inner_ring_e0;
-        let t10 = inner_ring_e2 * t9;
-        let t11 = k(2.0) * inner_ring_e1;
-        let t12 = inner_ring_e3 * t11;
-        let t13 = t12 + t10;
-        let t14 = outer_ring_e3 * t0;
-        let t15 = outer_ring_e2 * t2;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e1 * t9;
-        let t18 = k(2.0) * inner_ring_e2;
-        let t19 = inner_ring_e3 * t18;
-        let t20 = t19 - t17;
-        let t21 = k(2.0) * outer_ring_e2;
-        let t22 = T::fused(-outer_ring_e2, t21, t5);
-        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
-        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
-        let t25 = outer_ring_e1 * t0;
-        let t26 = outer_ring_e3 * t21;
-        let t27 = t26 + t25;
-        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t6 = t3 + t2;
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(t6, t16, T::fused(t8, t1, (t13 - t12) * t11));
+        let t18 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = t20 + t19;
+        let t22 = t10 + t9;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t27 = t15 - t14;
+        let t28 = t24 + t23;
         let t29 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t5, T::fused(t21, t18, t4 * t22)),
+            inner_ring_wy * T::fused(t26, t5, T::fused(t4, t27, t21 * t28)),
+        );
+        let t30 = t13 + t12;
+        let t31 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t32 = t20 - t19;
+        let t33 = T::fused(
             outer_ring_wz,
-            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
-            outer_ring_wy * t28,
+            T::fused(t32, t16, T::fused(t30, t8, t11 * t31)),
+            T::fused(-outer_ring_wy, t17, t29),
         );
-        let t30 = T::fused(-inner_ring_e1, t11, t23);
-        let t31 = inner_ring_e3 * t9;
-        let t32 = inner_ring_e2 * t11;
-        let t33 = t32 + t31;
-        let t34 = t15 + t14;
-        let t35 = t12 - t10;
-        let t36 = t32 - t31;
-        let t37 = T::fused(-inner_ring_e2, t18, t23);
-        let t38 = t19 + t17;
-        let t39 = T::fused(
-            -inner_ring_wy,
-            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
-            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
+        let t34 = T::fused(
+            -inner_ring_wx,
+            T::fused(t32, t25, T::fused(t31, t18, t30 * t22)),
+            inner_ring_wy * T::fused(t32, t26, T::fused(t28, t31, t30 * t27)),
         );
-        let t40 = T::fused(
+        let t35 = T::fused(
             outer_ring_wz,
-            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
-            outer_ring_wx * t28,
+            T::fused(t16, t5, T::fused(t4, t8, t21 * t11)),
+            -T::fused(outer_ring_wx, t17, t34),
         );
-        let t41 = T::fused(
-            -inner_ring_wy,
-            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
-            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = t37 - t36;
+        let t39 = rotor_e0 * rotor_e3;
+        let t40 = rotor_e1 * rotor_e2;
+        let t41 = t40 + t39;
+        let t42 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t43 = T::fused(rotor_e1, rotor_e1, -t42);
+        let t44 = T::fused(rotor_e3, rotor_e3, -t42);
+        let t45 = rotor_e0 * rotor_e1;
+        let t46 = rotor_e2 * rotor_e3;
+        let t47 = t46 - t45;
+        let t48 = t37 + t36;
+        let t49 = T::fused(rotor_e2, rotor_e2, -t42);
+        let t50 = t46 + t45;
+        let t51 = t40 - t39;
+        let t52 = T::fused(
+            -rotor_wy,
+            T::fused(t25, t48, T::fused(t22, t44, t47 * t18)),
+            rotor_wz * T::fused(t25, t51, T::fused(t49, t18, t22 * t50)),
         );
-        let t42 = k(2.0) * rotor_e1;
-        let t43 = k(2.0) * rotor_e0;
-        let t44 = T::fused(-rotor_e0, t43, k(1.0));
-        let t45 = T::fused(-rotor_e1, t42, t44);
-        let t46 = rotor_e3 * t43;
-        let t47 = rotor_e2 * t42;
-        let t48 = t47 + t46;
-        let t49 = rotor_e2 * t43;
-        let t50 = rotor_e3 * t42;
-        let t51 = t50 - t49;
-        let t52 = T::fused(t35, t51, T::fused(t30, t45, t33 * t48));
         let t53 = T::fused(
-            inner_ring_wz,
+            inner_ring_wx,
+            T::fused(t16, t43, T::fused(t38, t8, t11 * t41)),
             t52,
-            inner_ring_wx * T::fused(t24, t51, -T::fused(-t13, t45, t20 * t48)),
         );
-        let t54 = t47 - t46;
-        let t55 = k(2.0) * rotor_e2;
-        let t56 = T::fused(-rotor_e2, t55, t44);
-        let t57 = rotor_e1 * t43;
-        let t58 = rotor_e3 * t55;
-        let t59 = t58 + t57;
-        let t60 = t50 + t49;
-        let t61 = t58 - t57;
-        let t62 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
-        let t63 = T::fused(
-            rotor_wz,
-            T::fused(t38, t59, T::fused(t36, t54, t37 * t56)),
-            rotor_wy * T::fused(t38, t62, T::fused(-t36, t60, t37 * t61)),
+        let t54 = T::fused(t26, t43, T::fused(t27, t38, t28 * t41));
+        let t55 = T::fused(
+            -rotor_wy,
+            T::fused(t16, t48, T::fused(t44, t8, t11 * t47)),
+            rotor_wz * T::fused(t16, t51, T::fused(t50, t8, t11 * t49)),
         );
-        let t64 = T::fused(
-            -inner_ring_wy,
-            t52,
-            inner_ring_wx * T::fused(t38, t51, -T::fused(t36, t45, t37 * t48)),
-        );
-        let t65 = T::fused(
-            rotor_wz,
-            T::fused(t24, t59, T::fused(-t13, t54, t20 * t56)),
-            rotor_wy * T::fused(t24, t62, T::fused(t13, t60, t20 * t61)),
+        let t56 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t43, T::fused(t41, t18, t22 * t38)),
+            t55,
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
-            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
+            -(k(2.0) * T::fused(-outer_ring_wx, t1, t4 * outer_ring_wz)),
+            k(2.0) * T::fused(-outer_ring_wz, t5, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t39 + t29),
-            t40 - t41,
+            k(4.0) * t33,
+            -(k(4.0) * t35),
             rotor_sx - inner_ring_sx,
             rotor_sy - inner_ring_sy,
             rotor_sz - inner_ring_sz,
-            t63 - t53,
-            -(t65 + t64),
+            -(k(4.0) * T::fused(inner_ring_wz, t54, -t53)),
+            k(4.0) * T::fused(inner_ring_wy, t54, t56),
         ];
     }
-    /// Kinetic and potential energy: 48 operations (17 ±, 31 ×, 0 ÷).
+    /// Kinetic and potential energy: 44 operations (17 ±, 27 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_sx = y[21];
@@ -717,61 +696,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
-        );
-        let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.01),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t2),
+            ),
+        );
+        let t4 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t3,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
+            kinetic: k(5e-7) * t4,
             potential: k(0.0),
         }
     }
-    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
+    /// Writes the joint readings: 104 operations (54 ±, 50 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -793,71 +775,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e3 * outer_ring_e3;
         let t3 = outer_ring_e0 * outer_ring_e0;
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
-        let t5 = outer_ring_e3 * outer_ring_e3;
-        let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
-            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
-        );
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = k(0.5) * (k(1.0) - (t5 + (t4 + t2)));
+        let t7 = inner_ring_e3 * inner_ring_e3;
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = T::fused(inner_ring_e1, inner_ring_e1, t8);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = k(0.5) * (k(1.0) - (t10 + (t9 + t7)));
+        let t12 = k(0.5) - t9 - t11;
+        let t13 = outer_ring_e0 * outer_ring_e3;
+        let t14 = outer_ring_e1 * outer_ring_e2;
+        let t15 = inner_ring_e0 * inner_ring_e3;
+        let t16 = inner_ring_e1 * inner_ring_e2;
+        let t17 = t16 + t15;
+        let t18 = T::fused(t14 - t13, t12, t17 * (k(0.5) - (t3 + t5) - t6));
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = t20 - t19;
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            t1 - t0,
+            t21,
+            T::fused(t12, k(0.5) - t4 - t6, (t14 + t13) * t17),
         );
-        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t24 = rotor_e2 * rotor_e2;
-        let t25 = rotor_e0 * rotor_e0;
-        let t26 = T::fused(
-            k(2.0),
-            k(0.5) - (t25 + t24),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        let t23 = rotor_e2 * rotor_e2;
+        let t24 = rotor_e0 * rotor_e0;
+        let t25 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t24 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t24 + t23))),
         );
+        let t26 = k(0.5) * (k(1.0) - (t23 + t25));
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t29 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
-            t26,
-            k(2.0) * (t11 - t10) * t29,
+            t30,
+            k(0.5) - (t8 + t7) - t11,
+            -T::fused(t28 - t27, t26, (t20 + t19) * t29),
         );
+        let t32 = T::fused(-(k(0.5) - (t8 + t10) - t11), t26, (t16 - t15) * t29);
         *out = [
             k(2.0) * (t1 + t0),
-            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
+            -(k(2.0) * (k(0.5) - (t3 + t2) - t6)),
             outer_ring_wy,
-            T::fused(
-                k(2.0)
-                    * T::fused(
+            k(4.0)
+                * T::fused(
+                    T::fused(
                         outer_ring_e0,
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
-            ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+                    t21,
+                    -t18,
+                ),
+            k(4.0) * t22,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
-            T::fused(k(2.0) * (t28 + t27), t23, t31),
+            -(k(4.0) * t31),
+            k(4.0) * T::fused(t28 + t27, t30, t32),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1001,7 +979,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeFreeNutation<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 506 operations (189 ±, 314 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 485 operations (189 ±, 293 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1029,289 +1007,294 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeFreeNutation<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-        let t11 = t2 * t4;
-        let t12 = t3 * t5;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-        let t16 = k(2.0) * (t12 - t11);
-        let t17 = T::fused(t9, t15, t16 * t13);
-        let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t9 = T::fused(t2, t3, t7 * t6);
+        let t10 = t3 * t6;
+        let t11 = t2 * t7;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t3, t7, t2 * t6);
+        let t14 = t11 + t10;
+        let t15 = k(2.0) - T::fused(t7, t7, t4);
+        let t16 = T::fused(-t14, t12, t15 * t5);
+        let t17 = k(1.0) / (t8 * t16);
+        let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+        let t19 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
+        );
         let t20 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t19),
         );
         let t21 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t22 = k(0.5) * t21;
+        let t22 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t23 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            t9,
+            T::fused(t5, t21, t14 * t22),
+            t13 * T::fused(t15, t22, t12 * t21),
         );
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(
-            t10,
-            T::fused(t16, t22, t9 * t24),
-            t14 * T::fused(-t13, t24, t15 * t22),
-        );
-        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
-        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
-        let t28 = T::fused(
+        let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+        let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)), t3);
+        let t27 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)), t2);
+        let t28 = T::fused(k(0.5), T::fused(t2, t25, T::fused(t7, t18, t3 * t24)), t6);
+        let t29 = T::fused(
             -k(0.5),
-            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-            t3,
+            T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+            t7,
         );
-        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
-        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
-        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
-        let t32 = t29 * t30;
-        let t33 = t28 * t31;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t30 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t36 = k(0.5) * (t35 - k(3.0));
-        let t37 = inner_ring_e2 * t36;
-        let t38 = inner_ring_e1 * t36;
-        let t39 = t38 * t37;
-        let t40 = inner_ring_e3 * t36;
-        let t41 = inner_ring_e0 * t36;
-        let t42 = t41 * t40;
-        let t43 = k(2.0) * (t42 - t39);
-        let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
-        let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
-        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
-        let t49 = t37 * t40;
-        let t50 = t41 * t38;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
-        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
-        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
-        let t55 = k(2.0) * (t42 + t39);
-        let t56 = k(2.0) * (t33 + t32);
-        let t57 = t38 * t40;
-        let t58 = t41 * t37;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
-        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
-        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
-        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
-        let t64 = T::fused(-t61, t52, t63 * t62);
-        let t65 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t37,
-            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
-        );
-        let t66 = T::fused(
-            -chart1_3,
-            t38,
-            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
-        );
-        let t67 = k(0.5) * t66;
-        let t68 = T::fused(
+        let t31 = k(3.0) - t30;
+        let t32 = inner_ring_e3 * t31;
+        let t33 = inner_ring_e2 * t31;
+        let t34 = inner_ring_e1 * t31;
+        let t35 = inner_ring_e0 * t31;
+        let t36 = T::fused(
             chart1_3,
-            t37,
-            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+            t35,
+            -T::fused(chart1_2, t34, -T::fused(-chart1_0, t32, chart1_1 * t33)),
         );
-        let t69 = k(0.5) * t68;
-        let t70 = k(2.0) * (t58 + t57);
-        let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
-        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
-        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t37 = t33 * t35;
+        let t38 = t34 * t32;
+        let t39 = t38 - t37;
+        let t40 = T::fused(t26, t27, t28 * t29);
+        let t41 = t32 * t35;
+        let t42 = t33 * t34;
+        let t43 = t42 + t41;
+        let t44 = t26 * t26;
+        let t45 = k(2.0) - T::fused(t28, t28, t44);
+        let t46 = t35 * t35;
+        let t47 = k(2.0) - T::fused(t34, t34, t46);
+        let t48 = t26 * t29;
+        let t49 = t27 * t28;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t47, T::fused(-t40, t39, t45 * t43));
+        let t52 = k(2.0) - T::fused(t32, t32, t46);
+        let t53 = T::fused(-t26, t28, t27 * t29);
+        let t54 = t34 * t35;
+        let t55 = t33 * t32;
+        let t56 = t55 - t54;
+        let t57 = t49 + t48;
+        let t58 = t38 + t37;
+        let t59 = k(2.0) - T::fused(t27, t27, t44);
+        let t60 = T::fused(t59, t58, -T::fused(-t53, t52, t57 * t56));
+        let t61 = T::fused(t47, t59, T::fused(t39, t53, t43 * t57));
+        let t62 = T::fused(t50, t58, -T::fused(t40, t52, t45 * t56));
+        let t63 = t55 + t54;
+        let t64 = k(2.0) - T::fused(t33, t33, t46);
+        let t65 = t42 - t41;
+        let t66 = T::fused(t65, t59, T::fused(-t63, t53, t64 * t57));
+        let t67 = T::fused(t50, t65, T::fused(t40, t63, t45 * t64));
+        let t68 = T::fused(-t51, t66, t67 * t61);
+        let t69 = k(1.0) / (t68 * t36);
+        let t70 = t69 * T::fused(-t60, t51 * t36, t62 * (t61 * t36));
+        let t71 = t69 * T::fused(-t60, t67 * t36, t62 * (t66 * t36));
+        let t72 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t35, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t34, inner_ring_e1),
+        );
+        let t73 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t32, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t33, inner_ring_e2), t72),
+        );
+        let t74 = T::fused(
+            chart1_3,
+            t34,
+            T::fused(chart1_2, t35, -T::fused(chart1_0, t33, chart1_1 * t32)),
+        );
         let t75 = T::fused(
-            t73,
-            T::fused(-t63, t67, t61 * t69),
-            t74 * T::fused(-t62, t69, t52 * t67),
+            chart1_3,
+            t33,
+            -T::fused(chart1_2, t32, T::fused(-chart1_0, t34, chart1_1 * t35)),
         );
         let t76 = T::fused(
-            -chart1_3,
-            t41,
-            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+            -T::fused(t67, t74, t51 * t75),
+            t60,
+            T::fused(t61, t75, t66 * t74) * t62,
         );
-        let t77 = k(0.5) * t76;
-        let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
-        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
-        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t77 = T::fused(k(4.0), t68 * t73, t76) * t69;
+        let t78 = T::fused(
+            -k(0.5),
+            T::fused(t32, t77, -T::fused(-t34, t70, t33 * t71)),
+            t35,
+        );
+        let t79 = T::fused(
+            k(0.5),
+            T::fused(t33, t77, T::fused(t35, t70, t32 * t71)),
+            t34,
+        );
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t34, t77, T::fused(-t32, t70, t35 * t71)),
+            t33,
+        );
+        let t81 = T::fused(
+            k(0.5),
+            T::fused(t35, t77, -T::fused(t33, t70, t34 * t71)),
+            t32,
+        );
         let t82 = T::fused(
-            k(0.5),
-            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
-            t41,
-        );
-        let t83 = T::fused(
-            -k(0.5),
-            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
-            t38,
-        );
-        let t84 = T::fused(
-            -k(0.5),
-            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
-            t37,
-        );
-        let t85 = T::fused(
-            k(0.5),
-            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
-            t40,
-        );
-        let t86 = T::fused(
-            rotor_e3,
-            rotor_e3,
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t87 = k(0.5) * (t86 - k(3.0));
-        let t88 = rotor_e2 * t87;
-        let t89 = rotor_e3 * t87;
-        let t90 = rotor_e0 * t87;
-        let t91 = rotor_e1 * t87;
-        let t92 = T::fused(
+        let t83 = k(3.0) - t82;
+        let t84 = rotor_e0 * t83;
+        let t85 = rotor_e1 * t83;
+        let t86 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t84, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t85, rotor_e1),
+        );
+        let t87 = rotor_e2 * t83;
+        let t88 = rotor_e3 * t83;
+        let t89 = T::fused(
             chart2_3,
-            t88,
-            T::fused(-chart2_2, t89, T::fused(-chart2_1, t90, chart2_0 * t91)),
+            T::fused(-k(0.5), t88, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t87, rotor_e2), t86),
         );
-        let t93 = k(0.5) * t92;
-        let t94 = k(2.0) * T::fused(-t83, t84, t82 * t85);
-        let t95 = t91 * t89;
-        let t96 = t90 * t88;
-        let t97 = k(2.0) * (t96 + t95);
-        let t98 = t82 * t82;
-        let t99 = k(2.0) * (k(0.5) - T::fused(t84, t84, t98));
-        let t100 = t88 * t89;
-        let t101 = t90 * t91;
-        let t102 = k(2.0) * (t101 - t100);
-        let t103 = t84 * t85;
-        let t104 = t82 * t83;
-        let t105 = k(2.0) * (t104 + t103);
-        let t106 = t90 * t90;
-        let t107 = k(2.0) * (k(0.5) - T::fused(t89, t89, t106));
-        let t108 = T::fused(t107, t105, -T::fused(-t97, t94, t102 * t99));
-        let t109 = k(2.0) * T::fused(t83, t85, t82 * t84);
-        let t110 = k(2.0) * (k(0.5) - T::fused(t91, t91, t106));
-        let t111 = k(2.0) * (t104 - t103);
-        let t112 = t91 * t88;
-        let t113 = t90 * t89;
-        let t114 = k(2.0) * (t113 + t112);
-        let t115 = k(2.0) * (k(0.5) - T::fused(t85, t85, t98));
-        let t116 = k(2.0) * (t96 - t95);
-        let t117 = T::fused(t116, t115, -T::fused(t110, t109, t114 * t111));
-        let t118 = T::fused(t107, t115, T::fused(t97, t109, t102 * t111));
-        let t119 = T::fused(t105, t116, T::fused(-t94, t110, t99 * t114));
-        let t120 = k(2.0) * (t113 - t112);
-        let t121 = k(2.0) * (k(0.5) - T::fused(t88, t88, t106));
-        let t122 = k(2.0) * (t101 + t100);
-        let t123 = T::fused(t105, t122, T::fused(t94, t120, t99 * t121));
-        let t124 = T::fused(t122, t115, -T::fused(-t120, t109, t121 * t111));
-        let t125 = T::fused(-t123, t118, t108 * t124);
-        let t126 = k(1.0) / (t93 * t125);
-        let t127 = t126 * T::fused(-t117, t108 * t93, t119 * (t118 * t93));
-        let t128 = t126 * T::fused(-t117, t123 * t93, t119 * (t124 * t93));
-        let t129 = T::fused(
-            chart2_2,
-            rotor_e2 + t88,
-            T::fused(chart2_1, rotor_e1 + t91, chart2_0 * (rotor_e0 + t90)),
+        let t90 = t84 * t85;
+        let t91 = t87 * t88;
+        let t92 = t91 + t90;
+        let t93 = t78 * t78;
+        let t94 = k(2.0) - T::fused(t81, t81, t93);
+        let t95 = t84 * t84;
+        let t96 = k(2.0) - T::fused(t87, t87, t95);
+        let t97 = t78 * t79;
+        let t98 = t80 * t81;
+        let t99 = t98 - t97;
+        let t100 = t88 * t84;
+        let t101 = t87 * t85;
+        let t102 = t101 - t100;
+        let t103 = T::fused(t78, t80, t79 * t81);
+        let t104 = T::fused(t103, t102, -T::fused(t94, t92, t99 * t96));
+        let t105 = k(2.0) - T::fused(t88, t88, t95);
+        let t106 = t98 + t97;
+        let t107 = t91 - t90;
+        let t108 = k(2.0) - T::fused(t80, t80, t93);
+        let t109 = t87 * t84;
+        let t110 = t88 * t85;
+        let t111 = t110 + t109;
+        let t112 = T::fused(-t78, t81, t79 * t80);
+        let t113 = T::fused(t112, t111, -T::fused(t106, t105, t108 * t107));
+        let t114 = T::fused(t112, t102, T::fused(t106, t92, t108 * t96));
+        let t115 = T::fused(t111, t103, T::fused(t105, t94, t107 * t99));
+        let t116 = T::fused(-t113, t104, t115 * t114);
+        let t117 = T::fused(
+            chart2_3,
+            t84,
+            -T::fused(chart2_2, t85, -T::fused(-chart2_0, t88, chart2_1 * t87)),
         );
+        let t118 = T::fused(
+            chart2_3,
+            t85,
+            T::fused(chart2_2, t84, -T::fused(chart2_0, t87, chart2_1 * t88)),
+        );
+        let t119 = t110 - t109;
+        let t120 = t101 + t100;
+        let t121 = k(2.0) - T::fused(t85, t85, t95);
+        let t122 = T::fused(t112, t121, T::fused(-t106, t119, t108 * t120));
+        let t123 = T::fused(t103, t121, -T::fused(-t94, t119, t99 * t120));
+        let t124 = T::fused(
+            -t122,
+            T::fused(t115, t117, t104 * t118),
+            t123 * T::fused(t114, t118, t113 * t117),
+        );
+        let t125 = T::fused(
+            chart2_3,
+            t87,
+            -T::fused(chart2_2, t88, T::fused(-chart2_0, t85, chart2_1 * t84)),
+        );
+        let t126 = k(1.0) / (t125 * t116);
+        let t127 = t126 * T::fused(k(4.0), t116 * t89, t124);
+        let t128 = t126 * T::fused(-t122, t125 * t104, t123 * (t125 * t114));
+        let t129 = T::fused(-(t125 * t115), t122, t125 * t113 * t123) * t126;
         let t130 = T::fused(
-            -chart2_3,
-            t90,
-            T::fused(chart2_2, t91, T::fused(-chart2_1, t88, chart2_0 * t89)),
+            k(0.5),
+            T::fused(t88, t129, T::fused(t85, t127, t87 * t128)),
+            t84,
         );
-        let t131 = k(0.5) * t130;
+        let t131 = T::fused(
+            -k(0.5),
+            T::fused(t87, t129, -T::fused(-t84, t127, t88 * t128)),
+            t85,
+        );
         let t132 = T::fused(
-            -chart2_3,
-            t91,
-            T::fused(-chart2_2, t90, T::fused(chart2_1, t89, chart2_0 * t88)),
+            k(0.5),
+            T::fused(t85, t129, -T::fused(t88, t127, t84 * t128)),
+            t87,
         );
-        let t133 = k(0.5) * t132;
-        let t134 = T::fused(
-            t117,
-            T::fused(-t108, t131, t123 * t133),
-            t119 * T::fused(-t124, t133, t118 * t131),
-        );
-        let t135 = t126 * T::fused(T::fused(chart2_3, rotor_e3 + t89, t129), t125, t134);
-        let t136 = T::fused(
+        let t133 = T::fused(
             -k(0.5),
-            T::fused(-t89, t127, T::fused(t88, t128, t91 * t135)),
-            t90,
-        );
-        let t137 = T::fused(
-            k(0.5),
-            T::fused(-t88, t127, T::fused(-t89, t128, t90 * t135)),
-            t91,
-        );
-        let t138 = T::fused(
-            k(0.5),
-            T::fused(t91, t127, T::fused(t90, t128, t89 * t135)),
+            T::fused(t84, t129, T::fused(-t87, t127, t85 * t128)),
             t88,
-        );
-        let t139 = T::fused(
-            -k(0.5),
-            T::fused(t90, t127, T::fused(-t91, t128, t88 * t135)),
-            t89,
         );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t28;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t31;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t27;
+        y[5] = k(0.5) * t28;
+        y[6] = k(0.5) * t29;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t82;
-        y[11] = -t83;
-        y[12] = -t84;
-        y[13] = -t85;
+        y[10] = k(0.5) * t78;
+        y[11] = k(0.5) * t79;
+        y[12] = k(0.5) * t80;
+        y[13] = k(0.5) * t81;
         y[14] = k(0.0);
         y[15] = k(0.0);
         y[16] = k(0.0);
-        y[17] = -t136;
-        y[18] = -t137;
-        y[19] = -t138;
-        y[20] = -t139;
+        y[17] = k(0.5) * t130;
+        y[18] = k(0.5) * t131;
+        y[19] = k(0.5) * t132;
+        y[20] = k(0.5) * t133;
     }
-    /// Solves eq. (19) for the dependent velocities: 245 operations (93 ±, 149 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 218 operations (93 ±, 122 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1335,110 +1318,110 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeFreeNutation<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
-        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
-        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
-        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
+        let t1 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(t1, outer_ring_wx, t4 * outer_ring_wz);
+        let t6 = t3 + t2;
+        let t7 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, outer_ring_wx, t7 * outer_ring_wz);
+        let t10 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, outer_ring_wx));
+        let t11 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t21 = inner_ring_e0 * inner_ring_e2;
-        let t22 = inner_ring_e1 * inner_ring_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = outer_ring_e0 * outer_ring_e1;
-        let t25 = outer_ring_e2 * outer_ring_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
-        let t30 = k(2.0) * (t15 + t14);
-        let t31 = inner_ring_e0 * inner_ring_e1;
-        let t32 = inner_ring_e2 * inner_ring_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
-        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
-        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
-        let t38 = k(2.0) * (t22 + t21);
-        let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
-        let t42 = T::fused(
+        let t13 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12);
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e0 * inner_ring_e1;
+        let t24 = inner_ring_e2 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0);
+        let t27 = T::fused(t1, t13, T::fused(t6, t19, (t15 - t14) * t25));
+        let t28 = T::fused(
+            -T::fused(t26, t25, -T::fused(-t16, t13, t22 * t19)),
             t11,
-            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            outer_ring_wy * t27,
         );
-        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t29 = t24 + t23;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12);
+        let t31 = t21 + t20;
+        let t32 = inner_ring_e0 * inner_ring_e3;
+        let t33 = inner_ring_e1 * inner_ring_e2;
+        let t34 = t33 - t32;
+        let t35 = T::fused(t7, t34, T::fused(-t4, t29, t31 * t30));
+        let t36 = t18 - t17;
+        let t37 = t33 + t32;
+        let t38 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12);
+        let t39 = T::fused(t7, t38, T::fused(t4, t36, t31 * t37));
+        let t40 = T::fused(inner_ring_wy, t39, T::fused(inner_ring_wx, t35, -t28));
+        let t41 = T::fused(t26, t30, T::fused(t16, t29, t22 * t34));
+        let t42 = T::fused(t22, t38, T::fused(-t16, t36, t26 * t37));
+        let t43 = k(1.0) / T::fused(-t41, t39, t42 * t35);
         let t44 = T::fused(
-            t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
-            outer_ring_wy * t41,
+            -t27,
+            t10,
+            T::fused(t7, t19, -T::fused(-t4, t13, t31 * t25)) * t11,
         );
-        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
-        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
-        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
-        let t53 = rotor_e0 * rotor_e1;
-        let t54 = rotor_e2 * rotor_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
-        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
-        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
-        let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        let t45 = T::fused(inner_ring_wy, t42, T::fused(inner_ring_wx, t41, t44));
+        let t46 = T::fused(t39 * t43, t45, T::fused(-(t42 * t43), t40, inner_ring_wx));
+        let t47 = T::fused(t35 * t43, t45, -T::fused(t41 * t43, t40, inner_ring_wy));
+        let t48 = rotor_e0 * rotor_e2;
+        let t49 = rotor_e1 * rotor_e3;
+        let t50 = t49 - t48;
+        let t51 = rotor_e0 * rotor_e3;
+        let t52 = rotor_e1 * rotor_e2;
+        let t53 = t52 + t51;
+        let t54 = rotor_e0 * rotor_e0;
+        let t55 = k(0.5) - T::fused(rotor_e1, rotor_e1, t54);
+        let t56 = T::fused(t38, t55, T::fused(t36, t50, t37 * t53));
+        let t57 = T::fused(
+            T::fused(t19, t55, -T::fused(-t13, t50, t25 * t53)),
+            t46,
+            inner_ring_wz * t56,
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t58 = k(0.5) - T::fused(rotor_e3, rotor_e3, t54);
+        let t59 = t49 + t48;
+        let t60 = rotor_e0 * rotor_e1;
+        let t61 = rotor_e2 * rotor_e3;
+        let t62 = t61 - t60;
+        let t63 = T::fused(t30, t62, -T::fused(-t29, t58, t34 * t59));
+        let t64 = t61 + t60;
+        let t65 = t52 - t51;
+        let t66 = k(0.5) - T::fused(rotor_e2, rotor_e2, t54);
+        let t67 = T::fused(t30, t66, T::fused(t29, t64, t34 * t65));
+        let t68 = T::fused(rotor_wz, t67, T::fused(rotor_wy, t63, -t57));
+        let t69 = T::fused(t13, t58, T::fused(t19, t59, t25 * t62));
+        let t70 = T::fused(t25, t66, -T::fused(-t13, t64, t19 * t65));
+        let t71 = k(1.0) / T::fused(-t69, t67, t70 * t63);
         let t72 = T::fused(
-            inner_ring_wz,
-            t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+            -T::fused(t34, t55, T::fused(-t29, t50, t30 * t53)),
+            t46,
+            t56 * t47,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
+        let t73 = T::fused(rotor_wz, t70, T::fused(rotor_wy, t69, t72));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
         y[24] = t10;
-        y[26] = t11;
+        y[26] = -t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = t46;
-        y[31] = t47;
+        y[31] = -t47;
         y[33] = k(0.0);
         y[34] = k(0.0);
         y[35] = k(0.0);
-        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        y[37] = T::fused(t67 * t71, t73, T::fused(-(t70 * t71), t68, rotor_wy));
+        y[38] = T::fused(-(t63 * t71), t73, T::fused(t69 * t71, t68, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
@@ -1869,7 +1852,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 275 operations (109 ±, 166 ×, 0 ÷).
+    /// Writes γ: 269 operations (109 ±, 160 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1893,164 +1876,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = outer_ring_wx * outer_ring_wy;
-        let t6 = outer_ring_e1 * t0;
-        let t7 = k(2.0) * outer_ring_e2;
-        let t8 = outer_ring_e3 * t7;
-        let t9 = t8 + t6;
-        let t10 = outer_ring_wz * outer_ring_wz;
-        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
-        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
-        let t14 = outer_ring_wy * outer_ring_wz;
-        let t15 = T::fused(-outer_ring_e1, t2, t12);
-        let t16 = outer_ring_e3 * t0;
-        let t17 = outer_ring_e2 * t2;
-        let t18 = t17 - t16;
-        let t19 = t3 + t1;
-        let t20 = k(2.0) * inner_ring_e0;
-        let t21 = inner_ring_e2 * t20;
-        let t22 = k(2.0) * inner_ring_e1;
-        let t23 = inner_ring_e3 * t22;
-        let t24 = t23 + t21;
-        let t25 = inner_ring_e1 * t20;
-        let t26 = k(2.0) * inner_ring_e2;
-        let t27 = inner_ring_e3 * t26;
-        let t28 = t27 - t25;
-        let t29 = t17 + t16;
-        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
-        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
-        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
-        let t33 = T::fused(-outer_ring_e2, t7, t12);
-        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
-        let t35 = t8 - t6;
-        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
-        let t37 = T::fused(
-            outer_ring_wx * outer_ring_wz,
-            t36,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_wy * outer_ring_wz;
+        let t3 = outer_ring_wz * outer_ring_wz;
+        let t4 = T::fused(outer_ring_wx, outer_ring_wx, t3);
+        let t5 = outer_ring_e0 * outer_ring_e1;
+        let t6 = outer_ring_e2 * outer_ring_e3;
+        let t7 = t6 + t5;
+        let t8 = outer_ring_wx * outer_ring_wy;
+        let t9 = outer_ring_e0 * outer_ring_e2;
+        let t10 = outer_ring_e1 * outer_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t13 = t10 + t9;
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e1;
+        let t18 = inner_ring_e2 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t21 = T::fused(inner_ring_e2, inner_ring_e2, -t20);
+        let t22 = t6 - t5;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = t24 + t23;
+        let t30 = T::fused(inner_ring_e1, inner_ring_e1, -t20);
+        let t31 = T::fused(
+            -inner_ring_wx,
+            T::fused(t13, t25, T::fused(t19, t1, t22 * t21)),
+            inner_ring_wy * T::fused(t13, t30, T::fused(t28, t1, t22 * t29)),
         );
-        let t38 = T::fused(-inner_ring_e1, t22, t30);
-        let t39 = inner_ring_e3 * t20;
-        let t40 = inner_ring_e2 * t22;
-        let t41 = t40 + t39;
-        let t42 = t23 - t21;
-        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
-        let t44 = t40 - t39;
-        let t45 = T::fused(-inner_ring_e2, t26, t30);
-        let t46 = t27 + t25;
-        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
-        let t48 = T::fused(
-            -inner_ring_wy,
-            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
-            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
-        );
-        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
-        let t50 = inner_ring_wx * inner_ring_wz;
-        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
-        let t52 = inner_ring_wy * inner_ring_wz;
-        let t53 = inner_ring_wx * inner_ring_wx;
-        let t54 = T::fused(inner_ring_wy, inner_ring_wy, t53);
-        let t55 = T::fused(
-            -k(2.0),
-            T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
-                outer_ring_wy * t48,
-            ),
-            T::fused(t54, t32, T::fused(t50, t49, t52 * t51)),
-        );
-        let t56 = T::fused(
+        let t32 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t33 = T::fused(t16, t25, T::fused(t32, t21, t7 * t19));
+        let t34 = T::fused(t16, t30, T::fused(t29, t32, t7 * t28));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t20);
+        let t36 = t18 - t17;
+        let t37 = t15 + t14;
+        let t38 = t27 + t26;
+        let t39 = T::fused(t38, t12, T::fused(t11, t35, t37 * t36));
+        let t40 = inner_ring_wx * inner_ring_wx;
+        let t41 = T::fused(inner_ring_wy, inner_ring_wy, t40);
+        let t42 = T::fused(t25, t12, T::fused(t37, t21, t11 * t19));
+        let t43 = inner_ring_wy * inner_ring_wz;
+        let t44 = T::fused(t30, t12, T::fused(t11, t28, t37 * t29));
+        let t45 = inner_ring_wx * inner_ring_wz;
+        let t46 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
-                outer_ring_wx * t48,
+                -outer_ring_wy,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t33, inner_ring_wy * t34),
             ),
-            T::fused(t54, t34, T::fused(t50, t43, t52 * t47)),
+            T::fused(t45, t44, T::fused(-t41, t39, t43 * t42)),
         );
-        let t57 = k(2.0) * rotor_e1;
-        let t58 = k(2.0) * rotor_e0;
-        let t59 = T::fused(-rotor_e0, t58, k(1.0));
-        let t60 = T::fused(-rotor_e1, t57, t59);
-        let t61 = rotor_e3 * t58;
-        let t62 = rotor_e2 * t57;
-        let t63 = t62 + t61;
-        let t64 = rotor_e2 * t58;
-        let t65 = rotor_e3 * t57;
-        let t66 = t65 - t64;
-        let t67 = T::fused(t42, t66, T::fused(t38, t60, t41 * t63));
-        let t68 = T::fused(t46, t66, -T::fused(t44, t60, t45 * t63));
-        let t69 = T::fused(t31, t66, -T::fused(-t24, t60, t28 * t63));
-        let t70 = T::fused(
-            t52,
-            t69,
+        let t47 = T::fused(t13, t38, T::fused(t35, t1, t22 * t36));
+        let t48 = T::fused(t16, t38, T::fused(t7, t35, t36 * t32));
+        let t49 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t3),
+            t39,
+            -T::fused(t8, t48, T::fused(outer_ring_wx * outer_ring_wz, t47, t46)),
+        );
+        let t50 = T::fused(
+            -k(2.0),
             T::fused(
-                -(inner_ring_wx * inner_ring_wy),
-                t67,
-                T::fused(inner_ring_wz, inner_ring_wz, t53) * t68,
+                -outer_ring_wx,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t42, inner_ring_wy * t44),
             ),
+            T::fused(t45, t34, T::fused(-t41, t48, t43 * t33)),
         );
-        let t71 = t62 - t61;
-        let t72 = k(2.0) * rotor_e2;
-        let t73 = T::fused(-rotor_e2, t72, t59);
-        let t74 = rotor_e1 * t58;
-        let t75 = rotor_e3 * t72;
-        let t76 = t75 + t74;
-        let t77 = t65 + t64;
-        let t78 = t75 - t74;
-        let t79 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t59);
+        let t51 = k(4.0)
+            * T::fused(t8, t39, -T::fused(t4, t48, -T::fused(t2, t47, t50)));
+        let t52 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t53 = T::fused(rotor_e3, rotor_e3, -t52);
+        let t54 = rotor_e0 * rotor_e1;
+        let t55 = rotor_e2 * rotor_e3;
+        let t56 = t55 - t54;
+        let t57 = rotor_e0 * rotor_e2;
+        let t58 = rotor_e1 * rotor_e3;
+        let t59 = t58 + t57;
+        let t60 = T::fused(t38, t59, T::fused(t53, t35, t36 * t56));
+        let t61 = t55 + t54;
+        let t62 = T::fused(rotor_e2, rotor_e2, -t52);
+        let t63 = rotor_e0 * rotor_e3;
+        let t64 = rotor_e1 * rotor_e2;
+        let t65 = t64 - t63;
+        let t66 = T::fused(t38, t65, T::fused(t61, t35, t36 * t62));
+        let t67 = T::fused(
+            -rotor_wy,
+            T::fused(t59, t30, T::fused(t28, t53, t29 * t56)),
+            rotor_wz * T::fused(t65, t30, T::fused(t29, t62, t28 * t61)),
+        );
+        let t68 = T::fused(t25, t59, T::fused(t19, t53, t56 * t21));
+        let t69 = rotor_wx * rotor_wz;
+        let t70 = T::fused(t25, t65, T::fused(t62, t21, t19 * t61));
+        let t71 = rotor_wx * rotor_wy;
+        let t72 = t64 + t63;
+        let t73 = t58 - t57;
+        let t74 = T::fused(rotor_e1, rotor_e1, -t52);
+        let t75 = T::fused(t25, t74, T::fused(t72, t21, t19 * t73));
+        let t76 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t77 = T::fused(
+            k(2.0),
+            T::fused(
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t60, rotor_wz * t66),
+                inner_ring_wz * t67,
+            ),
+            T::fused(t76, t75, -T::fused(t69, t68, t71 * t70)),
+        );
+        let t78 = T::fused(t38, t74, T::fused(t73, t35, t36 * t72));
+        let t79 = T::fused(t30, t74, T::fused(t28, t73, t29 * t72));
         let t80 = T::fused(
-            rotor_wz,
-            T::fused(t42, t76, -T::fused(t38, t71, t41 * t73)),
-            rotor_wy * T::fused(t42, t79, -T::fused(-t38, t77, t41 * t78)),
-        );
-        let t81 = T::fused(t31, t76, T::fused(-t24, t71, t28 * t73));
-        let t82 = T::fused(t31, t79, T::fused(t24, t77, t28 * t78));
-        let t83 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t84 = T::fused(t46, t76, T::fused(t44, t71, t45 * t73));
-        let t85 = rotor_wx * rotor_wy;
-        let t86 = T::fused(t46, t79, T::fused(-t44, t77, t45 * t78));
-        let t87 = rotor_wx * rotor_wz;
-        let t88 = T::fused(
-            k(2.0),
-            T::fused(
-                inner_ring_wz,
-                t80,
-                inner_ring_wx * T::fused(rotor_wz, t81, rotor_wy * t82),
+            inner_ring_wx * inner_ring_wy,
+            t79,
+            -T::fused(
+                T::fused(inner_ring_wz, inner_ring_wz, t40),
+                t75,
+                -T::fused(t43, t78, -t77),
             ),
-            T::fused(t87, t86, -T::fused(-t83, t68, t85 * t84)),
         );
-        let t89 = T::fused(
+        let t81 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t80,
-                inner_ring_wx * T::fused(rotor_wz, t84, rotor_wy * t86),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t68, rotor_wz * t70),
+                inner_ring_wy * t67,
             ),
-            T::fused(t87, t82, -T::fused(-t83, t69, t85 * t81)),
+            T::fused(t76, t78, -T::fused(t69, t60, t71 * t66)),
         );
+        let t82 = k(4.0)
+            * T::fused(t45, t79, T::fused(t43, t75, -T::fused(t41, t78, t81)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
-            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
+            -(k(2.0) * T::fused(t11, t8, -T::fused(-t2, t1, t7 * t4))),
+            k(2.0) * T::fused(-t8, t12, T::fused(-t13, t2, t16 * t4)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t55 + t37),
-            -(t56 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
+            k(4.0) * t49,
+            -t51,
             k(0.0),
             k(0.0),
             k(0.0),
-            t88 + t70,
-            -(t89 + T::fused(t54, t69, T::fused(t50, t67, t52 * t68))),
+            -(k(4.0) * t80),
+            -t82,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
@@ -2338,7 +2316,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             T::fused(t24, t91, T::fused(-t23, t90, t19 * t89)) - t35,
         ];
     }
-    /// Writes λ: 262 operations (99 ±, 160 ×, 3 ÷).
+    /// Writes λ: 257 operations (99 ±, 155 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2384,152 +2362,127 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = k(0.08) * rotor_dsy;
-        let t3 = T::fused(k(0.01), inner_ring_dsy, t2);
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = k(2.0) * rotor_e1;
-        let t7 = k(2.0) * rotor_e0;
-        let t8 = T::fused(-rotor_e0, t7, k(1.0));
-        let t9 = T::fused(-rotor_e1, t6, t8);
-        let t10 = k(2.0) * inner_ring_e1;
-        let t11 = k(2.0) * inner_ring_e0;
-        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
-        let t13 = T::fused(-inner_ring_e1, t10, t12);
-        let t14 = rotor_e3 * t7;
-        let t15 = rotor_e2 * t6;
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = T::fused(k(8.0), rotor_dsy, inner_ring_dsy);
+        let t2 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t3 = k(2.0) * rotor_dwx;
+        let t4 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t5 = T::fused(rotor_e1, rotor_e1, -t4);
+        let t6 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t7 = T::fused(inner_ring_e1, inner_ring_e1, -t6);
+        let t8 = rotor_e0 * rotor_e2;
+        let t9 = rotor_e1 * rotor_e3;
+        let t10 = t9 - t8;
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = t12 - t11;
+        let t14 = rotor_e0 * rotor_e3;
+        let t15 = rotor_e1 * rotor_e2;
         let t16 = t15 + t14;
-        let t17 = inner_ring_e3 * t11;
-        let t18 = inner_ring_e2 * t10;
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
         let t19 = t18 + t17;
-        let t20 = rotor_e2 * t7;
-        let t21 = rotor_e3 * t6;
-        let t22 = t21 - t20;
-        let t23 = inner_ring_e2 * t11;
-        let t24 = inner_ring_e3 * t10;
-        let t25 = t24 - t23;
-        let t26 = k(1e-5) * rotor_dwx;
-        let t27 = t15 - t14;
-        let t28 = k(2.0) * rotor_e2;
-        let t29 = T::fused(-rotor_e2, t28, t8);
-        let t30 = rotor_e1 * t7;
-        let t31 = rotor_e3 * t28;
-        let t32 = t31 + t30;
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t34 = T::fused(
-            t26,
-            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
-            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
+        let t20 = T::fused(rotor_e3, rotor_e3, -t4);
+        let t21 = rotor_e0 * rotor_e1;
+        let t22 = rotor_e2 * rotor_e3;
+        let t23 = t22 - t21;
+        let t24 = t9 + t8;
+        let t25 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t26 = T::fused(
+            t25,
+            T::fused(t24, t7, T::fused(t13, t20, t19 * t23)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t35 = t21 + t20;
-        let t36 = t31 - t30;
-        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
-        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t39 = T::fused(
-            t38,
-            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
-            t34,
+        let t27 = T::fused(rotor_e2, rotor_e2, -t4);
+        let t28 = t22 + t21;
+        let t29 = t15 - t14;
+        let t30 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t31 = T::fused(t30, T::fused(t29, t7, T::fused(t19, t27, t13 * t28)), -t26);
+        let t32 = T::fused(T::fused(t7, t5, T::fused(t13, t10, t19 * t16)), t3, t31);
+        let t33 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t34 = T::fused(outer_ring_e1, outer_ring_e1, -t33);
+        let t35 = outer_ring_e0 * outer_ring_e2;
+        let t36 = outer_ring_e1 * outer_ring_e3;
+        let t37 = t36 - t35;
+        let t38 = outer_ring_e0 * outer_ring_e3;
+        let t39 = outer_ring_e1 * outer_ring_e2;
+        let t40 = t39 + t38;
+        let t41 = T::fused(t7, t34, T::fused(t37, t13, t40 * t19));
+        let t42 = T::fused(inner_ring_e2, inner_ring_e2, -t6);
+        let t43 = inner_ring_e0 * inner_ring_e1;
+        let t44 = inner_ring_e2 * inner_ring_e3;
+        let t45 = t44 + t43;
+        let t46 = t18 - t17;
+        let t47 = T::fused(t46, t24, T::fused(t45, t20, t23 * t42));
+        let t48 = T::fused(t46, t29, T::fused(t27, t42, t45 * t28));
+        let t49 = T::fused(
+            T::fused(t46, t5, T::fused(t16, t42, t45 * t10)),
+            t3,
+            T::fused(t30, t48, T::fused(-t25, t47, k(0.1) * inner_ring_dwy)),
         );
-        let t40 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t39,
+        let t50 = T::fused(t46, t34, T::fused(t40, t42, t37 * t45));
+        let t51 = T::fused(inner_ring_e3, inner_ring_e3, -t6);
+        let t52 = t44 - t43;
+        let t53 = t12 + t11;
+        let t54 = T::fused(t53, t24, T::fused(t20, t51, t52 * t23));
+        let t55 = T::fused(t53, t29, T::fused(t28, t51, t52 * t27));
+        let t56 = T::fused(
+            t30,
+            t55,
+            T::fused(
+                -t25,
+                t54,
+                k(0.05) * T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            ),
         );
-        let t41 = k(2.0) * outer_ring_e1;
-        let t42 = k(2.0) * outer_ring_e0;
-        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
-        let t44 = T::fused(-outer_ring_e1, t41, t43);
-        let t45 = outer_ring_e3 * t42;
-        let t46 = outer_ring_e2 * t41;
-        let t47 = t46 + t45;
-        let t48 = outer_ring_e2 * t42;
-        let t49 = outer_ring_e3 * t41;
-        let t50 = t49 - t48;
-        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
-        let t52 = t18 - t17;
-        let t53 = k(2.0) * inner_ring_e2;
-        let t54 = T::fused(-inner_ring_e2, t53, t12);
-        let t55 = inner_ring_e1 * t11;
-        let t56 = inner_ring_e3 * t53;
-        let t57 = t56 + t55;
-        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
-        let t59 = T::fused(
-            t26,
-            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
-            t33 * t58,
+        let t57 = T::fused(T::fused(t53, t5, T::fused(t10, t51, t52 * t16)), t3, t56);
+        let t58 = T::fused(
+            T::fused(t53, t34, T::fused(t37, t51, t40 * t52)),
+            t57,
+            k(0.025) * outer_ring_dwx,
         );
-        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
-        let t61 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t38, t60, t59));
-        let t62 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
-        let t63 = t24 + t23;
-        let t64 = t56 - t55;
-        let t65 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
-        let t66 = T::fused(t65, t32, T::fused(-t63, t27, t64 * t29));
-        let t67 = T::fused(
-            t26,
-            T::fused(t65, t22, -T::fused(-t63, t9, t64 * t16)),
-            t33 * t66,
+        let t59 = T::fused(t41, t32, T::fused(t50, t49, t58));
+        let t60 = T::fused(outer_ring_e3, outer_ring_e3, -t33);
+        let t61 = t36 + t35;
+        let t62 = k(1.0) / T::fused(-t34, t60, t61 * t37);
+        let t63 = outer_ring_e0 * outer_ring_e1;
+        let t64 = outer_ring_e2 * outer_ring_e3;
+        let t65 = t64 - t63;
+        let t66 = T::fused(
+            -T::fused(t61, t53, T::fused(t51, t60, t65 * t52)),
+            t57,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t68 = T::fused(t65, t37, T::fused(t63, t35, t64 * t36));
-        let t69 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -T::fused(t38, t68, t67),
-        );
-        let t70 = T::fused(
-            T::fused(t50, t65, -T::fused(-t44, t63, t47 * t64)),
-            t69,
-            -T::fused(-t51, t40, t62 * t61),
-        );
-        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
-        let t72 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
-        let t73 = t49 + t48;
-        let t74 = k(1.0) / T::fused(-t44, t72, t73 * t50);
-        let t75 = outer_ring_e1 * t42;
-        let t76 = k(2.0) * outer_ring_e2;
-        let t77 = outer_ring_e3 * t76;
-        let t78 = t77 - t75;
-        let t79 = T::fused(
-            -T::fused(t72, t25, -T::fused(-t73, t13, t78 * t19)),
-            t40,
-            T::fused(t72, t57, T::fused(-t73, t52, t78 * t54)) * t61,
-        );
-        let t80 = T::fused(T::fused(t72, t65, T::fused(t73, t63, t78 * t64)), t69, -t79);
-        let t81 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t80,
-        );
-        let t82 = t46 - t45;
-        let t83 = T::fused(-outer_ring_e2, t76, t43);
-        let t84 = t77 + t75;
-        let t85 = T::fused(t84, t25, -T::fused(t82, t13, t83 * t19));
-        let t86 = T::fused(t84, t57, T::fused(t82, t52, t83 * t54));
-        let t87 = k(1.0) / T::fused(-t85, t62, t86 * t51);
-        let t88 = k(1.0) / T::fused(-t66, t60, t68 * t58);
+        let t67 = T::fused(-T::fused(t61, t46, T::fused(t45, t60, t65 * t42)), t49, t66);
+        let t68 = T::fused(-T::fused(t61, t7, T::fused(t13, t60, t65 * t19)), t32, t67);
+        let t69 = T::fused(outer_ring_e2, outer_ring_e2, -t33);
+        let t70 = t64 + t63;
+        let t71 = t39 - t38;
+        let t72 = T::fused(t71, t46, T::fused(t69, t42, t70 * t45));
+        let t73 = T::fused(t71, t7, T::fused(t19, t69, t70 * t13));
+        let t74 = k(1.0) / T::fused(-t72, t41, t73 * t50);
+        let t75 = k(1.0) / T::fused(-t54, t48, t55 * t47);
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -T::fused(k(0.01), outer_ring_dsy, t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t44 * t74, t71, t73 * t74 * t81),
-            -T::fused(t50 * t74, t71, t72 * t74 * t81),
-            -t1,
-            -t3,
-            -t5,
-            T::fused(-(t86 * t87), t61, t85 * t87 * t40),
-            T::fused(-(t51 * t87), t40, t62 * t87 * t61),
-            -t0,
-            -t2,
-            -t4,
-            T::fused(t33, t66 * t88, t38 * (t68 * t88)),
-            T::fused(t33, t58 * t88, t38 * (t60 * t88)),
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (outer_ring_dsy + t1)),
+            -(k(0.01) * (outer_ring_dsz + t2)),
+            -(k(4e-5) * T::fused(-(t34 * t62), t59, t61 * t62 * t68)),
+            k(4e-5) * T::fused(-(t37 * t62), t59, t60 * t62 * t68),
+            -(k(0.01) * t0),
+            -(k(0.01) * t1),
+            -(k(0.01) * t2),
+            k(5e-6) * T::fused(t73 * t74, t32, t72 * t74 * t49),
+            -(k(5e-6) * T::fused(t41 * t74, t32, t50 * t74 * t49)),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * rotor_dsy),
+            -(k(0.08) * rotor_dsz),
+            k(1.25e-6) * T::fused(-t25, t54 * t75, t30 * (t55 * t75)),
+            -(k(1.25e-6) * T::fused(-t25, t47 * t75, t30 * (t48 * t75))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 275 operations (104 ±, 166 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 271 operations (104 ±, 162 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2565,78 +2518,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
-        let t3 = k(2.0) * outer_ring_e1;
-        let t4 = T::fused(-outer_ring_e1, t3, t1);
-        let t5 = outer_ring_e2 * t0;
-        let t6 = outer_ring_e3 * t3;
-        let t7 = t6 - t5;
-        let t8 = t6 + t5;
-        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
-        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
-        let t11 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t12 = k(2.0) * t11;
-        let t13 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t14 = t13 * t12;
-        let t15 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t16 = k(2.0) * t15;
-        let t17 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t18 = t17 * t16;
-        let t19 = t18 - t14;
-        let t20 = t18 + t14;
-        let t21 = T::fused(-t11, t12, k(1.0));
-        let t22 = T::fused(-t17, k(2.0) * t17, t21);
-        let t23 = T::fused(-t15, t16, t21);
-        let t24 = k(1.0) / T::fused(-t20, t19, t23 * t22);
-        let t25 = T::fused(row13, t19 * t24, row14 * (t23 * t24));
-        let t26 = k(5e-6) * t25;
-        let t27 = k(2.0) * t13;
-        let t28 = T::fused(t17, t12, t15 * t27);
-        let t29 = T::fused(row13, t22 * t24, row14 * (t20 * t24));
-        let t30 = k(5e-6) * t29;
-        let t31 = T::fused(-t15, t12, t17 * t27);
-        let t32 = T::fused(t19, t26, t22 * t30);
-        let t33 = k(1.0)
-            / (k(1e-6) + T::fused(t19, k(5e-6) * t19, t22 * (k(5e-6) * t22)));
-        let t34 = t33 * t32;
-        let t35 = k(5e-6) * t28;
-        let t36 = k(5e-6) * t31;
-        let t37 = T::fused(-t19, t35, t22 * t36);
-        let t38 = T::fused(
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = t4 - t3;
+        let t6 = t4 + t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(-row4, t5 * t7, row3 * (t2 * t7));
+        let t9 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2645,18 +2536,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t39 = k(2.0) * t38;
-        let t40 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t41 = t40 * t39;
-        let t42 = T::fused(
+        let t10 = T::fused(-t9, t9, k(0.5));
+        let t11 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2665,8 +2546,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t43 = k(2.0) * t42;
-        let t44 = T::fused(
+        let t12 = T::fused(t11, t11, -t10);
+        let t13 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2675,65 +2556,150 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t45 = t44 * t43;
-        let t46 = t45 - t41;
-        let t47 = t45 + t41;
-        let t48 = k(2.0) * t44;
-        let t49 = T::fused(-t38, t39, k(1.0));
-        let t50 = T::fused(-t44, t48, t49);
-        let t51 = T::fused(-t42, t43, t49);
-        let t52 = k(1.0) / T::fused(-t47, t46, t51 * t50);
-        let t53 = T::fused(row8, t46 * t52, row9 * (t51 * t52));
-        let t54 = t33 * t37;
-        let t55 = T::fused(t37, t54, -(k(1e-6) + T::fused(t28, t35, t31 * t36)));
-        let t56 = T::fused(row8, t50 * t52, row9 * (t47 * t52));
-        let t57 = k(5e-6) * t23;
-        let t58 = k(5e-6) * t20;
-        let t59 = T::fused(t19, t57, t22 * t58);
-        let t60 = T::fused(t59, t54, -T::fused(-t23, t35, t20 * t36));
-        let t61 = T::fused(-t55, t53, t60 * t56)
-            + T::fused(t37, t34, -T::fused(-t28, t26, t31 * t30));
-        let t62 = T::fused(t59, t33 * t59, -(k(2e-6) + T::fused(t23, t57, t20 * t58)));
-        let t63 = T::fused(-t60, t53, t62 * t56)
-            + T::fused(t59, t34, -T::fused(t23, t26, t20 * t30));
-        let t64 = T::fused(
-            -t46,
-            T::fused(-t51, t55, t47 * t60),
-            t50 * T::fused(-t51, t60, t47 * t62),
+        let t14 = T::fused(t13, t13, -t10);
+        let t15 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
         );
-        let t65 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
-        let t66 = T::fused(-t46, t55, t50 * t60);
-        let t67 = T::fused(t44, t39, t40 * t43);
-        let t68 = T::fused(-t46, t60, t50 * t62);
-        let t69 = T::fused(-t42, t39, t40 * t48);
-        let t70 = T::fused(-t64, t10, T::fused(t67, t66, t69 * t68) * t65)
-            + T::fused(-t46, t61, t50 * t63);
-        let t71 = t70 / (k(1e-6) - T::fused(-t46, t66, t50 * t68));
-        let t72 = row0 + row5;
-        let t73 = row1 + row6;
-        let t74 = row2 + row7;
-        let t75 = t53 - T::fused(t67, t65, -T::fused(-t51, t10, t46 * t71));
-        let t76 = t56 + T::fused(t69, t65, T::fused(-t47, t10, t50 * t71));
-        let t77 = t33 * (t32 + T::fused(-t37, t75, t59 * t76));
+        let t16 = t9 * t15;
+        let t17 = t11 * t13;
+        let t18 = t17 - t16;
+        let t19 = t17 + t16;
+        let t20 = k(1.0) / T::fused(-t14, t12, t19 * t18);
+        let t21 = T::fused(-row9, t19 * t20, row8 * (t14 * t20));
+        let t22 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t23 = T::fused(-t22, t22, k(0.5));
+        let t24 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t25 = T::fused(t24, t24, -t23);
+        let t26 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t27 = t22 * t26;
+        let t28 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t29 = t28 * t24;
+        let t30 = t29 + t27;
+        let t31 = T::fused(t28, t28, -t23);
+        let t32 = t29 - t27;
+        let t33 = T::fused(t30, t25, t32 * t31);
+        let t34 = k(1.0) / (k(0.05) + T::fused(t25, t25, t32 * t32));
+        let t35 = T::fused(-t22, t28, t26 * t24);
+        let t36 = T::fused(t22, t24, t26 * t28);
+        let t37 = T::fused(t35, t25, t36 * t32);
+        let t38 = t37 * t34;
+        let t39 = T::fused(t36, t31, T::fused(-t38, t33, t35 * t30));
+        let t40 = T::fused(-row9, t12 * t20, row8 * (t18 * t20));
+        let t41 = k(0.05) + T::fused(t36, t36, T::fused(-t37, t38, t35 * t35));
+        let t42 = k(1.0) / T::fused(-t25, t31, t30 * t32);
+        let t43 = T::fused(-row14, t30 * t42, row13 * (t25 * t42));
+        let t44 = T::fused(-row14, t31 * t42, row13 * (t32 * t42));
+        let t45 = T::fused(t25, t43, t32 * t44);
+        let t46 = t34 * t45;
+        let t47 = T::fused(
+            t35,
+            t43,
+            -T::fused(-k(2.0), T::fused(t39, t21, t41 * t40), t37 * t46),
+        );
+        let t48 = k(0.1) + T::fused(t31, t31, T::fused(-t33, t34 * t33, t30 * t30));
+        let t49 = T::fused(
+            t30,
+            t43,
+            -T::fused(-k(2.0), T::fused(t48, t21, t39 * t40), t33 * t46),
+        );
+        let t50 = T::fused(-row4, t1 * t7, row3 * (t6 * t7));
+        let t51 = T::fused(t14, t48, t18 * t39);
+        let t52 = T::fused(-t9, t11, t13 * t15);
+        let t53 = T::fused(t39, t14, t18 * t41);
+        let t54 = T::fused(t9, t13, t11 * t15);
+        let t55 = T::fused(
+            t14,
+            T::fused(t19, t48, t39 * t12),
+            t18 * T::fused(t19, t39, t41 * t12),
+        );
+        let t56 = T::fused(
+            k(0.25),
+            t14 * T::fused(t31, t44, t49),
+            T::fused(T::fused(t52, t51, t54 * t53), t50, t55 * t8),
+        );
+        let t57 = T::fused(k(0.25), t18 * T::fused(t36, t44, t47), t56)
+            / (k(0.0125) + T::fused(t14, t51, t18 * t53));
+        let t58 = row0 + row5;
+        let t59 = row1 + row6;
+        let t60 = row2 + row7;
+        let t61 = T::fused(
+            t12,
+            t8,
+            -T::fused(t18, t57, -T::fused(k(0.5), t40, t54 * t50)),
+        );
+        let t62 = T::fused(
+            t19,
+            t8,
+            -T::fused(t14, t57, -T::fused(k(0.5), t21, t52 * t50)),
+        );
+        let t63 = t34 * T::fused(t37, t61, T::fused(k(0.25), t45, t33 * t62));
+        let t64 = T::fused(
+            t36,
+            t61,
+            T::fused(t31, t62, -T::fused(-k(0.25), t44, t32 * t63)),
+        );
+        let t65 = T::fused(
+            t35,
+            t61,
+            T::fused(t30, t62, -T::fused(-k(0.25), t43, t25 * t63)),
+        );
         *out = [
             row0,
             row1,
             row2,
-            t10,
-            t71,
-            -t65,
-            t72,
-            t73,
-            t74,
-            t75,
-            -t76,
-            -t77,
-            row10 + t72,
-            row11 + t73,
-            row12 + t74,
+            -(k(0.5) * t8),
+            k(0.5) * t57,
+            -(k(0.5) * t50),
+            t58,
+            t59,
+            t60,
+            -t61,
+            -t62,
+            t63,
+            row10 + t58,
+            row11 + t59,
+            row12 + t60,
             k(0.0),
-            t25 - T::fused(t19, t77, -T::fused(t28, t75, t23 * t76)),
-            T::fused(t22, t77, -T::fused(-t31, t75, t20 * t76)) - t29,
+            -(k(2.0) * t64),
+            -(k(2.0) * t65),
         ];
     }
 }
@@ -2751,7 +2717,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 19 operations (4 ±, 14 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 18 operations (4 ±, 13 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2759,15 +2725,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = k(1e-5) * t0;
-        let t2 = u1 * t1;
-        let t3 = x1.sin();
-        let t4 = u0 * t3;
-        let t5 = T::fused(-k(0.2), t4, u2) * t2 / T::fused(k(6e-6), t0 * t0, k(2e-6));
+        let t1 = u1 * t0;
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = T::fused(-k(0.2), t3, u2) * t1
+            / T::fused(t0, t0, k(0.3333333333333333));
         *out = [
-            -t5,
-            k(166666.66666666666) * (t1 * (u0 * T::fused(k(0.4), t4, u2))),
-            T::fused(-k(100000.0), u0 * t2, t3 * t5),
+            -(k(1.6666666666666667) * t4),
+            k(1.6666666666666667) * (t0 * (u0 * T::fused(k(0.4), t3, u2))),
+            T::fused(-u0, t1, k(1.6666666666666667) * (t2 * t4)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2779,7 +2745,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 36 operations (9 ±, 27 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 38 operations (11 ±, 27 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -2801,12 +2767,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let t10 = k(0.5) * x2;
         let t11 = t10.sin();
         let t12 = t10.cos();
-        let t13 = k(2.0) * t6;
-        let t14 = u0 * (t4 * t13);
-        let t15 = u0 * T::fused(-t6, t13, k(1.0));
-        let t16 = k(2.0) * t11;
-        let t17 = T::fused(-t11, t16, k(1.0));
-        let t18 = t12 * t16;
+        let t13 = u0 * (t4 * (k(2.0) * t6));
+        let t14 = u0 * ((t6 - t4) * (t6 + t4));
+        let t15 = (t11 - t12) * (t11 + t12);
+        let t16 = t12 * (k(2.0) * t11);
         *y = [
             k(0.0),
             k(0.0),
@@ -2838,18 +2802,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t14,
-            t15,
+            t13,
+            -t14,
             u1,
             k(0.0),
             k(0.0),
             k(0.0),
-            u2 + t14,
-            T::fused(t17, t15, u1 * t18),
-            T::fused(-t18, t15, u1 * t17),
+            u2 + t13,
+            T::fused(t15, t14, u1 * t16),
+            T::fused(-u1, t15, t16 * t14),
         ];
     }
-    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    /// Writes the joint state of a maximal state: 125 operations (63 ±, 62 ×, 0 ÷) and 9 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2872,83 +2836,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = x0.cos();
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
-        let t8 = outer_ring_e3 * outer_ring_e3;
-        let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
-        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
-        let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
+        let t6 = x0.cos();
+        let t7 = x0.sin();
+        let t8 = outer_ring_e0 * outer_ring_e2;
+        let t9 = outer_ring_e1 * outer_ring_e3;
+        let t10 = t9 + t8;
+        let t11 = (k(2.0) * T::fused(t7, t5, t10 * t6))
+            .atan2(k(2.0) * T::fused(-t6, t5, t10 * t7));
+        let t12 = inner_ring_e3 * inner_ring_e3;
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = T::fused(inner_ring_e1, inner_ring_e1, t13);
+        let t15 = inner_ring_e2 * inner_ring_e2;
+        let t16 = k(0.5) * (k(1.0) - (t15 + (t14 + t12)));
+        let t17 = k(0.5) - t14 - t16;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = outer_ring_e0 * outer_ring_e3;
+        let t22 = outer_ring_e1 * outer_ring_e2;
+        let t23 = inner_ring_e0 * inner_ring_e2;
+        let t24 = inner_ring_e1 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(
+            t9 - t8,
+            t25,
+            T::fused(t17, k(0.5) - t2 - t4, (t22 + t21) * t20),
         );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
-            t15,
-            t27,
+        let t27 = x1.cos();
+        let t28 = T::fused(t22 - t21, t17, t20 * (k(0.5) - (t1 + t3) - t4));
+        let t29 = T::fused(
+            T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
+            t25,
+            -t28,
         );
-        let t29 = x1.cos();
-        let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        let t30 = x1.sin();
+        let t31 = (k(4.0) * T::fused(-t30, t26, t27 * t29))
+            .atan2(k(4.0) * T::fused(t27, t26, t30 * t29));
+        let t32 = rotor_e2 * rotor_e2;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t33 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t33 + t32))),
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
-        let t33 = x2.sin();
-        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t35 = rotor_e2 * rotor_e2;
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = T::fused(
-            k(2.0),
-            k(0.5) - (t36 + t35),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        let t35 = k(0.5) * (k(1.0) - (t32 + t34));
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t39 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t40 = T::fused(
+            t39,
+            k(0.5) - (t13 + t12) - t16,
+            -T::fused(t37 - t36, t35, (t24 + t23) * t38),
         );
-        let t38 = inner_ring_e0 * inner_ring_e1;
-        let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
-        let t43 = x2.cos();
-        let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
-            t37,
-            k(2.0) * (t17 - t16) * t40,
-        );
-        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
-        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
+        let t41 = x2.sin();
+        let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
+        let t43 = T::fused(t37 + t36, t39, t42);
+        let t44 = x2.cos();
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
+            .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
-        x[1] = x1 + t32;
-        x[2] = x2 + t46;
+        x[1] = x1 + t31;
+        x[2] = x2 + t45;
         x[3] = outer_ring_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 39 operations (13 ±, 25 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 38 operations (14 ±, 23 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2973,11 +2933,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = k(1e-5) * t2;
-        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
-        let t5 = T::fused(
+        let t1 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2986,17 +2942,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t6 = t5 * t1;
-        let t7 = outer_ring_wy * t6;
-        let t8 = inner_ring_wx - rotor_wx;
-        let t9 = T::fused(-k(0.2), t7, t8) * t4 / T::fused(k(6e-6), t2 * t2, k(2e-6));
+        let t2 = (t1 + t0) * (t1 - t0);
+        let t3 = t1 * t0;
+        let t4 = outer_ring_wy * t3;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = (outer_ring_wz - inner_ring_wz) * t2;
+        let t7 = t6 * T::fused(-k(0.4), t4, t5)
+            / T::fused(t2, t2, k(0.3333333333333333));
         *out = [
-            -t9,
-            -(k(166666.66666666666) * (t3 * (outer_ring_wy * T::fused(k(0.4), t7, t8)))),
-            T::fused(-t6, t9, k(100000.0) * (outer_ring_wy * t4)),
+            -(k(1.6666666666666667) * t7),
+            -(k(1.6666666666666667) * (t2 * (outer_ring_wy * T::fused(k(0.8), t4, t5)))),
+            T::fused(-k(3.3333333333333335), t3 * t7, outer_ring_wy * t6),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 80 operations (30 ±, 49 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 82 operations (32 ±, 49 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3035,12 +2994,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = k(1e-5) * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3049,20 +3003,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t2;
-        let t9 = outer_ring_wy * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(0.2), t9, t10) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t8 * t11;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
-        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = T::fused(
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = t2 * (k(2.0) * t1);
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = T::fused(-k(0.2), t8, t9) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t7 * t10;
+        let t13 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t12));
+        let t14 = T::fused(inner_ring_wx, t5, -T::fused(t3, t10, t0 * t7));
+        let t15 = T::fused(
             -k(166666.66666666666),
-            t4 * (outer_ring_wy * T::fused(k(0.4), t9, t10)),
-            t12,
+            t4 * (outer_ring_wy * T::fused(k(0.4), t8, t9)),
+            t11,
         );
-        let t17 = T::fused(
+        let t16 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3071,9 +3029,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = T::fused(
+        let t17 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3082,29 +3038,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t21 = t20 * t18;
+        let t18 = (t17 + t16) * (t17 - t16);
+        let t19 = t17 * (k(2.0) * t16);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t11,
-            t12,
+            -t10,
+            t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t13,
+            t14,
             t15,
-            t16,
             k(0.0),
             k(0.0),
             k(0.0),
-            -(T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14),
-            -T::fused(rotor_wz, t10, T::fused(-t19, t15, t21 * t16)),
-            T::fused(rotor_wy, t10, T::fused(t21, t15, t19 * t16)),
+            -(T::fused(-k(100000.0), outer_ring_wy * t6, t12) + t13),
+            -T::fused(rotor_wz, t9, T::fused(-t18, t14, t19 * t15)),
+            T::fused(rotor_wy, t9, T::fused(t19, t14, t18 * t15)),
         ];
     }
-    /// Writes λ: 96 operations (37 ±, 59 ×, 0 ÷).
+    /// Writes λ: 99 operations (40 ±, 59 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3170,8 +3127,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = (t8 + t7) * (t8 - t7);
         let t10 = T::fused(
             inner_ring_e2,
             rotor_e3,
@@ -3181,10 +3146,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(-t10, t11, k(1.0));
-        let t13 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t14 = T::fused(
+        let t11 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3193,54 +3155,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t15 = t14 * t11;
-        let t16 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t17 = T::fused(-t13, t12, t16 * t15);
-        let t18 = T::fused(k(2e-6), inner_ring_dwy, -t17);
-        let t19 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t20 = t19 * t8;
-        let t21 = T::fused(-t9, t6, t20 * t18);
-        let t22 = T::fused(k(2e-6), outer_ring_dwx, t21);
-        let t23 = k(2.0) * outer_ring_e2;
-        let t24 = T::fused(-outer_ring_e2, t23, k(1.0));
-        let t25 = T::fused(t13, t15, t16 * t12);
-        let t26 = T::fused(
+        let t12 = (t11 + t10) * (t11 - t10);
+        let t13 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t14 = t11 * (k(2.0) * t10);
+        let t15 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t16 = T::fused(-t13, t12, t15 * t14);
+        let t17 = T::fused(k(2e-6), inner_ring_dwy, -t16);
+        let t18 = t8 * (k(2.0) * t7);
+        let t19 = T::fused(-t9, t6, t18 * t17);
+        let t20 = T::fused(k(2e-6), outer_ring_dwx, t19);
+        let t21 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t22 = T::fused(t13, t14, t15 * t12);
+        let t23 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
             -T::fused(
                 k(1e-6),
                 T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-                -t25,
+                -t22,
             ),
         );
-        let t27 = outer_ring_e0 * t23;
+        let t24 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -T::fused(k(0.01), outer_ring_dsy, t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t24, t22, t27 * t26),
-            -T::fused(t27, t22, t24 * t26),
+            T::fused(-t21, t20, t24 * t23),
+            -T::fused(t24, t20, t21 * t23),
             -t1,
             -t3,
             -t5,
-            -T::fused(t20, t6, t9 * t18),
-            t21,
+            -T::fused(t18, t6, t9 * t17),
+            t19,
             -t0,
             -t2,
             -t4,
-            t25,
-            -t17,
+            t22,
+            -t16,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (45 ±, 75 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 124 operations (48 ±, 75 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3274,12 +3228,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = k(1e-5) * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3288,21 +3237,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t2;
-        let t9 = outer_ring_wy * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(0.2), t9, t10) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t8 * t11;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
-        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = T::fused(
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = t2 * (k(2.0) * t1);
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = T::fused(-k(0.2), t8, t9) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t7 * t10;
+        let t13 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t12));
+        let t14 = T::fused(inner_ring_wx, t5, -T::fused(t3, t10, t0 * t7));
+        let t15 = T::fused(
             -k(166666.66666666666),
-            t4 * (outer_ring_wy * T::fused(k(0.4), t9, t10)),
-            t12,
+            t4 * (outer_ring_wy * T::fused(k(0.4), t8, t9)),
+            t11,
         );
-        let t17 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
-        let t18 = T::fused(
+        let t16 = T::fused(-k(100000.0), outer_ring_wy * t6, t12) + t13;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3311,9 +3264,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = T::fused(
+        let t18 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3322,59 +3273,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t22 = t21 * t19;
-        let t23 = T::fused(rotor_wz, t10, T::fused(-t20, t15, t22 * t16));
-        let t24 = T::fused(rotor_wy, t10, T::fused(t22, t15, t20 * t16));
-        let t25 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t24);
-        let t26 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t23);
-        let t27 = T::fused(t20, t25, t22 * t26);
-        let t28 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t16), t27);
-        let t29 = k(2.0) * outer_ring_e2;
-        let t30 = outer_ring_e0 * t29;
-        let t31 = T::fused(-t22, t25, t20 * t26);
-        let t32 = T::fused(k(2e-6), t15, t31);
-        let t33 = T::fused(
+        let t19 = (t18 + t17) * (t18 - t17);
+        let t20 = t18 * (k(2.0) * t17);
+        let t21 = T::fused(rotor_wz, t9, T::fused(-t19, t14, t20 * t15));
+        let t22 = T::fused(rotor_wy, t9, T::fused(t20, t14, t19 * t15));
+        let t23 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t22);
+        let t24 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t21);
+        let t25 = T::fused(t19, t23, t20 * t24);
+        let t26 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t15), t25);
+        let t27 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
+        let t28 = T::fused(-t20, t23, t19 * t24);
+        let t29 = T::fused(k(2e-6), t14, t28);
+        let t30 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t14),
-            k(1e-5) * t17,
+            T::fused(inner_ring_wy, inner_ring_wz, t13),
+            k(1e-5) * t16,
         );
-        let t34 = T::fused(-t8, t32, t3 * t33);
-        let t35 = T::fused(k(2e-6), t0, t34);
-        let t36 = T::fused(-outer_ring_e2, t29, k(1.0));
+        let t31 = T::fused(-t7, t29, t3 * t30);
+        let t32 = T::fused(k(2e-6), t0, t31);
+        let t33 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t11,
-            t12,
+            -t10,
+            t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t13,
+            t14,
             t15,
-            t16,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t17,
-            -t23,
-            t24,
+            -t16,
+            -t21,
+            t22,
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t30, t28, t36 * t35),
-            T::fused(-t36, t28, t30 * t35),
+            T::fused(t27, t26, t33 * t32),
+            T::fused(-t33, t26, t27 * t32),
             k(0.0),
             k(0.0),
             k(0.0),
-            -T::fused(t3, t32, t8 * t33),
-            -t34,
+            -T::fused(t3, t29, t7 * t30),
+            -t31,
             k(0.0),
             k(0.0),
             k(0.0),
-            t27,
-            t31,
+            t25,
+            t28,
         ];
     }
 }
@@ -3409,17 +3360,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeFreeNutation<T> {
         let t6 = t3 * t5;
         let t7 = k(1.0) - t3;
         let t8 = T::fused(-k(6.0), t6 * t7, k(1.0));
-        let t9 = T::fused(-k(2.0), t3, t8);
+        let t9 = T::fused(k(2.0), t3, -t8);
         let t10 = u1 * t5
-            * T::fused(-k(30.0), (k(0.16666666666666666) - t6) * t1, u0 * t9);
+            * T::fused(k(30.0), (k(0.16666666666666666) - t6) * t1, u0 * t9);
         let t11 = t2 * t5;
         let t12 = u1 * t11;
         let t13 = k(5.0) * u2;
         let t14 = u0 * t0;
         let t15 = k(5.0) * t12;
         let t16 = k(1.6666666666666667) * u0;
-        let t17 = t5 * t13;
-        let t18 = u1 * T::fused(-t9, t17, t14 * T::fused(-t5, t4 - t8, k(1.0)));
+        let t17 = t13 * t5;
+        let t18 = u1 * T::fused(t9, t17, t14 * T::fused(-t5, t4 - t8, k(1.0)));
         let t19 = T::fused(t5, t7, k(1.0));
         *dfdx = [
             k(0.0),
@@ -3441,7 +3392,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeFreeNutation<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t10,
+            t10,
             k(0.0),
             t0 * t12,
             (t14 - t13) * t11,

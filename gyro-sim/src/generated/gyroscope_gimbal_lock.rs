@@ -12,42 +12,42 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 413 operations by relative Euler parameters, doubled; 434 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 40 operations by normal form; 59 operations by recursion; 3 more compared
-//! * corrected_accelerations: 150 operations by normal form in the bodies' frames; 152 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
+//! * accelerations: 407 operations by relative Euler parameters, doubled; 413 operations by relative Euler parameters; 2 more compared
+//! * project: 362 operations by relative Euler parameters, doubled; 366 operations by relative Euler parameters; 2 more compared
+//! * joint_accelerations: 19 operations by normal form; 31 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 39 operations by normal form; 54 operations by recursion; 3 more compared
+//! * corrected_accelerations: 139 operations by normal form in the global frame; 141 operations by normal form in the bodies' frames; 9 more compared
+//! * joint_jacobian: 58 operations by derivatives of u̇, from its leaves; 58 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 50 | 58 | 0 | 108 | 0 of 18 | 178 | 108 |
+//! | phi | Φ | 50 | 49 | 0 | 99 | 0 of 18 | 158 | 99 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 670 | 188 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 116 | 178 | 0 | 294 | 6 of 15 | 1741 | 294 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 113 | 0 | 197 | 0 of 15 | 701 | 197 |
+//! | gamma | γ | 116 | 172 | 0 | 288 | 6 of 15 | 1237 | 288 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 | 495 | 191 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 166 | 242 | 5 | 413 | 7 of 18 | 524034 | 417 |
-//! | multipliers | λ, the accelerations being known | 108 | 172 | 3 | 283 | 0 of 15 | 4499 | 283 |
-//! | project | (δr, δπ') that changes the rows as given | 144 | 232 | 5 | 381 | 1 of 18 | 474683 | 382 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 164 | 238 | 5 | 407 | 7 of 18 | 491274 | 411 |
+//! | multipliers | λ, the accelerations being known | 108 | 165 | 3 | 276 | 0 of 15 | 3132 | 276 |
+//! | project | (δr, δπ') that changes the rows as given | 141 | 216 | 5 | 362 | 1 of 18 | 399249 | 363 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 | 1.1e9 | 514 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 10561 | 257 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 36 | 21 |
+//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 6 of 21 | 9.5e8 | 493 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 | 8661 | 230 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 13 | 1 | 19 | 0 of 3 | 31 | 20 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 25 | 1 | 40 | 0 of 3 | 242 | 41 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 93 | 1 | 150 | 6 of 18 | 2540 | 151 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 715 | 134 |
-//! | corrected_solution | both | 88 | 143 | 1 | 232 | 6 of 33 | 22234 | 233 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 14 | 44 | 1 | 59 | 28 of 42 | 178 | 59 |
+//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 | 298 | 75 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 | 345 | 40 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 80 | 1 | 139 | 6 of 18 | 2221 | 140 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 | 883 | 137 |
+//! | corrected_solution | both | 83 | 125 | 1 | 209 | 6 of 33 | 17482 | 210 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 | 153 | 58 |
 //!
 //! # Proof
 //!
@@ -459,7 +459,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeGimbalLock<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 108 operations (50 ±, 58 ×, 0 ÷).
+    /// Writes Φ: 99 operations (50 ±, 49 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -483,73 +483,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeGimbalLock<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = inner_ring_e0 * inner_ring_e2;
-        let t5 = inner_ring_e1 * inner_ring_e3;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = outer_ring_e0 * outer_ring_e0;
-        let t8 = T::fused(outer_ring_e1, outer_ring_e1, t7);
-        let t9 = inner_ring_e0 * inner_ring_e1;
-        let t10 = inner_ring_e2 * inner_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = T::fused(-(k(2.0) * (k(0.5) - t8)), t6, k(2.0) * (t2 + t1) * t11);
-        let t13 = inner_ring_e3 * inner_ring_e3;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + t13));
-        let t16 = outer_ring_e2 * outer_ring_e2;
-        let t17 = T::fused(
-            t0,
-            t15,
-            -T::fused(-(k(2.0) * (k(0.5) - (t7 + t16))), t11, t3 * t6),
+        let t3 = t2 - t1;
+        let t4 = inner_ring_e3 * inner_ring_e3;
+        let t5 = inner_ring_e0 * inner_ring_e0;
+        let t6 = k(0.5) - (t5 + t4);
+        let t7 = inner_ring_e0 * inner_ring_e1;
+        let t8 = inner_ring_e2 * inner_ring_e3;
+        let t9 = t8 - t7;
+        let t10 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t6,
+            (t2 + t1) * t9,
         );
-        let t18 = T::fused(inner_ring_e1, inner_ring_e1, t14);
+        let t11 = inner_ring_e0 * inner_ring_e2;
+        let t12 = inner_ring_e1 * inner_ring_e3;
+        let t13 = t12 + t11;
+        let t14 = outer_ring_e0 * outer_ring_e0;
+        let t15 = T::fused(outer_ring_e1, outer_ring_e1, t14);
+        let t16 = outer_ring_e2 * outer_ring_e2;
+        let t17 = T::fused(k(0.5) - (t14 + t16), t9, -T::fused(-t0, t6, t3 * t13));
+        let t18 = T::fused(inner_ring_e1, inner_ring_e1, t5);
         let t19 = inner_ring_e0 * inner_ring_e3;
         let t20 = inner_ring_e1 * inner_ring_e2;
-        let t21 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
-        let t22 = k(2.0) * (k(0.5) - t21);
-        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t24 = inner_ring_e2 * inner_ring_e2;
-        let t25 = T::fused(
-            k(2.0) * (t20 - t19),
-            t22,
-            k(2.0) * (k(0.5) - (t14 + t24)) * t23,
+        let t21 = T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t22 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t23 = inner_ring_e2 * inner_ring_e2;
+        let t24 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
+        let t25 = k(0.5) - t24;
+        let t26 = T::fused(
+            t20 - t19,
+            t25,
+            T::fused(-(t8 + t7), t21, (k(0.5) - (t5 + t23)) * t22),
         );
-        let t26 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            t0,
-            t3,
+            k(2.0) * t0,
+            k(2.0) * t3,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t15,
-                t12,
-            ),
-            -t17,
-            rotor_rx - T::fused(-k(0.01), k(0.5) - t18, inner_ring_rx),
-            rotor_ry - T::fused(k(0.01), t20 + t19, inner_ring_ry),
-            rotor_rz - T::fused(k(0.01), t5 - t4, inner_ring_rz),
-            T::fused(k(2.0) * (t10 + t9), t26, -t25),
-            T::fused(-t15, t26, T::fused(-t6, t22, t11 * t23)),
-            T::fused(outer_ring_e3, outer_ring_e3, t8 + t16) - k(1.0),
-            t13 + (t18 + t24) - k(1.0),
-            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t21)) - k(1.0),
+            -(k(4.0) * T::fused(k(0.5) - t15, t13, -t10)),
+            -(k(4.0) * t17),
+            T::fused(k(0.01), k(0.5) - t18, -(inner_ring_rx - rotor_rx)),
+            -T::fused(k(0.01), t20 + t19, inner_ring_ry - rotor_ry),
+            -T::fused(k(0.01), t12 - t11, inner_ring_rz - rotor_rz),
+            -(k(4.0) * t26),
+            -(k(4.0) * T::fused(t13, t25, -T::fused(-t6, t21, t9 * t22))),
+            t16 + T::fused(outer_ring_e3, outer_ring_e3, t15) - k(1.0),
+            t23 + (t18 + t4) - k(1.0),
+            T::fused(rotor_e2, rotor_e2, T::fused(rotor_e3, rotor_e3, t24)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 197 operations (84 ±, 113 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 191 operations (84 ±, 107 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -581,138 +571,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeGimbalLock<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
-        let t7 = T::fused(-outer_ring_e1, t2, t5);
-        let t8 = t3 + t1;
-        let t9 = k(2.0) * inner_ring_e0;
-        let t10 = inner_ring_e2 * t9;
-        let t11 = k(2.0) * inner_ring_e1;
-        let t12 = inner_ring_e3 * t11;
-        let t13 = t12 + t10;
-        let t14 = outer_ring_e3 * t0;
-        let t15 = outer_ring_e2 * t2;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e1 * t9;
-        let t18 = k(2.0) * inner_ring_e2;
-        let t19 = inner_ring_e3 * t18;
-        let t20 = t19 - t17;
-        let t21 = k(2.0) * outer_ring_e2;
-        let t22 = T::fused(-outer_ring_e2, t21, t5);
-        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
-        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
-        let t25 = outer_ring_e1 * t0;
-        let t26 = outer_ring_e3 * t21;
-        let t27 = t26 + t25;
-        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t6 = t3 + t2;
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(t6, t16, T::fused(t8, t1, (t13 - t12) * t11));
+        let t18 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = t20 + t19;
+        let t22 = t10 + t9;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t27 = t15 - t14;
+        let t28 = t24 + t23;
         let t29 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t5, T::fused(t21, t18, t4 * t22)),
+            inner_ring_wy * T::fused(t26, t5, T::fused(t4, t27, t21 * t28)),
+        );
+        let t30 = t13 + t12;
+        let t31 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t32 = t20 - t19;
+        let t33 = T::fused(
             outer_ring_wz,
-            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
-            outer_ring_wy * t28,
+            T::fused(t32, t16, T::fused(t30, t8, t11 * t31)),
+            T::fused(-outer_ring_wy, t17, t29),
         );
-        let t30 = T::fused(-inner_ring_e1, t11, t23);
-        let t31 = inner_ring_e3 * t9;
-        let t32 = inner_ring_e2 * t11;
-        let t33 = t32 + t31;
-        let t34 = t15 + t14;
-        let t35 = t12 - t10;
-        let t36 = t32 - t31;
-        let t37 = T::fused(-inner_ring_e2, t18, t23);
-        let t38 = t19 + t17;
-        let t39 = T::fused(
-            -inner_ring_wy,
-            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
-            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
+        let t34 = T::fused(
+            -inner_ring_wx,
+            T::fused(t32, t25, T::fused(t31, t18, t30 * t22)),
+            inner_ring_wy * T::fused(t32, t26, T::fused(t28, t31, t30 * t27)),
         );
-        let t40 = T::fused(
+        let t35 = T::fused(
             outer_ring_wz,
-            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
-            outer_ring_wx * t28,
+            T::fused(t16, t5, T::fused(t4, t8, t21 * t11)),
+            -T::fused(outer_ring_wx, t17, t34),
         );
-        let t41 = T::fused(
-            -inner_ring_wy,
-            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
-            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = t37 - t36;
+        let t39 = rotor_e0 * rotor_e3;
+        let t40 = rotor_e1 * rotor_e2;
+        let t41 = t40 + t39;
+        let t42 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t43 = T::fused(rotor_e1, rotor_e1, -t42);
+        let t44 = T::fused(rotor_e3, rotor_e3, -t42);
+        let t45 = rotor_e0 * rotor_e1;
+        let t46 = rotor_e2 * rotor_e3;
+        let t47 = t46 - t45;
+        let t48 = t37 + t36;
+        let t49 = T::fused(rotor_e2, rotor_e2, -t42);
+        let t50 = t46 + t45;
+        let t51 = t40 - t39;
+        let t52 = T::fused(
+            -rotor_wy,
+            T::fused(t25, t48, T::fused(t22, t44, t47 * t18)),
+            rotor_wz * T::fused(t25, t51, T::fused(t49, t18, t22 * t50)),
         );
-        let t42 = k(2.0) * rotor_e1;
-        let t43 = k(2.0) * rotor_e0;
-        let t44 = T::fused(-rotor_e0, t43, k(1.0));
-        let t45 = T::fused(-rotor_e1, t42, t44);
-        let t46 = rotor_e3 * t43;
-        let t47 = rotor_e2 * t42;
-        let t48 = t47 + t46;
-        let t49 = rotor_e2 * t43;
-        let t50 = rotor_e3 * t42;
-        let t51 = t50 - t49;
-        let t52 = T::fused(t35, t51, T::fused(t30, t45, t33 * t48));
         let t53 = T::fused(
-            inner_ring_wz,
+            inner_ring_wx,
+            T::fused(t16, t43, T::fused(t38, t8, t11 * t41)),
             t52,
-            inner_ring_wx * T::fused(t24, t51, -T::fused(-t13, t45, t20 * t48)),
         );
-        let t54 = t47 - t46;
-        let t55 = k(2.0) * rotor_e2;
-        let t56 = T::fused(-rotor_e2, t55, t44);
-        let t57 = rotor_e1 * t43;
-        let t58 = rotor_e3 * t55;
-        let t59 = t58 + t57;
-        let t60 = t50 + t49;
-        let t61 = t58 - t57;
-        let t62 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
-        let t63 = T::fused(
-            rotor_wz,
-            T::fused(t38, t59, T::fused(t36, t54, t37 * t56)),
-            rotor_wy * T::fused(t38, t62, T::fused(-t36, t60, t37 * t61)),
+        let t54 = T::fused(t26, t43, T::fused(t27, t38, t28 * t41));
+        let t55 = T::fused(
+            -rotor_wy,
+            T::fused(t16, t48, T::fused(t44, t8, t11 * t47)),
+            rotor_wz * T::fused(t16, t51, T::fused(t50, t8, t11 * t49)),
         );
-        let t64 = T::fused(
-            -inner_ring_wy,
-            t52,
-            inner_ring_wx * T::fused(t38, t51, -T::fused(t36, t45, t37 * t48)),
-        );
-        let t65 = T::fused(
-            rotor_wz,
-            T::fused(t24, t59, T::fused(-t13, t54, t20 * t56)),
-            rotor_wy * T::fused(t24, t62, T::fused(t13, t60, t20 * t61)),
+        let t56 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t43, T::fused(t41, t18, t22 * t38)),
+            t55,
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
-            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
+            -(k(2.0) * T::fused(-outer_ring_wx, t1, t4 * outer_ring_wz)),
+            k(2.0) * T::fused(-outer_ring_wz, t5, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t39 + t29),
-            t40 - t41,
-            rotor_sx
-                - T::fused(
-                    -k(0.005),
-                    T::fused(-inner_ring_wz, t36, inner_ring_wy * t13),
-                    inner_ring_sx,
-                ),
-            rotor_sy
-                - T::fused(
-                    -k(0.005),
-                    T::fused(inner_ring_wz, t37, inner_ring_wy * t20),
-                    inner_ring_sy,
-                ),
-            rotor_sz
-                - T::fused(
-                    k(0.005),
-                    T::fused(inner_ring_wz, t38, inner_ring_wy * t24),
-                    inner_ring_sz,
-                ),
-            t63 - t53,
-            -(t65 + t64),
+            k(4.0) * t33,
+            -(k(4.0) * t35),
+            T::fused(
+                k(0.01),
+                T::fused(-t25, inner_ring_wz, t16 * inner_ring_wy),
+                -(inner_ring_sx - rotor_sx),
+            ),
+            T::fused(
+                k(0.01),
+                T::fused(-inner_ring_wz, t18, t11 * inner_ring_wy),
+                -(inner_ring_sy - rotor_sy),
+            ),
+            -T::fused(
+                k(0.01),
+                T::fused(-inner_ring_wy, t8, t22 * inner_ring_wz),
+                inner_ring_sz - rotor_sz,
+            ),
+            -(k(4.0) * T::fused(inner_ring_wz, t54, -t53)),
+            k(4.0) * T::fused(inner_ring_wy, t54, t56),
         ];
     }
-    /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
+    /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -737,65 +715,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeGimbalLock<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
-        );
-        let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.01),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t2),
+            ),
+        );
+        let t4 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t3,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: T::fused(
-                k(0.8),
-                rotor_ry,
-                k(0.1) * (outer_ring_ry + inner_ring_ry),
-            ),
+            kinetic: k(5e-7) * t4,
+            potential: k(0.1) * T::fused(k(8.0), rotor_ry, outer_ring_ry + inner_ring_ry),
         }
     }
-    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
+    /// Writes the joint readings: 104 operations (54 ±, 50 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -817,71 +794,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeGimbalLock<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e3 * outer_ring_e3;
         let t3 = outer_ring_e0 * outer_ring_e0;
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
-        let t5 = outer_ring_e3 * outer_ring_e3;
-        let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
-            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
-        );
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = k(0.5) * (k(1.0) - (t5 + (t4 + t2)));
+        let t7 = inner_ring_e3 * inner_ring_e3;
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = T::fused(inner_ring_e1, inner_ring_e1, t8);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = k(0.5) * (k(1.0) - (t10 + (t9 + t7)));
+        let t12 = k(0.5) - t9 - t11;
+        let t13 = outer_ring_e0 * outer_ring_e3;
+        let t14 = outer_ring_e1 * outer_ring_e2;
+        let t15 = inner_ring_e0 * inner_ring_e3;
+        let t16 = inner_ring_e1 * inner_ring_e2;
+        let t17 = t16 + t15;
+        let t18 = T::fused(t14 - t13, t12, t17 * (k(0.5) - (t3 + t5) - t6));
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = t20 - t19;
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            t1 - t0,
+            t21,
+            T::fused(t12, k(0.5) - t4 - t6, (t14 + t13) * t17),
         );
-        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t24 = rotor_e2 * rotor_e2;
-        let t25 = rotor_e0 * rotor_e0;
-        let t26 = T::fused(
-            k(2.0),
-            k(0.5) - (t25 + t24),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        let t23 = rotor_e2 * rotor_e2;
+        let t24 = rotor_e0 * rotor_e0;
+        let t25 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t24 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t24 + t23))),
         );
+        let t26 = k(0.5) * (k(1.0) - (t23 + t25));
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t29 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
-            t26,
-            k(2.0) * (t11 - t10) * t29,
+            t30,
+            k(0.5) - (t8 + t7) - t11,
+            -T::fused(t28 - t27, t26, (t20 + t19) * t29),
         );
+        let t32 = T::fused(-(k(0.5) - (t8 + t10) - t11), t26, (t16 - t15) * t29);
         *out = [
             k(2.0) * (t1 + t0),
-            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
+            -(k(2.0) * (k(0.5) - (t3 + t2) - t6)),
             outer_ring_wy,
-            T::fused(
-                k(2.0)
-                    * T::fused(
+            k(4.0)
+                * T::fused(
+                    T::fused(
                         outer_ring_e0,
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
-            ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+                    t21,
+                    -t18,
+                ),
+            k(4.0) * t22,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
-            T::fused(k(2.0) * (t28 + t27), t23, t31),
+            -(k(4.0) * t31),
+            k(4.0) * T::fused(t28 + t27, t30, t32),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1025,7 +998,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeGimbalLock<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 493 operations (193 ±, 297 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1053,293 +1026,298 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeGimbalLock<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-        let t11 = t2 * t4;
-        let t12 = t3 * t5;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-        let t16 = k(2.0) * (t12 - t11);
-        let t17 = T::fused(t9, t15, t16 * t13);
-        let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t9 = T::fused(t2, t3, t7 * t6);
+        let t10 = t3 * t6;
+        let t11 = t2 * t7;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t3, t7, t2 * t6);
+        let t14 = t11 + t10;
+        let t15 = k(2.0) - T::fused(t7, t7, t4);
+        let t16 = T::fused(-t14, t12, t15 * t5);
+        let t17 = k(1.0) / (t8 * t16);
+        let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+        let t19 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
+        );
         let t20 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t19),
         );
         let t21 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t22 = k(0.5) * t21;
+        let t22 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t23 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            t9,
+            T::fused(t5, t21, t14 * t22),
+            t13 * T::fused(t15, t22, t12 * t21),
         );
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(
-            t10,
-            T::fused(t16, t22, t9 * t24),
-            t14 * T::fused(-t13, t24, t15 * t22),
-        );
-        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
-        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
-        let t28 = T::fused(
+        let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+        let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)), t3);
+        let t27 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)), t2);
+        let t28 = T::fused(k(0.5), T::fused(t2, t25, T::fused(t7, t18, t3 * t24)), t6);
+        let t29 = T::fused(
             -k(0.5),
-            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-            t3,
+            T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+            t7,
         );
-        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
-        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
-        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
-        let t32 = t29 * t30;
-        let t33 = t28 * t31;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t30 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t36 = k(0.5) * (t35 - k(3.0));
-        let t37 = inner_ring_e2 * t36;
-        let t38 = inner_ring_e1 * t36;
-        let t39 = t38 * t37;
-        let t40 = inner_ring_e3 * t36;
-        let t41 = inner_ring_e0 * t36;
-        let t42 = t41 * t40;
-        let t43 = k(2.0) * (t42 - t39);
-        let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
-        let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
-        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
-        let t49 = t37 * t40;
-        let t50 = t41 * t38;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
-        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
-        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
-        let t55 = k(2.0) * (t42 + t39);
-        let t56 = k(2.0) * (t33 + t32);
-        let t57 = t38 * t40;
-        let t58 = t41 * t37;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
-        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
-        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
-        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
-        let t64 = T::fused(-t61, t52, t63 * t62);
-        let t65 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t37,
-            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
-        );
-        let t66 = T::fused(
-            -chart1_3,
-            t38,
-            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
-        );
-        let t67 = k(0.5) * t66;
-        let t68 = T::fused(
+        let t31 = k(3.0) - t30;
+        let t32 = inner_ring_e3 * t31;
+        let t33 = inner_ring_e2 * t31;
+        let t34 = inner_ring_e1 * t31;
+        let t35 = inner_ring_e0 * t31;
+        let t36 = T::fused(
             chart1_3,
-            t37,
-            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+            t35,
+            -T::fused(chart1_2, t34, -T::fused(-chart1_0, t32, chart1_1 * t33)),
         );
-        let t69 = k(0.5) * t68;
-        let t70 = k(2.0) * (t58 + t57);
-        let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
-        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
-        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t37 = t33 * t35;
+        let t38 = t34 * t32;
+        let t39 = t38 - t37;
+        let t40 = T::fused(t26, t27, t28 * t29);
+        let t41 = t32 * t35;
+        let t42 = t33 * t34;
+        let t43 = t42 + t41;
+        let t44 = t26 * t26;
+        let t45 = k(2.0) - T::fused(t28, t28, t44);
+        let t46 = t35 * t35;
+        let t47 = k(2.0) - T::fused(t34, t34, t46);
+        let t48 = t26 * t29;
+        let t49 = t27 * t28;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t47, T::fused(-t40, t39, t45 * t43));
+        let t52 = k(2.0) - T::fused(t32, t32, t46);
+        let t53 = T::fused(-t26, t28, t27 * t29);
+        let t54 = t34 * t35;
+        let t55 = t33 * t32;
+        let t56 = t55 - t54;
+        let t57 = t49 + t48;
+        let t58 = t38 + t37;
+        let t59 = k(2.0) - T::fused(t27, t27, t44);
+        let t60 = T::fused(t59, t58, -T::fused(-t53, t52, t57 * t56));
+        let t61 = T::fused(t47, t59, T::fused(t39, t53, t43 * t57));
+        let t62 = T::fused(t50, t58, -T::fused(t40, t52, t45 * t56));
+        let t63 = t55 + t54;
+        let t64 = k(2.0) - T::fused(t33, t33, t46);
+        let t65 = t42 - t41;
+        let t66 = T::fused(t65, t59, T::fused(-t63, t53, t64 * t57));
+        let t67 = T::fused(t50, t65, T::fused(t40, t63, t45 * t64));
+        let t68 = T::fused(-t51, t66, t67 * t61);
+        let t69 = k(1.0) / (t68 * t36);
+        let t70 = t69 * T::fused(-t60, t51 * t36, t62 * (t61 * t36));
+        let t71 = t69 * T::fused(-t60, t67 * t36, t62 * (t66 * t36));
+        let t72 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t35, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t34, inner_ring_e1),
+        );
+        let t73 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t32, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t33, inner_ring_e2), t72),
+        );
+        let t74 = T::fused(
+            chart1_3,
+            t34,
+            T::fused(chart1_2, t35, -T::fused(chart1_0, t33, chart1_1 * t32)),
+        );
         let t75 = T::fused(
-            t73,
-            T::fused(-t63, t67, t61 * t69),
-            t74 * T::fused(-t62, t69, t52 * t67),
+            chart1_3,
+            t33,
+            -T::fused(chart1_2, t32, T::fused(-chart1_0, t34, chart1_1 * t35)),
         );
         let t76 = T::fused(
-            -chart1_3,
-            t41,
-            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+            -T::fused(t67, t74, t51 * t75),
+            t60,
+            T::fused(t61, t75, t66 * t74) * t62,
         );
-        let t77 = k(0.5) * t76;
-        let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
-        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
-        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
-        let t82 = T::fused(
-            k(0.5),
-            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
-            t41,
-        );
-        let t83 = T::fused(
+        let t77 = T::fused(k(4.0), t68 * t73, t76) * t69;
+        let t78 = T::fused(
             -k(0.5),
-            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
-            t38,
+            T::fused(t32, t77, -T::fused(-t34, t70, t33 * t71)),
+            t35,
         );
-        let t84 = T::fused(
-            -k(0.5),
-            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
-            t37,
-        );
-        let t85 = T::fused(
+        let t79 = T::fused(
             k(0.5),
-            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
-            t40,
+            T::fused(t33, t77, T::fused(t35, t70, t32 * t71)),
+            t34,
         );
-        let t86 = t82 * t82;
-        let t87 = t83 * t84;
-        let t88 = t82 * t85;
-        let t89 = t83 * t85;
-        let t90 = t82 * t84;
-        let t91 = T::fused(
-            rotor_e3,
-            rotor_e3,
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t34, t77, T::fused(-t32, t70, t35 * t71)),
+            t33,
+        );
+        let t81 = T::fused(
+            k(0.5),
+            T::fused(t35, t77, -T::fused(t33, t70, t34 * t71)),
+            t32,
+        );
+        let t82 = t78 * t78;
+        let t83 = t78 * t81;
+        let t84 = t79 * t80;
+        let t85 = t78 * t80;
+        let t86 = t79 * t81;
+        let t87 = T::fused(
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t92 = k(0.5) * (t91 - k(3.0));
-        let t93 = rotor_e2 * t92;
-        let t94 = rotor_e3 * t92;
-        let t95 = rotor_e0 * t92;
-        let t96 = rotor_e1 * t92;
-        let t97 = T::fused(
+        let t88 = k(3.0) - t87;
+        let t89 = rotor_e0 * t88;
+        let t90 = rotor_e1 * t88;
+        let t91 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t89, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t90, rotor_e1),
+        );
+        let t92 = rotor_e2 * t88;
+        let t93 = rotor_e3 * t88;
+        let t94 = T::fused(
             chart2_3,
-            t93,
-            T::fused(-chart2_2, t94, T::fused(-chart2_1, t95, chart2_0 * t96)),
+            T::fused(-k(0.5), t93, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t92, rotor_e2), t91),
         );
-        let t98 = k(0.5) * t97;
-        let t99 = k(2.0) * (t88 - t87);
-        let t100 = t96 * t94;
-        let t101 = t95 * t93;
-        let t102 = k(2.0) * (t101 + t100);
-        let t103 = k(2.0) * (k(0.5) - T::fused(t84, t84, t86));
-        let t104 = t93 * t94;
-        let t105 = t95 * t96;
-        let t106 = k(2.0) * (t105 - t104);
-        let t107 = t84 * t85;
-        let t108 = t82 * t83;
-        let t109 = k(2.0) * (t108 + t107);
-        let t110 = t95 * t95;
-        let t111 = k(2.0) * (k(0.5) - T::fused(t94, t94, t110));
-        let t112 = T::fused(t111, t109, -T::fused(-t102, t99, t106 * t103));
-        let t113 = k(2.0) * (t90 + t89);
-        let t114 = k(2.0) * (k(0.5) - T::fused(t96, t96, t110));
-        let t115 = k(2.0) * (t108 - t107);
-        let t116 = t96 * t93;
-        let t117 = t95 * t94;
-        let t118 = k(2.0) * (t117 + t116);
-        let t119 = k(2.0) * (k(0.5) - T::fused(t85, t85, t86));
-        let t120 = k(2.0) * (t101 - t100);
-        let t121 = T::fused(t120, t119, -T::fused(t114, t113, t118 * t115));
-        let t122 = T::fused(t111, t119, T::fused(t102, t113, t106 * t115));
-        let t123 = T::fused(t109, t120, T::fused(-t99, t114, t103 * t118));
-        let t124 = k(2.0) * (t117 - t116);
-        let t125 = k(2.0) * (k(0.5) - T::fused(t93, t93, t110));
-        let t126 = k(2.0) * (t105 + t104);
-        let t127 = T::fused(t109, t126, T::fused(t99, t124, t103 * t125));
-        let t128 = T::fused(t126, t119, -T::fused(-t124, t113, t125 * t115));
-        let t129 = T::fused(-t127, t122, t112 * t128);
-        let t130 = k(1.0) / (t98 * t129);
-        let t131 = t130 * T::fused(-t121, t112 * t98, t123 * (t122 * t98));
-        let t132 = t130 * T::fused(-t121, t127 * t98, t123 * (t128 * t98));
-        let t133 = T::fused(
-            chart2_2,
-            rotor_e2 + t93,
-            T::fused(chart2_1, rotor_e1 + t96, chart2_0 * (rotor_e0 + t95)),
+        let t95 = t89 * t90;
+        let t96 = t92 * t93;
+        let t97 = t96 + t95;
+        let t98 = k(2.0) - T::fused(t81, t81, t82);
+        let t99 = t89 * t89;
+        let t100 = k(2.0) - T::fused(t92, t92, t99);
+        let t101 = t78 * t79;
+        let t102 = t80 * t81;
+        let t103 = t102 - t101;
+        let t104 = t93 * t89;
+        let t105 = t92 * t90;
+        let t106 = t105 - t104;
+        let t107 = t86 + t85;
+        let t108 = T::fused(t107, t106, -T::fused(t98, t97, t103 * t100));
+        let t109 = k(2.0) - T::fused(t93, t93, t99);
+        let t110 = t102 + t101;
+        let t111 = t96 - t95;
+        let t112 = k(2.0) - T::fused(t80, t80, t82);
+        let t113 = t92 * t89;
+        let t114 = t93 * t90;
+        let t115 = t114 + t113;
+        let t116 = t84 - t83;
+        let t117 = T::fused(t116, t115, -T::fused(t110, t109, t112 * t111));
+        let t118 = T::fused(t116, t106, T::fused(t110, t97, t112 * t100));
+        let t119 = T::fused(t115, t107, T::fused(t109, t98, t111 * t103));
+        let t120 = T::fused(-t117, t108, t119 * t118);
+        let t121 = T::fused(
+            chart2_3,
+            t89,
+            -T::fused(chart2_2, t90, -T::fused(-chart2_0, t93, chart2_1 * t92)),
         );
+        let t122 = T::fused(
+            chart2_3,
+            t90,
+            T::fused(chart2_2, t89, -T::fused(chart2_0, t92, chart2_1 * t93)),
+        );
+        let t123 = t114 - t113;
+        let t124 = t105 + t104;
+        let t125 = k(2.0) - T::fused(t90, t90, t99);
+        let t126 = T::fused(t116, t125, T::fused(-t110, t123, t112 * t124));
+        let t127 = T::fused(t107, t125, -T::fused(-t98, t123, t103 * t124));
+        let t128 = T::fused(
+            -t126,
+            T::fused(t119, t121, t108 * t122),
+            t127 * T::fused(t118, t122, t117 * t121),
+        );
+        let t129 = T::fused(
+            chart2_3,
+            t92,
+            -T::fused(chart2_2, t93, T::fused(-chart2_0, t90, chart2_1 * t89)),
+        );
+        let t130 = k(1.0) / (t129 * t120);
+        let t131 = t130 * T::fused(k(4.0), t120 * t94, t128);
+        let t132 = t130 * T::fused(-t126, t129 * t108, t127 * (t129 * t118));
+        let t133 = T::fused(-(t129 * t119), t126, t129 * t117 * t127) * t130;
         let t134 = T::fused(
-            -chart2_3,
-            t95,
-            T::fused(chart2_2, t96, T::fused(-chart2_1, t93, chart2_0 * t94)),
+            k(0.5),
+            T::fused(t93, t133, T::fused(t90, t131, t92 * t132)),
+            t89,
         );
-        let t135 = k(0.5) * t134;
+        let t135 = T::fused(
+            -k(0.5),
+            T::fused(t92, t133, -T::fused(-t89, t131, t93 * t132)),
+            t90,
+        );
         let t136 = T::fused(
-            -chart2_3,
-            t96,
-            T::fused(-chart2_2, t95, T::fused(chart2_1, t94, chart2_0 * t93)),
+            k(0.5),
+            T::fused(t90, t133, -T::fused(t93, t131, t89 * t132)),
+            t92,
         );
-        let t137 = k(0.5) * t136;
-        let t138 = T::fused(
-            t121,
-            T::fused(-t112, t135, t127 * t137),
-            t123 * T::fused(-t128, t137, t122 * t135),
-        );
-        let t139 = t130 * T::fused(T::fused(chart2_3, rotor_e3 + t94, t133), t129, t138);
-        let t140 = T::fused(
+        let t137 = T::fused(
             -k(0.5),
-            T::fused(-t94, t131, T::fused(t93, t132, t96 * t139)),
-            t95,
-        );
-        let t141 = T::fused(
-            k(0.5),
-            T::fused(-t93, t131, T::fused(-t94, t132, t95 * t139)),
-            t96,
-        );
-        let t142 = T::fused(
-            k(0.5),
-            T::fused(t96, t131, T::fused(t95, t132, t94 * t139)),
+            T::fused(t89, t133, T::fused(-t92, t131, t90 * t132)),
             t93,
-        );
-        let t143 = T::fused(
-            -k(0.5),
-            T::fused(t95, t131, T::fused(-t96, t132, t93 * t139)),
-            t94,
         );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t28;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t31;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t27;
+        y[5] = k(0.5) * t28;
+        y[6] = k(0.5) * t29;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t82;
-        y[11] = -t83;
-        y[12] = -t84;
-        y[13] = -t85;
-        y[14] = -(k(0.01) * (k(0.5) - T::fused(t83, t83, t86)));
-        y[15] = k(0.01) * (t88 + t87);
-        y[16] = -(k(0.01) * (t90 - t89));
-        y[17] = -t140;
-        y[18] = -t141;
-        y[19] = -t142;
-        y[20] = -t143;
+        y[10] = k(0.5) * t78;
+        y[11] = k(0.5) * t79;
+        y[12] = k(0.5) * t80;
+        y[13] = k(0.5) * t81;
+        y[14] = -(k(0.0025) * (k(2.0) - T::fused(t79, t79, t82)));
+        y[15] = k(0.0025) * (t84 + t83);
+        y[16] = k(0.0025) * (t86 - t85);
+        y[17] = k(0.5) * t134;
+        y[18] = k(0.5) * t135;
+        y[19] = k(0.5) * t136;
+        y[20] = k(0.5) * t137;
     }
-    /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 230 operations (96 ±, 131 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1363,110 +1341,110 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeGimbalLock<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
-        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
-        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
-        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
+        let t1 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(t1, outer_ring_wx, t4 * outer_ring_wz);
+        let t6 = t3 + t2;
+        let t7 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, outer_ring_wx, t7 * outer_ring_wz);
+        let t10 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, outer_ring_wx));
+        let t11 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t21 = inner_ring_e0 * inner_ring_e2;
-        let t22 = inner_ring_e1 * inner_ring_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = outer_ring_e0 * outer_ring_e1;
-        let t25 = outer_ring_e2 * outer_ring_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
-        let t30 = k(2.0) * (t15 + t14);
-        let t31 = inner_ring_e0 * inner_ring_e1;
-        let t32 = inner_ring_e2 * inner_ring_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
-        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
-        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
-        let t38 = k(2.0) * (t22 + t21);
-        let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
-        let t42 = T::fused(
+        let t13 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12);
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e0 * inner_ring_e1;
+        let t24 = inner_ring_e2 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0);
+        let t27 = T::fused(t1, t13, T::fused(t6, t19, (t15 - t14) * t25));
+        let t28 = T::fused(
+            -T::fused(t26, t25, -T::fused(-t16, t13, t22 * t19)),
             t11,
-            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            outer_ring_wy * t27,
         );
-        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t29 = t24 + t23;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12);
+        let t31 = t21 + t20;
+        let t32 = inner_ring_e0 * inner_ring_e3;
+        let t33 = inner_ring_e1 * inner_ring_e2;
+        let t34 = t33 - t32;
+        let t35 = T::fused(t7, t34, T::fused(-t4, t29, t31 * t30));
+        let t36 = t18 - t17;
+        let t37 = t33 + t32;
+        let t38 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12);
+        let t39 = T::fused(t7, t38, T::fused(t4, t36, t31 * t37));
+        let t40 = T::fused(inner_ring_wy, t39, T::fused(inner_ring_wx, t35, -t28));
+        let t41 = T::fused(t26, t30, T::fused(t16, t29, t22 * t34));
+        let t42 = T::fused(t22, t38, T::fused(-t16, t36, t26 * t37));
+        let t43 = k(1.0) / T::fused(-t41, t39, t42 * t35);
         let t44 = T::fused(
-            t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
-            outer_ring_wy * t41,
+            -t27,
+            t10,
+            T::fused(t7, t19, -T::fused(-t4, t13, t31 * t25)) * t11,
         );
-        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
-        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
-        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
-        let t53 = rotor_e0 * rotor_e1;
-        let t54 = rotor_e2 * rotor_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
-        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
-        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
-        let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        let t45 = T::fused(inner_ring_wy, t42, T::fused(inner_ring_wx, t41, t44));
+        let t46 = T::fused(t39 * t43, t45, T::fused(-(t42 * t43), t40, inner_ring_wx));
+        let t47 = T::fused(t35 * t43, t45, -T::fused(t41 * t43, t40, inner_ring_wy));
+        let t48 = rotor_e0 * rotor_e2;
+        let t49 = rotor_e1 * rotor_e3;
+        let t50 = t49 - t48;
+        let t51 = rotor_e0 * rotor_e3;
+        let t52 = rotor_e1 * rotor_e2;
+        let t53 = t52 + t51;
+        let t54 = rotor_e0 * rotor_e0;
+        let t55 = k(0.5) - T::fused(rotor_e1, rotor_e1, t54);
+        let t56 = T::fused(t38, t55, T::fused(t36, t50, t37 * t53));
+        let t57 = T::fused(
+            T::fused(t19, t55, -T::fused(-t13, t50, t25 * t53)),
+            t46,
+            inner_ring_wz * t56,
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t58 = k(0.5) - T::fused(rotor_e3, rotor_e3, t54);
+        let t59 = t49 + t48;
+        let t60 = rotor_e0 * rotor_e1;
+        let t61 = rotor_e2 * rotor_e3;
+        let t62 = t61 - t60;
+        let t63 = T::fused(t30, t62, -T::fused(-t29, t58, t34 * t59));
+        let t64 = t61 + t60;
+        let t65 = t52 - t51;
+        let t66 = k(0.5) - T::fused(rotor_e2, rotor_e2, t54);
+        let t67 = T::fused(t30, t66, T::fused(t29, t64, t34 * t65));
+        let t68 = T::fused(rotor_wz, t67, T::fused(rotor_wy, t63, -t57));
+        let t69 = T::fused(t13, t58, T::fused(t19, t59, t25 * t62));
+        let t70 = T::fused(t25, t66, -T::fused(-t13, t64, t19 * t65));
+        let t71 = k(1.0) / T::fused(-t69, t67, t70 * t63);
         let t72 = T::fused(
-            inner_ring_wz,
-            t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+            -T::fused(t34, t55, T::fused(-t29, t50, t30 * t53)),
+            t46,
+            t56 * t47,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
+        let t73 = T::fused(rotor_wz, t70, T::fused(rotor_wy, t69, t72));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
         y[24] = t10;
-        y[26] = t11;
+        y[26] = -t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = t46;
-        y[31] = t47;
-        y[33] = -(k(0.005) * T::fused(-t28, inner_ring_wz, t38 * t47));
-        y[34] = -(k(0.005) * T::fused(t29, inner_ring_wz, t39 * t47));
-        y[35] = k(0.005) * T::fused(t33, inner_ring_wz, t40 * t47);
-        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        y[31] = -t47;
+        y[33] = k(0.01) * T::fused(t19, t47, t34 * inner_ring_wz);
+        y[34] = -(k(0.01) * T::fused(-t25, t47, t30 * inner_ring_wz));
+        y[35] = k(0.01) * T::fused(-t13, t47, t29 * inner_ring_wz);
+        y[37] = T::fused(t67 * t71, t73, T::fused(-(t70 * t71), t68, rotor_wy));
+        y[38] = T::fused(-(t63 * t71), t73, T::fused(t69 * t71, t68, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeGimbalLock<T> {
@@ -1933,7 +1911,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 294 operations (116 ±, 178 ×, 0 ÷).
+    /// Writes γ: 288 operations (116 ±, 172 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1957,160 +1935,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = outer_ring_wx * outer_ring_wy;
-        let t6 = outer_ring_e1 * t0;
-        let t7 = k(2.0) * outer_ring_e2;
-        let t8 = outer_ring_e3 * t7;
-        let t9 = t8 + t6;
-        let t10 = outer_ring_wz * outer_ring_wz;
-        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
-        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
-        let t14 = outer_ring_wy * outer_ring_wz;
-        let t15 = T::fused(-outer_ring_e1, t2, t12);
-        let t16 = outer_ring_e3 * t0;
-        let t17 = outer_ring_e2 * t2;
-        let t18 = t17 - t16;
-        let t19 = t3 + t1;
-        let t20 = k(2.0) * inner_ring_e0;
-        let t21 = inner_ring_e2 * t20;
-        let t22 = k(2.0) * inner_ring_e1;
-        let t23 = inner_ring_e3 * t22;
-        let t24 = t23 + t21;
-        let t25 = inner_ring_e1 * t20;
-        let t26 = k(2.0) * inner_ring_e2;
-        let t27 = inner_ring_e3 * t26;
-        let t28 = t27 - t25;
-        let t29 = t17 + t16;
-        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
-        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
-        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
-        let t33 = T::fused(-outer_ring_e2, t7, t12);
-        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
-        let t35 = t8 - t6;
-        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
-        let t37 = T::fused(
-            outer_ring_wx * outer_ring_wz,
-            t36,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_wy * outer_ring_wz;
+        let t3 = outer_ring_wz * outer_ring_wz;
+        let t4 = T::fused(outer_ring_wx, outer_ring_wx, t3);
+        let t5 = outer_ring_e0 * outer_ring_e1;
+        let t6 = outer_ring_e2 * outer_ring_e3;
+        let t7 = t6 + t5;
+        let t8 = outer_ring_wx * outer_ring_wy;
+        let t9 = outer_ring_e0 * outer_ring_e2;
+        let t10 = outer_ring_e1 * outer_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t13 = t10 + t9;
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e1;
+        let t18 = inner_ring_e2 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t21 = T::fused(inner_ring_e2, inner_ring_e2, -t20);
+        let t22 = t6 - t5;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = t24 + t23;
+        let t30 = T::fused(inner_ring_e1, inner_ring_e1, -t20);
+        let t31 = T::fused(
+            -inner_ring_wx,
+            T::fused(t13, t25, T::fused(t19, t1, t22 * t21)),
+            inner_ring_wy * T::fused(t13, t30, T::fused(t28, t1, t22 * t29)),
         );
-        let t38 = T::fused(-inner_ring_e1, t22, t30);
-        let t39 = inner_ring_e3 * t20;
-        let t40 = inner_ring_e2 * t22;
-        let t41 = t40 + t39;
-        let t42 = t23 - t21;
-        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
-        let t44 = t40 - t39;
-        let t45 = T::fused(-inner_ring_e2, t26, t30);
-        let t46 = t27 + t25;
-        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
-        let t48 = T::fused(
-            -inner_ring_wy,
-            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
-            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
-        );
-        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
-        let t50 = inner_ring_wx * inner_ring_wz;
-        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
-        let t52 = inner_ring_wy * inner_ring_wz;
-        let t53 = inner_ring_wx * inner_ring_wx;
-        let t54 = inner_ring_wy * inner_ring_wy;
-        let t55 = t54 + t53;
-        let t56 = T::fused(
-            -k(2.0),
-            T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
-                outer_ring_wy * t48,
-            ),
-            T::fused(t55, t32, T::fused(t50, t49, t52 * t51)),
-        );
-        let t57 = T::fused(
+        let t32 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t33 = T::fused(t16, t25, T::fused(t32, t21, t7 * t19));
+        let t34 = T::fused(t16, t30, T::fused(t29, t32, t7 * t28));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t20);
+        let t36 = t18 - t17;
+        let t37 = t15 + t14;
+        let t38 = t27 + t26;
+        let t39 = T::fused(t38, t12, T::fused(t11, t35, t37 * t36));
+        let t40 = inner_ring_wx * inner_ring_wx;
+        let t41 = inner_ring_wy * inner_ring_wy;
+        let t42 = t41 + t40;
+        let t43 = T::fused(t25, t12, T::fused(t37, t21, t11 * t19));
+        let t44 = inner_ring_wy * inner_ring_wz;
+        let t45 = T::fused(t30, t12, T::fused(t11, t28, t37 * t29));
+        let t46 = inner_ring_wx * inner_ring_wz;
+        let t47 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
-                outer_ring_wx * t48,
+                -outer_ring_wy,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t33, inner_ring_wy * t34),
             ),
-            T::fused(t55, t34, T::fused(t50, t43, t52 * t47)),
+            T::fused(t46, t45, T::fused(-t42, t39, t44 * t43)),
         );
-        let t58 = inner_ring_wz * inner_ring_wz;
-        let t59 = t58 + t54;
-        let t60 = inner_ring_wx * inner_ring_wy;
-        let t61 = k(2.0) * rotor_e1;
-        let t62 = k(2.0) * rotor_e0;
-        let t63 = T::fused(-rotor_e0, t62, k(1.0));
-        let t64 = T::fused(-rotor_e1, t61, t63);
-        let t65 = rotor_e3 * t62;
-        let t66 = rotor_e2 * t61;
-        let t67 = t66 + t65;
-        let t68 = rotor_e2 * t62;
-        let t69 = rotor_e3 * t61;
-        let t70 = t69 - t68;
-        let t71 = T::fused(t42, t70, T::fused(t38, t64, t41 * t67));
-        let t72 = T::fused(t46, t70, -T::fused(t44, t64, t45 * t67));
-        let t73 = T::fused(t31, t70, -T::fused(-t24, t64, t28 * t67));
-        let t74 = t66 - t65;
-        let t75 = k(2.0) * rotor_e2;
-        let t76 = T::fused(-rotor_e2, t75, t63);
-        let t77 = rotor_e1 * t62;
-        let t78 = rotor_e3 * t75;
-        let t79 = t78 + t77;
-        let t80 = t69 + t68;
-        let t81 = t78 - t77;
-        let t82 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t63);
-        let t83 = T::fused(
-            rotor_wz,
-            T::fused(t42, t79, -T::fused(t38, t74, t41 * t76)),
-            rotor_wy * T::fused(t42, t82, -T::fused(-t38, t80, t41 * t81)),
+        let t48 = T::fused(t13, t38, T::fused(t35, t1, t22 * t36));
+        let t49 = T::fused(t16, t38, T::fused(t7, t35, t36 * t32));
+        let t50 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t3),
+            t39,
+            -T::fused(t8, t49, T::fused(outer_ring_wx * outer_ring_wz, t48, t47)),
         );
-        let t84 = T::fused(t31, t79, T::fused(-t24, t74, t28 * t76));
-        let t85 = T::fused(t31, t82, T::fused(t24, t80, t28 * t81));
-        let t86 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t87 = T::fused(t46, t79, T::fused(t44, t74, t45 * t76));
-        let t88 = rotor_wx * rotor_wy;
-        let t89 = T::fused(t46, t82, T::fused(-t44, t80, t45 * t81));
-        let t90 = rotor_wx * rotor_wz;
-        let t91 = T::fused(
-            k(2.0),
-            T::fused(
-                inner_ring_wz,
-                t83,
-                inner_ring_wx * T::fused(rotor_wz, t84, rotor_wy * t85),
-            ),
-            T::fused(t90, t89, -T::fused(-t86, t72, t88 * t87)),
-        );
-        let t92 = t91 + T::fused(t52, t73, T::fused(-t60, t71, (t58 + t53) * t72));
-        let t93 = T::fused(
+        let t51 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t83,
-                inner_ring_wx * T::fused(rotor_wz, t87, rotor_wy * t89),
+                -outer_ring_wx,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t43, inner_ring_wy * t45),
             ),
-            T::fused(t90, t85, -T::fused(-t86, t73, t88 * t84)),
+            T::fused(t46, t34, T::fused(-t42, t49, t44 * t33)),
         );
+        let t52 = k(4.0)
+            * T::fused(t8, t39, -T::fused(t4, t49, -T::fused(t2, t48, t51)));
+        let t53 = inner_ring_wz * inner_ring_wz;
+        let t54 = t53 + t41;
+        let t55 = inner_ring_wx * inner_ring_wy;
+        let t56 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t57 = T::fused(rotor_e3, rotor_e3, -t56);
+        let t58 = rotor_e0 * rotor_e1;
+        let t59 = rotor_e2 * rotor_e3;
+        let t60 = t59 - t58;
+        let t61 = rotor_e0 * rotor_e2;
+        let t62 = rotor_e1 * rotor_e3;
+        let t63 = t62 + t61;
+        let t64 = T::fused(t38, t63, T::fused(t57, t35, t36 * t60));
+        let t65 = t59 + t58;
+        let t66 = T::fused(rotor_e2, rotor_e2, -t56);
+        let t67 = rotor_e0 * rotor_e3;
+        let t68 = rotor_e1 * rotor_e2;
+        let t69 = t68 - t67;
+        let t70 = T::fused(t38, t69, T::fused(t65, t35, t36 * t66));
+        let t71 = T::fused(
+            -rotor_wy,
+            T::fused(t63, t30, T::fused(t28, t57, t29 * t60)),
+            rotor_wz * T::fused(t69, t30, T::fused(t29, t66, t28 * t65)),
+        );
+        let t72 = T::fused(t25, t63, T::fused(t19, t57, t60 * t21));
+        let t73 = rotor_wx * rotor_wz;
+        let t74 = T::fused(t25, t69, T::fused(t66, t21, t19 * t65));
+        let t75 = rotor_wx * rotor_wy;
+        let t76 = t68 + t67;
+        let t77 = t62 - t61;
+        let t78 = T::fused(rotor_e1, rotor_e1, -t56);
+        let t79 = T::fused(t25, t78, T::fused(t76, t21, t19 * t77));
+        let t80 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t81 = T::fused(
+            k(2.0),
+            T::fused(
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t64, rotor_wz * t70),
+                inner_ring_wz * t71,
+            ),
+            T::fused(t80, t79, -T::fused(t73, t72, t75 * t74)),
+        );
+        let t82 = T::fused(t38, t78, T::fused(t77, t35, t36 * t76));
+        let t83 = T::fused(t30, t78, T::fused(t28, t77, t29 * t76));
+        let t84 = T::fused(
+            t55,
+            t83,
+            -T::fused(t53 + t40, t79, -T::fused(t44, t82, -t81)),
+        );
+        let t85 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t72, rotor_wz * t74),
+                inner_ring_wy * t71,
+            ),
+            T::fused(t80, t82, -T::fused(t73, t64, t75 * t70)),
+        );
+        let t86 = k(4.0)
+            * T::fused(t46, t83, T::fused(t44, t79, -T::fused(t42, t82, t85)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
-            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
+            -(k(2.0) * T::fused(t11, t8, -T::fused(-t2, t1, t7 * t4))),
+            k(2.0) * T::fused(-t8, t12, T::fused(-t13, t2, t16 * t4)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t56 + t37),
-            -(t57 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
-            k(0.005) * T::fused(t50, t24, T::fused(t59, t38, t60 * t44)),
-            k(0.005) * T::fused(t50, t28, -T::fused(t59, t41, t60 * t45)),
-            -(k(0.005) * T::fused(t50, t31, -T::fused(-t59, t42, t60 * t46))),
-            t92,
-            -(t93 + T::fused(t55, t73, T::fused(t50, t71, t52 * t72))),
+            k(4.0) * t50,
+            -t52,
+            k(0.01) * T::fused(-t54, t30, T::fused(t38, t46, t25 * t55)),
+            -(k(0.01) * T::fused(t29, t54, -T::fused(t55, t21, t36 * t46))),
+            -(k(0.01) * T::fused(t28, t54, -T::fused(t46, t35, t19 * t55))),
+            -(k(4.0) * t84),
+            -t86,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
@@ -2149,7 +2126,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
             rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 413 operations (166 ±, 242 ×, 5 ÷).
+    /// Solves eq. (17): 407 operations (164 ±, 238 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2173,16 +2150,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e2;
-        let t1 = k(2.0) * outer_ring_e0;
-        let t2 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
-            / T::fused(-outer_ring_e2, t0, T::fused(-outer_ring_e0, t1, k(1.0)));
-        let t3 = T::fused(
-            -T::fused(-outer_ring_e1, t1, outer_ring_e3 * t0),
-            t2,
+        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            / (k(0.5)
+                - T::fused(outer_ring_e2, outer_ring_e2, outer_ring_e0 * outer_ring_e0));
+        let t1 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
+            t0,
             outer_ring_wy * outer_ring_wz,
         );
-        let t4 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2191,18 +2167,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t5 = k(2.0) * t4;
-        let t6 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t7 = t6 * t5;
-        let t8 = T::fused(
+        let t3 = T::fused(-t2, t2, k(0.5));
+        let t4 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2211,8 +2177,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t9 = k(2.0) * t8;
-        let t10 = T::fused(
+        let t5 = T::fused(t4, t4, -t3);
+        let t6 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -2221,26 +2187,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t11 = t10 * t9;
-        let t12 = t11 + t7;
-        let t13 = k(5e-6) * t12;
-        let t14 = t10 * t5;
-        let t15 = t6 * t9;
-        let t16 = t15 - t14;
-        let t17 = k(5e-6) * t16;
-        let t18 = t8 * t5;
-        let t19 = k(2.0) * t10;
-        let t20 = t6 * t19;
-        let t21 = t20 - t18;
-        let t22 = T::fused(-t4, t5, k(1.0));
-        let t23 = T::fused(-t6, k(2.0) * t6, t22);
-        let t24 = T::fused(-t21, t13, t23 * t17);
-        let t25 = k(1e-6)
-            + (k(2e-6) + T::fused(t21, k(5e-6) * t21, t23 * (k(5e-6) * t23)));
-        let t26 = k(1.0) / t25;
-        let t27 = t26 * t24;
-        let t28 = T::fused(t24, t27, -(k(1e-6) + T::fused(t12, t13, t16 * t17)));
-        let t29 = T::fused(
+        let t7 = t2 * t6;
+        let t8 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t9 = t4 * t8;
+        let t10 = t2 * t8;
+        let t11 = t4 * t6;
+        let t12 = T::fused(
+            inner_ring_wx,
+            t5,
+            T::fused(inner_ring_wz, t9 + t7, inner_ring_wy * (t11 - t10)),
+        );
+        let t13 = T::fused(t8, t8, -t3);
+        let t14 = t2 * t4;
+        let t15 = t6 * t8;
+        let t16 = t15 + t14;
+        let t17 = t9 - t7;
+        let t18 = T::fused(
+            inner_ring_wx,
+            t17,
+            T::fused(inner_ring_wz, t13, inner_ring_wy * t16),
+        );
+        let t19 = T::fused(t6, t6, -t3);
+        let t20 = t15 - t14;
+        let t21 = t11 + t10;
+        let t22 = T::fused(
+            inner_ring_wx,
+            t21,
+            T::fused(inner_ring_wy, t19, inner_ring_wz * t20),
+        );
+        let t23 = T::fused(k(0.5), rotor_wy, -t22);
+        let t24 = T::fused(k(0.5), rotor_wz, -t18);
+        let t25 = T::fused(t23, t23, t24 * t24) / t5;
+        let t26 = T::fused(k(0.5), rotor_wx, -t12);
+        let t27 = T::fused(
+            t26,
+            t24,
+            T::fused(k(0.5), T::fused(-rotor_wz, t12, rotor_wx * t18), t17 * t25),
+        );
+        let t28 = k(0.25) * rotor_wx;
+        let t29 = T::fused(rotor_wz, t28, t27);
+        let t30 = T::fused(
+            t26,
+            t23,
+            T::fused(-k(0.5), T::fused(-rotor_wx, t22, rotor_wy * t12), t21 * t25),
+        );
+        let t31 = T::fused(rotor_wy, t28, t30);
+        let t32 = k(5.0) * t29;
+        let t33 = k(5.0) * t31;
+        let t34 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t34);
+        let t36 = inner_ring_wx * inner_ring_wz;
+        let t37 = inner_ring_wx * inner_ring_wy;
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = t39 + t38;
+        let t41 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t42 = inner_ring_e0 * inner_ring_e2;
+        let t43 = inner_ring_e1 * inner_ring_e3;
+        let t44 = T::fused(t43 - t42, t41, -T::fused(t36, t35, t40 * t37));
+        let t45 = T::fused(inner_ring_e2, inner_ring_e2, -t34);
+        let t46 = t39 - t38;
+        let t47 = inner_ring_e0 * inner_ring_e3;
+        let t48 = inner_ring_e1 * inner_ring_e2;
+        let t49 = T::fused(t48 + t47, t41, -T::fused(t37, t45, t46 * t36));
+        let t50 = k(1000.0) - t49;
+        let t51 = t43 + t42;
+        let t52 = t48 - t47;
+        let t53 = T::fused(
+            -t41,
+            T::fused(inner_ring_e1, inner_ring_e1, -t34),
+            T::fused(t51, t36, t52 * t37),
+        );
+        let t54 = T::fused(
+            t52,
+            t53,
+            T::fused(t45, t50, T::fused(-t40, t44, k(0.125) * t37)),
+        );
+        let t55 = T::fused(t20, t32, T::fused(-t13, t33, t54));
+        let t56 = k(1.0) / (k(0.15) + T::fused(t13, t13, t20 * t20));
+        let t57 = t56 * t55;
+        let t58 = T::fused(t17, t13, t21 * t20);
+        let t59 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2249,18 +2284,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t32 = t31 * t30;
-        let t33 = T::fused(
+        let t60 = T::fused(-t59, t59, k(0.5));
+        let t61 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2269,8 +2294,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t34 = k(2.0) * t33;
-        let t35 = T::fused(
+        let t62 = T::fused(t61, t61, -t60);
+        let t63 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2279,175 +2304,141 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t36 = t35 * t34;
-        let t37 = t36 - t32;
-        let t38 = T::fused(-t10, t19, t22);
-        let t39 = t20 + t18;
-        let t40 = k(5e-6) * t38;
-        let t41 = k(5e-6) * t39;
-        let t42 = T::fused(t21, t40, t23 * t41);
-        let t43 = T::fused(t42, t27, -T::fused(-t38, t13, t39 * t17));
-        let t44 = k(2.0) * t35;
-        let t45 = T::fused(-t29, t30, k(1.0));
-        let t46 = T::fused(-t35, t44, t45);
-        let t47 = T::fused(-t37, t28, t46 * t43);
-        let t48 = T::fused(
-            t42,
-            t26 * t42,
-            -(k(2e-6) + (k(2e-6) + T::fused(t38, t40, t39 * t41))),
-        );
-        let t49 = T::fused(-t37, t43, t46 * t48);
-        let t50 = T::fused(-t8, t9, t22);
-        let t51 = T::fused(
-            inner_ring_wz,
-            t15 + t14,
-            T::fused(-inner_ring_wx, t50, inner_ring_wy * (t11 - t7)),
-        );
-        let t52 = rotor_wx - t51;
-        let t53 = T::fused(
-            inner_ring_wz,
-            t23,
-            -T::fused(inner_ring_wx, t16, inner_ring_wy * t39),
-        );
-        let t54 = rotor_wz + t53;
-        let t55 = T::fused(
-            inner_ring_wz,
-            t21,
-            -T::fused(-inner_ring_wx, t12, inner_ring_wy * t38),
-        );
-        let t56 = rotor_wy - t55;
-        let t57 = T::fused(t54, t54, t56 * t56) / t50;
-        let t58 = T::fused(rotor_wx, t53, rotor_wz * t51)
-            + T::fused(-t54, t52, t16 * t57);
-        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t58);
-        let t60 = T::fused(-rotor_wy, t51, rotor_wx * t55)
-            - T::fused(-t56, t52, t12 * t57);
-        let t61 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t60);
-        let t62 = k(2.0) * inner_ring_e0;
-        let t63 = inner_ring_e3 * t62;
-        let t64 = k(2.0) * inner_ring_e1;
-        let t65 = inner_ring_e2 * t64;
-        let t66 = t65 - t63;
-        let t67 = k(0.005) * t66;
-        let t68 = T::fused(-inner_ring_e0, t62, k(1.0));
-        let t69 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t70 = inner_ring_wx * inner_ring_wy;
-        let t71 = inner_ring_e2 * t62;
-        let t72 = inner_ring_e3 * t64;
-        let t73 = t72 + t71;
-        let t74 = inner_ring_wx * inner_ring_wz;
-        let t75 = T::fused(
-            t74,
-            t73,
-            T::fused(t69, T::fused(-inner_ring_e1, t64, t68), t70 * t66),
-        );
-        let t76 = k(0.0004) * t75;
-        let t77 = k(2.0) * inner_ring_e2;
-        let t78 = T::fused(-inner_ring_e2, t77, t68);
-        let t79 = k(0.005) * t78;
-        let t80 = inner_ring_e1 * t62;
-        let t81 = inner_ring_e3 * t77;
-        let t82 = t81 - t80;
-        let t83 = T::fused(t74, t82, -T::fused(t69, t65 + t63, t70 * t78));
-        let t84 = T::fused(k(0.0004), t83, k(0.8));
-        let t85 = t81 + t80;
-        let t86 = k(0.005) * t85;
-        let t87 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t68);
-        let t88 = T::fused(t74, t87, -T::fused(-t69, t72 - t71, t70 * t85));
-        let t89 = k(0.0004) * t88;
-        let t90 = T::fused(t89, t86, T::fused(-t76, t67, t84 * t79))
-            - T::fused(t21, t59, t23 * t61);
-        let t91 = T::fused(k(1e-6), t70, -t90);
-        let t92 = t26 * t91;
-        let t93 = T::fused(
-            t24,
-            t92,
-            -T::fused(
-                k(1e-6),
-                inner_ring_wy * inner_ring_wz,
-                T::fused(-t12, t59, t16 * t61),
+        let t64 = t59 * t63;
+        let t65 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t94 = t35 * t30;
-        let t95 = t31 * t34;
-        let t96 = t33 * t30;
-        let t97 = t31 * t44;
-        let t98 = T::fused(-t31, k(2.0) * t31, t45);
-        let t99 = T::fused(
-            outer_ring_wz,
-            t98,
-            -T::fused(outer_ring_wx, t95 - t94, outer_ring_wy * (t97 + t96)),
+        let t66 = t61 * t65;
+        let t67 = t66 + t64;
+        let t68 = t59 * t65;
+        let t69 = t61 * t63;
+        let t70 = t69 - t68;
+        let t71 = T::fused(
+            outer_ring_wx,
+            t62,
+            T::fused(outer_ring_wz, t67, outer_ring_wy * t70),
         );
-        let t100 = inner_ring_wz + t99;
-        let t101 = t36 + t32;
-        let t102 = t97 - t96;
-        let t103 = T::fused(
-            outer_ring_wz,
-            t102,
-            -T::fused(-outer_ring_wx, t101, outer_ring_wy * t46),
+        let t72 = T::fused(t65, t65, -t60);
+        let t73 = t59 * t61;
+        let t74 = t63 * t65;
+        let t75 = T::fused(
+            outer_ring_wx,
+            t66 - t64,
+            T::fused(outer_ring_wz, t72, outer_ring_wy * (t74 + t73)),
         );
-        let t104 = inner_ring_wy - t103;
-        let t105 = T::fused(-t33, t34, t45);
-        let t106 = t95 + t94;
-        let t107 = T::fused(
-            outer_ring_wz,
-            t106,
-            T::fused(-outer_ring_wx, t105, outer_ring_wy * t37),
+        let t76 = T::fused(k(0.5), inner_ring_wx, -t71);
+        let t77 = T::fused(t63, t63, -t60);
+        let t78 = t74 - t73;
+        let t79 = t69 + t68;
+        let t80 = T::fused(
+            outer_ring_wx,
+            t79,
+            T::fused(outer_ring_wy, t77, outer_ring_wz * t78),
         );
-        let t108 = inner_ring_wx - t107;
-        let t109 = T::fused(t104, t104, t108 * t108) / t98;
-        let t110 = T::fused(inner_ring_wz, t103, inner_ring_wy * t99)
-            - T::fused(-t104, t100, t102 * t109);
-        let t111 = T::fused(inner_ring_wx, t99, inner_ring_wz * t107)
-            - T::fused(-t108, t100, t106 * t109);
-        let t112 = k(0.005) * t73;
-        let t113 = k(0.005) * t82;
-        let t114 = k(0.005) * t87;
-        let t115 = T::fused(t89, t114, T::fused(t76, t112, t84 * t113))
-            + T::fused(t38, t59, t39 * t61);
-        let t116 = T::fused(
-            -t37,
-            T::fused(-t28, t110, t43 * t111) + t93,
-            t46 * (T::fused(-t43, t110, t48 * t111) + T::fused(t42, t92, -t115)),
+        let t81 = T::fused(k(0.5), inner_ring_wy, -t80);
+        let t82 = T::fused(t76, t76, t81 * t81) / t72;
+        let t83 = T::fused(k(0.5), inner_ring_wz, -t75);
+        let t84 = T::fused(
+            t83,
+            t76,
+            T::fused(
+                -k(0.5),
+                T::fused(-inner_ring_wz, t71, inner_ring_wx * t75),
+                t67 * t82,
+            ),
         );
-        let t117 = T::fused(
-            -t37,
-            T::fused(-t105, t28, t101 * t43),
-            t46 * T::fused(-t105, t43, t101 * t48),
+        let t85 = T::fused(t16, t13, t20 * t19);
+        let t86 = t58 * t56;
+        let t87 = T::fused(t21, t19, T::fused(-t86, t85, t17 * t16));
+        let t88 = T::fused(
+            t83,
+            t81,
+            T::fused(
+                k(0.5),
+                T::fused(-inner_ring_wy, t75, inner_ring_wz * t80),
+                t78 * t82,
+            ),
         );
-        let t118 = T::fused(
-            -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
-            t2,
+        let t89 = k(0.05) + T::fused(t21, t21, T::fused(-t58, t86, t17 * t17));
+        let t90 = T::fused(-k(0.2), t58 * t57, k(2.0) * T::fused(-t87, t84, t89 * t88));
+        let t91 = T::fused(
+            -t21,
+            t29,
+            T::fused(t17, t31, T::fused(k(0.025), inner_ring_wy * inner_ring_wz, -t90)),
+        );
+        let t92 = k(0.2) + T::fused(t19, t19, T::fused(-t85, t56 * t85, t16 * t16));
+        let t93 = T::fused(
+            t35,
+            t44,
+            T::fused(-t85, t57, k(10.0) * T::fused(-t92, t84, t87 * t88)),
+        );
+        let t94 = T::fused(
+            -t19,
+            t32,
+            T::fused(t16, t33, T::fused(t51, t53, T::fused(t46, t50, -t93))),
+        );
+        let t95 = T::fused(t77, t92, t70 * t87);
+        let t96 = T::fused(t87, t77, t70 * t89);
+        let t97 = T::fused(
+            -T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2),
+            t0,
             outer_ring_wx * outer_ring_wy,
         );
-        let t119 = T::fused(-t3, t117, t118 * T::fused(t106, t47, t102 * t49))
-            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t116);
-        let t120 = t119 / (k(1e-6) - T::fused(-t37, t47, t46 * t49));
-        let t121 = t110 + T::fused(t106, t118, -T::fused(-t105, t3, t37 * t120));
-        let t122 = t111 - T::fused(t102, t118, T::fused(-t101, t3, t46 * t120));
-        let t123 = t26 * (t91 + T::fused(-t24, t121, t42 * t122));
+        let t98 = T::fused(
+            t77,
+            T::fused(t79, t92, t87 * t62),
+            t70 * T::fused(t79, t87, t89 * t62),
+        );
+        let t99 = T::fused(
+            k(0.0125),
+            outer_ring_wx * outer_ring_wz,
+            -T::fused(-t97, T::fused(t78, t95, t67 * t96), t1 * t98),
+        );
+        let t100 = T::fused(-t70, t91, T::fused(-k(0.2), t77 * t94, t99))
+            / (k(0.0125) + T::fused(t77, t95, t70 * t96));
+        let t101 = T::fused(
+            t1,
+            t62,
+            -T::fused(-t70, t100, T::fused(k(2.0), t88, t67 * t97)),
+        );
+        let t102 = T::fused(
+            t79,
+            t1,
+            -T::fused(-t77, t100, T::fused(-k(2.0), t84, t78 * t97)),
+        );
+        let t103 = t56 * T::fused(-t58, t101, T::fused(-t85, t102, k(0.2) * t55));
+        let t104 = k(4.0)
+            * T::fused(-t21, t101, T::fused(-t19, t102, T::fused(-t20, t103, t27)));
+        let t105 = k(4.0)
+            * T::fused(t17, t101, T::fused(t16, t102, T::fused(t13, t103, t30)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t3,
-            -t120,
-            t118,
+            -t1,
+            -t100,
+            t97,
             k(0.0),
             k(0.0),
             k(0.0),
-            t121,
-            -t122,
-            -t123,
-            T::fused(k(0.005), t75, -T::fused(-t112, t122, t67 * t123)),
-            T::fused(k(0.005), t83, T::fused(t113, t122, t79 * t123)),
-            -T::fused(k(0.005), t88, T::fused(t114, t122, t86 * t123)),
+            -(k(2.0) * t101),
+            -(k(2.0) * t102),
+            -(k(2.0) * t103),
+            k(0.02) * T::fused(t51, t102, T::fused(-t52, t103, k(0.5) * t53)),
+            -(k(0.02) * T::fused(-t46, t102, T::fused(t45, t103, k(0.5) * t49))),
+            -(k(0.02) * T::fused(-t35, t102, T::fused(t40, t103, k(0.5) * t44))),
             k(0.0),
-            -(t58 + T::fused(t21, t123, -T::fused(t12, t121, t38 * t122))),
-            T::fused(t23, t123, -T::fused(-t16, t121, t39 * t122)) - t60,
+            t104,
+            -t105,
         ];
     }
-    /// Writes λ: 283 operations (108 ±, 172 ×, 3 ÷).
+    /// Writes λ: 276 operations (108 ±, 165 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2493,162 +2484,144 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeGimbalLock<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = k(2.0) * rotor_e1;
-        let t7 = k(2.0) * rotor_e0;
-        let t8 = T::fused(-rotor_e0, t7, k(1.0));
-        let t9 = T::fused(-rotor_e1, t6, t8);
-        let t10 = k(2.0) * inner_ring_e1;
-        let t11 = k(2.0) * inner_ring_e0;
-        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
-        let t13 = T::fused(-inner_ring_e1, t10, t12);
-        let t14 = rotor_e3 * t7;
-        let t15 = rotor_e2 * t6;
-        let t16 = t15 + t14;
-        let t17 = inner_ring_e3 * t11;
-        let t18 = inner_ring_e2 * t10;
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = rotor_dsy + k(10.0);
+        let t2 = k(10.0) + T::fused(k(8.0), t1, inner_ring_dsy);
+        let t3 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t4 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t5 = T::fused(rotor_e3, rotor_e3, -t4);
+        let t6 = inner_ring_e0 * inner_ring_e2;
+        let t7 = inner_ring_e1 * inner_ring_e3;
+        let t8 = t7 - t6;
+        let t9 = rotor_e0 * rotor_e1;
+        let t10 = rotor_e2 * rotor_e3;
+        let t11 = t10 - t9;
+        let t12 = inner_ring_e0 * inner_ring_e3;
+        let t13 = inner_ring_e1 * inner_ring_e2;
+        let t14 = t13 + t12;
+        let t15 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t16 = T::fused(inner_ring_e1, inner_ring_e1, -t15);
+        let t17 = rotor_e0 * rotor_e2;
+        let t18 = rotor_e1 * rotor_e3;
         let t19 = t18 + t17;
-        let t20 = rotor_e2 * t7;
-        let t21 = rotor_e3 * t6;
-        let t22 = t21 - t20;
-        let t23 = inner_ring_e2 * t11;
-        let t24 = inner_ring_e3 * t10;
-        let t25 = t24 - t23;
-        let t26 = k(1e-5) * rotor_dwx;
-        let t27 = t15 - t14;
-        let t28 = k(2.0) * rotor_e2;
-        let t29 = T::fused(-rotor_e2, t28, t8);
-        let t30 = rotor_e1 * t7;
-        let t31 = rotor_e3 * t28;
-        let t32 = t31 + t30;
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t34 = T::fused(
-            t26,
-            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
-            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
+        let t20 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t21 = T::fused(
+            t20,
+            T::fused(t19, t16, T::fused(t8, t5, t14 * t11)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t35 = t21 + t20;
-        let t36 = t31 - t30;
-        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
-        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t39 = T::fused(
-            t38,
-            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
-            t34,
+        let t22 = T::fused(rotor_e2, rotor_e2, -t4);
+        let t23 = t10 + t9;
+        let t24 = rotor_e0 * rotor_e3;
+        let t25 = rotor_e1 * rotor_e2;
+        let t26 = t25 - t24;
+        let t27 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t28 = T::fused(t27, T::fused(t26, t16, T::fused(t14, t22, t8 * t23)), -t21);
+        let t29 = T::fused(rotor_e1, rotor_e1, -t4);
+        let t30 = t18 - t17;
+        let t31 = t25 + t24;
+        let t32 = T::fused(
+            k(2.0),
+            rotor_dwx * T::fused(t16, t29, T::fused(t8, t30, t14 * t31)),
+            t28,
         );
-        let t40 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t39,
-        );
-        let t41 = k(2.0) * outer_ring_e1;
-        let t42 = k(2.0) * outer_ring_e0;
-        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
-        let t44 = T::fused(-outer_ring_e1, t41, t43);
-        let t45 = outer_ring_e3 * t42;
-        let t46 = outer_ring_e2 * t41;
+        let t33 = k(0.025) * t32;
+        let t34 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t35 = T::fused(outer_ring_e1, outer_ring_e1, -t34);
+        let t36 = outer_ring_e0 * outer_ring_e2;
+        let t37 = outer_ring_e1 * outer_ring_e3;
+        let t38 = t37 - t36;
+        let t39 = outer_ring_e0 * outer_ring_e3;
+        let t40 = outer_ring_e1 * outer_ring_e2;
+        let t41 = t40 + t39;
+        let t42 = T::fused(t16, t35, T::fused(t38, t8, t41 * t14));
+        let t43 = k(0.05) * rotor_dwx;
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t15);
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
         let t47 = t46 + t45;
-        let t48 = outer_ring_e2 * t42;
-        let t49 = outer_ring_e3 * t41;
-        let t50 = t49 - t48;
-        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
-        let t52 = t18 - t17;
-        let t53 = k(2.0) * inner_ring_e2;
-        let t54 = T::fused(-inner_ring_e2, t53, t12);
-        let t55 = inner_ring_e1 * t11;
-        let t56 = inner_ring_e3 * t53;
-        let t57 = t56 + t55;
-        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
-        let t59 = T::fused(
-            t26,
-            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
-            t33 * t58,
+        let t48 = t13 - t12;
+        let t49 = k(0.025) * t27;
+        let t50 = T::fused(t48, t26, T::fused(t22, t44, t47 * t23));
+        let t51 = k(0.025) * t20;
+        let t52 = T::fused(t48, t19, T::fused(t47, t5, t11 * t44));
+        let t53 = T::fused(inner_ring_e3, inner_ring_e3, -t15);
+        let t54 = t46 - t45;
+        let t55 = t7 + t6;
+        let t56 = T::fused(
+            t55,
+            rotor_dsx,
+            T::fused(t54, t1, -T::fused(-rotor_dsz, t53, k(0.0025) * inner_ring_dwy)),
         );
-        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
-        let t61 = t24 + t23;
-        let t62 = t56 - t55;
-        let t63 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
-        let t64 = T::fused(
-            t4,
-            k(0.005) * t63,
-            -T::fused(t0, k(0.005) * t61, t2 * (k(0.005) * t62)),
+        let t57 = T::fused(
+            -T::fused(t48, t29, T::fused(t31, t44, t47 * t30)),
+            t43,
+            T::fused(-t50, t49, T::fused(t52, t51, t56)),
         );
-        let t65 = T::fused(k(2e-6), inner_ring_dwy, t64 + T::fused(t38, t60, t59));
-        let t66 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
-        let t67 = T::fused(t63, t32, T::fused(-t61, t27, t62 * t29));
-        let t68 = T::fused(
-            t26,
-            T::fused(t63, t22, -T::fused(-t61, t9, t62 * t16)),
-            t33 * t67,
+        let t58 = T::fused(t48, t35, T::fused(t41, t44, t38 * t47));
+        let t59 = T::fused(t55, t26, T::fused(t23, t53, t54 * t22));
+        let t60 = T::fused(t55, t19, T::fused(t5, t53, t54 * t11));
+        let t61 = T::fused(
+            t44,
+            t1,
+            T::fused(
+                k(0.00125),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t47 * rotor_dsz,
+            ),
         );
-        let t69 = T::fused(t63, t37, T::fused(t61, t35, t62 * t36));
-        let t70 = T::fused(
-            t4,
-            k(0.005) * t57,
-            -T::fused(-t0, k(0.005) * t52, t2 * (k(0.005) * t54)),
+        let t62 = T::fused(
+            T::fused(t55, t29, T::fused(t30, t53, t54 * t31)),
+            t43,
+            T::fused(t59, t49, T::fused(-t60, t51, T::fused(t48, rotor_dsx, t61))),
         );
+        let t63 = T::fused(
+            T::fused(t55, t35, T::fused(t38, t53, t41 * t54)),
+            t62,
+            k(0.000625) * outer_ring_dwx,
+        );
+        let t64 = T::fused(t42, t33, T::fused(-t58, t57, t63));
+        let t65 = T::fused(outer_ring_e3, outer_ring_e3, -t34);
+        let t66 = t37 + t36;
+        let t67 = k(1.0) / T::fused(-t35, t65, t66 * t38);
+        let t68 = outer_ring_e0 * outer_ring_e1;
+        let t69 = outer_ring_e2 * outer_ring_e3;
+        let t70 = t69 - t68;
         let t71 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t70 - T::fused(t38, t69, t68),
+            -T::fused(t66, t55, T::fused(t53, t65, t70 * t54)),
+            t62,
+            k(0.0003125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t72 = T::fused(
-            T::fused(t50, t63, -T::fused(-t44, t61, t47 * t62)),
-            t71,
-            -T::fused(-t51, t40, t66 * t65),
-        );
-        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
-        let t74 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
-        let t75 = t49 + t48;
-        let t76 = k(1.0) / T::fused(-t44, t74, t75 * t50);
-        let t77 = outer_ring_e1 * t42;
-        let t78 = k(2.0) * outer_ring_e2;
-        let t79 = outer_ring_e3 * t78;
-        let t80 = t79 - t77;
-        let t81 = T::fused(
-            -T::fused(t74, t25, -T::fused(-t75, t13, t80 * t19)),
-            t40,
-            T::fused(t74, t57, T::fused(-t75, t52, t80 * t54)) * t65,
-        );
-        let t82 = T::fused(T::fused(t74, t63, T::fused(t75, t61, t80 * t62)), t71, -t81);
-        let t83 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t82,
-        );
-        let t84 = t46 - t45;
-        let t85 = T::fused(-outer_ring_e2, t78, t43);
-        let t86 = t79 + t77;
-        let t87 = T::fused(t86, t25, -T::fused(t84, t13, t85 * t19));
-        let t88 = T::fused(t86, t57, T::fused(t84, t52, t85 * t54));
-        let t89 = k(1.0) / T::fused(-t87, t66, t88 * t51);
-        let t90 = k(1.0) / T::fused(-t67, t60, t69 * t58);
+        let t72 = T::fused(T::fused(t66, t48, T::fused(t47, t65, t70 * t44)), t57, t71);
+        let t73 = T::fused(-T::fused(t66, t16, T::fused(t8, t65, t70 * t14)), t33, t72);
+        let t74 = T::fused(outer_ring_e2, outer_ring_e2, -t34);
+        let t75 = t69 + t68;
+        let t76 = t40 - t39;
+        let t77 = T::fused(t76, t48, T::fused(t74, t44, t75 * t47));
+        let t78 = T::fused(t76, t16, T::fused(t14, t74, t75 * t8));
+        let t79 = k(1.0) / T::fused(-t77, t42, t78 * t58);
+        let t80 = k(1.0) / T::fused(-t60, t50, t59 * t52);
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t44 * t76, t73, t75 * t76 * t83),
-            -T::fused(t50 * t76, t73, t74 * t76 * t83),
-            -t1,
-            -t3,
-            -t5,
-            T::fused(-(t88 * t89), t65, t87 * t89 * t40),
-            T::fused(-(t51 * t89), t40, t66 * t89 * t65),
-            -t0,
-            -t2,
-            -t4,
-            T::fused(t33, t67 * t90, t38 * (t69 * t90)),
-            T::fused(t33, t58 * t90, t38 * (t60 * t90)),
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (k(10.0) + (outer_ring_dsy + t2))),
+            -(k(0.01) * (outer_ring_dsz + t3)),
+            -(k(0.0016) * T::fused(-(t35 * t67), t64, t66 * t67 * t73)),
+            k(0.0016) * T::fused(-(t38 * t67), t64, t65 * t67 * t73),
+            -(k(0.01) * t0),
+            -(k(0.01) * t2),
+            -(k(0.01) * t3),
+            k(0.0002) * T::fused(-(t77 * t79), t57, t78 * t79 * t33),
+            -(k(0.0002) * T::fused(-(t58 * t79), t57, t42 * t79 * t33)),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t1),
+            -(k(0.08) * rotor_dsz),
+            k(1.25e-6) * T::fused(-t20, t60 * t80, t27 * (t59 * t80)),
+            -(k(1.25e-6) * T::fused(-t20, t52 * t80, t27 * (t50 * t80))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeGimbalLock<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 381 operations (144 ±, 232 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 362 operations (141 ±, 216 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2684,173 +2657,241 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeGimbalLock<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
-        let t3 = k(2.0) * outer_ring_e1;
-        let t4 = T::fused(-outer_ring_e1, t3, t1);
-        let t5 = outer_ring_e2 * t0;
-        let t6 = outer_ring_e3 * t3;
-        let t7 = t6 - t5;
-        let t8 = t6 + t5;
-        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
-        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
-        let t11 = k(2.0) * rotor_e0;
-        let t12 = k(2.0) * rotor_e1;
-        let t13 = T::fused(rotor_e2, t11, rotor_e3 * t12);
-        let t14 = k(2.0) * inner_ring_e0;
-        let t15 = inner_ring_e3 * t14;
-        let t16 = k(2.0) * inner_ring_e1;
-        let t17 = inner_ring_e2 * t16;
-        let t18 = t17 - t15;
-        let t19 = rotor_e1 * t11;
-        let t20 = k(2.0) * rotor_e2;
-        let t21 = rotor_e3 * t20;
-        let t22 = t21 - t19;
-        let t23 = k(2.0) * inner_ring_e2;
-        let t24 = T::fused(-inner_ring_e0, t14, k(1.0));
-        let t25 = T::fused(-inner_ring_e2, t23, t24);
-        let t26 = T::fused(-rotor_e0, t11, k(1.0));
-        let t27 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t26);
-        let t28 = inner_ring_e1 * t14;
-        let t29 = inner_ring_e3 * t23;
-        let t30 = t29 + t28;
-        let t31 = T::fused(t30, t27, T::fused(-t18, t13, t25 * t22));
-        let t32 = T::fused(-rotor_e3, t11, rotor_e2 * t12);
-        let t33 = inner_ring_e2 * t14;
-        let t34 = inner_ring_e3 * t16;
-        let t35 = t34 + t33;
-        let t36 = T::fused(-rotor_e2, t20, t26);
-        let t37 = t29 - t28;
-        let t38 = t21 + t19;
-        let t39 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t24);
-        let t40 = T::fused(t39, t38, T::fused(-t35, t32, t37 * t36));
-        let t41 = T::fused(t30, t38, T::fused(t18, t32, t25 * t36));
-        let t42 = T::fused(t39, t27, T::fused(t35, t13, t37 * t22));
-        let t43 = k(1.0) / T::fused(-t40, t31, t42 * t41);
-        let t44 = T::fused(row13, t40 * t43, row14 * (t41 * t43));
-        let t45 = k(5e-6) * t44;
-        let t46 = T::fused(-inner_ring_e1, t16, t24);
-        let t47 = t17 + t15;
-        let t48 = t34 - t33;
-        let t49 = T::fused(t48, t38, -T::fused(t46, t32, t47 * t36));
-        let t50 = T::fused(row13, t42 * t43, row14 * (t31 * t43));
-        let t51 = k(5e-6) * t50;
-        let t52 = T::fused(t48, t27, -T::fused(-t46, t13, t47 * t22));
-        let t53 = k(0.08) * row10;
-        let t54 = k(0.005) * t18;
-        let t55 = k(0.08) * row11;
-        let t56 = k(0.005) * t25;
-        let t57 = k(0.08) * row12;
-        let t58 = k(0.005) * t30;
-        let t59 = T::fused(t58, t57, -T::fused(-t54, t53, t56 * t55))
-            + T::fused(t40, t45, t42 * t51);
-        let t60 = k(1e-6)
-            + (k(2e-6) + T::fused(t40, k(5e-6) * t40, t42 * (k(5e-6) * t42)));
-        let t61 = k(1.0) / t60;
-        let t62 = t61 * t59;
-        let t63 = k(5e-6) * t49;
-        let t64 = k(5e-6) * t52;
-        let t65 = T::fused(t40, t63, t42 * t64);
-        let t66 = k(0.0004) * t18;
-        let t67 = t61 * t66;
-        let t68 = t65 * t67;
-        let t69 = k(0.0004) * t25;
-        let t70 = t61 * t69;
-        let t71 = t65 * t70;
-        let t72 = k(0.0004) * t30;
-        let t73 = t61 * t72;
-        let t74 = t65 * t73;
-        let t75 = outer_ring_e3 * t0;
-        let t76 = outer_ring_e2 * t3;
-        let t77 = t76 + t75;
-        let t78 = T::fused(t7, t30, -T::fused(t4, t18, t77 * t25));
-        let t79 = t76 - t75;
-        let t80 = k(2.0) * outer_ring_e2;
-        let t81 = T::fused(-outer_ring_e2, t80, t1);
-        let t82 = outer_ring_e1 * t0;
-        let t83 = outer_ring_e3 * t80;
-        let t84 = t83 + t82;
-        let t85 = T::fused(t84, t48, -T::fused(t79, t46, t81 * t47));
-        let t86 = T::fused(t7, t48, T::fused(t4, t46, t77 * t47));
-        let t87 = T::fused(t84, t30, T::fused(t79, t18, t81 * t25));
-        let t88 = k(1.0) / T::fused(-t85, t78, t87 * t86);
-        let t89 = T::fused(-row8, t85 * t88, row9 * (t86 * t88));
-        let t90 = t61 * t65;
-        let t91 = T::fused(t65, t90, -(k(1e-6) + T::fused(t49, t63, t52 * t64)));
-        let t92 = T::fused(-row8, t87 * t88, row9 * (t78 * t88));
-        let t93 = k(5e-6) * t41;
-        let t94 = k(5e-6) * t31;
-        let t95 = T::fused(t40, t93, t42 * t94);
-        let t96 = T::fused(t95, t90, -T::fused(t41, t63, t31 * t64));
-        let t97 = T::fused(t91, t89, t96 * t92)
-            + T::fused(row7, t74, -T::fused(-row5, t68, row6 * t71));
-        let t98 = k(0.005) * t35;
-        let t99 = k(0.005) * t37;
-        let t100 = k(0.005) * t39;
-        let t101 = T::fused(t100, t57, -T::fused(t98, t53, t99 * t55))
-            - T::fused(t41, t45, t31 * t51);
-        let t102 = T::fused(-k(0.0004), t35, t95 * t67);
-        let t103 = T::fused(k(0.0004), t37, t95 * t70);
-        let t104 = T::fused(k(0.0004), t39, t95 * t73);
-        let t105 = T::fused(
-            t95,
-            t61 * t95,
-            -(k(2e-6) + (k(2e-6) + T::fused(t41, t93, t31 * t94))),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = t4 - t3;
+        let t6 = t4 + t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(-row4, t5 * t7, row3 * (t2 * t7));
+        let t9 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
         );
-        let t106 = T::fused(t96, t89, t105 * t92)
-            + T::fused(row7, t104, -T::fused(-row5, t102, row6 * t103));
-        let t107 = T::fused(
-            t85,
-            t97 + T::fused(t65, t62, -T::fused(t49, t45, t52 * t51)),
-            t87 * (t106 + T::fused(t95, t62, t101)),
+        let t10 = T::fused(-t9, t9, k(0.5));
+        let t11 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
         );
-        let t108 = T::fused(
-            -row0,
-            T::fused(t85, t68, t87 * t102),
-            row1 * T::fused(t85, t71, t87 * t103),
+        let t12 = T::fused(t11, t11, -t10);
+        let t13 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
         );
-        let t109 = T::fused(
-            t85,
-            T::fused(t91, t86, t96 * t78),
-            t87 * T::fused(t96, t86, t105 * t78),
+        let t14 = T::fused(t13, t13, -t10);
+        let t15 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
         );
-        let t110 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
-        let t111 = t83 - t82;
-        let t112 = T::fused(t2, t48, -T::fused(-t8, t46, t111 * t47));
-        let t113 = T::fused(t85, t91, t87 * t96);
-        let t114 = T::fused(t2, t30, T::fused(-t8, t18, t111 * t25));
-        let t115 = T::fused(t96, t85, t105 * t87);
-        let t116 = T::fused(t109, t10, T::fused(t113, t112, t115 * t114) * t110)
-            - T::fused(row2, T::fused(t85, t74, t87 * t104), -t108);
-        let t117 = (t116 - t107) / (k(1e-6) - T::fused(t85, t113, t87 * t115));
-        let t118 = row0 + row5;
-        let t119 = row1 + row6;
-        let t120 = row2 + row7;
-        let t121 = t89 - T::fused(t112, t110, T::fused(t86, t10, t85 * t117));
-        let t122 = t92 - T::fused(t114, t110, T::fused(t78, t10, t87 * t117));
-        let t123 = T::fused(t65, t121, t95 * t122)
-            + T::fused(t120, t72, -T::fused(-t118, t66, t119 * t69));
-        let t124 = t61 * (t59 + t123);
+        let t16 = t9 * t15;
+        let t17 = t11 * t13;
+        let t18 = t17 - t16;
+        let t19 = t17 + t16;
+        let t20 = k(1.0) / T::fused(-t14, t12, t19 * t18);
+        let t21 = T::fused(-row14, t19 * t20, row13 * (t14 * t20));
+        let t22 = k(0.00625) * t21;
+        let t23 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t24 = T::fused(inner_ring_e2, inner_ring_e2, -t23);
+        let t25 = inner_ring_e0 * inner_ring_e1;
+        let t26 = inner_ring_e2 * inner_ring_e3;
+        let t27 = t26 + t25;
+        let t28 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t29 = T::fused(
+            -t14,
+            t22,
+            T::fused(t28, row10, T::fused(t24, row11, t27 * row12)),
+        );
+        let t30 = T::fused(-row14, t12 * t20, row13 * (t18 * t20));
+        let t31 = k(0.00625) * t30;
+        let t32 = T::fused(t18, t31, -t29);
+        let t33 = k(1.0) / (k(0.15) + T::fused(t14, t14, t18 * t18));
+        let t34 = t33 * t32;
+        let t35 = T::fused(-t9, t11, t15 * t13);
+        let t36 = T::fused(t9, t13, t15 * t11);
+        let t37 = T::fused(t35, t14, t36 * t18);
+        let t38 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t39 = T::fused(-t38, t38, k(0.5));
+        let t40 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t41 = T::fused(t40, t40, -t39);
+        let t42 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t43 = T::fused(t42, t42, -t39);
+        let t44 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t45 = t38 * t44;
+        let t46 = t40 * t42;
+        let t47 = t46 - t45;
+        let t48 = t46 + t45;
+        let t49 = k(1.0) / T::fused(-t43, t41, t48 * t47);
+        let t50 = T::fused(-row9, t48 * t49, row8 * (t43 * t49));
+        let t51 = T::fused(t19, t14, t18 * t12);
+        let t52 = t37 * t33;
+        let t53 = T::fused(t36, t12, T::fused(-t52, t51, t35 * t19));
+        let t54 = T::fused(-row9, t41 * t49, row8 * (t47 * t49));
+        let t55 = k(0.05) + T::fused(t36, t36, T::fused(-t37, t52, t35 * t35));
+        let t56 = t27 * t33;
+        let t57 = t37 * t56;
+        let t58 = t24 * t33;
+        let t59 = t37 * t58;
+        let t60 = T::fused(
+            row6,
+            t59,
+            T::fused(k(0.0125), T::fused(t53, t50, t55 * t54), row7 * t57),
+        );
+        let t61 = t28 * t33;
+        let t62 = t37 * t61;
+        let t63 = T::fused(
+            t36,
+            t31,
+            T::fused(t35, t22, T::fused(-t37, t34, T::fused(row5, t62, t60))),
+        );
+        let t64 = k(0.2) + T::fused(t12, t12, T::fused(-t51, t33 * t51, t19 * t19));
+        let t65 = T::fused(inner_ring_e3, inner_ring_e3, -t23);
+        let t66 = T::fused(t51, t56, t65);
+        let t67 = t26 - t25;
+        let t68 = T::fused(t51, t58, t67);
+        let t69 = T::fused(
+            row6,
+            t68,
+            T::fused(k(0.0125), T::fused(t64, t50, t53 * t54), row7 * t66),
+        );
+        let t70 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t71 = T::fused(t51, t61, t70);
+        let t72 = T::fused(
+            t67,
+            row11,
+            T::fused(t65, row12, T::fused(-t51, t34, T::fused(row5, t71, t69))),
+        );
+        let t73 = T::fused(-row4, t1 * t7, row3 * (t6 * t7));
+        let t74 = T::fused(t43, t64, t47 * t53);
+        let t75 = T::fused(-t38, t40, t42 * t44);
+        let t76 = T::fused(t53, t43, t47 * t55);
+        let t77 = T::fused(t38, t42, t40 * t44);
+        let t78 = T::fused(
+            t43,
+            T::fused(t48, t64, t53 * t41),
+            t47 * T::fused(t48, t53, t55 * t41),
+        );
+        let t79 = T::fused(
+            k(0.025),
+            T::fused(T::fused(t75, t74, t77 * t76), t73, t78 * t8),
+            row2 * T::fused(t43, t66, t47 * t57),
+        );
+        let t80 = T::fused(
+            row0,
+            T::fused(t43, t71, t47 * t62),
+            T::fused(row1, T::fused(t43, t68, t47 * t59), t79),
+        );
+        let t81 = T::fused(
+            t43,
+            T::fused(t12, t31, T::fused(t19, t22, T::fused(t70, row10, t72))),
+            t80,
+        );
+        let t82 = T::fused(t47, t63, t81) / (k(0.0125) + T::fused(t43, t74, t47 * t76));
+        let t83 = row0 + row5;
+        let t84 = row1 + row6;
+        let t85 = row2 + row7;
+        let t86 = k(40.0) * t82;
+        let t87 = T::fused(
+            t41,
+            t8,
+            T::fused(-t47, t86, T::fused(k(0.5), t54, t77 * t73)),
+        );
+        let t88 = T::fused(
+            t48,
+            t8,
+            T::fused(-t43, t86, T::fused(k(0.5), t50, t75 * t73)),
+        );
+        let t89 = T::fused(
+            -k(0.025),
+            t51 * t88,
+            T::fused(t28, t83, T::fused(t24, t84, T::fused(t27, t85, -t32))),
+        );
+        let t90 = t33 * T::fused(-k(0.025), t37 * t87, t89);
+        let t91 = k(40.0) * t90;
+        let t92 = k(0.01) * t88;
+        let t93 = k(0.4) * t90;
+        let t94 = T::fused(
+            t36,
+            t87,
+            T::fused(t12, t88, T::fused(t18, t91, k(0.25) * t30)),
+        );
+        let t95 = T::fused(
+            t35,
+            t87,
+            T::fused(t19, t88, T::fused(t14, t91, k(0.25) * t21)),
+        );
         *out = [
             row0,
             row1,
             row2,
-            t10,
-            t117,
-            -t110,
-            t118,
-            t119,
-            t120,
-            -t121,
-            -t122,
-            -t124,
-            row10 + (t118 - T::fused(-t98, t122, t54 * t124)),
-            row11 + (t119 + T::fused(t99, t122, t56 * t124)),
-            row12 + (t120 - T::fused(t100, t122, t58 * t124)),
+            -(k(0.5) * t8),
+            k(20.0) * t82,
+            -(k(0.5) * t73),
+            t83,
+            t84,
+            t85,
+            -t87,
+            -t88,
+            -t91,
+            T::fused(t70, t92, T::fused(-t28, t93, row10 + t83)),
+            T::fused(t67, t92, T::fused(-t24, t93, row11 + t84)),
+            T::fused(t65, t92, T::fused(-t27, t93, row12 + t85)),
             k(0.0),
-            T::fused(t40, t124, -T::fused(t49, t121, t41 * t122)) - t44,
-            t50 - T::fused(t42, t124, -T::fused(t52, t121, t31 * t122)),
+            -(k(2.0) * t94),
+            -(k(2.0) * t95),
         ];
     }
 }
@@ -2868,7 +2909,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 19 operations (5 ±, 13 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2876,15 +2917,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = k(1e-5) * t0;
-        let t2 = u1 * t1;
-        let t3 = x1.sin();
-        let t4 = u0 * t3;
-        let t5 = T::fused(-k(0.6), t4, u2) * t2 / T::fused(k(8e-6), t0 * t0, k(2e-6));
+        let t1 = u1 * t0;
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = T::fused(-k(0.6), t3, u2) * t1 / T::fused(t0, t0, k(0.25));
         *out = [
-            -t5,
-            -(k(125000.0) * (t1 * T::fused(-u0, T::fused(k(0.2), t4, u2), k(400.0)))),
-            T::fused(-k(100000.0), u0 * t2, t3 * t5),
+            -(k(1.25) * t4),
+            -(k(1.25) * (t0 * T::fused(-u0, T::fused(k(0.2), t3, u2), k(400.0)))),
+            T::fused(-u0, t1, k(1.25) * (t2 * t4)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2896,7 +2936,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 75 operations (26 ±, 49 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -2923,27 +2963,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
         let t15 = k(0.5) * x2;
         let t16 = t15.sin();
         let t17 = t15.cos();
-        let t18 = k(2.0) * t6;
-        let t19 = u0 * (t4 * t18);
-        let t20 = u0 * T::fused(-t6, t18, k(1.0));
-        let t21 = k(0.005) * t20;
-        let t22 = k(0.005) * u1;
-        let t23 = T::fused(-(k(2.0) * (t14 + t13)), t21, k(2.0) * (t12 - t11) * t22);
-        let t24 = t5 * t7;
-        let t25 = t8 * t9;
-        let t26 = T::fused(
-            k(2.0) * (t25 - t24),
-            t21,
-            k(2.0) * (k(0.5) - T::fused(t8, t8, t10)) * t22,
-        );
-        let t27 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t9, t9, t10)),
-            t21,
-            k(2.0) * (t25 + t24) * t22,
-        );
-        let t28 = k(2.0) * t16;
-        let t29 = T::fused(-t16, t28, k(1.0));
-        let t30 = t17 * t28;
+        let t18 = k(2.0) * (u0 * (t6 * t4));
+        let t19 = u0 * ((t6 - t4) * (t6 + t4));
+        let t20 = t5 * t7;
+        let t21 = t8 * t9;
+        let t22 = T::fused(-u1, k(0.5) - T::fused(t8, t8, t10), (t21 - t20) * t19);
+        let t23 = T::fused(-u1, t21 + t20, (k(0.5) - T::fused(t9, t9, t10)) * t19);
+        let t24 = k(2.0) * (t16 * t17);
+        let t25 = (t16 - t17) * (t16 + t17);
         *y = [
             k(0.0),
             k(0.0),
@@ -2975,18 +3002,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t19,
-            t20,
+            t18,
+            -t19,
             u1,
-            t23,
-            -t26,
-            t27,
-            u2 + t19,
-            T::fused(t29, t20, u1 * t30),
-            T::fused(-t30, t20, u1 * t29),
+            k(0.01) * T::fused(u1, t12 - t11, (t14 + t13) * t19),
+            k(0.01) * t22,
+            -(k(0.01) * t23),
+            u2 + t18,
+            T::fused(u1, t24, t25 * t19),
+            T::fused(-u1, t25, t19 * t24),
         ];
     }
-    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    /// Writes the joint state of a maximal state: 125 operations (63 ±, 62 ×, 0 ÷) and 9 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3009,83 +3036,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = x0.cos();
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
-        let t8 = outer_ring_e3 * outer_ring_e3;
-        let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
-        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
-        let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
+        let t6 = x0.cos();
+        let t7 = x0.sin();
+        let t8 = outer_ring_e0 * outer_ring_e2;
+        let t9 = outer_ring_e1 * outer_ring_e3;
+        let t10 = t9 + t8;
+        let t11 = (k(2.0) * T::fused(t7, t5, t10 * t6))
+            .atan2(k(2.0) * T::fused(-t6, t5, t10 * t7));
+        let t12 = inner_ring_e3 * inner_ring_e3;
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = T::fused(inner_ring_e1, inner_ring_e1, t13);
+        let t15 = inner_ring_e2 * inner_ring_e2;
+        let t16 = k(0.5) * (k(1.0) - (t15 + (t14 + t12)));
+        let t17 = k(0.5) - t14 - t16;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = outer_ring_e0 * outer_ring_e3;
+        let t22 = outer_ring_e1 * outer_ring_e2;
+        let t23 = inner_ring_e0 * inner_ring_e2;
+        let t24 = inner_ring_e1 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(
+            t9 - t8,
+            t25,
+            T::fused(t17, k(0.5) - t2 - t4, (t22 + t21) * t20),
         );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
-            t15,
-            t27,
+        let t27 = x1.cos();
+        let t28 = T::fused(t22 - t21, t17, t20 * (k(0.5) - (t1 + t3) - t4));
+        let t29 = T::fused(
+            T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
+            t25,
+            -t28,
         );
-        let t29 = x1.cos();
-        let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        let t30 = x1.sin();
+        let t31 = (k(4.0) * T::fused(-t30, t26, t27 * t29))
+            .atan2(k(4.0) * T::fused(t27, t26, t30 * t29));
+        let t32 = rotor_e2 * rotor_e2;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t33 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t33 + t32))),
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
-        let t33 = x2.sin();
-        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t35 = rotor_e2 * rotor_e2;
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = T::fused(
-            k(2.0),
-            k(0.5) - (t36 + t35),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        let t35 = k(0.5) * (k(1.0) - (t32 + t34));
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t39 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t40 = T::fused(
+            t39,
+            k(0.5) - (t13 + t12) - t16,
+            -T::fused(t37 - t36, t35, (t24 + t23) * t38),
         );
-        let t38 = inner_ring_e0 * inner_ring_e1;
-        let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
-        let t43 = x2.cos();
-        let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
-            t37,
-            k(2.0) * (t17 - t16) * t40,
-        );
-        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
-        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
+        let t41 = x2.sin();
+        let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
+        let t43 = T::fused(t37 + t36, t39, t42);
+        let t44 = x2.cos();
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
+            .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
-        x[1] = x1 + t32;
-        x[2] = x2 + t46;
+        x[1] = x1 + t31;
+        x[2] = x2 + t45;
         x[3] = outer_ring_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 40 operations (14 ±, 25 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 39 operations (15 ±, 23 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3110,11 +3133,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = k(1e-5) * t2;
-        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
-        let t5 = T::fused(
+        let t1 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3123,18 +3142,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t6 = t5 * t1;
-        let t7 = outer_ring_wy * t6;
-        let t8 = inner_ring_wx - rotor_wx;
-        let t9 = T::fused(-k(0.6), t7, t8) * t4 / T::fused(k(8e-6), t2 * t2, k(2e-6));
+        let t2 = (t1 + t0) * (t1 - t0);
+        let t3 = t1 * t0;
+        let t4 = outer_ring_wy * t3;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = (outer_ring_wz - inner_ring_wz) * t2;
+        let t7 = t6 * T::fused(-k(1.2), t4, t5) / T::fused(t2, t2, k(0.25));
         *out = [
-            -t9,
-            -(k(125000.0)
-                * (t3 * T::fused(outer_ring_wy, T::fused(k(0.2), t7, t8), k(400.0)))),
-            T::fused(-t6, t9, k(100000.0) * (outer_ring_wy * t4)),
+            -(k(1.25) * t7),
+            -(k(1.25)
+                * (t2 * T::fused(outer_ring_wy, T::fused(k(0.4), t4, t5), k(400.0)))),
+            T::fused(-k(2.5), t3 * t7, outer_ring_wy * t6),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (56 ±, 93 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 139 operations (58 ±, 80 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3173,12 +3194,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = k(1e-5) * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3187,21 +3203,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t2;
-        let t9 = outer_ring_wy * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(0.6), t9, t10) * t6 / T::fused(k(8e-6), t3 * t3, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t8 * t11;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
-        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = T::fused(
-            -k(125000.0),
-            t4 * T::fused(outer_ring_wy, T::fused(k(0.2), t9, t10), k(400.0)),
-            t12,
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = t2 * t1;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = t7 * t3;
+        let t9 = t8 * T::fused(-k(1.2), t5, t6) / T::fused(t3, t3, k(0.25));
+        let t10 = outer_ring_wx * outer_ring_wy;
+        let t11 = k(2.5) * (t4 * t9);
+        let t12 = T::fused(t0, t3, T::fused(inner_ring_wy, t7, -t11));
+        let t13 = k(1.25) * t3;
+        let t14 = T::fused(-t9, t13, T::fused(-k(2.0), t0 * t4, inner_ring_wx * t7));
+        let t15 = T::fused(
+            -T::fused(outer_ring_wy, T::fused(k(0.4), t5, t6), k(400.0)),
+            t13,
+            t10,
         );
-        let t17 = k(0.005) * t16;
-        let t18 = T::fused(
+        let t16 = inner_ring_e0 * inner_ring_e2;
+        let t17 = inner_ring_e1 * inner_ring_e3;
+        let t18 = t17 + t16;
+        let t19 = inner_ring_e0 * inner_ring_e3;
+        let t20 = inner_ring_e1 * inner_ring_e2;
+        let t21 = t20 - t19;
+        let t22 = inner_ring_wx * inner_ring_wz;
+        let t23 = inner_ring_wx * inner_ring_wy;
+        let t24 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t25 = inner_ring_e0 * inner_ring_e0;
+        let t26 = T::fused(
+            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25),
+            t24,
+            T::fused(t18, t22, t21 * t23),
+        );
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = t28 - t27;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t25);
+        let t31 = T::fused(
+            t30,
+            t15,
+            T::fused(t20 + t19, t24, T::fused(-t29, t22, t30 * t23)),
+        );
+        let t32 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25);
+        let t33 = t28 + t27;
+        let t34 = T::fused(
+            -t33,
+            t15,
+            T::fused(t17 - t16, t24, -T::fused(-t32, t22, t33 * t23)),
+        );
+        let t35 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3210,10 +3260,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = k(0.005) * t15;
-        let t22 = T::fused(
+        let t36 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3222,54 +3269,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t23 = t22 * t19;
-        let t24 = k(0.005) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.005) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(t20, t17, t23 * t21);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = T::fused(
-            -(k(2.0) * (t30 - t29)),
-            t28,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
-        );
-        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(-t23, t17, t20 * t21);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
-            t28,
-            k(2.0) * (t30 + t29) * t31,
-        );
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = T::fused(k(2.0) * (t39 + t38), t28, k(2.0) * (t36 - t35) * t31);
+        let t37 = k(2.0) * (t36 * t35);
+        let t38 = (t36 + t35) * (t36 - t35);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t11,
-            t12,
+            -(k(1.25) * t9),
+            t10,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t12,
+            t14,
             t15,
-            t16,
-            T::fused(k(2.0) * (t36 + t35), t34, t33),
-            T::fused(k(2.0) * (t39 - t38), t34, -t37),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)), t34, t40),
-            -(T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14),
-            -T::fused(rotor_wz, t10, T::fused(-t20, t15, t23 * t16)),
-            T::fused(rotor_wy, t10, T::fused(t23, t15, t20 * t16)),
+            k(0.01) * T::fused(-t18, t14, T::fused(t21, t15, t26)),
+            -(k(0.01) * T::fused(t29, t14, t31)),
+            -(k(0.01) * T::fused(-t32, t14, t34)),
+            T::fused(outer_ring_wy, t8, -t11) - t12,
+            T::fused(t38, t14, -T::fused(t15, t37, rotor_wz * t6)),
+            T::fused(t14, t37, T::fused(t38, t15, rotor_wy * t6)),
         ];
     }
-    /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
+    /// Writes λ: 137 operations (57 ±, 80 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3335,8 +3358,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = (t8 + t7) * (t8 - t7);
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
         let t12 = T::fused(
@@ -3355,10 +3386,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t15 = k(2.0) * t14;
-        let t16 = T::fused(-t14, t15, k(1.0));
-        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t18 = T::fused(
+        let t15 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3367,67 +3395,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t19 = t18 * t15;
-        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t21 = T::fused(-t17, t16, t20 * t19);
-        let t22 = t21
+        let t16 = (t15 + t14) * (t15 - t14);
+        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t18 = t15 * (k(2.0) * t14);
+        let t19 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t20 = T::fused(-t17, t16, t19 * t18);
+        let t21 = t20
             - T::fused(
                 t4,
                 k(0.01) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t13)),
                 -t12,
             );
-        let t23 = T::fused(k(2e-6), inner_ring_dwy, -t22);
-        let t24 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t25 = t24 * t8;
-        let t26 = T::fused(-t9, t6, t25 * t23);
-        let t27 = T::fused(k(2e-6), outer_ring_dwx, t26);
-        let t28 = k(2.0) * outer_ring_e2;
-        let t29 = T::fused(-outer_ring_e2, t28, k(1.0));
-        let t30 = T::fused(
+        let t22 = T::fused(k(2e-6), inner_ring_dwy, -t21);
+        let t23 = t8 * (k(2.0) * t7);
+        let t24 = T::fused(-t9, t6, t23 * t22);
+        let t25 = T::fused(k(2e-6), outer_ring_dwx, t24);
+        let t26 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t27 = T::fused(
             -t0,
             k(0.01)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
             t2 * (k(0.01) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13))),
         );
-        let t31 = T::fused(t17, t19, t20 * t16);
-        let t32 = T::fused(
+        let t28 = T::fused(t17, t18, t19 * t16);
+        let t29 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t31 - T::fused(t4, k(0.01) * (t11 + t10), -t30)),
+            -(t28 - T::fused(t4, k(0.01) * (t11 + t10), -t27)),
         );
-        let t33 = T::fused(
+        let t30 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t32,
+            -t29,
         );
-        let t34 = outer_ring_e0 * t28;
+        let t31 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t29, t27, t34 * t33),
-            -T::fused(t34, t27, t29 * t33),
+            T::fused(-t26, t25, t31 * t30),
+            -T::fused(t31, t25, t26 * t30),
             -t1,
             -t3,
             -t5,
-            -T::fused(t25, t6, t9 * t23),
-            t26,
+            -T::fused(t23, t6, t9 * t22),
+            t24,
             -t0,
             -t2,
             -t4,
-            t31,
-            -t21,
+            t28,
+            -t20,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 232 operations (88 ±, 143 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 209 operations (83 ±, 125 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3461,12 +3481,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = k(1e-5) * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3475,21 +3490,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t2;
-        let t9 = outer_ring_wy * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(0.6), t9, t10) * t6 / T::fused(k(8e-6), t3 * t3, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t8 * t11;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
-        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = T::fused(
-            -k(125000.0),
-            t4 * T::fused(outer_ring_wy, T::fused(k(0.2), t9, t10), k(400.0)),
-            t12,
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = t2 * t1;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = t7 * t3;
+        let t9 = t8 * T::fused(-k(1.2), t5, t6) / T::fused(t3, t3, k(0.25));
+        let t10 = outer_ring_wx * outer_ring_wy;
+        let t11 = k(2.5) * (t4 * t9);
+        let t12 = T::fused(t0, t3, T::fused(inner_ring_wy, t7, -t11));
+        let t13 = k(1.25) * t3;
+        let t14 = T::fused(-t9, t13, T::fused(-k(2.0), t0 * t4, inner_ring_wx * t7));
+        let t15 = T::fused(
+            -T::fused(outer_ring_wy, T::fused(k(0.4), t5, t6), k(400.0)),
+            t13,
+            t10,
         );
-        let t17 = k(0.005) * t16;
-        let t18 = T::fused(
+        let t16 = inner_ring_e0 * inner_ring_e2;
+        let t17 = inner_ring_e1 * inner_ring_e3;
+        let t18 = t17 + t16;
+        let t19 = inner_ring_e0 * inner_ring_e3;
+        let t20 = inner_ring_e1 * inner_ring_e2;
+        let t21 = t20 - t19;
+        let t22 = inner_ring_wx * inner_ring_wz;
+        let t23 = inner_ring_wx * inner_ring_wy;
+        let t24 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t25 = inner_ring_e0 * inner_ring_e0;
+        let t26 = T::fused(
+            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25),
+            t24,
+            T::fused(t18, t22, t21 * t23),
+        );
+        let t27 = T::fused(-t18, t14, T::fused(t21, t15, t26));
+        let t28 = inner_ring_e0 * inner_ring_e1;
+        let t29 = inner_ring_e2 * inner_ring_e3;
+        let t30 = t29 - t28;
+        let t31 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t25);
+        let t32 = T::fused(
+            t31,
+            t15,
+            T::fused(t20 + t19, t24, T::fused(-t30, t22, t31 * t23)),
+        );
+        let t33 = T::fused(t30, t14, t32);
+        let t34 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25);
+        let t35 = t29 + t28;
+        let t36 = T::fused(
+            -t35,
+            t15,
+            T::fused(t17 - t16, t24, -T::fused(-t34, t22, t35 * t23)),
+        );
+        let t37 = T::fused(-t34, t14, t36);
+        let t38 = T::fused(outer_ring_wy, t8, -t11) - t12;
+        let t39 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3498,10 +3551,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = k(0.005) * t15;
-        let t22 = T::fused(
+        let t40 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3510,122 +3560,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeGimbalLock<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t23 = t22 * t19;
-        let t24 = k(0.005) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.005) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(t20, t17, t23 * t21);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = T::fused(
-            -(k(2.0) * (t30 - t29)),
-            t28,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
+        let t41 = t40 * t39;
+        let t42 = k(2.0) * t41;
+        let t43 = (t40 + t39) * (t40 - t39);
+        let t44 = T::fused(t43, t14, -T::fused(t15, t42, rotor_wz * t6));
+        let t45 = T::fused(t14, t42, T::fused(t43, t15, rotor_wy * t6));
+        let t46 = k(0.0008) * t27;
+        let t47 = k(1000.0) - t33;
+        let t48 = k(125.0) + t47;
+        let t49 = k(0.0008) * t37;
+        let t50 = T::fused(rotor_wx, rotor_wz, t44);
+        let t51 = T::fused(rotor_wx, rotor_wy, -t45);
+        let t52 = T::fused(-t43, t50, t42 * t51);
+        let t53 = T::fused(
+            k(0.625),
+            t52,
+            T::fused(t34, t37, T::fused(t30, t47, t18 * t27)),
         );
-        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(-t23, t17, t20 * t21);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = T::fused(k(2.0) * (t36 + t35), t34, t33);
-        let t38 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
-            t28,
-            k(2.0) * (t30 + t29) * t31,
+        let t54 = T::fused(k(0.25), t14, -t53);
+        let t55 = T::fused(-k(0.1), T::fused(inner_ring_wy, inner_ring_wz, t12), t38);
+        let t56 = T::fused(k(1.6), t4 * t54, t3 * t55);
+        let t57 = T::fused(k(0.2), t0, -t56);
+        let t58 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t59 = T::fused(t41, t50, k(0.5) * (t43 * t51));
+        let t60 = T::fused(
+            k(1.25),
+            t59,
+            -T::fused(-t35, t37, T::fused(-t31, t47, t21 * t27)),
         );
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = T::fused(k(2.0) * (t40 - t39), t34, -t38);
-        let t42 = T::fused(k(2.0) * (t40 + t39), t28, k(2.0) * (t36 - t35) * t31);
-        let t43 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)),
-            t34,
-            t42,
-        );
-        let t44 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
-        let t45 = T::fused(rotor_wz, t10, T::fused(-t20, t15, t23 * t16));
-        let t46 = T::fused(rotor_wy, t10, T::fused(t23, t15, t20 * t16));
-        let t47 = k(0.08) * t37;
-        let t48 = T::fused(k(0.08), t41, k(0.8));
-        let t49 = k(0.1) + t48;
-        let t50 = k(0.08) * t43;
-        let t51 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t46);
-        let t52 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t45);
-        let t53 = T::fused(t20, t51, t23 * t52);
-        let t54 = inner_ring_e0 * inner_ring_e1;
-        let t55 = inner_ring_e2 * inner_ring_e3;
-        let t56 = inner_ring_e0 * inner_ring_e0;
-        let t57 = T::fused(
-            -(k(0.01) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t56))),
-            t48,
-            k(0.01)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t47,
-        );
-        let t58 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t16),
-            T::fused(-(k(0.01) * (t55 + t54)), t50, t57) - t53,
-        );
-        let t59 = k(2.0) * outer_ring_e2;
-        let t60 = outer_ring_e0 * t59;
-        let t61 = T::fused(-t23, t51, t20 * t52);
-        let t62 = T::fused(
-            k(0.01) * (t55 - t54),
-            t48,
-            k(0.01)
-                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t47,
-        );
-        let t63 = T::fused(
-            k(0.01) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t56)),
-            t50,
-            t62,
-        ) - t61;
-        let t64 = T::fused(-k(2e-6), t15, t63);
-        let t65 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t14),
-            k(1e-5) * t44,
-        );
-        let t66 = T::fused(t8, t64, t3 * t65);
-        let t67 = T::fused(k(2e-6), t0, t66);
-        let t68 = T::fused(-outer_ring_e2, t59, k(1.0));
+        let t61 = T::fused(k(0.125), t23 + t15, -t60);
+        let t62 = outer_ring_e0 * outer_ring_e2;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t11,
-            t12,
+            -(k(1.25) * t9),
+            t10,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t12,
+            t14,
             t15,
-            t16,
-            t37,
-            t41,
-            -t43,
-            -t44,
-            -t45,
-            t46,
-            -t47,
-            -(k(0.1) + t49),
-            t50,
-            T::fused(-t60, t58, t68 * t67),
-            T::fused(t68, t58, t60 * t67),
-            -t47,
-            -t49,
-            t50,
-            T::fused(-t8, t65, t3 * t64),
-            -t66,
-            -t47,
-            -t48,
-            t50,
-            t53,
-            t61,
+            k(0.01) * t27,
+            -(k(0.01) * t33),
+            -(k(0.01) * t37),
+            t38,
+            t44,
+            t45,
+            -t46,
+            -(k(0.0008) * (k(125.0) + t48)),
+            t49,
+            -(k(1e-5) * T::fused(-t58, t57, k(1.6) * (t62 * t61))),
+            k(2e-5) * T::fused(t62, t57, k(0.4) * (t58 * t61)),
+            -t46,
+            -(k(0.0008) * t48),
+            t49,
+            k(2e-5) * T::fused(-k(0.4), t3 * t54, t4 * t55),
+            k(1e-5) * t56,
+            -t46,
+            -(k(0.0008) * t47),
+            t49,
+            k(1e-5) * t59,
+            -(k(5e-6) * t52),
         ];
     }
 }
@@ -3638,7 +3636,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeGimbalLock<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 59 operations (14 ±, 44 ×, 1 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 58 operations (12 ±, 45 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3651,36 +3649,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeGimbalLock<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
-        let t1 = t0 * t0;
-        let t2 = k(1.0) / T::fused(k(4.0), t1, k(1.0));
-        let t3 = k(500000.0) * t2;
-        let t4 = k(1.6666666666666667) * u2;
-        let t5 = t1 * t2;
-        let t6 = k(0.125) - t5;
-        let t7 = x1.sin();
-        let t8 = T::fused(-(t7 * t6), t4, u0 * T::fused(-t1, k(0.25) - t5, t6));
-        let t9 = k(4.8e-5) * (u1 * t8) * t3;
-        let t10 = k(6e-6) * t0;
-        let t11 = u1 * t7 * t10 * t3;
-        let t12 = u0 * t7;
-        let t13 = t12 - t4;
-        let t14 = t13 * t10 * t3;
-        let t15 = k(1e-5) * u1;
-        let t16 = t0 * t15;
-        let t17 = t16 * t3;
-        let t18 = k(2.5) * u2;
-        let t19 = T::fused(
-            -k(4e-6),
-            u0 * T::fused(t7, t18, u0 * (k(0.5) - t1)),
-            k(0.004) * t7,
+        let t0 = x1.sin();
+        let t1 = u1 * t0;
+        let t2 = u0 * t0;
+        let t3 = T::fused(-k(0.6), t2, u2);
+        let t4 = x1.cos();
+        let t5 = u1 * t4;
+        let t6 = u0 * t4;
+        let t7 = k(1.0) / T::fused(t4, t4, k(0.25));
+        let t8 = t3 * t5;
+        let t9 = T::fused(
+            -k(0.3),
+            t7 * T::fused(k(1.6666666666666667), t3 * t1, t6 * t5),
+            t8 * (t0 * t4 * (t7 * t7)),
         );
-        let t20 = t0 * (k(1e-5) * u0);
-        let t21 = T::fused(
-            t7,
-            t9,
-            k(100000.0) * (t15 * T::fused(-k(3.0), t5 * t13, t12)),
-        );
+        let t10 = t7 * (t0 * t5);
+        let t11 = t7 * (t4 * t3);
+        let t12 = t5 * t7;
+        let t13 = k(0.2) * t2;
+        let t14 = u2 + t13;
+        let t15 = T::fused(k(0.2), t4 * (u0 * t6), t0 * T::fused(-u0, t14, k(400.0)));
+        let t16 = k(1.25) * t4;
+        let t17 = T::fused(k(2.5), t0 * t9, T::fused(t8 * t7, t16, u0 * t1));
+        let t18 = k(1.25) * t0;
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3701,23 +3692,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeGimbalLock<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t9,
+            -(k(2.5) * t9),
             k(0.0),
-            t11,
-            t14,
-            -t17,
+            k(0.75) * t10,
+            -(k(1.25) * t11),
+            -(k(1.25) * t12),
             k(0.0),
-            k(125000.0) * t19,
+            k(1.25) * t15,
             k(0.0),
-            k(0.5) * (t0 * (t12 + t18)),
+            t16 * (t13 + t14),
             k(0.0),
-            k(125000.0) * t20,
+            k(1.25) * t6,
             k(0.0),
-            t21,
+            t17,
             k(0.0),
-            -T::fused(t7, t11, k(100000.0) * t16),
-            -T::fused(t7, t14, k(100000.0) * t20),
-            t7 * t17,
+            -T::fused(k(0.75), t0 * t10, t5),
+            T::fused(t11, t18, -t6),
+            t12 * t18,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

@@ -11,42 +11,42 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 585 operations by relative Euler parameters, doubled; 616 operations by relative Euler parameters; 2 more compared
-//! * project: 484 operations by relative Euler parameters, doubled; 491 operations by relative Euler parameters; 2 more compared
-//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 3 more compared
-//! * corrected_accelerations: 151 operations by normal form in the bodies' frames; 153 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
+//! * accelerations: 577 operations by relative Euler parameters, doubled; 585 operations by relative Euler parameters; 2 more compared
+//! * project: 460 operations by rotations of the bodies, doubled; 464 operations by rotations of the bodies; 2 more compared
+//! * joint_accelerations: 19 operations by normal form; 31 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 40 operations by normal form; 55 operations by recursion; 3 more compared
+//! * corrected_accelerations: 140 operations by normal form in the global frame; 142 operations by normal form in the bodies' frames; 9 more compared
+//! * joint_jacobian: 58 operations by derivatives of u̇, from its leaves; 58 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 68 | 80 | 0 | 148 | 0 of 25 | 243 | 148 |
+//! | phi | Φ | 68 | 65 | 0 | 133 | 0 of 25 | 213 | 133 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 97 | 174 | 0 | 271 | 0 of 98 | 986 | 271 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 82 | 129 | 0 | 211 | 0 of 60 | 935 | 211 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 21 of 21 | 0 | 0 |
-//! | gamma | γ | 173 | 271 | 0 | 444 | 9 of 21 | 2565 | 444 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 121 | 164 | 0 | 285 | 0 of 21 | 1004 | 285 |
+//! | gamma | γ | 173 | 257 | 0 | 430 | 9 of 21 | 1824 | 430 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 121 | 154 | 0 | 275 | 0 of 21 | 710 | 275 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 14 of 24 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 234 | 345 | 6 | 585 | 10 of 24 | 664087 | 589 |
-//! | multipliers | λ, the accelerations being known | 172 | 271 | 4 | 447 | 0 of 21 | 21594 | 447 |
-//! | project | (δr, δπ') that changes the rows as given | 183 | 295 | 6 | 484 | 1 of 24 | 497643 | 485 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 232 | 339 | 6 | 577 | 10 of 24 | 608717 | 581 |
+//! | multipliers | λ, the accelerations being known | 166 | 248 | 4 | 418 | 0 of 21 | 14808 | 418 |
+//! | project | (δr, δπ') that changes the rows as given | 184 | 270 | 6 | 460 | 1 of 24 | 365069 | 461 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 | 96 | 96 |
-//! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 | 71 | 71 |
-//! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 | 297 | 156 |
+//! | energy | T and V | 26 | 38 | 0 | 64 | 0 of 2 | 64 | 64 |
+//! | read_joints | joint coordinates and rates | 73 | 67 | 0 | 140 | 0 of 9 | 281 | 140 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 | 1.1e9 | 514 |
-//! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 | 23546 | 300 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 36 | 21 |
+//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 12 of 28 | 9.5e8 | 493 |
+//! | solve_velocities | dependent velocities, eq. (19) | 112 | 152 | 3 | 267 | 12 of 24 | 19196 | 267 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 13 | 1 | 19 | 0 of 3 | 31 | 20 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 28 of 52 | 291 | 78 |
-//! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 | 612 | 177 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 247 | 42 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 12 of 24 | 2594 | 152 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 | 2605 | 213 |
-//! | corrected_solution | both | 117 | 184 | 2 | 303 | 12 of 45 | 60646 | 305 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 14 | 44 | 1 | 59 | 28 of 42 | 178 | 59 |
+//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 28 of 52 | 298 | 75 |
+//! | to_joints | (x, u) of a maximal state | 82 | 79 | 0 | 161 | 0 of 6 | 574 | 161 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 23 | 1 | 40 | 0 of 3 | 350 | 41 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 59 | 80 | 1 | 140 | 12 of 24 | 2260 | 141 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 89 | 125 | 1 | 215 | 0 of 21 | 3221 | 216 |
+//! | corrected_solution | both | 112 | 171 | 2 | 285 | 12 of 45 | 49978 | 287 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 | 153 | 58 |
 //!
 //! # Proof
 //!
@@ -557,7 +557,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             accelerations[23],
         ];
     }
-    /// Writes Φ: 148 operations (68 ±, 80 ×, 0 ÷).
+    /// Writes Φ: 133 operations (68 ±, 65 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let base_rx = y[0];
@@ -588,53 +588,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let rotor_e1 = y[25];
         let rotor_e2 = y[26];
         let rotor_e3 = y[27];
-        let t0 = outer_ring_e2 * outer_ring_e2;
-        let t1 = outer_ring_e0 * outer_ring_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + t0));
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t1 = base_e3 * base_e3;
+        let t2 = base_e0 * base_e0;
         let t3 = outer_ring_e0 * outer_ring_e3;
         let t4 = outer_ring_e1 * outer_ring_e2;
-        let t5 = k(2.0) * (t4 - t3);
+        let t5 = t4 - t3;
         let t6 = base_e0 * base_e2;
         let t7 = base_e1 * base_e3;
-        let t8 = T::fused(
-            -(k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3)),
-            t2,
-            k(2.0) * (t7 + t6) * t5,
+        let t8 = outer_ring_e2 * outer_ring_e2;
+        let t9 = outer_ring_e0 * outer_ring_e0;
+        let t10 = k(0.5) - (t9 + t8);
+        let t11 = T::fused(
+            T::fused(-base_e0, base_e1, base_e2 * base_e3),
+            t10,
+            -T::fused(-(k(0.5) - (t2 + t1)), t0, (t7 + t6) * t5),
         );
-        let t9 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t10 = base_e3 * base_e3;
-        let t11 = base_e0 * base_e0;
-        let t12 = T::fused(base_e1, base_e1, t11);
-        let t13 = T::fused(
-            k(2.0) * (k(0.5) - t12),
-            t5,
-            k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2) * t2,
+        let t12 = T::fused(
+            -(t7 - t6),
+            t0,
+            T::fused(base_e0, base_e3, base_e1 * base_e2) * t10,
         );
-        let t14 = inner_ring_e0 * inner_ring_e2;
-        let t15 = inner_ring_e1 * inner_ring_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(outer_ring_e1, outer_ring_e1, t1);
-        let t18 = inner_ring_e0 * inner_ring_e1;
-        let t19 = inner_ring_e2 * inner_ring_e3;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = T::fused(-(k(2.0) * (k(0.5) - t17)), t16, k(2.0) * (t4 + t3) * t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = inner_ring_e0 * inner_ring_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + t22));
-        let t25 = T::fused(inner_ring_e1, inner_ring_e1, t23);
+        let t13 = T::fused(base_e1, base_e1, t2);
+        let t14 = inner_ring_e3 * inner_ring_e3;
+        let t15 = inner_ring_e0 * inner_ring_e0;
+        let t16 = k(0.5) - (t15 + t14);
+        let t17 = inner_ring_e0 * inner_ring_e1;
+        let t18 = inner_ring_e2 * inner_ring_e3;
+        let t19 = t18 - t17;
+        let t20 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t16,
+            (t4 + t3) * t19,
+        );
+        let t21 = inner_ring_e0 * inner_ring_e2;
+        let t22 = inner_ring_e1 * inner_ring_e3;
+        let t23 = t22 + t21;
+        let t24 = T::fused(outer_ring_e1, outer_ring_e1, t9);
+        let t25 = T::fused(inner_ring_e1, inner_ring_e1, t15);
         let t26 = inner_ring_e0 * inner_ring_e3;
         let t27 = inner_ring_e1 * inner_ring_e2;
-        let t28 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
-        let t29 = k(2.0) * (k(0.5) - t28);
-        let t30 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t31 = inner_ring_e2 * inner_ring_e2;
-        let t32 = T::fused(
-            k(2.0) * (t27 - t26),
-            t29,
-            k(2.0) * (k(0.5) - (t23 + t31)) * t30,
+        let t28 = T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t29 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = inner_ring_e2 * inner_ring_e2;
+        let t31 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
+        let t32 = k(0.5) - t31;
+        let t33 = T::fused(
+            t27 - t26,
+            t32,
+            T::fused(-(t18 + t17), t28, (k(0.5) - (t15 + t30)) * t29),
         );
-        let t33 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             base_rx,
             base_ry,
@@ -645,34 +648,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             outer_ring_rx - base_rx,
             outer_ring_ry - base_ry,
             outer_ring_rz - base_rz,
-            T::fused(-(k(2.0) * (k(0.5) - (t11 + t10))), t9, t8),
-            T::fused(k(2.0) * (t7 - t6), t9, -t13),
+            -(k(4.0) * t11),
+            -(k(4.0) * T::fused(k(0.5) - t13, t5, t12)),
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t24,
-                t21,
-            ),
-            T::fused(-t9, t24, T::fused(-t2, t20, t5 * t16)),
-            rotor_rx - T::fused(-k(0.00025), k(0.5) - t25, inner_ring_rx),
-            rotor_ry - T::fused(k(0.00025), t27 + t26, inner_ring_ry),
-            rotor_rz - T::fused(k(0.00025), t15 - t14, inner_ring_rz),
-            T::fused(k(2.0) * (t19 + t18), t33, -t32),
-            T::fused(-t24, t33, T::fused(-t16, t29, t20 * t30)),
-            t10 + T::fused(base_e2, base_e2, t12) - k(1.0),
-            T::fused(outer_ring_e3, outer_ring_e3, t17 + t0) - k(1.0),
-            t22 + (t25 + t31) - k(1.0),
-            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t28)) - k(1.0),
+            -(k(4.0) * T::fused(k(0.5) - t24, t23, -t20)),
+            -(k(4.0) * T::fused(t10, t19, -T::fused(-t0, t16, t5 * t23))),
+            T::fused(k(0.00025), k(0.5) - t25, -(inner_ring_rx - rotor_rx)),
+            -T::fused(k(0.00025), t27 + t26, inner_ring_ry - rotor_ry),
+            -T::fused(k(0.00025), t22 - t21, inner_ring_rz - rotor_rz),
+            -(k(4.0) * t33),
+            -(k(4.0) * T::fused(t23, t32, -T::fused(-t16, t28, t19 * t29))),
+            T::fused(base_e2, base_e2, t13 + t1) - k(1.0),
+            t8 + T::fused(outer_ring_e3, outer_ring_e3, t24) - k(1.0),
+            t30 + (t25 + t14) - k(1.0),
+            T::fused(rotor_e2, rotor_e2, T::fused(rotor_e3, rotor_e3, t31)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 285 operations (121 ±, 164 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 275 operations (121 ±, 154 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -714,145 +708,133 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let inner_ring_wz = y[45];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e3 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e2 * t2;
-        let t4 = t3 - t1;
-        let t5 = k(2.0) * base_e1;
-        let t6 = k(2.0) * base_e0;
-        let t7 = T::fused(-base_e0, t6, k(1.0));
-        let t8 = T::fused(-base_e1, t5, t7);
-        let t9 = k(2.0) * outer_ring_e2;
-        let t10 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t11 = T::fused(-outer_ring_e2, t9, t10);
-        let t12 = base_e3 * t6;
-        let t13 = base_e2 * t5;
-        let t14 = t13 + t12;
-        let t15 = outer_ring_e1 * t0;
-        let t16 = outer_ring_e3 * t9;
-        let t17 = t16 + t15;
-        let t18 = base_e2 * t6;
-        let t19 = base_e3 * t5;
-        let t20 = t19 - t18;
-        let t21 = k(2.0) * base_e2;
-        let t22 = base_e1 * t6;
-        let t23 = base_e3 * t21;
-        let t24 = T::fused(
-            t23 + t22,
-            t17,
-            T::fused(t13 - t12, t4, T::fused(-base_e2, t21, t7) * t11),
+        let t0 = T::fused(-base_e0, base_e0, k(0.5));
+        let t1 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t2 = T::fused(outer_ring_e2, outer_ring_e2, -t1);
+        let t3 = outer_ring_e0 * outer_ring_e1;
+        let t4 = outer_ring_e2 * outer_ring_e3;
+        let t5 = t4 + t3;
+        let t6 = base_e0 * base_e1;
+        let t7 = base_e2 * base_e3;
+        let t8 = outer_ring_e0 * outer_ring_e3;
+        let t9 = outer_ring_e1 * outer_ring_e2;
+        let t10 = t9 - t8;
+        let t11 = base_e0 * base_e3;
+        let t12 = base_e1 * base_e2;
+        let t13 = T::fused(
+            t12 - t11,
+            t10,
+            T::fused(t2, T::fused(base_e2, base_e2, -t0), (t7 + t6) * t5),
         );
-        let t25 = T::fused(
-            -base_wy,
-            T::fused(t20, t17, -T::fused(t8, t4, t14 * t11)),
-            base_wx * t24,
+        let t14 = T::fused(outer_ring_e3, outer_ring_e3, -t1);
+        let t15 = T::fused(base_e3, base_e3, -t0);
+        let t16 = t4 - t3;
+        let t17 = t7 - t6;
+        let t18 = outer_ring_e0 * outer_ring_e2;
+        let t19 = outer_ring_e1 * outer_ring_e3;
+        let t20 = t19 + t18;
+        let t21 = base_e0 * base_e2;
+        let t22 = base_e1 * base_e3;
+        let t23 = t22 + t21;
+        let t24 = t19 - t18;
+        let t25 = t9 + t8;
+        let t26 = T::fused(outer_ring_e1, outer_ring_e1, -t1);
+        let t27 = T::fused(
+            -outer_ring_wx,
+            T::fused(t23, t20, T::fused(t15, t14, t17 * t16)),
+            outer_ring_wz * T::fused(t23, t26, T::fused(t24, t15, t17 * t25)),
         );
-        let t26 = T::fused(-outer_ring_e1, t2, t10);
-        let t27 = t19 + t18;
-        let t28 = t3 + t1;
-        let t29 = t23 - t22;
-        let t30 = outer_ring_e2 * t0;
-        let t31 = outer_ring_e3 * t2;
-        let t32 = t31 - t30;
-        let t33 = T::fused(-base_e3, k(2.0) * base_e3, t7);
-        let t34 = t31 + t30;
-        let t35 = t16 - t15;
-        let t36 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t10);
-        let t37 = T::fused(
-            outer_ring_wz,
-            T::fused(t33, t32, -T::fused(-t27, t26, t29 * t28)),
-            outer_ring_wx * T::fused(t33, t36, T::fused(t27, t34, t29 * t35)),
+        let t28 = t12 + t11;
+        let t29 = t22 - t21;
+        let t30 = T::fused(base_e1, base_e1, -t0);
+        let t31 = T::fused(
+            base_wy,
+            T::fused(t10, t30, T::fused(t28, t2, t29 * t5)),
+            -T::fused(base_wx, t13, t27),
         );
-        let t38 = T::fused(
-            base_wz,
-            t24,
-            base_wy * T::fused(t33, t17, T::fused(-t27, t4, t29 * t11)),
+        let t32 = T::fused(
+            -outer_ring_wx,
+            T::fused(t20, t30, T::fused(t29, t14, t28 * t16)),
+            outer_ring_wz * T::fused(t30, t26, T::fused(t29, t24, t28 * t25)),
         );
-        let t39 = T::fused(
-            outer_ring_wz,
-            T::fused(t20, t32, T::fused(t8, t26, t14 * t28)),
-            outer_ring_wx * T::fused(t20, t36, -T::fused(-t8, t34, t14 * t35)),
+        let t33 = T::fused(
+            base_wy,
+            T::fused(t23, t10, T::fused(t5, t15, t17 * t2)),
+            t32,
         );
-        let t40 = k(2.0) * inner_ring_e0;
-        let t41 = inner_ring_e2 * t40;
-        let t42 = k(2.0) * inner_ring_e1;
-        let t43 = inner_ring_e3 * t42;
-        let t44 = t43 + t41;
-        let t45 = inner_ring_e1 * t40;
-        let t46 = k(2.0) * inner_ring_e2;
-        let t47 = inner_ring_e3 * t46;
-        let t48 = t47 - t45;
-        let t49 = T::fused(-inner_ring_e0, t40, k(1.0));
-        let t50 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t49);
-        let t51 = T::fused(t36, t50, T::fused(t34, t44, t35 * t48));
+        let t34 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t34);
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = t37 - t36;
+        let t39 = inner_ring_e0 * inner_ring_e2;
+        let t40 = inner_ring_e1 * inner_ring_e3;
+        let t41 = t40 + t39;
+        let t42 = T::fused(t20, t41, T::fused(t14, t35, t16 * t38));
+        let t43 = T::fused(inner_ring_e2, inner_ring_e2, -t34);
+        let t44 = t37 + t36;
+        let t45 = inner_ring_e0 * inner_ring_e3;
+        let t46 = inner_ring_e1 * inner_ring_e2;
+        let t47 = t46 - t45;
+        let t48 = T::fused(inner_ring_e1, inner_ring_e1, -t34);
+        let t49 = t40 - t39;
+        let t50 = t46 + t45;
+        let t51 = T::fused(
+            -inner_ring_wx,
+            T::fused(t47, t26, T::fused(t25, t43, t24 * t44)),
+            inner_ring_wy * T::fused(t26, t48, T::fused(t24, t49, t25 * t50)),
+        );
         let t52 = T::fused(
             outer_ring_wz,
-            T::fused(t17, t50, T::fused(-t4, t44, t11 * t48)),
-            outer_ring_wy * t51,
+            T::fused(t10, t41, T::fused(t5, t35, t38 * t2)),
+            T::fused(-outer_ring_wy, t42, t51),
         );
-        let t53 = T::fused(-inner_ring_e1, t42, t49);
-        let t54 = inner_ring_e3 * t40;
-        let t55 = inner_ring_e2 * t42;
-        let t56 = t55 + t54;
-        let t57 = t43 - t41;
-        let t58 = t55 - t54;
-        let t59 = T::fused(-inner_ring_e2, t46, t49);
-        let t60 = t47 + t45;
-        let t61 = T::fused(
-            -inner_ring_wy,
-            T::fused(t32, t57, T::fused(t26, t53, t28 * t56)),
-            inner_ring_wx * T::fused(t32, t60, -T::fused(t26, t58, t28 * t59)),
+        let t53 = T::fused(
+            -inner_ring_wx,
+            T::fused(t10, t47, T::fused(t2, t43, t5 * t44)),
+            inner_ring_wy * T::fused(t10, t48, T::fused(t50, t2, t5 * t49)),
         );
-        let t62 = T::fused(
+        let t54 = T::fused(
             outer_ring_wz,
-            T::fused(t32, t50, -T::fused(-t26, t44, t28 * t48)),
-            outer_ring_wx * t51,
+            T::fused(t41, t26, T::fused(t24, t35, t25 * t38)),
+            -T::fused(outer_ring_wx, t42, t53),
         );
-        let t63 = T::fused(
-            -inner_ring_wy,
-            T::fused(t17, t57, -T::fused(t4, t53, t11 * t56)),
-            inner_ring_wx * T::fused(t17, t60, T::fused(t4, t58, t11 * t59)),
+        let t55 = rotor_e0 * rotor_e2;
+        let t56 = rotor_e1 * rotor_e3;
+        let t57 = t56 - t55;
+        let t58 = rotor_e0 * rotor_e3;
+        let t59 = rotor_e1 * rotor_e2;
+        let t60 = t59 + t58;
+        let t61 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t62 = T::fused(rotor_e1, rotor_e1, -t61);
+        let t63 = T::fused(rotor_e3, rotor_e3, -t61);
+        let t64 = rotor_e0 * rotor_e1;
+        let t65 = rotor_e2 * rotor_e3;
+        let t66 = t65 - t64;
+        let t67 = t56 + t55;
+        let t68 = T::fused(rotor_e2, rotor_e2, -t61);
+        let t69 = t65 + t64;
+        let t70 = t59 - t58;
+        let t71 = T::fused(
+            -rotor_wy,
+            T::fused(t47, t67, T::fused(t44, t63, t66 * t43)),
+            rotor_wz * T::fused(t47, t70, T::fused(t68, t43, t44 * t69)),
         );
-        let t64 = k(2.0) * rotor_e1;
-        let t65 = k(2.0) * rotor_e0;
-        let t66 = T::fused(-rotor_e0, t65, k(1.0));
-        let t67 = T::fused(-rotor_e1, t64, t66);
-        let t68 = rotor_e3 * t65;
-        let t69 = rotor_e2 * t64;
-        let t70 = t69 + t68;
-        let t71 = rotor_e2 * t65;
-        let t72 = rotor_e3 * t64;
-        let t73 = t72 - t71;
-        let t74 = T::fused(t57, t73, T::fused(t53, t67, t56 * t70));
+        let t72 = T::fused(
+            inner_ring_wx,
+            T::fused(t41, t62, T::fused(t57, t35, t38 * t60)),
+            t71,
+        );
+        let t73 = T::fused(t48, t62, T::fused(t49, t57, t50 * t60));
+        let t74 = T::fused(
+            -rotor_wy,
+            T::fused(t41, t67, T::fused(t63, t35, t38 * t66)),
+            rotor_wz * T::fused(t41, t70, T::fused(t69, t35, t38 * t68)),
+        );
         let t75 = T::fused(
-            inner_ring_wz,
+            -inner_ring_wx,
+            T::fused(t47, t62, T::fused(t60, t43, t44 * t57)),
             t74,
-            inner_ring_wx * T::fused(t50, t73, -T::fused(-t44, t67, t48 * t70)),
-        );
-        let t76 = t69 - t68;
-        let t77 = k(2.0) * rotor_e2;
-        let t78 = T::fused(-rotor_e2, t77, t66);
-        let t79 = rotor_e1 * t65;
-        let t80 = rotor_e3 * t77;
-        let t81 = t80 + t79;
-        let t82 = t72 + t71;
-        let t83 = t80 - t79;
-        let t84 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t66);
-        let t85 = T::fused(
-            rotor_wz,
-            T::fused(t60, t81, T::fused(t58, t76, t59 * t78)),
-            rotor_wy * T::fused(t60, t84, T::fused(-t58, t82, t59 * t83)),
-        );
-        let t86 = T::fused(
-            -inner_ring_wy,
-            t74,
-            inner_ring_wx * T::fused(t60, t73, -T::fused(t58, t67, t59 * t70)),
-        );
-        let t87 = T::fused(
-            rotor_wz,
-            T::fused(t50, t81, T::fused(-t44, t76, t48 * t78)),
-            rotor_wy * T::fused(t50, t84, T::fused(t44, t82, t48 * t83)),
         );
         *out = [
             base_sx,
@@ -879,36 +861,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             outer_ring_sx - base_sx,
             outer_ring_sy - base_sy,
             outer_ring_sz - base_sz,
-            t37 - t25,
-            t38 - t39,
+            k(4.0) * t31,
+            k(4.0) * T::fused(base_wz, t13, -t33),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t61 + t52),
-            t62 - t63,
-            rotor_sx
-                - T::fused(
-                    -k(0.000125),
-                    T::fused(-inner_ring_wz, t58, inner_ring_wy * t44),
-                    inner_ring_sx,
-                ),
-            rotor_sy
-                - T::fused(
-                    -k(0.000125),
-                    T::fused(inner_ring_wz, t59, inner_ring_wy * t48),
-                    inner_ring_sy,
-                ),
-            rotor_sz
-                - T::fused(
-                    k(0.000125),
-                    T::fused(inner_ring_wz, t60, inner_ring_wy * t50),
-                    inner_ring_sz,
-                ),
-            t85 - t75,
-            -(t87 + t86),
+            k(4.0) * t52,
+            -(k(4.0) * t54),
+            T::fused(
+                k(0.00025),
+                T::fused(-t47, inner_ring_wz, t41 * inner_ring_wy),
+                -(inner_ring_sx - rotor_sx),
+            ),
+            T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wz, t43, t38 * inner_ring_wy),
+                -(inner_ring_sy - rotor_sy),
+            ),
+            -T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wy, t35, t44 * inner_ring_wz),
+                inner_ring_sz - rotor_sz,
+            ),
+            -(k(4.0) * T::fused(inner_ring_wz, t73, -t72)),
+            k(4.0) * T::fused(inner_ring_wy, t73, t75),
         ];
     }
-    /// Kinetic and potential energy: 71 operations (26 ±, 45 ×, 0 ÷).
+    /// Kinetic and potential energy: 64 operations (26 ±, 38 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let base_ry = y[1];
@@ -940,80 +919,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let rotor_wy = y[50];
         let rotor_wz = y[51];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+            k(1000.0),
+            T::fused(base_sz, base_sz, T::fused(base_sy, base_sy, base_sx * base_sx)),
+            k(0.1)
+                * T::fused(
+                    base_wz,
+                    base_wz,
+                    T::fused(base_wx, base_wx, base_wy * base_wy),
+                ),
         );
         let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
             outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
+            outer_ring_wz,
             T::fused(
                 outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+                outer_ring_wy,
+                T::fused(k(2.0), outer_ring_wx * outer_ring_wx, t0),
             ),
         );
-        let t5 = T::fused(
-            k(0.01),
+        let t2 = T::fused(
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            t1,
         );
-        let t6 = T::fused(
-            base_wz,
-            k(1e-7) * base_wz,
-            T::fused(base_wy, k(1e-7) * base_wy, base_wx * (k(1e-7) * base_wx)),
-        );
-        let t7 = T::fused(
-            k(0.001),
-            T::fused(base_sz, base_sz, T::fused(base_sy, base_sy, base_sx * base_sx)),
-            t6,
-        );
-        let t8 = T::fused(
-            k(0.8),
-            rotor_ry,
+        let t3 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
             T::fused(
-                k(0.1),
-                inner_ring_ry,
-                T::fused(k(0.1), outer_ring_ry, k(0.01) * base_ry),
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t2),
             ),
         );
+        let t4 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t3,
+        );
+        let t5 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t4),
+            ),
+        );
+        let t6 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t5,
+        );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t7 + t5 + t3 + t1),
-            potential: t8,
+            kinetic: k(5e-7) * t6,
+            potential: k(0.1)
+                * T::fused(
+                    k(8.0),
+                    rotor_ry,
+                    inner_ring_ry + T::fused(k(0.1), base_ry, outer_ring_ry),
+                ),
         }
     }
-    /// Writes the joint readings: 156 operations (73 ±, 83 ×, 0 ÷).
+    /// Writes the joint readings: 140 operations (73 ±, 67 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -1038,85 +1017,81 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let inner_ring_wx = y[43];
         let inner_ring_wz = y[45];
         let rotor_wx = y[49];
-        let t0 = outer_ring_e2 * outer_ring_e2;
-        let t1 = outer_ring_e0 * outer_ring_e0;
-        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
-        let t3 = outer_ring_e3 * outer_ring_e3;
-        let t4 = k(1.0) - (t3 + (t2 + t0));
-        let t5 = T::fused(k(2.0), k(0.5) - (t1 + t3), -t4);
-        let t6 = base_e0 * base_e2;
-        let t7 = base_e1 * base_e3;
-        let t8 = outer_ring_e0 * outer_ring_e1;
-        let t9 = outer_ring_e2 * outer_ring_e3;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = base_e0 * base_e0;
-        let t12 = T::fused(base_e1, base_e1, t11);
-        let t13 = base_e3 * base_e3;
-        let t14 = k(1.0) - (t13 + T::fused(base_e2, base_e2, t12));
-        let t15 = outer_ring_e0 * outer_ring_e2;
-        let t16 = outer_ring_e1 * outer_ring_e3;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = T::fused(
-            -(k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2)),
-            t10,
-            t17 * T::fused(k(2.0), k(0.5) - t12, -t14),
+        let t0 = base_e3 * base_e3;
+        let t1 = base_e0 * base_e0;
+        let t2 = T::fused(base_e1, base_e1, t1);
+        let t3 = k(0.5) * (k(1.0) - T::fused(base_e2, base_e2, t2 + t0));
+        let t4 = outer_ring_e0 * outer_ring_e2;
+        let t5 = outer_ring_e1 * outer_ring_e3;
+        let t6 = t5 + t4;
+        let t7 = outer_ring_e0 * outer_ring_e1;
+        let t8 = outer_ring_e2 * outer_ring_e3;
+        let t9 = t8 - t7;
+        let t10 = T::fused(
+            -t6,
+            k(0.5) - t2 - t3,
+            T::fused(base_e0, base_e3, base_e1 * base_e2) * t9,
         );
+        let t11 = outer_ring_e3 * outer_ring_e3;
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = T::fused(outer_ring_e1, outer_ring_e1, t12);
+        let t14 = outer_ring_e2 * outer_ring_e2;
+        let t15 = k(0.5) * (k(1.0) - (t14 + (t13 + t11)));
+        let t16 = k(0.5) - (t12 + t11) - t15;
+        let t17 = base_e0 * base_e2;
+        let t18 = base_e1 * base_e3;
         let t19 = T::fused(
-            k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3),
-            t10,
-            k(2.0) * (t7 + t6) * t17,
+            t18 + t17,
+            t6,
+            T::fused(-base_e0, base_e1, base_e2 * base_e3) * t9,
         );
-        let t20 = inner_ring_e0 * inner_ring_e2;
-        let t21 = inner_ring_e1 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = k(2.0) * (t24 + t23);
-        let t26 = inner_ring_e2 * inner_ring_e2;
-        let t27 = inner_ring_e0 * inner_ring_e0;
-        let t28 = T::fused(inner_ring_e1, inner_ring_e1, t27);
-        let t29 = inner_ring_e3 * inner_ring_e3;
-        let t30 = k(1.0) - (t29 + (t28 + t26));
-        let t31 = T::fused(k(2.0), k(0.5) - t28, -t30);
-        let t32 = outer_ring_e0 * outer_ring_e3;
-        let t33 = outer_ring_e1 * outer_ring_e2;
-        let t34 = T::fused(
-            t25,
-            T::fused(k(2.0), k(0.5) - (t1 + t0), -t4),
-            k(2.0) * (t33 - t32) * t31,
-        );
+        let t20 = inner_ring_e3 * inner_ring_e3;
+        let t21 = inner_ring_e0 * inner_ring_e0;
+        let t22 = T::fused(inner_ring_e1, inner_ring_e1, t21);
+        let t23 = inner_ring_e2 * inner_ring_e2;
+        let t24 = k(0.5) * (k(1.0) - (t23 + (t22 + t20)));
+        let t25 = k(0.5) - t22 - t24;
+        let t26 = outer_ring_e0 * outer_ring_e3;
+        let t27 = outer_ring_e1 * outer_ring_e2;
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = t29 + t28;
+        let t31 = T::fused(t27 - t26, t25, t30 * (k(0.5) - (t12 + t14) - t15));
+        let t32 = inner_ring_e0 * inner_ring_e2;
+        let t33 = inner_ring_e1 * inner_ring_e3;
+        let t34 = t33 - t32;
         let t35 = T::fused(
-            k(2.0) * (t33 + t32),
-            t25,
-            T::fused(k(2.0), k(0.5) - t2, -t4) * t31,
+            t5 - t4,
+            t34,
+            T::fused(t25, k(0.5) - t13 - t15, (t27 + t26) * t30),
         );
-        let t36 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t37 = rotor_e2 * rotor_e2;
-        let t38 = rotor_e0 * rotor_e0;
-        let t39 = T::fused(
-            k(2.0),
-            k(0.5) - (t38 + t37),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t38) + t37)),
+        let t36 = rotor_e2 * rotor_e2;
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t37 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t37 + t36))),
         );
+        let t39 = k(0.5) * (k(1.0) - (t36 + t38));
         let t40 = inner_ring_e0 * inner_ring_e1;
         let t41 = inner_ring_e2 * inner_ring_e3;
-        let t42 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t43 = T::fused(-(k(2.0) * (t41 - t40)), t39, k(2.0) * (t21 + t20) * t42);
+        let t42 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t43 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t27 + t26), -t30),
-            t39,
-            k(2.0) * (t24 - t23) * t42,
+            t43,
+            k(0.5) - (t21 + t20) - t24,
+            -T::fused(t41 - t40, t39, (t33 + t32) * t42),
         );
+        let t45 = T::fused(-(k(0.5) - (t21 + t23) - t24), t39, (t29 - t28) * t42);
         *out = [
-            -T::fused(k(2.0) * (t7 - t6), t5, t18),
-            T::fused(T::fused(k(2.0), k(0.5) - (t11 + t13), -t14), t5, t19),
+            -(k(4.0) * T::fused(t18 - t17, t16, -t10)),
+            k(4.0) * T::fused(t16, k(0.5) - (t1 + t0) - t3, t19),
             outer_ring_wy - base_wy,
-            T::fused(k(2.0) * (t9 + t8), t22, -t34),
-            T::fused(k(2.0) * (t16 - t15), t22, t35),
+            k(4.0) * T::fused(t8 + t7, t34, -t31),
+            k(4.0) * t35,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t36, T::fused(k(2.0), k(0.5) - (t27 + t29), -t30), t43),
-            T::fused(k(2.0) * (t41 + t40), t36, t44),
+            -(k(4.0) * t44),
+            k(4.0) * T::fused(t41 + t40, t43, t45),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1284,7 +1259,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 493 operations (193 ±, 297 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
@@ -1312,269 +1287,274 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-        let t11 = t2 * t4;
-        let t12 = t3 * t5;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-        let t16 = k(2.0) * (t12 - t11);
-        let t17 = T::fused(t9, t15, t13 * t16);
-        let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t9 = T::fused(t2, t3, t7 * t6);
+        let t10 = t3 * t6;
+        let t11 = t2 * t7;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t3, t7, t2 * t6);
+        let t14 = t11 + t10;
+        let t15 = k(2.0) - T::fused(t7, t7, t4);
+        let t16 = T::fused(-t14, t12, t15 * t5);
+        let t17 = k(1.0) / (t8 * t16);
+        let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+        let t19 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
+        );
         let t20 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t19),
         );
         let t21 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t22 = k(0.5) * t21;
+        let t22 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t23 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            t9,
+            T::fused(t5, t21, t14 * t22),
+            t13 * T::fused(t15, t22, t12 * t21),
         );
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(
-            t10,
-            T::fused(t16, t22, t9 * t24),
-            t14 * T::fused(-t13, t24, t15 * t22),
-        );
-        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
-        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
-        let t28 = T::fused(
+        let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+        let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)), t3);
+        let t27 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)), t2);
+        let t28 = T::fused(k(0.5), T::fused(t2, t25, T::fused(t7, t18, t3 * t24)), t6);
+        let t29 = T::fused(
             -k(0.5),
-            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-            t3,
+            T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+            t7,
         );
-        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
-        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
-        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
-        let t32 = t29 * t30;
-        let t33 = t28 * t31;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t30 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t36 = k(0.5) * (t35 - k(3.0));
-        let t37 = inner_ring_e2 * t36;
-        let t38 = inner_ring_e1 * t36;
-        let t39 = t38 * t37;
-        let t40 = inner_ring_e3 * t36;
-        let t41 = inner_ring_e0 * t36;
-        let t42 = t41 * t40;
-        let t43 = k(2.0) * (t42 - t39);
-        let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
-        let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
-        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
-        let t49 = t37 * t40;
-        let t50 = t41 * t38;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
-        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
-        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
-        let t55 = k(2.0) * (t42 + t39);
-        let t56 = k(2.0) * (t33 + t32);
-        let t57 = t38 * t40;
-        let t58 = t41 * t37;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
-        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
-        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
-        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
-        let t64 = T::fused(-t61, t52, t63 * t62);
-        let t65 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t37,
-            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
-        );
-        let t66 = T::fused(
-            -chart1_3,
-            t38,
-            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
-        );
-        let t67 = k(0.5) * t66;
-        let t68 = T::fused(
+        let t31 = k(3.0) - t30;
+        let t32 = inner_ring_e3 * t31;
+        let t33 = inner_ring_e2 * t31;
+        let t34 = inner_ring_e1 * t31;
+        let t35 = inner_ring_e0 * t31;
+        let t36 = T::fused(
             chart1_3,
-            t37,
-            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+            t35,
+            -T::fused(chart1_2, t34, -T::fused(-chart1_0, t32, chart1_1 * t33)),
         );
-        let t69 = k(0.5) * t68;
-        let t70 = k(2.0) * (t58 + t57);
-        let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
-        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
-        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t37 = t33 * t35;
+        let t38 = t34 * t32;
+        let t39 = t38 - t37;
+        let t40 = T::fused(t26, t27, t28 * t29);
+        let t41 = t32 * t35;
+        let t42 = t33 * t34;
+        let t43 = t42 + t41;
+        let t44 = t26 * t26;
+        let t45 = k(2.0) - T::fused(t28, t28, t44);
+        let t46 = t35 * t35;
+        let t47 = k(2.0) - T::fused(t34, t34, t46);
+        let t48 = t26 * t29;
+        let t49 = t27 * t28;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t47, T::fused(-t40, t39, t45 * t43));
+        let t52 = k(2.0) - T::fused(t32, t32, t46);
+        let t53 = T::fused(-t26, t28, t27 * t29);
+        let t54 = t34 * t35;
+        let t55 = t33 * t32;
+        let t56 = t55 - t54;
+        let t57 = t49 + t48;
+        let t58 = t38 + t37;
+        let t59 = k(2.0) - T::fused(t27, t27, t44);
+        let t60 = T::fused(t59, t58, -T::fused(-t53, t52, t57 * t56));
+        let t61 = T::fused(t47, t59, T::fused(t39, t53, t43 * t57));
+        let t62 = T::fused(t50, t58, -T::fused(t40, t52, t45 * t56));
+        let t63 = t55 + t54;
+        let t64 = k(2.0) - T::fused(t33, t33, t46);
+        let t65 = t42 - t41;
+        let t66 = T::fused(t65, t59, T::fused(-t63, t53, t64 * t57));
+        let t67 = T::fused(t50, t65, T::fused(t40, t63, t45 * t64));
+        let t68 = T::fused(-t51, t66, t67 * t61);
+        let t69 = k(1.0) / (t68 * t36);
+        let t70 = t69 * T::fused(-t60, t51 * t36, t62 * (t61 * t36));
+        let t71 = t69 * T::fused(-t60, t67 * t36, t62 * (t66 * t36));
+        let t72 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t35, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t34, inner_ring_e1),
+        );
+        let t73 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t32, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t33, inner_ring_e2), t72),
+        );
+        let t74 = T::fused(
+            chart1_3,
+            t34,
+            T::fused(chart1_2, t35, -T::fused(chart1_0, t33, chart1_1 * t32)),
+        );
         let t75 = T::fused(
-            t73,
-            T::fused(-t63, t67, t61 * t69),
-            t74 * T::fused(-t62, t69, t52 * t67),
+            chart1_3,
+            t33,
+            -T::fused(chart1_2, t32, T::fused(-chart1_0, t34, chart1_1 * t35)),
         );
         let t76 = T::fused(
-            -chart1_3,
-            t41,
-            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+            -T::fused(t67, t74, t51 * t75),
+            t60,
+            T::fused(t61, t75, t66 * t74) * t62,
         );
-        let t77 = k(0.5) * t76;
-        let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
-        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
-        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
-        let t82 = T::fused(
-            k(0.5),
-            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
-            t41,
-        );
-        let t83 = T::fused(
+        let t77 = T::fused(k(4.0), t68 * t73, t76) * t69;
+        let t78 = T::fused(
             -k(0.5),
-            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
-            t38,
+            T::fused(t32, t77, -T::fused(-t34, t70, t33 * t71)),
+            t35,
         );
-        let t84 = T::fused(
-            -k(0.5),
-            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
-            t37,
-        );
-        let t85 = T::fused(
+        let t79 = T::fused(
             k(0.5),
-            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
-            t40,
+            T::fused(t33, t77, T::fused(t35, t70, t32 * t71)),
+            t34,
         );
-        let t86 = t82 * t82;
-        let t87 = t83 * t84;
-        let t88 = t82 * t85;
-        let t89 = t83 * t85;
-        let t90 = t82 * t84;
-        let t91 = T::fused(
-            rotor_e3,
-            rotor_e3,
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t34, t77, T::fused(-t32, t70, t35 * t71)),
+            t33,
+        );
+        let t81 = T::fused(
+            k(0.5),
+            T::fused(t35, t77, -T::fused(t33, t70, t34 * t71)),
+            t32,
+        );
+        let t82 = t78 * t78;
+        let t83 = t78 * t81;
+        let t84 = t79 * t80;
+        let t85 = t78 * t80;
+        let t86 = t79 * t81;
+        let t87 = T::fused(
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t92 = k(0.5) * (t91 - k(3.0));
-        let t93 = rotor_e2 * t92;
-        let t94 = rotor_e3 * t92;
-        let t95 = rotor_e0 * t92;
-        let t96 = rotor_e1 * t92;
-        let t97 = T::fused(
+        let t88 = k(3.0) - t87;
+        let t89 = rotor_e0 * t88;
+        let t90 = rotor_e1 * t88;
+        let t91 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t89, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t90, rotor_e1),
+        );
+        let t92 = rotor_e2 * t88;
+        let t93 = rotor_e3 * t88;
+        let t94 = T::fused(
             chart2_3,
-            t93,
-            T::fused(-chart2_2, t94, T::fused(-chart2_1, t95, chart2_0 * t96)),
+            T::fused(-k(0.5), t93, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t92, rotor_e2), t91),
         );
-        let t98 = k(0.5) * t97;
-        let t99 = k(2.0) * (t88 - t87);
-        let t100 = t96 * t94;
-        let t101 = t95 * t93;
-        let t102 = k(2.0) * (t101 + t100);
-        let t103 = k(2.0) * (k(0.5) - T::fused(t84, t84, t86));
-        let t104 = t93 * t94;
-        let t105 = t95 * t96;
-        let t106 = k(2.0) * (t105 - t104);
-        let t107 = t84 * t85;
-        let t108 = t82 * t83;
-        let t109 = k(2.0) * (t108 + t107);
-        let t110 = t95 * t95;
-        let t111 = k(2.0) * (k(0.5) - T::fused(t94, t94, t110));
-        let t112 = T::fused(t111, t109, -T::fused(-t102, t99, t106 * t103));
-        let t113 = k(2.0) * (t90 + t89);
-        let t114 = k(2.0) * (k(0.5) - T::fused(t96, t96, t110));
-        let t115 = k(2.0) * (t108 - t107);
-        let t116 = t96 * t93;
-        let t117 = t95 * t94;
-        let t118 = k(2.0) * (t117 + t116);
-        let t119 = k(2.0) * (k(0.5) - T::fused(t85, t85, t86));
-        let t120 = k(2.0) * (t101 - t100);
-        let t121 = T::fused(t120, t119, -T::fused(t114, t113, t118 * t115));
-        let t122 = T::fused(t111, t119, T::fused(t102, t113, t106 * t115));
-        let t123 = T::fused(t109, t120, T::fused(-t99, t114, t103 * t118));
-        let t124 = k(2.0) * (t117 - t116);
-        let t125 = k(2.0) * (k(0.5) - T::fused(t93, t93, t110));
-        let t126 = k(2.0) * (t105 + t104);
-        let t127 = T::fused(t109, t126, T::fused(t99, t124, t103 * t125));
-        let t128 = T::fused(t126, t119, -T::fused(-t124, t113, t125 * t115));
-        let t129 = T::fused(-t127, t122, t112 * t128);
-        let t130 = k(1.0) / (t98 * t129);
-        let t131 = t130 * T::fused(-t121, t112 * t98, t123 * (t122 * t98));
-        let t132 = t130 * T::fused(-t121, t127 * t98, t123 * (t128 * t98));
-        let t133 = T::fused(
-            chart2_2,
-            rotor_e2 + t93,
-            T::fused(chart2_1, rotor_e1 + t96, chart2_0 * (rotor_e0 + t95)),
+        let t95 = t89 * t90;
+        let t96 = t92 * t93;
+        let t97 = t96 + t95;
+        let t98 = k(2.0) - T::fused(t81, t81, t82);
+        let t99 = t89 * t89;
+        let t100 = k(2.0) - T::fused(t92, t92, t99);
+        let t101 = t78 * t79;
+        let t102 = t80 * t81;
+        let t103 = t102 - t101;
+        let t104 = t93 * t89;
+        let t105 = t92 * t90;
+        let t106 = t105 - t104;
+        let t107 = t86 + t85;
+        let t108 = T::fused(t107, t106, -T::fused(t98, t97, t103 * t100));
+        let t109 = k(2.0) - T::fused(t93, t93, t99);
+        let t110 = t102 + t101;
+        let t111 = t96 - t95;
+        let t112 = k(2.0) - T::fused(t80, t80, t82);
+        let t113 = t92 * t89;
+        let t114 = t93 * t90;
+        let t115 = t114 + t113;
+        let t116 = t84 - t83;
+        let t117 = T::fused(t116, t115, -T::fused(t110, t109, t112 * t111));
+        let t118 = T::fused(t116, t106, T::fused(t110, t97, t112 * t100));
+        let t119 = T::fused(t115, t107, T::fused(t109, t98, t111 * t103));
+        let t120 = T::fused(-t117, t108, t119 * t118);
+        let t121 = T::fused(
+            chart2_3,
+            t89,
+            -T::fused(chart2_2, t90, -T::fused(-chart2_0, t93, chart2_1 * t92)),
         );
+        let t122 = T::fused(
+            chart2_3,
+            t90,
+            T::fused(chart2_2, t89, -T::fused(chart2_0, t92, chart2_1 * t93)),
+        );
+        let t123 = t114 - t113;
+        let t124 = t105 + t104;
+        let t125 = k(2.0) - T::fused(t90, t90, t99);
+        let t126 = T::fused(t116, t125, T::fused(-t110, t123, t112 * t124));
+        let t127 = T::fused(t107, t125, -T::fused(-t98, t123, t103 * t124));
+        let t128 = T::fused(
+            -t126,
+            T::fused(t119, t121, t108 * t122),
+            t127 * T::fused(t118, t122, t117 * t121),
+        );
+        let t129 = T::fused(
+            chart2_3,
+            t92,
+            -T::fused(chart2_2, t93, T::fused(-chart2_0, t90, chart2_1 * t89)),
+        );
+        let t130 = k(1.0) / (t129 * t120);
+        let t131 = t130 * T::fused(k(4.0), t120 * t94, t128);
+        let t132 = t130 * T::fused(-t126, t129 * t108, t127 * (t129 * t118));
+        let t133 = T::fused(-(t129 * t119), t126, t129 * t117 * t127) * t130;
         let t134 = T::fused(
-            -chart2_3,
-            t95,
-            T::fused(chart2_2, t96, T::fused(-chart2_1, t93, chart2_0 * t94)),
+            k(0.5),
+            T::fused(t93, t133, T::fused(t90, t131, t92 * t132)),
+            t89,
         );
-        let t135 = k(0.5) * t134;
+        let t135 = T::fused(
+            -k(0.5),
+            T::fused(t92, t133, -T::fused(-t89, t131, t93 * t132)),
+            t90,
+        );
         let t136 = T::fused(
-            -chart2_3,
-            t96,
-            T::fused(-chart2_2, t95, T::fused(chart2_1, t94, chart2_0 * t93)),
+            k(0.5),
+            T::fused(t90, t133, -T::fused(t93, t131, t89 * t132)),
+            t92,
         );
-        let t137 = k(0.5) * t136;
-        let t138 = T::fused(
-            t121,
-            T::fused(-t112, t135, t127 * t137),
-            t123 * T::fused(-t128, t137, t122 * t135),
-        );
-        let t139 = t130 * T::fused(T::fused(chart2_3, rotor_e3 + t94, t133), t129, t138);
-        let t140 = T::fused(
+        let t137 = T::fused(
             -k(0.5),
-            T::fused(-t94, t131, T::fused(t93, t132, t96 * t139)),
-            t95,
-        );
-        let t141 = T::fused(
-            k(0.5),
-            T::fused(-t93, t131, T::fused(-t94, t132, t95 * t139)),
-            t96,
-        );
-        let t142 = T::fused(
-            k(0.5),
-            T::fused(t96, t131, T::fused(t95, t132, t94 * t139)),
+            T::fused(t89, t133, T::fused(-t92, t131, t90 * t132)),
             t93,
-        );
-        let t143 = T::fused(
-            -k(0.5),
-            T::fused(t95, t131, T::fused(-t96, t132, t93 * t139)),
-            t94,
         );
         y[0] = k(0.0);
         y[1] = k(0.0);
@@ -1586,26 +1566,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t28;
-        y[11] = -t29;
-        y[12] = -t30;
-        y[13] = -t31;
+        y[10] = k(0.5) * t26;
+        y[11] = k(0.5) * t27;
+        y[12] = k(0.5) * t28;
+        y[13] = k(0.5) * t29;
         y[14] = k(0.0);
         y[15] = k(0.0);
         y[16] = k(0.0);
-        y[17] = -t82;
-        y[18] = -t83;
-        y[19] = -t84;
-        y[20] = -t85;
-        y[21] = -(k(0.00025) * (k(0.5) - T::fused(t83, t83, t86)));
-        y[22] = k(0.00025) * (t88 + t87);
-        y[23] = -(k(0.00025) * (t90 - t89));
-        y[24] = -t140;
-        y[25] = -t141;
-        y[26] = -t142;
-        y[27] = -t143;
+        y[17] = k(0.5) * t78;
+        y[18] = k(0.5) * t79;
+        y[19] = k(0.5) * t80;
+        y[20] = k(0.5) * t81;
+        y[21] = -(k(6.25e-5) * (k(2.0) - T::fused(t79, t79, t82)));
+        y[22] = k(6.25e-5) * (t84 + t83);
+        y[23] = k(6.25e-5) * (t86 - t85);
+        y[24] = k(0.5) * t134;
+        y[25] = k(0.5) * t135;
+        y[26] = k(0.5) * t136;
+        y[27] = k(0.5) * t137;
     }
-    /// Solves eq. (19) for the dependent velocities: 300 operations (112 ±, 185 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 267 operations (112 ±, 152 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -1632,110 +1612,110 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         let inner_ring_wz = y[45];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t2 = base_e0 * base_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t2));
-        let t4 = outer_ring_e0 * outer_ring_e3;
-        let t5 = outer_ring_e1 * outer_ring_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2);
-        let t8 = outer_ring_e0 * outer_ring_e2;
-        let t9 = outer_ring_e1 * outer_ring_e3;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = base_e0 * base_e2;
-        let t12 = base_e1 * base_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = T::fused(t13, t10, T::fused(t3, t1, t7 * t6));
-        let t15 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t16 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t2));
-        let t17 = outer_ring_e0 * outer_ring_e1;
-        let t18 = outer_ring_e2 * outer_ring_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3);
-        let t21 = k(2.0) * (t9 + t8);
-        let t22 = k(2.0) * (t12 + t11);
-        let t23 = T::fused(t16, t15, T::fused(t20, t19, t22 * t21));
-        let t24 = T::fused(t13, t15, -T::fused(-t3, t21, t7 * t19));
-        let t25 = T::fused(t16, t10, -T::fused(-t22, t1, t20 * t6));
-        let t26 = k(1.0) / T::fused(-t23, t14, t25 * t24);
-        let t27 = T::fused(outer_ring_wz, t14, outer_ring_wx * t24);
-        let t28 = T::fused(outer_ring_wz, t25, outer_ring_wx * t23);
-        let t29 = T::fused(-t27, t25 * t26, T::fused(t28, t14 * t26, outer_ring_wx));
-        let t30 = T::fused(t27, t23 * t26, T::fused(-t28, t24 * t26, outer_ring_wz));
+        let t0 = outer_ring_e0 * outer_ring_e2;
+        let t1 = outer_ring_e1 * outer_ring_e3;
+        let t2 = t1 + t0;
+        let t3 = base_e0 * base_e2;
+        let t4 = base_e1 * base_e3;
+        let t5 = t4 + t3;
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = t7 - t6;
+        let t9 = T::fused(-base_e0, base_e1, base_e2 * base_e3);
+        let t10 = outer_ring_e0 * outer_ring_e0;
+        let t11 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10);
+        let t12 = base_e0 * base_e0;
+        let t13 = k(0.5) - T::fused(base_e3, base_e3, t12);
+        let t14 = T::fused(t13, t11, T::fused(t5, t2, t9 * t8));
+        let t15 = t1 - t0;
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = t17 + t16;
+        let t19 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10);
+        let t20 = T::fused(t5, t19, -T::fused(-t13, t15, t9 * t18));
+        let t21 = T::fused(outer_ring_wx, t14, outer_ring_wz * t20);
+        let t22 = t4 - t3;
+        let t23 = T::fused(base_e0, base_e3, base_e1 * base_e2);
+        let t24 = k(0.5) - T::fused(base_e1, base_e1, t12);
+        let t25 = T::fused(t24, t2, -T::fused(-t22, t11, t23 * t8));
+        let t26 = T::fused(t24, t19, T::fused(t22, t15, t23 * t18));
+        let t27 = k(1.0) / T::fused(-t25, t20, t14 * t26);
+        let t28 = T::fused(outer_ring_wx, t25, outer_ring_wz * t26);
+        let t29 = T::fused(t20 * t27, t28, T::fused(-(t26 * t27), t21, outer_ring_wx));
+        let t30 = T::fused(t14 * t27, t28, -T::fused(t25 * t27, t21, outer_ring_wz));
         let t31 = inner_ring_e0 * inner_ring_e0;
-        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t31));
-        let t33 = k(2.0) * (t5 - t4);
-        let t34 = inner_ring_e0 * inner_ring_e3;
-        let t35 = inner_ring_e1 * inner_ring_e2;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t38 = inner_ring_e0 * inner_ring_e2;
-        let t39 = inner_ring_e1 * inner_ring_e3;
-        let t40 = k(2.0) * (t39 - t38);
-        let t41 = k(2.0) * (t18 + t17);
-        let t42 = T::fused(t41, t40, -T::fused(t33, t32, t37 * t36));
-        let t43 = k(2.0) * (t35 - t34);
-        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t31));
-        let t45 = inner_ring_e0 * inner_ring_e1;
-        let t46 = inner_ring_e2 * inner_ring_e3;
-        let t47 = k(2.0) * (t46 + t45);
-        let t48 = T::fused(t10, t47, -T::fused(t1, t43, t6 * t44));
-        let t49 = T::fused(t41, t47, T::fused(t37, t44, t33 * t43));
-        let t50 = T::fused(t10, t40, T::fused(t1, t32, t6 * t36));
-        let t51 = k(1.0) / T::fused(-t48, t42, t50 * t49);
-        let t52 = k(2.0) * (t39 + t38);
-        let t53 = k(2.0) * (t46 - t45);
-        let t54 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t31));
-        let t55 = T::fused(t15, t54, T::fused(t19, t53, t21 * t52));
-        let t56 = T::fused(
+        let t32 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t31);
+        let t33 = t7 + t6;
+        let t34 = inner_ring_e0 * inner_ring_e2;
+        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t36 = t35 + t34;
+        let t37 = t17 - t16;
+        let t38 = inner_ring_e0 * inner_ring_e1;
+        let t39 = inner_ring_e2 * inner_ring_e3;
+        let t40 = t39 - t38;
+        let t41 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10);
+        let t42 = T::fused(t11, t32, T::fused(t2, t36, t8 * t40));
+        let t43 = T::fused(
+            -T::fused(t41, t40, -T::fused(-t33, t32, t37 * t36)),
             t30,
-            T::fused(t10, t54, -T::fused(-t1, t52, t6 * t53)),
-            t29 * t55,
+            outer_ring_wy * t42,
         );
-        let t57 = t56 - T::fused(-inner_ring_wy, t42, inner_ring_wx * t49);
+        let t44 = t39 + t38;
+        let t45 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t31);
+        let t46 = inner_ring_e0 * inner_ring_e3;
+        let t47 = inner_ring_e1 * inner_ring_e2;
+        let t48 = t47 - t46;
+        let t49 = T::fused(t19, t48, T::fused(-t15, t44, t18 * t45));
+        let t50 = t35 - t34;
+        let t51 = t47 + t46;
+        let t52 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t31);
+        let t53 = T::fused(t19, t52, T::fused(t15, t50, t18 * t51));
+        let t54 = T::fused(inner_ring_wy, t53, T::fused(inner_ring_wx, t49, -t43));
+        let t55 = T::fused(t41, t45, T::fused(t33, t44, t37 * t48));
+        let t56 = T::fused(t37, t52, T::fused(-t33, t50, t41 * t51));
+        let t57 = k(1.0) / T::fused(-t55, t53, t56 * t49);
         let t58 = T::fused(
-            t30,
-            T::fused(t41, t54, -T::fused(-t37, t53, t33 * t52)),
-            outer_ring_wy * t55,
+            -t42,
+            t29,
+            T::fused(t19, t36, -T::fused(-t15, t32, t18 * t40)) * t30,
         );
-        let t59 = t58 + T::fused(-inner_ring_wy, t50, inner_ring_wx * t48);
-        let t60 = T::fused(t57, t50 * t51, T::fused(t59, t42 * t51, inner_ring_wx));
-        let t61 = T::fused(t57, t48 * t51, T::fused(t59, t49 * t51, inner_ring_wy));
-        let t62 = rotor_e0 * rotor_e0;
-        let t63 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t62));
-        let t64 = rotor_e0 * rotor_e3;
-        let t65 = rotor_e1 * rotor_e2;
-        let t66 = k(2.0) * (t65 - t64);
-        let t67 = rotor_e0 * rotor_e1;
-        let t68 = rotor_e2 * rotor_e3;
-        let t69 = k(2.0) * (t68 + t67);
-        let t70 = T::fused(t54, t69, -T::fused(-t53, t63, t52 * t66));
-        let t71 = k(2.0) * (t68 - t67);
-        let t72 = rotor_e0 * rotor_e2;
-        let t73 = rotor_e1 * rotor_e3;
-        let t74 = k(2.0) * (t73 + t72);
-        let t75 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t62));
-        let t76 = T::fused(t47, t75, -T::fused(-t44, t71, t43 * t74));
-        let t77 = T::fused(t54, t75, T::fused(t53, t71, t52 * t74));
-        let t78 = T::fused(t47, t69, T::fused(t44, t63, t43 * t66));
-        let t79 = k(1.0) / T::fused(-t76, t70, t78 * t77);
-        let t80 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t62));
-        let t81 = k(2.0) * (t65 + t64);
-        let t82 = k(2.0) * (t73 - t72);
-        let t83 = T::fused(t40, t82, T::fused(t32, t80, t36 * t81));
-        let t84 = T::fused(
-            -t61,
-            t83,
-            t60 * T::fused(t47, t82, -T::fused(t43, t80, t44 * t81)),
+        let t59 = T::fused(inner_ring_wy, t56, T::fused(inner_ring_wx, t55, t58));
+        let t60 = T::fused(t53 * t57, t59, T::fused(-(t56 * t57), t54, inner_ring_wx));
+        let t61 = T::fused(t49 * t57, t59, -T::fused(t55 * t57, t54, inner_ring_wy));
+        let t62 = rotor_e0 * rotor_e2;
+        let t63 = rotor_e1 * rotor_e3;
+        let t64 = t63 - t62;
+        let t65 = rotor_e0 * rotor_e3;
+        let t66 = rotor_e1 * rotor_e2;
+        let t67 = t66 + t65;
+        let t68 = rotor_e0 * rotor_e0;
+        let t69 = k(0.5) - T::fused(rotor_e1, rotor_e1, t68);
+        let t70 = T::fused(t52, t69, T::fused(t50, t64, t51 * t67));
+        let t71 = T::fused(
+            T::fused(t36, t69, -T::fused(-t32, t64, t40 * t67)),
+            t60,
+            inner_ring_wz * t70,
         );
-        let t85 = t84 + T::fused(rotor_wz, t70, rotor_wy * t77);
+        let t72 = k(0.5) - T::fused(rotor_e3, rotor_e3, t68);
+        let t73 = t63 + t62;
+        let t74 = rotor_e0 * rotor_e1;
+        let t75 = rotor_e2 * rotor_e3;
+        let t76 = t75 - t74;
+        let t77 = T::fused(t45, t76, -T::fused(-t44, t72, t48 * t73));
+        let t78 = t75 + t74;
+        let t79 = t66 - t65;
+        let t80 = k(0.5) - T::fused(rotor_e2, rotor_e2, t68);
+        let t81 = T::fused(t45, t80, T::fused(t44, t78, t48 * t79));
+        let t82 = T::fused(rotor_wz, t81, T::fused(rotor_wy, t77, -t71));
+        let t83 = T::fused(t32, t72, T::fused(t36, t73, t40 * t76));
+        let t84 = T::fused(t40, t80, -T::fused(-t32, t78, t36 * t79));
+        let t85 = k(1.0) / T::fused(-t83, t81, t84 * t77);
         let t86 = T::fused(
-            inner_ring_wz,
-            t83,
-            t60 * T::fused(t54, t82, -T::fused(-t52, t80, t53 * t81)),
+            -T::fused(t48, t69, T::fused(-t44, t64, t45 * t67)),
+            t60,
+            t70 * t61,
         );
-        let t87 = t86 - T::fused(rotor_wz, t78, rotor_wy * t76);
+        let t87 = T::fused(rotor_wz, t84, T::fused(rotor_wy, t83, t86));
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = k(0.0);
@@ -1746,17 +1726,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         y[35] = k(0.0);
         y[36] = k(0.0);
         y[37] = t29;
-        y[39] = t30;
+        y[39] = -t30;
         y[40] = k(0.0);
         y[41] = k(0.0);
         y[42] = k(0.0);
         y[43] = t60;
-        y[44] = t61;
-        y[46] = -(k(0.000125) * T::fused(-t43, inner_ring_wz, t52 * t61));
-        y[47] = -(k(0.000125) * T::fused(t44, inner_ring_wz, t53 * t61));
-        y[48] = k(0.000125) * T::fused(t47, inner_ring_wz, t54 * t61);
-        y[50] = T::fused(-t85, t78 * t79, T::fused(-t87, t70 * t79, rotor_wy));
-        y[51] = T::fused(t85, t76 * t79, T::fused(t87, t77 * t79, rotor_wz));
+        y[44] = -t61;
+        y[46] = k(0.00025) * T::fused(t36, t61, t48 * inner_ring_wz);
+        y[47] = -(k(0.00025) * T::fused(-t40, t61, t45 * inner_ring_wz));
+        y[48] = k(0.00025) * T::fused(-t32, t61, t44 * inner_ring_wz);
+        y[50] = T::fused(t81 * t85, t87, T::fused(-(t84 * t85), t82, rotor_wy));
+        y[51] = T::fused(-(t77 * t85), t87, T::fused(t83 * t85, t82, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
@@ -2362,7 +2342,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 444 operations (173 ±, 271 ×, 0 ÷).
+    /// Writes γ: 430 operations (173 ±, 257 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -2393,239 +2373,243 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let t0 = k(0.5)
-            * T::fused(base_e3, base_wz, T::fused(base_e2, base_wy, base_e1 * base_wx));
-        let t1 = k(0.5)
-            * T::fused(
-                -base_e0,
-                base_wz,
-                T::fused(-base_e1, base_wy, base_e2 * base_wx),
-            );
-        let t2 = k(0.5)
-            * T::fused(-base_e1, base_wz, T::fused(base_e0, base_wy, base_e3 * base_wx));
-        let t3 = k(0.5)
-            * T::fused(base_e2, base_wz, T::fused(-base_e3, base_wy, base_e0 * base_wx));
-        let t4 = k(2.0) * outer_ring_e0;
-        let t5 = outer_ring_e3 * t4;
-        let t6 = k(2.0) * outer_ring_e1;
-        let t7 = outer_ring_e2 * t6;
-        let t8 = t7 - t5;
-        let t9 = k(2.0) * base_e1;
-        let t10 = k(2.0) * base_e0;
-        let t11 = T::fused(-base_e0, t10, k(1.0));
-        let t12 = T::fused(-base_e1, t9, t11);
-        let t13 = k(2.0) * outer_ring_e2;
-        let t14 = T::fused(-outer_ring_e0, t4, k(1.0));
-        let t15 = T::fused(-outer_ring_e2, t13, t14);
-        let t16 = base_e3 * t10;
-        let t17 = base_e2 * t9;
-        let t18 = t17 + t16;
-        let t19 = outer_ring_e1 * t4;
-        let t20 = outer_ring_e3 * t13;
-        let t21 = t20 + t19;
-        let t22 = base_e2 * t10;
-        let t23 = base_e3 * t9;
-        let t24 = t23 - t22;
-        let t25 = T::fused(t24, t21, -T::fused(t12, t8, t18 * t15));
-        let t26 = base_wx * base_wz;
-        let t27 = t17 - t16;
-        let t28 = k(2.0) * base_e2;
-        let t29 = T::fused(-base_e2, t28, t11);
-        let t30 = base_e1 * t10;
-        let t31 = base_e3 * t28;
-        let t32 = t31 + t30;
-        let t33 = T::fused(t32, t21, T::fused(t27, t8, t29 * t15));
-        let t34 = t23 + t22;
-        let t35 = t31 - t30;
-        let t36 = T::fused(-base_e3, k(2.0) * base_e3, t11);
-        let t37 = T::fused(t36, t21, T::fused(-t34, t8, t35 * t15));
-        let t38 = base_wy * base_wy;
-        let t39 = T::fused(
-            T::fused(base_wx, base_wx, t38),
-            t37,
-            T::fused(t26, t25, base_wy * base_wz * t33),
+        let t0 = T::fused(
+            -base_e1,
+            base_wz,
+            T::fused(base_e0, base_wy, base_e3 * base_wx),
         );
-        let t40 = T::fused(-outer_ring_e1, t6, t14);
-        let t41 = t7 + t5;
-        let t42 = outer_ring_e2 * t4;
-        let t43 = outer_ring_e3 * t6;
-        let t44 = t43 - t42;
-        let t45 = T::fused(t24, t44, T::fused(t12, t40, t18 * t41));
-        let t46 = t43 + t42;
-        let t47 = t20 - t19;
-        let t48 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t14);
-        let t49 = T::fused(t24, t48, -T::fused(-t12, t46, t18 * t47));
-        let t50 = T::fused(
-            outer_ring_wz,
-            T::fused(t32, t44, -T::fused(t27, t40, t29 * t41)),
-            outer_ring_wx * T::fused(t32, t48, T::fused(-t27, t46, t29 * t47)),
+        let t1 = T::fused(
+            -base_e0,
+            base_wz,
+            T::fused(-base_e1, base_wy, base_e2 * base_wx),
         );
-        let t51 = T::fused(t36, t44, -T::fused(-t34, t40, t35 * t41));
-        let t52 = outer_ring_wx * outer_ring_wy;
-        let t53 = outer_ring_wz * outer_ring_wz;
-        let t54 = T::fused(outer_ring_wx, outer_ring_wx, t53);
-        let t55 = T::fused(t36, t48, T::fused(t34, t46, t35 * t47));
-        let t56 = outer_ring_wy * outer_ring_wz;
-        let t57 = T::fused(
-            k(2.0),
+        let t2 = T::fused(
+            base_e3,
+            base_wz,
+            T::fused(base_e2, base_wy, base_e1 * base_wx),
+        );
+        let t3 = T::fused(
+            base_e2,
+            base_wz,
+            T::fused(-base_e3, base_wy, base_e0 * base_wx),
+        );
+        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t5 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
+        let t6 = base_e0 * base_e1;
+        let t7 = base_e2 * base_e3;
+        let t8 = t7 + t6;
+        let t9 = T::fused(-base_e0, base_e0, k(0.5));
+        let t10 = T::fused(base_e2, base_e2, -t9);
+        let t11 = outer_ring_e0 * outer_ring_e1;
+        let t12 = outer_ring_e2 * outer_ring_e3;
+        let t13 = t12 - t11;
+        let t14 = outer_ring_e0 * outer_ring_e2;
+        let t15 = outer_ring_e1 * outer_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = base_e0 * base_e3;
+        let t18 = base_e1 * base_e2;
+        let t19 = t18 - t17;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 + t20;
+        let t23 = t15 - t14;
+        let t24 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
+        let t25 = T::fused(
+            -outer_ring_wx,
+            T::fused(t19, t16, T::fused(t8, t5, t13 * t10)),
+            outer_ring_wz * T::fused(t19, t24, T::fused(t22, t10, t8 * t23)),
+        );
+        let t26 = base_e0 * base_e2;
+        let t27 = base_e1 * base_e3;
+        let t28 = t27 - t26;
+        let t29 = t18 + t17;
+        let t30 = T::fused(base_e1, base_e1, -t9);
+        let t31 = T::fused(t16, t30, T::fused(t28, t5, t29 * t13));
+        let t32 = T::fused(t30, t24, T::fused(t28, t23, t29 * t22));
+        let t33 = T::fused(base_e3, base_e3, -t9);
+        let t34 = t7 - t6;
+        let t35 = t27 + t26;
+        let t36 = T::fused(t35, t16, T::fused(t33, t5, t34 * t13));
+        let t37 = outer_ring_wy * outer_ring_wz;
+        let t38 = t12 + t11;
+        let t39 = T::fused(outer_ring_e2, outer_ring_e2, -t4);
+        let t40 = t21 - t20;
+        let t41 = T::fused(t35, t40, T::fused(t38, t33, t34 * t39));
+        let t42 = outer_ring_wz * outer_ring_wz;
+        let t43 = T::fused(outer_ring_wx, outer_ring_wx, t42);
+        let t44 = T::fused(t35, t24, T::fused(t23, t33, t34 * t22));
+        let t45 = outer_ring_wx * outer_ring_wy;
+        let t46 = T::fused(
+            -k(2.0),
+            T::fused(
+                -base_wx,
+                t25,
+                base_wy * T::fused(-outer_ring_wx, t31, outer_ring_wz * t32),
+            ),
+            T::fused(t45, t44, -T::fused(-t37, t36, t43 * t41)),
+        );
+        let t47 = base_wy * base_wy;
+        let t48 = T::fused(t19, t40, T::fused(t39, t10, t8 * t38));
+        let t49 = T::fused(
+            base_wy * base_wz,
+            t48,
+            -T::fused(T::fused(base_wx, base_wx, t47), t41, -t46),
+        );
+        let t50 = T::fused(t40, t30, T::fused(t29, t39, t28 * t38));
+        let t51 = base_wx * base_wz;
+        let t52 = T::fused(
+            -k(2.0),
             T::fused(
                 -base_wy,
-                T::fused(outer_ring_wz, t45, outer_ring_wx * t49),
-                base_wx * t50,
+                T::fused(-outer_ring_wx, t36, outer_ring_wz * t44),
+                base_wz * t25,
             ),
-            T::fused(t56, t55, T::fused(-t52, t51, t54 * t37)),
+            T::fused(t45, t32, -T::fused(-t37, t31, t43 * t50)),
         );
-        let t58 = T::fused(
-            t26,
-            t37,
-            -T::fused(-T::fused(base_wz, base_wz, t38), t25, base_wx * base_wy * t33),
+        let t53 = T::fused(
+            T::fused(base_wz, base_wz, t47),
+            t50,
+            -T::fused(base_wx * base_wy, t48, T::fused(t51, t41, t52)),
         );
-        let t59 = T::fused(
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 + t54;
+        let t57 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t58 = T::fused(inner_ring_e2, inner_ring_e2, -t57);
+        let t59 = inner_ring_e0 * inner_ring_e3;
+        let t60 = inner_ring_e1 * inner_ring_e2;
+        let t61 = t60 - t59;
+        let t62 = inner_ring_e0 * inner_ring_e2;
+        let t63 = inner_ring_e1 * inner_ring_e3;
+        let t64 = t63 - t62;
+        let t65 = t60 + t59;
+        let t66 = T::fused(inner_ring_e1, inner_ring_e1, -t57);
+        let t67 = T::fused(
+            -inner_ring_wx,
+            T::fused(t16, t61, T::fused(t56, t5, t13 * t58)),
+            inner_ring_wy * T::fused(t16, t66, T::fused(t64, t5, t13 * t65)),
+        );
+        let t68 = T::fused(t40, t61, T::fused(t39, t58, t38 * t56));
+        let t69 = T::fused(t40, t66, T::fused(t65, t39, t38 * t64));
+        let t70 = T::fused(inner_ring_e3, inner_ring_e3, -t57);
+        let t71 = t55 - t54;
+        let t72 = t63 + t62;
+        let t73 = T::fused(t72, t24, T::fused(t23, t70, t22 * t71));
+        let t74 = inner_ring_wx * inner_ring_wx;
+        let t75 = inner_ring_wy * inner_ring_wy;
+        let t76 = t75 + t74;
+        let t77 = T::fused(t61, t24, T::fused(t22, t58, t23 * t56));
+        let t78 = inner_ring_wy * inner_ring_wz;
+        let t79 = T::fused(t24, t66, T::fused(t23, t64, t22 * t65));
+        let t80 = inner_ring_wx * inner_ring_wz;
+        let t81 = T::fused(
             k(2.0),
             T::fused(
-                base_wz,
-                t50,
-                base_wy * T::fused(outer_ring_wz, t51, outer_ring_wx * t55),
+                -outer_ring_wy,
+                t67,
+                outer_ring_wz * T::fused(-inner_ring_wx, t68, inner_ring_wy * t69),
             ),
-            T::fused(t56, t49, T::fused(-t52, t45, t54 * t25)),
+            T::fused(t80, t79, T::fused(-t76, t73, t78 * t77)),
         );
-        let t60 = k(2.0) * inner_ring_e0;
-        let t61 = inner_ring_e2 * t60;
-        let t62 = k(2.0) * inner_ring_e1;
-        let t63 = inner_ring_e3 * t62;
-        let t64 = t63 + t61;
-        let t65 = inner_ring_e1 * t60;
-        let t66 = k(2.0) * inner_ring_e2;
-        let t67 = inner_ring_e3 * t66;
-        let t68 = t67 - t65;
-        let t69 = T::fused(-inner_ring_e0, t60, k(1.0));
-        let t70 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t69);
-        let t71 = T::fused(t44, t70, -T::fused(-t40, t64, t41 * t68));
-        let t72 = T::fused(t21, t70, T::fused(-t8, t64, t15 * t68));
-        let t73 = T::fused(t48, t70, T::fused(t46, t64, t47 * t68));
-        let t74 = T::fused(
-            outer_ring_wx * outer_ring_wz,
+        let t82 = T::fused(t16, t72, T::fused(t5, t70, t13 * t71));
+        let t83 = T::fused(t40, t72, T::fused(t38, t70, t71 * t39));
+        let t84 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t42),
             t73,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t53), t71, t52 * t72),
+            -T::fused(t45, t83, T::fused(outer_ring_wx * outer_ring_wz, t82, t81)),
         );
-        let t75 = T::fused(-inner_ring_e1, t62, t69);
-        let t76 = inner_ring_e3 * t60;
-        let t77 = inner_ring_e2 * t62;
-        let t78 = t77 + t76;
-        let t79 = t63 - t61;
-        let t80 = T::fused(t21, t79, -T::fused(t8, t75, t15 * t78));
-        let t81 = t77 - t76;
-        let t82 = T::fused(-inner_ring_e2, t66, t69);
-        let t83 = t67 + t65;
-        let t84 = T::fused(t21, t83, T::fused(t8, t81, t15 * t82));
         let t85 = T::fused(
-            -inner_ring_wy,
-            T::fused(t48, t79, -T::fused(-t46, t75, t47 * t78)),
-            inner_ring_wx * T::fused(t48, t83, T::fused(-t46, t81, t47 * t82)),
-        );
-        let t86 = T::fused(t44, t79, T::fused(t40, t75, t41 * t78));
-        let t87 = inner_ring_wx * inner_ring_wz;
-        let t88 = T::fused(t44, t83, -T::fused(t40, t81, t41 * t82));
-        let t89 = inner_ring_wy * inner_ring_wz;
-        let t90 = inner_ring_wx * inner_ring_wx;
-        let t91 = inner_ring_wy * inner_ring_wy;
-        let t92 = t91 + t90;
-        let t93 = T::fused(
             -k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t80, inner_ring_wx * t84),
-                outer_ring_wy * t85,
+                -outer_ring_wx,
+                t67,
+                outer_ring_wz * T::fused(-inner_ring_wx, t77, inner_ring_wy * t79),
             ),
-            T::fused(t92, t71, T::fused(t87, t86, t89 * t88)),
+            T::fused(t80, t69, T::fused(-t76, t83, t78 * t68)),
         );
-        let t94 = T::fused(
+        let t86 = k(4.0)
+            * T::fused(t45, t73, -T::fused(t43, t83, -T::fused(t37, t82, t85)));
+        let t87 = inner_ring_wz * inner_ring_wz;
+        let t88 = t87 + t75;
+        let t89 = inner_ring_wx * inner_ring_wy;
+        let t90 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t91 = T::fused(rotor_e3, rotor_e3, -t90);
+        let t92 = rotor_e0 * rotor_e1;
+        let t93 = rotor_e2 * rotor_e3;
+        let t94 = t93 - t92;
+        let t95 = rotor_e0 * rotor_e2;
+        let t96 = rotor_e1 * rotor_e3;
+        let t97 = t96 + t95;
+        let t98 = T::fused(t72, t97, T::fused(t91, t70, t71 * t94));
+        let t99 = t93 + t92;
+        let t100 = T::fused(rotor_e2, rotor_e2, -t90);
+        let t101 = rotor_e0 * rotor_e3;
+        let t102 = rotor_e1 * rotor_e2;
+        let t103 = t102 - t101;
+        let t104 = T::fused(t72, t103, T::fused(t99, t70, t71 * t100));
+        let t105 = T::fused(
+            -rotor_wy,
+            T::fused(t97, t66, T::fused(t64, t91, t65 * t94)),
+            rotor_wz * T::fused(t103, t66, T::fused(t65, t100, t64 * t99)),
+        );
+        let t106 = T::fused(t61, t97, T::fused(t56, t91, t94 * t58));
+        let t107 = rotor_wx * rotor_wz;
+        let t108 = T::fused(t61, t103, T::fused(t100, t58, t56 * t99));
+        let t109 = rotor_wx * rotor_wy;
+        let t110 = t102 + t101;
+        let t111 = t96 - t95;
+        let t112 = T::fused(rotor_e1, rotor_e1, -t90);
+        let t113 = T::fused(t61, t112, T::fused(t110, t58, t56 * t111));
+        let t114 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t115 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t86, inner_ring_wx * t88),
-                outer_ring_wx * t85,
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t98, rotor_wz * t104),
+                inner_ring_wz * t105,
             ),
-            T::fused(t92, t72, T::fused(t87, t80, t89 * t84)),
+            T::fused(t114, t113, -T::fused(t107, t106, t109 * t108)),
         );
-        let t95 = inner_ring_wz * inner_ring_wz;
-        let t96 = t95 + t91;
-        let t97 = inner_ring_wx * inner_ring_wy;
-        let t98 = k(2.0) * rotor_e1;
-        let t99 = k(2.0) * rotor_e0;
-        let t100 = T::fused(-rotor_e0, t99, k(1.0));
-        let t101 = T::fused(-rotor_e1, t98, t100);
-        let t102 = rotor_e3 * t99;
-        let t103 = rotor_e2 * t98;
-        let t104 = t103 + t102;
-        let t105 = rotor_e2 * t99;
-        let t106 = rotor_e3 * t98;
-        let t107 = t106 - t105;
-        let t108 = T::fused(t79, t107, T::fused(t75, t101, t78 * t104));
-        let t109 = T::fused(t83, t107, -T::fused(t81, t101, t82 * t104));
-        let t110 = T::fused(t70, t107, -T::fused(-t64, t101, t68 * t104));
-        let t111 = t103 - t102;
-        let t112 = k(2.0) * rotor_e2;
-        let t113 = T::fused(-rotor_e2, t112, t100);
-        let t114 = rotor_e1 * t99;
-        let t115 = rotor_e3 * t112;
-        let t116 = t115 + t114;
-        let t117 = t106 + t105;
-        let t118 = t115 - t114;
-        let t119 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t100);
-        let t120 = T::fused(
-            rotor_wz,
-            T::fused(t79, t116, -T::fused(t75, t111, t78 * t113)),
-            rotor_wy * T::fused(t79, t119, -T::fused(-t75, t117, t78 * t118)),
+        let t116 = T::fused(t72, t112, T::fused(t111, t70, t71 * t110));
+        let t117 = T::fused(t66, t112, T::fused(t64, t111, t65 * t110));
+        let t118 = T::fused(
+            t89,
+            t117,
+            -T::fused(t87 + t74, t113, -T::fused(t78, t116, -t115)),
         );
-        let t121 = T::fused(t70, t116, T::fused(-t64, t111, t68 * t113));
-        let t122 = T::fused(t70, t119, T::fused(t64, t117, t68 * t118));
-        let t123 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t124 = T::fused(t83, t116, T::fused(t81, t111, t82 * t113));
-        let t125 = rotor_wx * rotor_wy;
-        let t126 = T::fused(t83, t119, T::fused(-t81, t117, t82 * t118));
-        let t127 = rotor_wx * rotor_wz;
-        let t128 = T::fused(
-            k(2.0),
-            T::fused(
-                inner_ring_wz,
-                t120,
-                inner_ring_wx * T::fused(rotor_wz, t121, rotor_wy * t122),
-            ),
-            T::fused(t127, t126, -T::fused(-t123, t109, t125 * t124)),
-        );
-        let t129 = t128 + T::fused(t89, t110, T::fused(-t97, t108, (t95 + t90) * t109));
-        let t130 = T::fused(
+        let t119 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t120,
-                inner_ring_wx * T::fused(rotor_wz, t124, rotor_wy * t126),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t106, rotor_wz * t108),
+                inner_ring_wy * t105,
             ),
-            T::fused(t127, t122, -T::fused(-t123, t110, t125 * t121)),
+            T::fused(t114, t116, -T::fused(t107, t98, t109 * t104)),
         );
+        let t120 = k(4.0)
+            * T::fused(t80, t117, T::fused(t78, t113, -T::fused(t76, t116, t119)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(0.5) * T::fused(base_wz, t2, T::fused(-base_wx, t0, base_wy * t1))),
-            k(0.5) * T::fused(base_wz, t3, T::fused(base_wx, t1, base_wy * t0)),
-            k(0.5) * T::fused(base_wz, t0, -T::fused(-base_wx, t2, base_wy * t3)),
+            k(0.25) * T::fused(base_wx, t2, -T::fused(base_wz, t0, base_wy * t1)),
+            k(0.25) * T::fused(base_wx, t1, T::fused(base_wz, t3, base_wy * t2)),
+            k(0.25) * T::fused(base_wx, t0, -T::fused(-base_wz, t2, base_wy * t3)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t57 + t39),
-            t59 + t58,
+            -(k(4.0) * T::fused(t51, t50, t49)),
+            k(4.0) * t53,
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t93 + t74),
-            -(t94 + T::fused(t56, t73, T::fused(-t52, t71, t54 * t72))),
-            k(0.000125) * T::fused(t87, t64, T::fused(t96, t75, t97 * t81)),
-            k(0.000125) * T::fused(t87, t68, -T::fused(t96, t78, t97 * t82)),
-            -(k(0.000125) * T::fused(t87, t70, -T::fused(-t96, t79, t97 * t83))),
-            t129,
-            -(t130 + T::fused(t92, t110, T::fused(t87, t108, t89 * t109))),
+            k(4.0) * t84,
+            -t86,
+            k(0.00025) * T::fused(-t88, t66, T::fused(t72, t80, t61 * t89)),
+            -(k(0.00025) * T::fused(t65, t88, -T::fused(t89, t58, t71 * t80))),
+            -(k(0.00025) * T::fused(t64, t88, -T::fused(t80, t70, t56 * t89))),
+            -(k(4.0) * t118),
+            -t120,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
@@ -2670,7 +2654,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 585 operations (234 ±, 345 ×, 6 ÷).
+    /// Solves eq. (17): 577 operations (232 ±, 339 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -2701,45 +2685,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let t0 = k(0.5) * base_e3;
-        let t1 = k(0.5) * base_e0;
-        let t2 = t1 * t1;
-        let t3 = T::fused(t0, t0, t2);
-        let t4 = k(0.5) * base_e1;
-        let t5 = t4 * t1;
-        let t6 = k(0.5) * base_e2;
-        let t7 = t0 * t6;
-        let t8 = t7 + t5;
-        let t9 = t1 * t6;
-        let t10 = t4 * t0;
-        let t11 = t10 - t9;
-        let t12 = k(1.0) / T::fused(-t1, t3, T::fused(-t4, t8, t6 * t11));
-        let t13 = t1 * t0;
-        let t14 = t4 * t6;
-        let t15 = k(0.5)
-            * T::fused(
-                -base_e0,
-                base_wz,
-                T::fused(-base_e1, base_wy, base_e2 * base_wx),
-            );
-        let t16 = k(0.5)
-            * T::fused(base_e3, base_wz, T::fused(base_e2, base_wy, base_e1 * base_wx));
-        let t17 = k(0.5)
-            * T::fused(base_e2, base_wz, T::fused(-base_e3, base_wy, base_e0 * base_wx));
-        let t18 = k(0.5) * T::fused(base_wz, t17, T::fused(base_wx, t15, base_wy * t16));
-        let t19 = k(0.5)
-            * T::fused(-base_e1, base_wz, T::fused(base_e0, base_wy, base_e3 * base_wx));
-        let t20 = k(0.5)
-            * T::fused(base_wz, t19, T::fused(-base_wx, t16, base_wy * t15));
-        let t21 = T::fused(-t18, (t14 + t13) * t12, t20 * (T::fused(t4, t4, t2) * t12));
-        let t22 = k(0.5)
-            * T::fused(base_wz, t16, -T::fused(-base_wx, t19, base_wy * t17));
-        let t23 = T::fused(t22, t11 * t12, -t21);
-        let t24 = T::fused(-t18, T::fused(t6, t6, t2) * t12, t20 * ((t14 - t13) * t12));
-        let t25 = T::fused(t22, t8 * t12, -t24);
-        let t26 = T::fused(-t18, (t7 - t5) * t12, t20 * ((t10 + t9) * t12));
-        let t27 = T::fused(t22, t3 * t12, -t26);
-        let t28 = T::fused(
+        let t0 = T::fused(
+            base_e3,
+            base_wz,
+            T::fused(base_e2, base_wy, base_e1 * base_wx),
+        );
+        let t1 = T::fused(
+            base_e2,
+            base_wz,
+            T::fused(-base_e3, base_wy, base_e0 * base_wx),
+        );
+        let t2 = T::fused(
+            -base_e1,
+            base_wz,
+            T::fused(base_e0, base_wy, base_e3 * base_wx),
+        );
+        let t3 = T::fused(base_wx, t2, -T::fused(-base_wz, t0, base_wy * t1));
+        let t4 = base_e0 * base_e2;
+        let t5 = base_e1 * base_e3;
+        let t6 = t5 - t4;
+        let t7 = base_e0 * base_e1;
+        let t8 = base_e2 * base_e3;
+        let t9 = t8 + t7;
+        let t10 = base_e0 * base_e0;
+        let t11 = T::fused(base_e3, base_e3, t10);
+        let t12 = k(1.0) / T::fused(base_e0, t11, T::fused(-base_e2, t6, base_e1 * t9));
+        let t13 = T::fused(
+            -base_e0,
+            base_wz,
+            T::fused(-base_e1, base_wy, base_e2 * base_wx),
+        );
+        let t14 = T::fused(base_wx, t0, -T::fused(base_wz, t2, base_wy * t13));
+        let t15 = T::fused(t6 * t12, t3, T::fused(base_e1, base_e1, t10) * t12 * t14);
+        let t16 = T::fused(base_wx, t13, T::fused(base_wz, t1, base_wy * t0));
+        let t17 = base_e0 * base_e3;
+        let t18 = base_e1 * base_e2;
+        let t19 = T::fused((t18 + t17) * t12, t16, t15);
+        let t20 = T::fused(
+            t16,
+            T::fused(base_e2, base_e2, t10) * t12,
+            T::fused(t3, t9 * t12, t14 * ((t18 - t17) * t12)),
+        );
+        let t21 = T::fused(
+            t16,
+            (t8 - t7) * t12,
+            T::fused(t3, t11 * t12, t14 * ((t5 + t4) * t12)),
+        );
+        let t22 = T::fused(
             base_e3,
             outer_ring_e3,
             T::fused(
@@ -2748,28 +2740,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
             ),
         );
-        let t29 = k(2.0) * t28;
-        let t30 = T::fused(
-            -base_e0,
-            outer_ring_e3,
-            T::fused(
-                base_e1,
-                outer_ring_e2,
-                T::fused(-base_e2, outer_ring_e1, base_e3 * outer_ring_e0),
-            ),
-        );
-        let t31 = t30 * t29;
-        let t32 = T::fused(
-            base_e2,
-            outer_ring_e3,
-            T::fused(
-                -base_e3,
-                outer_ring_e2,
-                T::fused(-base_e0, outer_ring_e1, base_e1 * outer_ring_e0),
-            ),
-        );
-        let t33 = k(2.0) * t32;
-        let t34 = T::fused(
+        let t23 = T::fused(-t22, t22, k(0.5));
+        let t24 = T::fused(
             -base_e1,
             outer_ring_e3,
             T::fused(
@@ -2778,35 +2750,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
             ),
         );
-        let t35 = t34 * t33;
-        let t36 = k(2.0) * t34;
-        let t37 = T::fused(-t28, t29, k(1.0));
-        let t38 = T::fused(-t34, t36, t37);
-        let t39 = t32 * t29;
-        let t40 = t30 * t36;
-        let t41 = T::fused(
-            base_wz,
-            t40 - t39,
-            -T::fused(-base_wx, t35 + t31, base_wy * t38),
+        let t25 = T::fused(t24, t24, -t23);
+        let t26 = T::fused(
+            base_e2,
+            outer_ring_e3,
+            T::fused(
+                -base_e3,
+                outer_ring_e2,
+                T::fused(-base_e0, outer_ring_e1, base_e1 * outer_ring_e0),
+            ),
         );
-        let t42 = outer_ring_wy - t41;
-        let t43 = t34 * t29;
-        let t44 = t30 * t33;
-        let t45 = t44 - t43;
-        let t46 = t40 + t39;
-        let t47 = T::fused(-t30, k(2.0) * t30, t37);
-        let t48 = T::fused(base_wz, t47, -T::fused(base_wx, t45, base_wy * t46));
-        let t49 = outer_ring_wz + t48;
-        let t50 = T::fused(-t32, t33, t37);
-        let t51 = t35 - t31;
-        let t52 = t44 + t43;
-        let t53 = T::fused(base_wz, t52, T::fused(-base_wx, t50, base_wy * t51));
-        let t54 = outer_ring_wx - t53;
-        let t55 = T::fused(t49, t49, t54 * t54) / t38;
-        let t56 = T::fused(outer_ring_wz, t41, outer_ring_wy * t48)
-            + T::fused(-t49, t42, t46 * t55);
-        let t57 = T::fused(t27, t52, T::fused(-t23, t50, t25 * t51)) - t56;
-        let t58 = T::fused(
+        let t27 = t22 * t26;
+        let t28 = T::fused(
+            -base_e0,
+            outer_ring_e3,
+            T::fused(
+                base_e1,
+                outer_ring_e2,
+                T::fused(-base_e2, outer_ring_e1, base_e3 * outer_ring_e0),
+            ),
+        );
+        let t29 = t24 * t28;
+        let t30 = t22 * t28;
+        let t31 = t26 * t24;
+        let t32 = T::fused(
+            base_wx,
+            t31 + t30,
+            T::fused(base_wy, t25, base_wz * (t29 - t27)),
+        );
+        let t33 = k(2.0) * t32;
+        let t34 = T::fused(t28, t28, -t23);
+        let t35 = t29 + t27;
+        let t36 = t22 * t24;
+        let t37 = t26 * t28;
+        let t38 = t37 - t36;
+        let t39 = T::fused(base_wx, t38, T::fused(base_wz, t34, base_wy * t35));
+        let t40 = k(2.0) * outer_ring_wy;
+        let t41 = T::fused(t26, t26, -t23);
+        let t42 = t37 + t36;
+        let t43 = t31 - t30;
+        let t44 = T::fused(-t40, t39, T::fused(t19, t41, T::fused(t42, t21, t43 * t20)));
+        let t45 = T::fused(base_wx, t41, T::fused(base_wz, t42, base_wy * t43));
+        let t46 = T::fused(-k(2.0), t45, outer_ring_wx);
+        let t47 = T::fused(-k(2.0), t39, outer_ring_wz);
+        let t48 = T::fused(t46, t46, t47 * t47) / t25;
+        let t49 = outer_ring_wy - t33;
+        let t50 = T::fused(
+            t49,
+            t47,
+            T::fused(t35, t48, -T::fused(outer_ring_wz, t33, t44)),
+        );
+        let t51 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2815,8 +2809,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t59 = k(2.0) * t58;
-        let t60 = T::fused(
+        let t52 = T::fused(-t51, t51, k(0.5));
+        let t53 = T::fused(
             -inner_ring_e0,
             rotor_e3,
             T::fused(
@@ -2825,8 +2819,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t61 = t60 * t59;
-        let t62 = T::fused(
+        let t54 = T::fused(t53, t53, -t52);
+        let t55 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2835,8 +2829,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t63 = k(2.0) * t62;
-        let t64 = T::fused(
+        let t56 = t51 * t55;
+        let t57 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -2845,36 +2839,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t65 = t64 * t63;
-        let t66 = t65 + t61;
-        let t67 = k(5e-6) * t66;
-        let t68 = t64 * t59;
-        let t69 = t60 * t63;
-        let t70 = t69 - t68;
-        let t71 = k(5e-6) * t70;
-        let t72 = t62 * t59;
-        let t73 = k(2.0) * t64;
-        let t74 = t60 * t73;
-        let t75 = t74 - t72;
-        let t76 = T::fused(-t58, t59, k(1.0));
-        let t77 = T::fused(-t60, k(2.0) * t60, t76);
-        let t78 = T::fused(-t75, t67, t77 * t71);
-        let t79 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t75, k(5e-6) * t75, t77 * (k(5e-6) * t77)));
-        let t80 = k(1.0) / t79;
-        let t81 = t80 * t78;
-        let t82 = T::fused(t78, t81, -(k(1e-6) + T::fused(t66, t67, t70 * t71)));
-        let t83 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t84 = k(2.0) * t83;
-        let t85 = T::fused(
+        let t58 = t57 * t53;
+        let t59 = t58 + t56;
+        let t60 = T::fused(t57, t57, -t52);
+        let t61 = t58 - t56;
+        let t62 = T::fused(t59, t54, t61 * t60);
+        let t63 = k(1.0) / (k(0.0500625) + T::fused(t54, t54, t61 * t61));
+        let t64 = k(0.1000625)
+            + T::fused(t60, t60, T::fused(-t62, t63 * t62, t59 * t59));
+        let t65 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -2883,18 +2856,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t86 = t85 * t84;
-        let t87 = T::fused(
-            outer_ring_e2,
+        let t66 = T::fused(
+            outer_ring_e3,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e3,
+                outer_ring_e2,
                 inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t88 = k(2.0) * t87;
-        let t89 = T::fused(
+        let t67 = t66 * t65;
+        let t68 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2903,179 +2875,226 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t90 = t89 * t88;
-        let t91 = t90 - t86;
-        let t92 = T::fused(-t64, t73, t76);
-        let t93 = t74 + t72;
-        let t94 = k(5e-6) * t92;
-        let t95 = k(5e-6) * t93;
-        let t96 = T::fused(t75, t94, t77 * t95);
-        let t97 = T::fused(t96, t81, -T::fused(-t92, t67, t93 * t71));
-        let t98 = k(2.0) * t89;
-        let t99 = T::fused(-t83, t84, k(1.0));
-        let t100 = T::fused(-t89, t98, t99);
-        let t101 = T::fused(-t91, t82, t100 * t97);
-        let t102 = T::fused(
-            t96,
-            t80 * t96,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t92, t94, t93 * t95))),
-        );
-        let t103 = T::fused(-t91, t97, t100 * t102);
-        let t104 = T::fused(-t62, t63, t76);
-        let t105 = T::fused(
-            inner_ring_wz,
-            t69 + t68,
-            T::fused(-inner_ring_wx, t104, inner_ring_wy * (t65 - t61)),
-        );
-        let t106 = rotor_wx - t105;
-        let t107 = T::fused(
-            inner_ring_wz,
-            t77,
-            -T::fused(inner_ring_wx, t70, inner_ring_wy * t93),
-        );
-        let t108 = rotor_wz + t107;
-        let t109 = T::fused(
-            inner_ring_wz,
-            t75,
-            -T::fused(-inner_ring_wx, t66, inner_ring_wy * t92),
-        );
-        let t110 = rotor_wy - t109;
-        let t111 = T::fused(t108, t108, t110 * t110) / t104;
-        let t112 = T::fused(rotor_wx, t107, rotor_wz * t105)
-            + T::fused(-t108, t106, t70 * t111);
-        let t113 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t112);
-        let t114 = T::fused(-rotor_wy, t105, rotor_wx * t109)
-            - T::fused(-t110, t106, t66 * t111);
-        let t115 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t114);
-        let t116 = k(2.0) * inner_ring_e0;
-        let t117 = inner_ring_e3 * t116;
-        let t118 = k(2.0) * inner_ring_e1;
-        let t119 = inner_ring_e2 * t118;
-        let t120 = t119 - t117;
-        let t121 = k(0.000125) * t120;
-        let t122 = T::fused(-inner_ring_e0, t116, k(1.0));
-        let t123 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t124 = inner_ring_wx * inner_ring_wy;
-        let t125 = inner_ring_e2 * t116;
-        let t126 = inner_ring_e3 * t118;
-        let t127 = t126 + t125;
-        let t128 = inner_ring_wx * inner_ring_wz;
-        let t129 = T::fused(
-            t128,
-            t127,
-            T::fused(t123, T::fused(-inner_ring_e1, t118, t122), t124 * t120),
-        );
-        let t130 = k(1e-5) * t129;
-        let t131 = k(2.0) * inner_ring_e2;
-        let t132 = T::fused(-inner_ring_e2, t131, t122);
-        let t133 = k(0.000125) * t132;
-        let t134 = inner_ring_e1 * t116;
-        let t135 = inner_ring_e3 * t131;
-        let t136 = t135 - t134;
-        let t137 = T::fused(t128, t136, -T::fused(t123, t119 + t117, t124 * t132));
-        let t138 = T::fused(k(1e-5), t137, k(0.8));
-        let t139 = t135 + t134;
-        let t140 = k(0.000125) * t139;
-        let t141 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t122);
-        let t142 = T::fused(t128, t141, -T::fused(-t123, t126 - t125, t124 * t139));
-        let t143 = k(1e-5) * t142;
-        let t144 = T::fused(t143, t140, T::fused(-t130, t121, t138 * t133))
-            - T::fused(t75, t113, t77 * t115);
-        let t145 = T::fused(k(1e-6), t124, -t144);
-        let t146 = t80 * t145;
-        let t147 = T::fused(
-            t78,
-            t146,
-            -T::fused(
-                k(1e-6),
-                inner_ring_wy * inner_ring_wz,
-                T::fused(-t66, t113, t70 * t115),
+        let t69 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t148 = t89 * t84;
-        let t149 = t85 * t88;
-        let t150 = t87 * t84;
-        let t151 = t85 * t98;
-        let t152 = T::fused(-t85, k(2.0) * t85, t99);
+        let t70 = t69 * t68;
+        let t71 = t70 + t67;
+        let t72 = T::fused(-t66, t66, k(0.5));
+        let t73 = T::fused(t69, t69, -t72);
+        let t74 = t51 * t57;
+        let t75 = t55 * t53;
+        let t76 = t75 - t74;
+        let t77 = t51 * t53;
+        let t78 = t55 * t57;
+        let t79 = t78 + t77;
+        let t80 = T::fused(t76, t54, t79 * t61);
+        let t81 = t80 * t63;
+        let t82 = T::fused(t79, t60, T::fused(-t81, t62, t76 * t59));
+        let t83 = T::fused(t68, t68, -t72);
+        let t84 = k(0.05) + T::fused(t79, t79, T::fused(-t80, t81, t76 * t76));
+        let t85 = t70 - t67;
+        let t86 = T::fused(
+            t83,
+            T::fused(t71, t64, t82 * t73),
+            t85 * T::fused(t71, t82, t84 * t73),
+        );
+        let t87 = T::fused(
+            -outer_ring_wx,
+            t33,
+            T::fused(t38, t19, T::fused(t21, t34, t35 * t20)),
+        );
+        let t88 = T::fused(t49, t46, T::fused(t43, t48, T::fused(t40, t45, t87)));
+        let t89 = T::fused(t83, t64, t85 * t82);
+        let t90 = t66 * t69;
+        let t91 = t68 * t65;
+        let t92 = t91 - t90;
+        let t93 = T::fused(t82, t83, t85 * t84);
+        let t94 = t66 * t68;
+        let t95 = t69 * t65;
+        let t96 = t95 + t94;
+        let t97 = T::fused(
+            k(0.0125),
+            outer_ring_wx * outer_ring_wz,
+            T::fused(-t86, t50, T::fused(t92, t89, t96 * t93) * t88),
+        );
+        let t98 = T::fused(t55, t55, -t52);
+        let t99 = T::fused(
+            inner_ring_wx,
+            t98,
+            T::fused(inner_ring_wz, t75 + t74, inner_ring_wy * (t78 - t77)),
+        );
+        let t100 = T::fused(
+            inner_ring_wx,
+            t76,
+            T::fused(inner_ring_wz, t54, inner_ring_wy * t59),
+        );
+        let t101 = T::fused(
+            inner_ring_wx,
+            t79,
+            T::fused(inner_ring_wy, t60, inner_ring_wz * t61),
+        );
+        let t102 = T::fused(-k(2.0), t101, rotor_wy);
+        let t103 = T::fused(-k(2.0), t100, rotor_wz);
+        let t104 = T::fused(t102, t102, t103 * t103) / t98;
+        let t105 = T::fused(-k(2.0), t99, rotor_wx);
+        let t106 = T::fused(
+            t105,
+            t103,
+            T::fused(k(2.0), T::fused(-rotor_wz, t99, rotor_wx * t100), t76 * t104),
+        );
+        let t107 = T::fused(rotor_wx, rotor_wz, t106);
+        let t108 = k(2000.0) * t107;
+        let t109 = T::fused(
+            t105,
+            t102,
+            T::fused(-k(2.0), T::fused(-rotor_wx, t101, rotor_wy * t99), t79 * t104),
+        );
+        let t110 = T::fused(rotor_wx, rotor_wy, t109);
+        let t111 = k(2000.0) * t110;
+        let t112 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t113 = T::fused(inner_ring_e3, inner_ring_e3, -t112);
+        let t114 = inner_ring_wx * inner_ring_wz;
+        let t115 = inner_ring_wx * inner_ring_wy;
+        let t116 = inner_ring_e0 * inner_ring_e1;
+        let t117 = inner_ring_e2 * inner_ring_e3;
+        let t118 = t117 + t116;
+        let t119 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t120 = inner_ring_e0 * inner_ring_e2;
+        let t121 = inner_ring_e1 * inner_ring_e3;
+        let t122 = T::fused(t121 - t120, t119, -T::fused(t114, t113, t118 * t115));
+        let t123 = T::fused(inner_ring_e2, inner_ring_e2, -t112);
+        let t124 = t117 - t116;
+        let t125 = inner_ring_e0 * inner_ring_e3;
+        let t126 = inner_ring_e1 * inner_ring_e2;
+        let t127 = T::fused(t126 + t125, t119, -T::fused(t115, t123, t124 * t114));
+        let t128 = k(40000.0) - t127;
+        let t129 = t121 + t120;
+        let t130 = t126 - t125;
+        let t131 = T::fused(
+            -t119,
+            T::fused(inner_ring_e1, inner_ring_e1, -t112),
+            T::fused(t129, t114, t130 * t115),
+        );
+        let t132 = T::fused(
+            t130,
+            t131,
+            T::fused(t123, t128, T::fused(-t118, t122, k(200.0) * t115)),
+        );
+        let t133 = T::fused(t61, t108, T::fused(-t54, t111, t132));
+        let t134 = t63 * t133;
+        let t135 = T::fused(
+            outer_ring_wx,
+            t73,
+            T::fused(outer_ring_wz, t96, outer_ring_wy * t85),
+        );
+        let t136 = T::fused(t65, t65, -t72);
+        let t137 = T::fused(
+            outer_ring_wx,
+            t95 - t94,
+            T::fused(outer_ring_wz, t136, outer_ring_wy * (t91 + t90)),
+        );
+        let t138 = T::fused(-k(2.0), t135, inner_ring_wx);
+        let t139 = T::fused(
+            outer_ring_wx,
+            t71,
+            T::fused(outer_ring_wy, t83, outer_ring_wz * t92),
+        );
+        let t140 = T::fused(-k(2.0), t139, inner_ring_wy);
+        let t141 = T::fused(t138, t138, t140 * t140) / t136;
+        let t142 = T::fused(-k(2.0), t137, inner_ring_wz);
+        let t143 = T::fused(
+            t142,
+            t138,
+            T::fused(
+                -k(2.0),
+                T::fused(-inner_ring_wz, t135, inner_ring_wx * t137),
+                t96 * t141,
+            ),
+        );
+        let t144 = T::fused(
+            t142,
+            t140,
+            T::fused(
+                k(2.0),
+                T::fused(-inner_ring_wy, t137, inner_ring_wz * t139),
+                t92 * t141,
+            ),
+        );
+        let t145 = T::fused(
+            t113,
+            t122,
+            T::fused(-t62, t134, k(4000.0) * T::fused(-t64, t143, t82 * t144)),
+        );
+        let t146 = T::fused(
+            -t60,
+            t108,
+            T::fused(t59, t111, T::fused(t129, t131, T::fused(t124, t128, -t145))),
+        );
+        let t147 = T::fused(
+            k(0.05),
+            inner_ring_wy * inner_ring_wz,
+            -T::fused(-k(0.00025), t80 * t134, T::fused(-t82, t143, t84 * t144)),
+        );
+        let t148 = t85
+            * T::fused(k(0.5), t79 * t107, -T::fused(k(0.5), t76 * t110, t147));
+        let t149 = T::fused(k(0.5), t148, -T::fused(k(0.000125), t83 * t146, -t97))
+            / (k(0.0125) + T::fused(t83, t89, t85 * t93));
+        let t150 = T::fused(
+            -t73,
+            t50,
+            T::fused(-t85, t149, T::fused(t96, t88, k(0.5) * t144)),
+        );
+        let t151 = T::fused(
+            t71,
+            t50,
+            T::fused(t83, t149, T::fused(-t92, t88, k(0.5) * t143)),
+        );
+        let t152 = t63 * T::fused(t80, t150, T::fused(-t62, t151, k(0.000125) * t133));
         let t153 = T::fused(
-            outer_ring_wz,
-            t152,
-            -T::fused(outer_ring_wx, t149 - t148, outer_ring_wy * (t151 + t150)),
+            t79,
+            t150,
+            T::fused(-t60, t151, T::fused(-t61, t152, k(0.25) * t106)),
         );
-        let t154 = inner_ring_wz + t153;
-        let t155 = t90 + t86;
-        let t156 = t151 - t150;
-        let t157 = T::fused(
-            outer_ring_wz,
-            t156,
-            -T::fused(-outer_ring_wx, t155, outer_ring_wy * t100),
+        let t154 = T::fused(
+            -t76,
+            t150,
+            T::fused(t59, t151, T::fused(t54, t152, k(0.25) * t109)),
         );
-        let t158 = inner_ring_wy - t157;
-        let t159 = T::fused(-t87, t88, t99);
-        let t160 = t149 + t148;
-        let t161 = T::fused(
-            outer_ring_wz,
-            t160,
-            T::fused(-outer_ring_wx, t159, outer_ring_wy * t91),
-        );
-        let t162 = inner_ring_wx - t161;
-        let t163 = T::fused(t158, t158, t162 * t162) / t152;
-        let t164 = T::fused(inner_ring_wz, t157, inner_ring_wy * t153)
-            - T::fused(-t158, t154, t156 * t163);
-        let t165 = T::fused(inner_ring_wx, t153, inner_ring_wz * t161)
-            - T::fused(-t162, t154, t160 * t163);
-        let t166 = k(0.000125) * t127;
-        let t167 = k(0.000125) * t136;
-        let t168 = k(0.000125) * t141;
-        let t169 = T::fused(t143, t168, T::fused(t130, t166, t138 * t167))
-            + T::fused(t92, t113, t93 * t115);
-        let t170 = T::fused(
-            -t91,
-            T::fused(-t82, t164, t97 * t165) + t147,
-            t100 * (T::fused(-t97, t164, t102 * t165) + T::fused(t96, t146, -t169)),
-        );
-        let t171 = T::fused(
-            -t91,
-            T::fused(-t159, t82, t155 * t97),
-            t100 * T::fused(-t159, t97, t155 * t102),
-        );
-        let t172 = T::fused(-outer_ring_wy, t53, outer_ring_wx * t41)
-            + T::fused(-t54, t42, t51 * t55);
-        let t173 = T::fused(t27, t47, -T::fused(t23, t45, t25 * t46)) - t172;
-        let t174 = T::fused(-t57, t171, t173 * T::fused(t160, t101, t156 * t103))
-            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t170);
-        let t175 = t174 / (k(1e-6) - T::fused(-t91, t101, t100 * t103));
-        let t176 = t164 + T::fused(t160, t173, -T::fused(-t159, t57, t91 * t175));
-        let t177 = t165 - T::fused(t156, t173, T::fused(-t155, t57, t100 * t175));
-        let t178 = t80 * (t145 + T::fused(-t78, t176, t96 * t177));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t23,
-            -t25,
-            -t27,
+            k(0.5) * t19,
+            k(0.5) * t20,
+            k(0.5) * t21,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t57,
-            -t175,
-            t173,
+            -t50,
+            -t149,
+            t88,
             k(0.0),
             k(0.0),
             k(0.0),
-            t176,
-            -t177,
-            -t178,
-            T::fused(k(0.000125), t129, -T::fused(-t166, t177, t121 * t178)),
-            T::fused(k(0.000125), t137, T::fused(t167, t177, t133 * t178)),
-            -T::fused(k(0.000125), t142, T::fused(t168, t177, t140 * t178)),
+            k(2.0) * t150,
+            -(k(2.0) * t151),
+            -(k(2.0) * t152),
+            k(0.0005) * T::fused(t129, t151, T::fused(-t130, t152, k(0.5) * t131)),
+            -(k(0.0005) * T::fused(-t124, t151, T::fused(t123, t152, k(0.5) * t127))),
+            -(k(0.0005) * T::fused(-t113, t151, T::fused(t118, t152, k(0.5) * t122))),
             k(0.0),
-            -(t112 + T::fused(t75, t178, -T::fused(t66, t176, t92 * t177))),
-            T::fused(t77, t178, -T::fused(-t70, t176, t93 * t177)) - t114,
+            k(4.0) * t153,
+            -(k(4.0) * t154),
         ];
     }
-    /// Writes λ: 447 operations (172 ±, 271 ×, 4 ÷).
+    /// Writes λ: 418 operations (166 ±, 248 ×, 4 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -3133,261 +3152,217 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_dwx = accelerations[21];
         let rotor_dwy = accelerations[22];
         let rotor_dwz = accelerations[23];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.01), outer_ring_dsx, t1);
-        let t3 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t4 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t3;
-        let t5 = T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t4;
-        let t6 = k(0.08) * rotor_dsz;
-        let t7 = T::fused(k(0.01), inner_ring_dsz, t6);
-        let t8 = T::fused(k(0.01), outer_ring_dsz, t7);
-        let t9 = k(2.0) * rotor_e1;
-        let t10 = k(2.0) * rotor_e0;
-        let t11 = T::fused(-rotor_e0, t10, k(1.0));
-        let t12 = T::fused(-rotor_e1, t9, t11);
-        let t13 = k(2.0) * inner_ring_e1;
-        let t14 = k(2.0) * inner_ring_e0;
-        let t15 = T::fused(-inner_ring_e0, t14, k(1.0));
-        let t16 = T::fused(-inner_ring_e1, t13, t15);
-        let t17 = rotor_e3 * t10;
-        let t18 = rotor_e2 * t9;
-        let t19 = t18 + t17;
-        let t20 = inner_ring_e3 * t14;
-        let t21 = inner_ring_e2 * t13;
-        let t22 = t21 + t20;
-        let t23 = rotor_e2 * t10;
-        let t24 = rotor_e3 * t9;
-        let t25 = t24 - t23;
-        let t26 = inner_ring_e2 * t14;
-        let t27 = inner_ring_e3 * t13;
-        let t28 = t27 - t26;
-        let t29 = k(1e-5) * rotor_dwx;
-        let t30 = t18 - t17;
-        let t31 = k(2.0) * rotor_e2;
-        let t32 = T::fused(-rotor_e2, t31, t11);
-        let t33 = rotor_e1 * t10;
-        let t34 = rotor_e3 * t31;
-        let t35 = t34 + t33;
-        let t36 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t37 = T::fused(
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = outer_ring_dsx + t0;
+        let t2 = rotor_dsy + k(10.0);
+        let t3 = k(10.0) + T::fused(k(8.0), t2, inner_ring_dsy);
+        let t4 = k(10.0) + (outer_ring_dsy + t3);
+        let t5 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t6 = outer_ring_dsz + t5;
+        let t7 = k(2.0) * rotor_dwx;
+        let t8 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t9 = T::fused(rotor_e1, rotor_e1, -t8);
+        let t10 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t11 = T::fused(inner_ring_e1, inner_ring_e1, -t10);
+        let t12 = rotor_e0 * rotor_e2;
+        let t13 = rotor_e1 * rotor_e3;
+        let t14 = t13 - t12;
+        let t15 = inner_ring_e0 * inner_ring_e2;
+        let t16 = inner_ring_e1 * inner_ring_e3;
+        let t17 = t16 - t15;
+        let t18 = rotor_e0 * rotor_e3;
+        let t19 = rotor_e1 * rotor_e2;
+        let t20 = t19 + t18;
+        let t21 = inner_ring_e0 * inner_ring_e3;
+        let t22 = inner_ring_e1 * inner_ring_e2;
+        let t23 = t22 + t21;
+        let t24 = T::fused(rotor_e3, rotor_e3, -t8);
+        let t25 = rotor_e0 * rotor_e1;
+        let t26 = rotor_e2 * rotor_e3;
+        let t27 = t26 - t25;
+        let t28 = t13 + t12;
+        let t29 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t30 = T::fused(
             t29,
-            T::fused(t28, t25, T::fused(t16, t12, t22 * t19)),
-            t36 * T::fused(t28, t35, -T::fused(t16, t30, t22 * t32)),
+            T::fused(t28, t11, T::fused(t17, t24, t23 * t27)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t38 = t24 + t23;
-        let t39 = t34 - t33;
-        let t40 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t11);
-        let t41 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t42 = T::fused(
-            t41,
-            T::fused(t28, t40, -T::fused(-t16, t38, t22 * t39)),
-            t37,
+        let t31 = T::fused(rotor_e2, rotor_e2, -t8);
+        let t32 = t26 + t25;
+        let t33 = t19 - t18;
+        let t34 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t35 = T::fused(t34, T::fused(t33, t11, T::fused(t23, t31, t17 * t32)), -t30);
+        let t36 = T::fused(T::fused(t11, t9, T::fused(t17, t14, t23 * t20)), t7, t35);
+        let t37 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t38 = T::fused(outer_ring_e1, outer_ring_e1, -t37);
+        let t39 = outer_ring_e0 * outer_ring_e2;
+        let t40 = outer_ring_e1 * outer_ring_e3;
+        let t41 = t40 - t39;
+        let t42 = outer_ring_e0 * outer_ring_e3;
+        let t43 = outer_ring_e1 * outer_ring_e2;
+        let t44 = t43 + t42;
+        let t45 = T::fused(t38, t11, T::fused(t41, t17, t44 * t23));
+        let t46 = T::fused(inner_ring_e2, inner_ring_e2, -t10);
+        let t47 = inner_ring_e0 * inner_ring_e1;
+        let t48 = inner_ring_e2 * inner_ring_e3;
+        let t49 = t48 + t47;
+        let t50 = t22 - t21;
+        let t51 = T::fused(inner_ring_e3, inner_ring_e3, -t10);
+        let t52 = t48 - t47;
+        let t53 = t16 + t15;
+        let t54 = T::fused(
+            t53,
+            rotor_dsx,
+            T::fused(t52, t2, -T::fused(-rotor_dsz, t51, k(0.1) * inner_ring_dwy)),
         );
-        let t43 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t42,
+        let t55 = T::fused(t50, t28, T::fused(t49, t24, t27 * t46));
+        let t56 = T::fused(t50, t33, T::fused(t31, t46, t49 * t32));
+        let t57 = T::fused(
+            T::fused(t50, t9, T::fused(t20, t46, t49 * t14)),
+            t7,
+            T::fused(t34, t56, -T::fused(t29, t55, t54)),
         );
-        let t44 = k(2.0) * outer_ring_e1;
-        let t45 = k(2.0) * outer_ring_e0;
-        let t46 = T::fused(-outer_ring_e0, t45, k(1.0));
-        let t47 = T::fused(-outer_ring_e1, t44, t46);
-        let t48 = outer_ring_e3 * t45;
-        let t49 = outer_ring_e2 * t44;
-        let t50 = t49 + t48;
-        let t51 = outer_ring_e2 * t45;
-        let t52 = outer_ring_e3 * t44;
-        let t53 = t52 - t51;
-        let t54 = T::fused(t53, t28, T::fused(t47, t16, t50 * t22));
-        let t55 = t21 - t20;
-        let t56 = k(2.0) * inner_ring_e2;
-        let t57 = T::fused(-inner_ring_e2, t56, t15);
-        let t58 = inner_ring_e1 * t14;
-        let t59 = inner_ring_e3 * t56;
-        let t60 = t59 + t58;
-        let t61 = T::fused(t60, t35, T::fused(t55, t30, t57 * t32));
+        let t58 = T::fused(t50, t38, T::fused(t44, t46, t41 * t49));
+        let t59 = T::fused(
+            t46,
+            t2,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t49 * rotor_dsz,
+            ),
+        );
+        let t60 = T::fused(t53, t28, T::fused(t24, t51, t52 * t27));
+        let t61 = T::fused(t53, t33, T::fused(t32, t51, t52 * t31));
         let t62 = T::fused(
-            t29,
-            T::fused(t60, t25, -T::fused(t55, t12, t57 * t19)),
-            t36 * t61,
+            T::fused(t53, t9, T::fused(t14, t51, t52 * t20)),
+            t7,
+            T::fused(t34, t61, -T::fused(t29, t60, -T::fused(t50, rotor_dsx, t59))),
         );
-        let t63 = T::fused(t60, t40, T::fused(-t55, t38, t57 * t39));
-        let t64 = t27 + t26;
-        let t65 = t59 - t58;
-        let t66 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t15);
-        let t67 = T::fused(
-            t6,
-            k(0.000125) * t66,
-            -T::fused(t0, k(0.000125) * t64, t3 * (k(0.000125) * t65)),
+        let t63 = T::fused(
+            T::fused(t53, t38, T::fused(t41, t51, t44 * t52)),
+            t62,
+            k(0.025) * outer_ring_dwx,
         );
-        let t68 = T::fused(k(2e-6), inner_ring_dwy, t67 + T::fused(t41, t63, t62));
-        let t69 = T::fused(t53, t60, -T::fused(t47, t55, t50 * t57));
-        let t70 = T::fused(t66, t35, T::fused(-t64, t30, t65 * t32));
-        let t71 = T::fused(
-            t29,
-            T::fused(t66, t25, -T::fused(-t64, t12, t65 * t19)),
-            t36 * t70,
+        let t64 = T::fused(t45, t36, T::fused(t58, t57, t63));
+        let t65 = base_e0 * base_e0;
+        let t66 = k(0.5) - t65;
+        let t67 = base_e1 * base_e1;
+        let t68 = t67 - t66;
+        let t69 = base_e0 * base_e2;
+        let t70 = base_e1 * base_e3;
+        let t71 = t70 - t69;
+        let t72 = base_e0 * base_e3;
+        let t73 = base_e1 * base_e2;
+        let t74 = t73 + t72;
+        let t75 = T::fused(t68, t38, T::fused(t71, t41, t74 * t44));
+        let t76 = T::fused(outer_ring_e2, outer_ring_e2, -t37);
+        let t77 = outer_ring_e0 * outer_ring_e1;
+        let t78 = outer_ring_e2 * outer_ring_e3;
+        let t79 = t78 + t77;
+        let t80 = t43 - t42;
+        let t81 = T::fused(t80, t11, T::fused(t23, t76, t79 * t17));
+        let t82 = T::fused(t80, t50, T::fused(t76, t46, t79 * t49));
+        let t83 = T::fused(
+            T::fused(t80, t53, T::fused(t79, t51, t52 * t76)),
+            t62,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wz, outer_ring_dwy),
         );
-        let t72 = T::fused(t66, t40, T::fused(t64, t38, t65 * t39));
-        let t73 = T::fused(
-            t6,
-            k(0.000125) * t60,
-            -T::fused(-t0, k(0.000125) * t55, t3 * (k(0.000125) * t57)),
+        let t84 = T::fused(t81, t36, T::fused(t82, t57, t83));
+        let t85 = T::fused(outer_ring_e3, outer_ring_e3, -t37);
+        let t86 = t78 - t77;
+        let t87 = t40 + t39;
+        let t88 = T::fused(
+            -T::fused(t87, t53, T::fused(t85, t51, t86 * t52)),
+            t62,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t74 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t73 - T::fused(t41, t72, t71),
+        let t89 = T::fused(-T::fused(t87, t50, T::fused(t49, t85, t86 * t46)), t57, t88);
+        let t90 = T::fused(-T::fused(t87, t11, T::fused(t17, t85, t86 * t23)), t36, t89);
+        let t91 = T::fused(t87, t68, T::fused(t71, t85, t74 * t86));
+        let t92 = T::fused(
+            T::fused(t80, t68, T::fused(t74, t76, t71 * t79)),
+            t84,
+            T::fused(-t91, t90, k(0.0003125) * base_dwx),
         );
-        let t75 = T::fused(
-            T::fused(t53, t66, -T::fused(-t47, t64, t50 * t65)),
-            t74,
-            -T::fused(-t54, t43, t69 * t68),
-        );
-        let t76 = T::fused(k(2e-6), outer_ring_dwx, -t75);
-        let t77 = k(2.0) * base_e1;
-        let t78 = k(2.0) * base_e0;
-        let t79 = T::fused(-base_e0, t78, k(1.0));
-        let t80 = T::fused(-base_e1, t77, t79);
-        let t81 = base_e3 * t78;
-        let t82 = base_e2 * t77;
-        let t83 = t82 + t81;
-        let t84 = base_e2 * t78;
-        let t85 = base_e3 * t77;
-        let t86 = t85 - t84;
-        let t87 = T::fused(t86, t53, T::fused(t80, t47, t83 * t50));
-        let t88 = t49 - t48;
-        let t89 = k(2.0) * outer_ring_e2;
-        let t90 = T::fused(-outer_ring_e2, t89, t46);
-        let t91 = outer_ring_e1 * t45;
-        let t92 = outer_ring_e3 * t89;
-        let t93 = t92 + t91;
-        let t94 = T::fused(t93, t28, -T::fused(t88, t16, t90 * t22));
-        let t95 = T::fused(t93, t60, T::fused(t88, t55, t90 * t57));
-        let t96 = T::fused(
-            T::fused(t93, t66, T::fused(-t88, t64, t90 * t65)),
-            t74,
-            -T::fused(-t94, t43, t95 * t68),
-        );
-        let t97 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wz, outer_ring_dwy),
-            -t96,
-        );
-        let t98 = T::fused(
-            t87,
-            t76,
-            T::fused(t86, t93, -T::fused(t80, t88, t83 * t90)) * t97,
-        );
-        let t99 = t52 + t51;
-        let t100 = t92 - t91;
-        let t101 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t46);
-        let t102 = T::fused(
-            -T::fused(t101, t28, -T::fused(-t99, t16, t100 * t22)),
-            t43,
-            T::fused(t101, t60, T::fused(-t99, t55, t100 * t57)) * t68,
-        );
+        let t93 = T::fused(t75, t64, t92);
+        let t94 = base_e0 * base_e1;
+        let t95 = base_e2 * base_e3;
+        let t96 = t95 + t94;
+        let t97 = base_e3 * base_e3;
+        let t98 = t65 + t97;
+        let t99 = k(1.0)
+            / T::fused(base_e0, t98, T::fused(-base_e2, t71, base_e1 * t96));
+        let t100 = base_e2 * base_e2;
+        let t101 = t100 - t66;
+        let t102 = t73 - t72;
         let t103 = T::fused(
-            T::fused(t101, t66, T::fused(t99, t64, t100 * t65)),
-            t74,
-            -t102,
+            -T::fused(t102, t87, T::fused(t96, t85, t86 * t101)),
+            t90,
+            k(0.0003125) * base_dwy,
         );
         let t104 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t103,
+            T::fused(t102, t80, T::fused(t76, t101, t96 * t79)),
+            t84,
+            t103,
         );
-        let t105 = T::fused(t86, t101, -T::fused(-t80, t99, t83 * t100));
-        let t106 = T::fused(k(1e-7), base_dwx, T::fused(t105, t104, t98));
-        let t107 = k(0.5) * base_e3;
-        let t108 = k(0.5) * base_e0;
-        let t109 = t108 * t108;
-        let t110 = T::fused(t107, t107, t109);
-        let t111 = k(0.5) * base_e1;
-        let t112 = t111 * t108;
-        let t113 = k(0.5) * base_e2;
-        let t114 = t107 * t113;
-        let t115 = t114 + t112;
-        let t116 = t108 * t113;
-        let t117 = t111 * t107;
-        let t118 = t117 - t116;
-        let t119 = k(1.0) / T::fused(-t108, t110, T::fused(-t111, t115, t113 * t118));
-        let t120 = t82 - t81;
-        let t121 = k(2.0) * base_e2;
-        let t122 = T::fused(-base_e2, t121, t79);
-        let t123 = base_e1 * t78;
-        let t124 = base_e3 * t121;
-        let t125 = t124 + t123;
-        let t126 = T::fused(
-            T::fused(t125, t53, -T::fused(t120, t47, t122 * t50)),
-            t76,
-            T::fused(t125, t93, T::fused(t120, t88, t122 * t90)) * t97,
-        );
-        let t127 = T::fused(
-            T::fused(t125, t101, T::fused(-t120, t99, t122 * t100)),
+        let t105 = T::fused(
+            T::fused(t102, t38, T::fused(t44, t101, t96 * t41)),
+            t64,
             t104,
-            t126,
         );
-        let t128 = T::fused(k(1e-7), base_dwy, t127);
-        let t129 = t108 * t107;
-        let t130 = t111 * t113;
-        let t131 = T::fused(
-            T::fused(t111, t111, t109) * t119,
-            t106,
-            (t130 - t129) * t119 * t128,
+        let t106 = t97 - t66;
+        let t107 = t95 - t94;
+        let t108 = t70 + t69;
+        let t109 = T::fused(t108, t38, T::fused(t41, t106, t107 * t44));
+        let t110 = T::fused(t108, t87, T::fused(t106, t85, t107 * t86));
+        let t111 = T::fused(
+            T::fused(t108, t80, T::fused(t79, t106, t107 * t76)),
+            t84,
+            T::fused(-t110, t90, k(0.0003125) * base_dwz),
         );
-        let t132 = t85 + t84;
-        let t133 = t124 - t123;
-        let t134 = T::fused(-base_e3, k(2.0) * base_e3, t79);
-        let t135 = T::fused(t134, t53, -T::fused(-t132, t47, t133 * t50));
-        let t136 = T::fused(
-            t135,
-            t76,
-            T::fused(t134, t93, T::fused(-t132, t88, t133 * t90)) * t97,
+        let t112 = T::fused(t109, t64, t111);
+        let t113 = T::fused(
+            (t65 + t67) * t99,
+            t93,
+            T::fused(t102 * t99, t105, t108 * t99 * t112),
         );
-        let t137 = T::fused(t134, t101, T::fused(t132, t99, t133 * t100));
-        let t138 = T::fused(k(1e-7), base_dwz, -T::fused(t137, t104, t136));
-        let t139 = T::fused(
-            (t130 + t129) * t119,
-            t106,
-            T::fused(t113, t113, t109) * t119 * t128,
+        let t114 = T::fused(
+            t74 * t99,
+            t93,
+            T::fused((t65 + t100) * t99, t105, t107 * t99 * t112),
         );
-        let t140 = T::fused(
-            t110 * t119,
-            t138,
-            T::fused(t118 * t119, t106, t115 * t119 * t128),
-        );
-        let t141 = k(1.0) / T::fused(-t87, t137, t135 * t105);
-        let t142 = k(1.0) / T::fused(-t94, t69, t95 * t54);
-        let t143 = k(1.0) / T::fused(-t70, t63, t72 * t61);
+        let t115 = T::fused(t71 * t99, t93, T::fused(t96 * t99, t105, t98 * t99 * t112));
+        let t116 = k(1.0) / T::fused(-t91, t109, t110 * t75);
+        let t117 = k(1.0) / T::fused(-t82, t45, t81 * t58);
+        let t118 = k(1.0) / T::fused(-t60, t56, t61 * t55);
         *lambda = [
-            -T::fused(k(0.001), base_dsx, t2),
-            -(T::fused(k(0.001), base_dsy, k(0.01)) + t5),
-            -T::fused(k(0.001), base_dsz, t8),
-            T::fused((t117 + t116) * t119, t138, t131),
-            T::fused((t114 - t112) * t119, t138, t139),
-            t140,
-            -t2,
-            -t5,
-            -t8,
-            T::fused(t87 * t141, t76, t105 * t141 * t104),
-            T::fused(t135 * t141, t76, t137 * t141 * t104),
-            -t1,
-            -t4,
-            -t7,
-            T::fused(-(t95 * t142), t68, t94 * t142 * t43),
-            T::fused(-(t54 * t142), t43, t69 * t142 * t68),
-            -t0,
-            -t3,
-            -t6,
-            T::fused(t36, t70 * t143, t41 * (t72 * t143)),
-            T::fused(t36, t61 * t143, t41 * (t63 * t143)),
+            -(k(0.001) * T::fused(k(10.0), t1, base_dsx)),
+            -(k(0.001) * (k(10.0) + T::fused(k(10.0), t4, base_dsy))),
+            -(k(0.001) * T::fused(k(10.0), t6, base_dsz)),
+            -(k(0.00064) * t113),
+            -(k(0.00064) * t114),
+            -(k(0.00064) * t115),
+            -(k(0.01) * t1),
+            -(k(0.01) * t4),
+            -(k(0.01) * t6),
+            k(2e-5) * T::fused(-(t75 * t116), t64, t91 * t116 * t90),
+            -(k(2e-5) * T::fused(-(t109 * t116), t64, t110 * t116 * t90)),
+            -(k(0.01) * t0),
+            -(k(0.01) * t3),
+            -(k(0.01) * t5),
+            k(5e-6) * T::fused(t81 * t117, t36, t82 * t117 * t57),
+            -(k(5e-6) * T::fused(t45 * t117, t36, t58 * t117 * t57)),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t2),
+            -(k(0.08) * rotor_dsz),
+            k(1.25e-6) * T::fused(-t29, t60 * t118, t34 * (t61 * t118)),
+            -(k(1.25e-6) * T::fused(-t29, t55 * t118, t34 * (t56 * t118))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMaximal<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 484 operations (183 ±, 295 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 460 operations (184 ±, 270 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -3433,301 +3408,244 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMaximal<T> {
         let row18 = rows[18];
         let row19 = rows[19];
         let row20 = rows[20];
-        let t0 = k(0.5) * base_e3;
-        let t1 = k(0.5) * base_e0;
-        let t2 = t1 * t1;
-        let t3 = T::fused(t0, t0, t2);
-        let t4 = k(0.5) * base_e1;
-        let t5 = t4 * t1;
-        let t6 = k(0.5) * base_e2;
-        let t7 = t0 * t6;
-        let t8 = t7 + t5;
-        let t9 = t1 * t6;
-        let t10 = t4 * t0;
-        let t11 = t10 - t9;
-        let t12 = k(1.0) / T::fused(-t1, t3, T::fused(-t4, t8, t6 * t11));
-        let t13 = t1 * t0;
-        let t14 = t4 * t6;
-        let t15 = T::fused((t14 + t13) * t12, row4, T::fused(t4, t4, t2) * t12 * row3);
-        let t16 = T::fused(t11 * t12, row5, t15);
-        let t17 = T::fused(T::fused(t6, t6, t2) * t12, row4, (t14 - t13) * t12 * row3);
-        let t18 = T::fused(t8 * t12, row5, t17);
-        let t19 = T::fused((t7 - t5) * t12, row4, (t10 + t9) * t12 * row3);
-        let t20 = T::fused(t3 * t12, row5, t19);
+        let t0 = base_e0 * base_e2;
+        let t1 = base_e1 * base_e3;
+        let t2 = t1 - t0;
+        let t3 = base_e0 * base_e1;
+        let t4 = base_e2 * base_e3;
+        let t5 = t4 + t3;
+        let t6 = base_e3 * base_e3;
+        let t7 = base_e0 * base_e0;
+        let t8 = t7 + t6;
+        let t9 = k(1.0) / T::fused(base_e0, t8, T::fused(-base_e2, t2, base_e1 * t5));
+        let t10 = base_e1 * base_e1;
+        let t11 = base_e0 * base_e3;
+        let t12 = base_e1 * base_e2;
+        let t13 = t12 + t11;
+        let t14 = T::fused(
+            t13 * t9,
+            row4,
+            T::fused(t2 * t9, row5, (t7 + t10) * t9 * row3),
+        );
+        let t15 = t12 - t11;
+        let t16 = base_e2 * base_e2;
+        let t17 = T::fused(
+            (t7 + t16) * t9,
+            row4,
+            T::fused(t5 * t9, row5, t15 * t9 * row3),
+        );
+        let t18 = t1 + t0;
+        let t19 = t4 - t3;
+        let t20 = T::fused(t19 * t9, row4, T::fused(t8 * t9, row5, t18 * t9 * row3));
         let t21 = row0 + row6;
         let t22 = row1 + row7;
         let t23 = row2 + row8;
-        let t24 = T::fused(
-            -base_e0,
-            outer_ring_e3,
-            T::fused(
-                base_e1,
-                outer_ring_e2,
-                T::fused(-base_e2, outer_ring_e1, base_e3 * outer_ring_e0),
-            ),
-        );
-        let t25 = T::fused(
-            base_e3,
-            outer_ring_e3,
-            T::fused(
-                base_e2,
-                outer_ring_e2,
-                T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
-            ),
-        );
-        let t26 = k(2.0) * t25;
-        let t27 = T::fused(-t25, t26, k(1.0));
-        let t28 = T::fused(-t24, k(2.0) * t24, t27);
-        let t29 = T::fused(
-            base_e2,
-            outer_ring_e3,
-            T::fused(
-                -base_e3,
-                outer_ring_e2,
-                T::fused(-base_e0, outer_ring_e1, base_e1 * outer_ring_e0),
-            ),
-        );
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(-t29, t30, t27);
-        let t32 = T::fused(
-            -base_e1,
-            outer_ring_e3,
-            T::fused(
-                -base_e0,
-                outer_ring_e2,
-                T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
-            ),
-        );
-        let t33 = t32 * t26;
-        let t34 = t24 * t30;
-        let t35 = t34 + t33;
-        let t36 = t34 - t33;
-        let t37 = k(1.0) / T::fused(-t31, t28, t36 * t35);
-        let t38 = T::fused(
-            t35,
+        let t24 = k(0.5) - t7;
+        let t25 = t6 - t24;
+        let t26 = outer_ring_e0 * outer_ring_e2;
+        let t27 = outer_ring_e1 * outer_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = outer_ring_e0 * outer_ring_e3;
+        let t30 = outer_ring_e1 * outer_ring_e2;
+        let t31 = t30 + t29;
+        let t32 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t33 = T::fused(outer_ring_e1, outer_ring_e1, -t32);
+        let t34 = T::fused(t18, t33, T::fused(t28, t25, t19 * t31));
+        let t35 = T::fused(outer_ring_e3, outer_ring_e3, -t32);
+        let t36 = outer_ring_e0 * outer_ring_e1;
+        let t37 = outer_ring_e2 * outer_ring_e3;
+        let t38 = t37 - t36;
+        let t39 = t10 - t24;
+        let t40 = t27 + t26;
+        let t41 = T::fused(t40, t39, T::fused(t2, t35, t13 * t38));
+        let t42 = T::fused(t39, t33, T::fused(t2, t28, t13 * t31));
+        let t43 = T::fused(t18, t40, T::fused(t25, t35, t19 * t38));
+        let t44 = k(1.0) / T::fused(-t41, t34, t43 * t42);
+        let t45 = k(0.03125) * row10;
+        let t46 = t16 - t24;
+        let t47 = T::fused(
+            t34,
             t20,
-            T::fused(-t31, t16, T::fused(-t24, t26, t32 * t30) * t18),
+            T::fused(t15, t33, T::fused(t31, t46, t5 * t28)) * t17,
         );
-        let t39 = t38 - T::fused(row9, t31 * t37, row10 * (t35 * t37));
-        let t40 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
+        let t48 = k(0.03125) * row9;
+        let t49 = T::fused(
+            t48,
+            t42 * t44,
+            T::fused(-t45, t34 * t44, T::fused(t42, t14, t47)),
         );
-        let t41 = k(2.0) * t40;
-        let t42 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
+        let t50 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t51 = T::fused(inner_ring_e2, inner_ring_e2, -t50);
+        let t52 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t53 = T::fused(rotor_e2, rotor_e2, -t52);
+        let t54 = rotor_e0 * rotor_e1;
+        let t55 = rotor_e2 * rotor_e3;
+        let t56 = t55 + t54;
+        let t57 = inner_ring_e0 * inner_ring_e1;
+        let t58 = inner_ring_e2 * inner_ring_e3;
+        let t59 = t58 + t57;
+        let t60 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t61 = inner_ring_e0 * inner_ring_e3;
+        let t62 = inner_ring_e1 * inner_ring_e2;
+        let t63 = t62 - t61;
+        let t64 = T::fused(t63, t60, T::fused(t53, t51, t59 * t56));
+        let t65 = T::fused(inner_ring_e3, inner_ring_e3, -t50);
+        let t66 = T::fused(rotor_e3, rotor_e3, -t52);
+        let t67 = t55 - t54;
+        let t68 = t58 - t57;
+        let t69 = T::fused(rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t70 = inner_ring_e0 * inner_ring_e2;
+        let t71 = inner_ring_e1 * inner_ring_e3;
+        let t72 = t71 + t70;
+        let t73 = T::fused(t72, t69, T::fused(t66, t65, t68 * t67));
+        let t74 = T::fused(t63, t69, T::fused(t59, t66, t67 * t51));
+        let t75 = T::fused(t72, t60, T::fused(t56, t65, t68 * t53));
+        let t76 = k(1.0) / T::fused(-t73, t64, t75 * t74);
+        let t77 = k(0.25) * T::fused(-row20, t74 * t76, row19 * (t73 * t76));
+        let t78 = T::fused(
+            -t73,
+            t77,
+            T::fused(t63, row16, T::fused(t51, row17, t59 * row18)),
         );
-        let t43 = t42 * t41;
-        let t44 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
+        let t79 = k(0.25) * T::fused(-row20, t64 * t76, row19 * (t75 * t76));
+        let t80 = T::fused(t75, t79, -t78);
+        let t81 = k(1.0) / (k(0.012515625) + T::fused(t73, t73, t75 * t75));
+        let t82 = t81 * t80;
+        let t83 = t71 - t70;
+        let t84 = t62 + t61;
+        let t85 = T::fused(inner_ring_e1, inner_ring_e1, -t50);
+        let t86 = T::fused(t69, t85, T::fused(t83, t66, t84 * t67));
+        let t87 = T::fused(t60, t85, T::fused(t84, t53, t83 * t56));
+        let t88 = T::fused(t86, t73, t87 * t75);
+        let t89 = T::fused(t33, t85, T::fused(t28, t83, t31 * t84));
+        let t90 = T::fused(outer_ring_e2, outer_ring_e2, -t32);
+        let t91 = t37 + t36;
+        let t92 = t30 - t29;
+        let t93 = T::fused(t92, t63, T::fused(t90, t51, t91 * t59));
+        let t94 = T::fused(t63, t33, T::fused(t31, t51, t28 * t59));
+        let t95 = T::fused(t92, t85, T::fused(t84, t90, t91 * t83));
+        let t96 = k(1.0) / T::fused(-t93, t89, t95 * t94);
+        let t97 = T::fused(-row15, t94 * t96, row14 * (t93 * t96));
+        let t98 = T::fused(t73, t74, t75 * t64);
+        let t99 = t88 * t81;
+        let t100 = T::fused(t87, t64, T::fused(-t99, t98, t86 * t74));
+        let t101 = T::fused(-row15, t89 * t96, row14 * (t95 * t96));
+        let t102 = k(0.0125) + T::fused(t87, t87, T::fused(-t88, t99, t86 * t86));
+        let t103 = t59 * t81;
+        let t104 = t88 * t103;
+        let t105 = t81 * t51;
+        let t106 = t88 * t105;
+        let t107 = T::fused(
+            row12,
+            t106,
+            T::fused(row13, t104, T::fused(t100, t97, t102 * t101)),
         );
-        let t45 = k(2.0) * t44;
-        let t46 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
+        let t108 = t63 * t81;
+        let t109 = t88 * t108;
+        let t110 = T::fused(
+            t87,
+            t79,
+            T::fused(t86, t77, T::fused(-t88, t82, T::fused(row11, t109, t107))),
         );
-        let t47 = t46 * t45;
-        let t48 = t47 - t43;
-        let t49 = t47 + t43;
-        let t50 = T::fused(-t40, t41, k(1.0));
-        let t51 = T::fused(-t46, k(2.0) * t46, t50);
-        let t52 = T::fused(-t44, t45, t50);
-        let t53 = k(1.0) / T::fused(-t49, t48, t52 * t51);
-        let t54 = T::fused(row19, t48 * t53, row20 * (t52 * t53));
-        let t55 = k(5e-6) * t54;
-        let t56 = k(2.0) * t42;
-        let t57 = T::fused(t46, t41, t44 * t56);
-        let t58 = T::fused(row19, t51 * t53, row20 * (t49 * t53));
-        let t59 = k(5e-6) * t58;
-        let t60 = T::fused(-t44, t41, t46 * t56);
-        let t61 = k(0.08) * row16;
-        let t62 = k(2.0) * inner_ring_e0;
-        let t63 = k(2.0) * inner_ring_e1;
-        let t64 = T::fused(-inner_ring_e3, t62, inner_ring_e2 * t63);
-        let t65 = k(0.000125) * t64;
-        let t66 = k(0.08) * row17;
-        let t67 = k(2.0) * inner_ring_e2;
-        let t68 = T::fused(-inner_ring_e0, t62, k(1.0));
-        let t69 = T::fused(-inner_ring_e2, t67, t68);
-        let t70 = k(0.000125) * t69;
-        let t71 = k(0.08) * row18;
-        let t72 = inner_ring_e1 * t62;
-        let t73 = inner_ring_e3 * t67;
-        let t74 = t73 + t72;
-        let t75 = k(0.000125) * t74;
-        let t76 = T::fused(t75, t71, -T::fused(-t65, t61, t70 * t66))
-            + T::fused(t48, t55, t51 * t59);
-        let t77 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t48, k(5e-6) * t48, t51 * (k(5e-6) * t51)));
-        let t78 = k(1.0) / t77;
-        let t79 = t78 * t76;
-        let t80 = k(5e-6) * t57;
-        let t81 = k(5e-6) * t60;
-        let t82 = T::fused(-t48, t80, t51 * t81);
-        let t83 = k(1e-5) * t64;
-        let t84 = t78 * t83;
-        let t85 = t82 * t84;
-        let t86 = k(1e-5) * t69;
-        let t87 = t78 * t86;
-        let t88 = t82 * t87;
-        let t89 = k(1e-5) * t74;
-        let t90 = t78 * t89;
-        let t91 = t82 * t90;
-        let t92 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t93 = k(2.0) * t92;
-        let t94 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t95 = t94 * t93;
-        let t96 = T::fused(
-            outer_ring_e2,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e3,
-                inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
-            ),
-        );
-        let t97 = k(2.0) * t96;
-        let t98 = T::fused(
-            -outer_ring_e1,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e0,
-                inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-            ),
-        );
-        let t99 = t98 * t97;
-        let t100 = t99 - t95;
-        let t101 = t99 + t95;
-        let t102 = k(2.0) * t98;
-        let t103 = T::fused(-t92, t93, k(1.0));
-        let t104 = T::fused(-t98, t102, t103);
-        let t105 = T::fused(-t96, t97, t103);
-        let t106 = k(1.0) / T::fused(-t101, t100, t105 * t104);
-        let t107 = T::fused(row14, t100 * t106, row15 * (t105 * t106));
-        let t108 = t78 * t82;
-        let t109 = T::fused(t82, t108, -(k(1e-6) + T::fused(t57, t80, t60 * t81)));
-        let t110 = T::fused(row14, t104 * t106, row15 * (t101 * t106));
-        let t111 = k(5e-6) * t52;
-        let t112 = k(5e-6) * t49;
-        let t113 = T::fused(t48, t111, t51 * t112);
-        let t114 = T::fused(t113, t108, -T::fused(-t52, t80, t49 * t81));
-        let t115 = T::fused(-t109, t107, t114 * t110)
-            + T::fused(row13, t91, -T::fused(-row11, t85, row12 * t88));
-        let t116 = T::fused(inner_ring_e2, t62, inner_ring_e3 * t63);
-        let t117 = k(0.000125) * t116;
-        let t118 = t73 - t72;
-        let t119 = k(0.000125) * t118;
-        let t120 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t68);
-        let t121 = k(0.000125) * t120;
-        let t122 = T::fused(t121, t71, -T::fused(t117, t61, t119 * t66))
-            - T::fused(t52, t55, t49 * t59);
-        let t123 = T::fused(-t113, t84, k(1e-5) * t116);
-        let t124 = T::fused(t113, t87, k(1e-5) * t118);
-        let t125 = T::fused(t113, t90, k(1e-5) * t120);
-        let t126 = T::fused(
+        let t111 = k(0.025015625)
+            + T::fused(t64, t64, T::fused(-t98, t81 * t98, t74 * t74));
+        let t112 = T::fused(t98, t103, t65);
+        let t113 = T::fused(t98, t105, t68);
+        let t114 = T::fused(
+            row12,
             t113,
-            t78 * t113,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t52, t111, t49 * t112))),
+            T::fused(row13, t112, T::fused(t111, t97, t100 * t101)),
         );
-        let t127 = T::fused(-t114, t107, t126 * t110)
-            + T::fused(row13, t125, -T::fused(row11, t123, row12 * t124));
-        let t128 = T::fused(
-            -t100,
-            t115 + T::fused(t82, t79, -T::fused(-t57, t55, t60 * t59)),
-            t104 * (t127 + T::fused(t113, t79, t122)),
+        let t115 = T::fused(t98, t108, t72);
+        let t116 = T::fused(
+            t68,
+            row17,
+            T::fused(t65, row18, T::fused(-t98, t82, T::fused(row11, t115, t114))),
         );
-        let t129 = T::fused(
+        let t117 = T::fused(
+            t93,
+            T::fused(t111, t94, t100 * t89),
+            t95 * T::fused(t100, t94, t102 * t89),
+        );
+        let t118 = T::fused(
+            t43,
+            t20,
+            T::fused(t15, t40, T::fused(t5, t35, t38 * t46)) * t17,
+        );
+        let t119 = T::fused(
+            t48,
+            t41 * t44,
+            T::fused(-t45, t43 * t44, T::fused(t41, t14, t118)),
+        );
+        let t120 = T::fused(t40, t63, T::fused(t59, t35, t38 * t51));
+        let t121 = T::fused(t93, t111, t95 * t100);
+        let t122 = T::fused(t40, t85, T::fused(t83, t35, t38 * t84));
+        let t123 = T::fused(t100, t93, t102 * t95);
+        let t124 = T::fused(
+            -k(128.0),
+            T::fused(t117, t49, T::fused(t121, t120, t123 * t122) * t119),
+            t23 * T::fused(t93, t112, t95 * t104),
+        );
+        let t125 = T::fused(
             t21,
-            T::fused(t100, t85, t104 * t123),
-            t22 * T::fused(-t100, t88, t104 * t124),
+            T::fused(t93, t115, t95 * t109),
+            T::fused(t22, T::fused(t93, t113, t95 * t106), t124),
         );
-        let t130 = T::fused(
-            -t100,
-            T::fused(-t105, t109, t101 * t114),
-            t104 * T::fused(-t105, t114, t101 * t126),
+        let t126 = T::fused(
+            t93,
+            T::fused(t64, t79, T::fused(t74, t77, T::fused(t72, row16, t116))),
+            t125,
         );
-        let t131 = T::fused(t36, t16, T::fused(t29, t26, t24 * (k(2.0) * t32)) * t18);
-        let t132 = T::fused(t28, t20, -t131)
-            - T::fused(row9, t36 * t37, row10 * (t28 * t37));
-        let t133 = T::fused(-t100, t109, t104 * t114);
-        let t134 = T::fused(t98, t93, t94 * t97);
-        let t135 = T::fused(-t100, t114, t104 * t126);
-        let t136 = T::fused(-t96, t93, t94 * t102);
-        let t137 = T::fused(-t130, t39, T::fused(t134, t133, t136 * t135) * t132)
-            - T::fused(t23, T::fused(-t100, t91, t104 * t125), -t129);
-        let t138 = (t137 - t128) / (k(1e-6) - T::fused(-t100, t133, t104 * t135));
-        let t139 = row11 + t21;
-        let t140 = row12 + t22;
-        let t141 = row13 + t23;
-        let t142 = t107 + T::fused(t134, t132, -T::fused(-t105, t39, t100 * t138));
-        let t143 = t110 - T::fused(t136, t132, T::fused(-t101, t39, t104 * t138));
-        let t144 = T::fused(t141, t89, -T::fused(-t139, t83, t140 * t86))
-            + T::fused(-t82, t142, t113 * t143);
-        let t145 = t78 * (t76 + t144);
+        let t127 = T::fused(t95, t110, t126)
+            / (k(0.00078125) + T::fused(t93, t121, t95 * t123));
+        let t128 = row11 + t21;
+        let t129 = row12 + t22;
+        let t130 = row13 + t23;
+        let t131 = k(128.0) * t49;
+        let t132 = k(128.0) * t119;
+        let t133 = T::fused(
+            -t89,
+            t131,
+            T::fused(-t95, t127, T::fused(-t122, t132, t101)),
+        );
+        let t134 = T::fused(
+            -t94,
+            t131,
+            T::fused(-t93, t127, T::fused(-t120, t132, t97)),
+        );
+        let t135 = T::fused(
+            t51,
+            t129,
+            T::fused(t59, t130, -T::fused(t88, t133, T::fused(t98, t134, t80))),
+        );
+        let t136 = t81 * T::fused(t63, t128, t135);
+        let t137 = k(6.25e-5) * t136;
+        let t138 = k(6.25e-5) * t134;
         *out = [
             row0,
             row1,
             row2,
-            -t16,
-            -t18,
-            -t20,
+            k(2.0) * t14,
+            k(2.0) * t17,
+            k(2.0) * t20,
             t21,
             t22,
             t23,
-            -t39,
-            -t138,
-            t132,
-            t139,
-            t140,
-            t141,
-            t142,
-            -t143,
-            -t145,
-            row16 + (t139 - T::fused(-t117, t143, t65 * t145)),
-            row17 + (t140 + T::fused(t119, t143, t70 * t145)),
-            row18 + (t141 - T::fused(t121, t143, t75 * t145)),
+            k(8.0) * t49,
+            k(0.0625) * t127,
+            k(8.0) * t119,
+            t128,
+            t129,
+            t130,
+            -(k(0.25) * t133),
+            -(k(0.25) * t134),
+            -(k(0.25) * t136),
+            T::fused(t72, t138, T::fused(-t63, t137, row16 + t128)),
+            T::fused(t68, t138, T::fused(-t51, t137, row17 + t129)),
+            T::fused(t65, t138, T::fused(-t59, t137, row18 + t130)),
             k(0.0),
-            t54 - T::fused(t48, t145, -T::fused(t57, t142, t52 * t143)),
-            T::fused(t51, t145, -T::fused(-t60, t142, t49 * t143)) - t58,
+            -T::fused(t87, t133, T::fused(t64, t134, T::fused(t75, t136, t79))),
+            -T::fused(t86, t133, T::fused(t74, t134, T::fused(t73, t136, t77))),
         ];
     }
 }
@@ -3745,7 +3663,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 45]
     }
-    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 19 operations (5 ±, 13 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -3753,17 +3671,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = k(1e-5) * t0;
-        let t2 = u1 * t1;
-        let t3 = x1.sin();
-        let t4 = u0 * t3;
-        let t5 = T::fused(-k(0.20025), t4, u2) * t2
-            / T::fused(k(6.00125e-6), t0 * t0, k(2e-6));
+        let t1 = u1 * t0;
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = T::fused(-k(0.20025), t3, u2) * t1
+            / T::fused(t0, t0, k(0.333263903353468));
         *out = [
-            -t5,
-            -(k(166631.95167673402)
-                * (t1 * T::fused(-u0, T::fused(k(0.399875), t4, u2), k(10.0)))),
-            T::fused(-k(100000.0), u0 * t2, t3 * t5),
+            -(k(1.6663195167673401) * t4),
+            -(k(1.6663195167673401)
+                * (t0 * T::fused(-u0, T::fused(k(0.399875), t3, u2), k(10.0)))),
+            T::fused(-u0, t1, k(1.6663195167673401) * (t2 * t4)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -3775,7 +3692,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 75 operations (26 ±, 49 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -3802,27 +3719,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t15 = k(0.5) * x2;
         let t16 = t15.sin();
         let t17 = t15.cos();
-        let t18 = k(2.0) * t6;
-        let t19 = u0 * (t4 * t18);
-        let t20 = u0 * T::fused(-t6, t18, k(1.0));
-        let t21 = k(0.000125) * t20;
-        let t22 = k(0.000125) * u1;
-        let t23 = T::fused(-(k(2.0) * (t14 + t13)), t21, k(2.0) * (t12 - t11) * t22);
-        let t24 = t5 * t7;
-        let t25 = t8 * t9;
-        let t26 = T::fused(
-            k(2.0) * (t25 - t24),
-            t21,
-            k(2.0) * (k(0.5) - T::fused(t8, t8, t10)) * t22,
-        );
-        let t27 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t9, t9, t10)),
-            t21,
-            k(2.0) * (t25 + t24) * t22,
-        );
-        let t28 = k(2.0) * t16;
-        let t29 = T::fused(-t16, t28, k(1.0));
-        let t30 = t17 * t28;
+        let t18 = k(2.0) * (u0 * (t6 * t4));
+        let t19 = u0 * ((t6 - t4) * (t6 + t4));
+        let t20 = t5 * t7;
+        let t21 = t8 * t9;
+        let t22 = T::fused(-u1, k(0.5) - T::fused(t8, t8, t10), (t21 - t20) * t19);
+        let t23 = T::fused(-u1, t21 + t20, (k(0.5) - T::fused(t9, t9, t10)) * t19);
+        let t24 = k(2.0) * (t16 * t17);
+        let t25 = (t16 - t17) * (t16 + t17);
         *y = [
             k(0.0),
             k(0.0),
@@ -3867,18 +3771,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t19,
-            t20,
+            t18,
+            -t19,
             u1,
-            t23,
-            -t26,
-            t27,
-            u2 + t19,
-            T::fused(t29, t20, u1 * t30),
-            T::fused(-t30, t20, u1 * t29),
+            k(0.00025) * T::fused(u1, t12 - t11, (t14 + t13) * t19),
+            k(0.00025) * t22,
+            -(k(0.00025) * t23),
+            u2 + t18,
+            T::fused(u1, t24, t25 * t19),
+            T::fused(-u1, t25, t19 * t24),
         ];
     }
-    /// Writes the joint state of a maximal state: 177 operations (82 ±, 95 ×, 0 ÷) and 9 functions.
+    /// Writes the joint state of a maximal state: 161 operations (82 ±, 79 ×, 0 ÷) and 9 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -3906,99 +3810,96 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e2 * outer_ring_e2;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = T::fused(outer_ring_e1, outer_ring_e1, t2);
+        let t0 = base_e3 * base_e3;
+        let t1 = base_e0 * base_e0;
+        let t2 = T::fused(base_e1, base_e1, t1);
+        let t3 = k(0.5) * (k(1.0) - T::fused(base_e2, base_e2, t2 + t0));
         let t4 = outer_ring_e3 * outer_ring_e3;
-        let t5 = k(1.0) - (t4 + (t3 + t1));
-        let t6 = T::fused(k(2.0), k(0.5) - (t2 + t4), -t5);
-        let t7 = base_e0 * base_e2;
-        let t8 = base_e1 * base_e3;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = base_e0 * base_e0;
-        let t13 = T::fused(base_e1, base_e1, t12);
-        let t14 = base_e3 * base_e3;
-        let t15 = k(1.0) - (t14 + T::fused(base_e2, base_e2, t13));
-        let t16 = outer_ring_e0 * outer_ring_e2;
-        let t17 = outer_ring_e1 * outer_ring_e3;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = T::fused(
-            -(k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2)),
-            t11,
-            t18 * T::fused(k(2.0), k(0.5) - t13, -t15),
+        let t5 = outer_ring_e0 * outer_ring_e0;
+        let t6 = T::fused(outer_ring_e1, outer_ring_e1, t5);
+        let t7 = outer_ring_e2 * outer_ring_e2;
+        let t8 = k(0.5) * (k(1.0) - (t7 + (t6 + t4)));
+        let t9 = k(0.5) - (t5 + t4) - t8;
+        let t10 = outer_ring_e0 * outer_ring_e2;
+        let t11 = outer_ring_e1 * outer_ring_e3;
+        let t12 = t11 + t10;
+        let t13 = base_e0 * base_e2;
+        let t14 = base_e1 * base_e3;
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = t16 - t15;
+        let t18 = T::fused(
+            t14 + t13,
+            t12,
+            T::fused(-base_e0, base_e1, base_e2 * base_e3) * t17,
         );
-        let t20 = T::fused(k(2.0) * (t8 - t7), t6, t19);
-        let t21 = x0.cos();
-        let t22 = T::fused(
-            k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3),
-            t11,
-            k(2.0) * (t8 + t7) * t18,
+        let t19 = T::fused(t9, k(0.5) - (t1 + t0) - t3, t18);
+        let t20 = x0.cos();
+        let t21 = T::fused(
+            -t12,
+            k(0.5) - t2 - t3,
+            T::fused(base_e0, base_e3, base_e1 * base_e2) * t17,
         );
-        let t23 = T::fused(T::fused(k(2.0), k(0.5) - (t12 + t14), -t15), t6, t22);
-        let t24 = -T::fused(t20, t21, t23 * t0).atan2(T::fused(-t20, t0, t23 * t21));
-        let t25 = x1.sin();
-        let t26 = inner_ring_e0 * inner_ring_e2;
-        let t27 = inner_ring_e1 * inner_ring_e3;
-        let t28 = k(2.0) * (t27 - t26);
-        let t29 = inner_ring_e0 * inner_ring_e3;
-        let t30 = inner_ring_e1 * inner_ring_e2;
-        let t31 = k(2.0) * (t30 + t29);
-        let t32 = inner_ring_e2 * inner_ring_e2;
-        let t33 = inner_ring_e0 * inner_ring_e0;
-        let t34 = T::fused(inner_ring_e1, inner_ring_e1, t33);
-        let t35 = inner_ring_e3 * inner_ring_e3;
-        let t36 = k(1.0) - (t35 + (t34 + t32));
-        let t37 = T::fused(k(2.0), k(0.5) - t34, -t36);
-        let t38 = outer_ring_e0 * outer_ring_e3;
-        let t39 = outer_ring_e1 * outer_ring_e2;
-        let t40 = T::fused(
-            t31,
-            T::fused(k(2.0), k(0.5) - (t2 + t1), -t5),
-            k(2.0) * (t39 - t38) * t37,
+        let t22 = T::fused(t14 - t13, t9, -t21);
+        let t23 = x0.sin();
+        let t24 = -(k(4.0) * T::fused(t23, t19, t20 * t22))
+            .atan2(-(k(4.0) * T::fused(-t20, t19, t23 * t22)));
+        let t25 = inner_ring_e3 * inner_ring_e3;
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = T::fused(inner_ring_e1, inner_ring_e1, t26);
+        let t28 = inner_ring_e2 * inner_ring_e2;
+        let t29 = k(0.5) * (k(1.0) - (t28 + (t27 + t25)));
+        let t30 = k(0.5) - t27 - t29;
+        let t31 = inner_ring_e0 * inner_ring_e3;
+        let t32 = inner_ring_e1 * inner_ring_e2;
+        let t33 = t32 + t31;
+        let t34 = outer_ring_e0 * outer_ring_e3;
+        let t35 = outer_ring_e1 * outer_ring_e2;
+        let t36 = inner_ring_e0 * inner_ring_e2;
+        let t37 = inner_ring_e1 * inner_ring_e3;
+        let t38 = t37 - t36;
+        let t39 = T::fused(
+            t11 - t10,
+            t38,
+            T::fused(t30, k(0.5) - t6 - t8, (t35 + t34) * t33),
         );
-        let t41 = T::fused(-(k(2.0) * (t10 + t9)), t28, t40);
-        let t42 = x1.cos();
-        let t43 = T::fused(
-            k(2.0) * (t39 + t38),
-            t31,
-            T::fused(k(2.0), k(0.5) - t3, -t5) * t37,
+        let t40 = x1.cos();
+        let t41 = T::fused(t35 - t34, t30, t33 * (k(0.5) - (t5 + t7) - t8));
+        let t42 = T::fused(t16 + t15, t38, -t41);
+        let t43 = x1.sin();
+        let t44 = (k(4.0) * T::fused(-t43, t39, t40 * t42))
+            .atan2(k(4.0) * T::fused(t40, t39, t43 * t42));
+        let t45 = rotor_e2 * rotor_e2;
+        let t46 = rotor_e0 * rotor_e0;
+        let t47 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t46 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t46 + t45))),
         );
-        let t44 = T::fused(k(2.0) * (t17 - t16), t28, t43);
-        let t45 = -T::fused(t41, t42, t44 * t25).atan2(T::fused(-t41, t25, t44 * t42));
-        let t46 = x2.sin();
-        let t47 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t48 = rotor_e2 * rotor_e2;
-        let t49 = rotor_e0 * rotor_e0;
-        let t50 = T::fused(
-            k(2.0),
-            k(0.5) - (t49 + t48),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t49) + t48)),
+        let t48 = k(0.5) * (k(1.0) - (t45 + t47));
+        let t49 = inner_ring_e0 * inner_ring_e1;
+        let t50 = inner_ring_e2 * inner_ring_e3;
+        let t51 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t52 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t53 = T::fused(
+            t52,
+            k(0.5) - (t26 + t25) - t29,
+            -T::fused(t50 - t49, t48, (t37 + t36) * t51),
         );
-        let t51 = inner_ring_e0 * inner_ring_e1;
-        let t52 = inner_ring_e2 * inner_ring_e3;
-        let t53 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t54 = T::fused(-(k(2.0) * (t52 - t51)), t50, k(2.0) * (t27 + t26) * t53);
-        let t55 = T::fused(-t47, T::fused(k(2.0), k(0.5) - (t33 + t35), -t36), t54);
-        let t56 = x2.cos();
-        let t57 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t33 + t32), -t36),
-            t50,
-            k(2.0) * (t30 - t29) * t53,
-        );
-        let t58 = T::fused(k(2.0) * (t52 + t51), t47, t57);
-        let t59 = T::fused(-t58, t46, t55 * t56).atan2(T::fused(t55, t46, t58 * t56));
+        let t54 = x2.sin();
+        let t55 = T::fused(-(k(0.5) - (t26 + t28) - t29), t48, (t32 - t31) * t51);
+        let t56 = T::fused(t50 + t49, t52, t55);
+        let t57 = x2.cos();
+        let t58 = -(k(4.0) * T::fused(t57, t53, t54 * t56))
+            .atan2(k(4.0) * T::fused(-t54, t53, t57 * t56));
         x[0] = x0 + t24;
-        x[1] = x1 + t45;
-        x[2] = x2 + t59;
+        x[1] = x1 + t44;
+        x[2] = x2 + t58;
         x[3] = outer_ring_wy - base_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 40 operations (16 ±, 23 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
@@ -4024,11 +3925,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = k(1e-5) * t2;
-        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
-        let t5 = T::fused(
+        let t1 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4037,20 +3934,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t6 = t5 * t1;
-        let t7 = base_wy - outer_ring_wy;
-        let t8 = t7 * t6;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = T::fused(k(0.20025), t8, t9) * t4
-            / T::fused(k(6.00125e-6), t2 * t2, k(2e-6));
+        let t2 = (t1 + t0) * (t1 - t0);
+        let t3 = t1 * t0;
+        let t4 = base_wy - outer_ring_wy;
+        let t5 = t4 * t3;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = (outer_ring_wz - inner_ring_wz) * t2;
+        let t8 = t7 * T::fused(k(0.4005), t5, t6)
+            / T::fused(t2, t2, k(0.333263903353468));
         *out = [
-            -t10,
-            -(k(166631.95167673402)
-                * (t3 * T::fused(-t7, T::fused(-k(0.399875), t8, t9), k(10.0)))),
-            -T::fused(k(100000.0), t7 * t4, t6 * t10),
+            -(k(1.6663195167673401) * t8),
+            -(k(1.6663195167673401)
+                * (t2 * T::fused(-t4, T::fused(-k(0.79975), t5, t6), k(10.0)))),
+            -T::fused(k(3.3326390335346803), t3 * t8, t4 * t7),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 151 operations (57 ±, 93 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 140 operations (59 ±, 80 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -4091,12 +3990,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t3 = k(2.0) * t2;
-        let t4 = T::fused(-t2, t3, k(1.0));
-        let t5 = k(1e-5) * t4;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = t6 * t5;
-        let t8 = T::fused(
+        let t3 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4105,22 +3999,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t9 = t8 * t3;
-        let t10 = t0 * t9;
-        let t11 = inner_ring_wx - rotor_wx;
-        let t12 = T::fused(k(0.20025), t10, t11) * t7
-            / T::fused(k(6.00125e-6), t4 * t4, k(2e-6));
-        let t13 = outer_ring_wx * t0;
-        let t14 = t9 * t12;
-        let t15 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t14));
-        let t16 = T::fused(inner_ring_wx, t6, T::fused(-t4, t12, t9 * t1));
-        let t17 = T::fused(
-            k(166631.95167673402),
-            t5 * T::fused(-t0, T::fused(-k(0.399875), t10, t11), k(10.0)),
-            t13,
+        let t4 = (t3 + t2) * (t3 - t2);
+        let t5 = t3 * t2;
+        let t6 = t0 * t5;
+        let t7 = inner_ring_wx - rotor_wx;
+        let t8 = outer_ring_wz - inner_ring_wz;
+        let t9 = t8 * t4;
+        let t10 = t9 * T::fused(k(0.4005), t6, t7)
+            / T::fused(t4, t4, k(0.333263903353468));
+        let t11 = outer_ring_wx * t0;
+        let t12 = k(3.3326390335346803) * (t5 * t10);
+        let t13 = T::fused(t4, t1, -T::fused(inner_ring_wy, t8, -t12));
+        let t14 = k(1.6663195167673401) * t4;
+        let t15 = T::fused(-t10, t14, T::fused(k(2.0), t5 * t1, inner_ring_wx * t8));
+        let t16 = T::fused(
+            T::fused(-t0, T::fused(-k(0.79975), t6, t7), k(10.0)),
+            t14,
+            t11,
         );
-        let t18 = k(0.000125) * t17;
-        let t19 = T::fused(
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = inner_ring_e0 * inner_ring_e3;
+        let t21 = inner_ring_e1 * inner_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_wx * inner_ring_wz;
+        let t24 = inner_ring_wx * inner_ring_wy;
+        let t25 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = T::fused(
+            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t26),
+            t25,
+            T::fused(t19, t23, t22 * t24),
+        );
+        let t28 = inner_ring_e0 * inner_ring_e1;
+        let t29 = inner_ring_e2 * inner_ring_e3;
+        let t30 = t29 - t28;
+        let t31 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t26);
+        let t32 = T::fused(
+            -t31,
+            t16,
+            T::fused(t21 + t20, t25, T::fused(-t30, t23, t31 * t24)),
+        );
+        let t33 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t26);
+        let t34 = t29 + t28;
+        let t35 = T::fused(
+            t34,
+            t16,
+            T::fused(t18 - t17, t25, -T::fused(-t33, t23, t34 * t24)),
+        );
+        let t36 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4129,10 +4057,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t20 = k(2.0) * t19;
-        let t21 = T::fused(-t19, t20, k(1.0));
-        let t22 = k(0.000125) * t16;
-        let t23 = T::fused(
+        let t37 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4141,32 +4066,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t24 = t23 * t20;
-        let t25 = k(0.000125) * inner_ring_wy;
-        let t26 = inner_ring_wx * t25;
-        let t27 = k(0.000125) * inner_ring_wz;
-        let t28 = inner_ring_wx * t27;
-        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(-t21, t18, t24 * t22);
-        let t30 = rotor_e0 * rotor_e3;
-        let t31 = rotor_e1 * rotor_e2;
-        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
-        let t33 = rotor_e0 * rotor_e0;
-        let t34 = T::fused(
-            -(k(2.0) * (t31 - t30)),
-            t29,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
-        );
-        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(t24, t18, t21 * t22);
-        let t36 = rotor_e0 * rotor_e2;
-        let t37 = rotor_e1 * rotor_e3;
-        let t38 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
-            t29,
-            k(2.0) * (t31 + t30) * t32,
-        );
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = T::fused(k(2.0) * (t40 + t39), t29, k(2.0) * (t37 - t36) * t32);
+        let t38 = k(2.0) * (t37 * t36);
+        let t39 = (t37 + t36) * (t37 - t36);
         *out = [
             k(0.0),
             k(0.0),
@@ -4178,23 +4079,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             t1,
-            -t12,
-            -t13,
+            -(k(1.6663195167673401) * t10),
+            -t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t15,
-            t16,
-            -t17,
-            T::fused(k(2.0) * (t37 + t36), t35, t34),
-            T::fused(k(2.0) * (t40 - t39), t35, -t38),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)), t35, t41),
-            -(T::fused(k(100000.0), t0 * t7, t14) + t15),
-            T::fused(-rotor_wz, t11, T::fused(t21, t16, t24 * t17)),
-            T::fused(rotor_wy, t11, -T::fused(-t24, t16, t21 * t17)),
+            t13,
+            t15,
+            -t16,
+            k(0.00025) * T::fused(-t19, t15, T::fused(-t22, t16, t27)),
+            -(k(0.00025) * T::fused(t30, t15, t32)),
+            -(k(0.00025) * T::fused(-t33, t15, t35)),
+            t13 - T::fused(t0, t9, t12),
+            T::fused(t39, t15, -T::fused(-t16, t38, rotor_wz * t7)),
+            T::fused(t15, t38, T::fused(-t39, t16, rotor_wy * t7)),
         ];
     }
-    /// Writes λ: 212 operations (86 ±, 125 ×, 1 ÷).
+    /// Writes λ: 215 operations (89 ±, 125 ×, 1 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -4275,8 +4176,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(-t10, t11, k(1.0));
+        let t11 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t12 = (t11 + t10) * (t11 - t10);
         let t13 = inner_ring_e0 * inner_ring_e1;
         let t14 = inner_ring_e2 * inner_ring_e3;
         let t15 = T::fused(
@@ -4295,10 +4204,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t21 = T::fused(
+        let t18 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4307,29 +4213,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t22 = t21 * t18;
-        let t23 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t24 = T::fused(-t20, t19, t23 * t22);
-        let t25 = t24
+        let t19 = (t18 + t17) * (t18 - t17);
+        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t21 = t18 * (k(2.0) * t17);
+        let t22 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t23 = T::fused(-t20, t19, t22 * t21);
+        let t24 = t23
             - T::fused(
                 t6,
                 k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t16)),
                 -t15,
             );
-        let t26 = T::fused(k(2e-6), inner_ring_dwy, -t25);
-        let t27 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t28 = t27 * t11;
-        let t29 = T::fused(-t12, t9, t28 * t26);
-        let t30 = T::fused(k(2e-6), outer_ring_dwx, t29);
-        let t31 = T::fused(
+        let t25 = T::fused(k(2e-6), inner_ring_dwy, -t24);
+        let t26 = t11 * (k(2.0) * t10);
+        let t27 = T::fused(-t12, t9, t26 * t25);
+        let t28 = T::fused(k(2e-6), outer_ring_dwx, t27);
+        let t29 = T::fused(
             -base_e1,
             outer_ring_e3,
             T::fused(
@@ -4338,26 +4237,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
             ),
         );
-        let t32 = k(2.0) * t31;
-        let t33 = T::fused(-t31, t32, k(1.0));
-        let t34 = T::fused(
-            -t0,
-            k(0.00025)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
-            t3 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t16))),
-        );
-        let t35 = T::fused(t20, t22, t23 * t19);
-        let t36 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t35 - T::fused(t6, k(0.00025) * (t14 + t13), -t34)),
-        );
-        let t37 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t36,
-        );
-        let t38 = T::fused(
+        let t30 = T::fused(
             base_e3,
             outer_ring_e3,
             T::fused(
@@ -4366,64 +4246,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
             ),
         );
-        let t39 = t38 * t32;
-        let t40 = T::fused(t33, t30, t39 * t37);
-        let t41 = T::fused(k(1e-7), base_dwx, t40);
-        let t42 = base_e3 * base_e3;
-        let t43 = base_e2 * base_e2;
-        let t44 = base_e0 * base_e0;
-        let t45 = T::fused(base_e1, base_e1, t44);
-        let t46 = k(2.0) / (base_e0 * (t45 + (t43 + t42)));
-        let t47 = T::fused(t28, t9, t12 * t26);
-        let t48 = T::fused(
+        let t31 = (t30 + t29) * (t30 - t29);
+        let t32 = T::fused(
+            -t0,
+            k(0.00025)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t3 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t16))),
+        );
+        let t33 = T::fused(t20, t21, t22 * t19);
+        let t34 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            -(t33 - T::fused(t6, k(0.00025) * (t14 + t13), -t32)),
+        );
+        let t35 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t34,
+        );
+        let t36 = t30 * (k(2.0) * t29);
+        let t37 = T::fused(t31, t28, t36 * t35);
+        let t38 = T::fused(k(1e-7), base_dwx, t37);
+        let t39 = base_e3 * base_e3;
+        let t40 = base_e2 * base_e2;
+        let t41 = base_e0 * base_e0;
+        let t42 = T::fused(base_e1, base_e1, t41);
+        let t43 = k(2.0) / (base_e0 * (t42 + (t40 + t39)));
+        let t44 = T::fused(t26, t9, t12 * t25);
+        let t45 = T::fused(
             k(1e-7),
             base_dwy,
             T::fused(
                 k(1e-6),
                 T::fused(outer_ring_wx, outer_ring_wz, outer_ring_dwy),
-                t47,
+                t44,
             ),
         );
-        let t49 = base_e0 * base_e3;
-        let t50 = base_e1 * base_e2;
-        let t51 = T::fused(-t39, t30, t33 * t37);
-        let t52 = T::fused(k(1e-7), base_dwz, -t51);
-        let t53 = base_e0 * base_e2;
-        let t54 = base_e1 * base_e3;
-        let t55 = T::fused(
-            (t54 + t53) * t46,
-            t52,
-            T::fused(t45 * t46, t41, (t50 - t49) * t46 * t48),
+        let t46 = base_e0 * base_e3;
+        let t47 = base_e1 * base_e2;
+        let t48 = T::fused(-t36, t28, t31 * t35);
+        let t49 = T::fused(k(1e-7), base_dwz, -t48);
+        let t50 = base_e0 * base_e2;
+        let t51 = base_e1 * base_e3;
+        let t52 = T::fused(
+            (t51 + t50) * t43,
+            t49,
+            T::fused(t42 * t43, t38, (t47 - t46) * t43 * t45),
         );
-        let t56 = T::fused((t50 + t49) * t46, t41, (t44 + t43) * t46 * t48);
-        let t57 = base_e0 * base_e1;
-        let t58 = base_e2 * base_e3;
-        let t59 = T::fused((t54 - t53) * t46, t41, (t58 + t57) * t46 * t48);
+        let t53 = T::fused((t47 + t46) * t43, t38, (t41 + t40) * t43 * t45);
+        let t54 = base_e0 * base_e1;
+        let t55 = base_e2 * base_e3;
+        let t56 = T::fused((t51 - t50) * t43, t38, (t55 + t54) * t43 * t45);
         *lambda = [
             -T::fused(k(0.001), base_dsx, t2),
             -(T::fused(k(0.001), base_dsy, k(0.01)) + t5),
             -T::fused(k(0.001), base_dsz, t8),
-            -t55,
-            -T::fused((t58 - t57) * t46, t52, t56),
-            -T::fused((t44 + t42) * t46, t52, t59),
+            -t52,
+            -T::fused((t55 - t54) * t43, t49, t53),
+            -T::fused((t41 + t39) * t43, t49, t56),
             -t2,
             -t5,
             -t8,
-            -t40,
-            -t51,
+            -t37,
+            -t48,
             -t1,
             -t4,
             -t7,
-            -t47,
-            t29,
+            -t44,
+            t27,
             -t0,
             -t3,
             -t6,
-            t35,
-            -t24,
+            t33,
+            -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 303 operations (117 ±, 184 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 285 operations (112 ±, 171 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -4463,12 +4361,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t3 = k(2.0) * t2;
-        let t4 = T::fused(-t2, t3, k(1.0));
-        let t5 = k(1e-5) * t4;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = t6 * t5;
-        let t8 = T::fused(
+        let t3 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4477,22 +4370,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t9 = t8 * t3;
-        let t10 = t0 * t9;
-        let t11 = inner_ring_wx - rotor_wx;
-        let t12 = T::fused(k(0.20025), t10, t11) * t7
+        let t4 = (t3 + t2) * (t3 - t2);
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = t3 * (k(2.0) * t2);
+        let t9 = t0 * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(k(0.20025), t9, t10) * t7
             / T::fused(k(6.00125e-6), t4 * t4, k(2e-6));
-        let t13 = outer_ring_wx * t0;
-        let t14 = t9 * t12;
-        let t15 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t14));
-        let t16 = T::fused(inner_ring_wx, t6, T::fused(-t4, t12, t9 * t1));
-        let t17 = T::fused(
+        let t12 = outer_ring_wx * t0;
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t13));
+        let t15 = T::fused(inner_ring_wx, t6, T::fused(-t4, t11, t8 * t1));
+        let t16 = T::fused(
             k(166631.95167673402),
-            t5 * T::fused(-t0, T::fused(-k(0.399875), t10, t11), k(10.0)),
-            t13,
+            t5 * T::fused(-t0, T::fused(-k(0.399875), t9, t10), k(10.0)),
+            t12,
         );
-        let t18 = k(0.000125) * t17;
-        let t19 = T::fused(
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = k(0.00025) * t19;
+        let t21 = inner_ring_e0 * inner_ring_e3;
+        let t22 = inner_ring_e1 * inner_ring_e2;
+        let t23 = t22 - t21;
+        let t24 = k(0.00025) * t23;
+        let t25 = k(0.000125) * inner_ring_wz;
+        let t26 = k(0.000125) * inner_ring_wy;
+        let t27 = T::fused(inner_ring_wz, t25, inner_ring_wy * t26);
+        let t28 = inner_ring_e0 * inner_ring_e0;
+        let t29 = inner_ring_wx * t26;
+        let t30 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t28)),
+            t27,
+            k(2.0) * t23 * t29,
+        );
+        let t31 = inner_ring_wx * t25;
+        let t32 = T::fused(k(2.0) * t19, t31, t30) - T::fused(t20, t15, t24 * t16);
+        let t33 = inner_ring_e0 * inner_ring_e1;
+        let t34 = inner_ring_e2 * inner_ring_e3;
+        let t35 = t34 - t33;
+        let t36 = k(0.00025) * t35;
+        let t37 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t28);
+        let t38 = k(0.00025) * t37;
+        let t39 = T::fused(
+            k(2.0) * t35,
+            t31,
+            -T::fused(k(2.0) * (t22 + t21), t27, k(2.0) * t37 * t29),
+        );
+        let t40 = t39 + T::fused(-t36, t15, t38 * t16);
+        let t41 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t28);
+        let t42 = k(0.00025) * t41;
+        let t43 = t34 + t33;
+        let t44 = k(0.00025) * t43;
+        let t45 = T::fused(
+            k(2.0) * t41,
+            t31,
+            -T::fused(-(k(2.0) * (t18 - t17)), t27, k(2.0) * t43 * t29),
+        );
+        let t46 = t45 + T::fused(-t42, t15, t44 * t16);
+        let t47 = T::fused(k(100000.0), t0 * t7, t13) + t14;
+        let t48 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4501,10 +4440,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t20 = k(2.0) * t19;
-        let t21 = T::fused(-t19, t20, k(1.0));
-        let t22 = k(0.000125) * t16;
-        let t23 = T::fused(
+        let t49 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4513,67 +4449,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t24 = t23 * t20;
-        let t25 = k(0.000125) * inner_ring_wy;
-        let t26 = inner_ring_wx * t25;
-        let t27 = k(0.000125) * inner_ring_wz;
-        let t28 = inner_ring_wx * t27;
-        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(-t21, t18, t24 * t22);
-        let t30 = rotor_e0 * rotor_e3;
-        let t31 = rotor_e1 * rotor_e2;
-        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
-        let t33 = rotor_e0 * rotor_e0;
-        let t34 = T::fused(
-            -(k(2.0) * (t31 - t30)),
-            t29,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
-        );
-        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(t24, t18, t21 * t22);
-        let t36 = rotor_e0 * rotor_e2;
-        let t37 = rotor_e1 * rotor_e3;
-        let t38 = T::fused(k(2.0) * (t37 + t36), t35, t34);
-        let t39 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
-            t29,
-            k(2.0) * (t31 + t30) * t32,
-        );
-        let t40 = rotor_e0 * rotor_e1;
-        let t41 = rotor_e2 * rotor_e3;
-        let t42 = T::fused(k(2.0) * (t41 - t40), t35, -t39);
-        let t43 = T::fused(k(2.0) * (t41 + t40), t29, k(2.0) * (t37 - t36) * t32);
-        let t44 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)),
-            t35,
-            t43,
-        );
-        let t45 = T::fused(k(100000.0), t0 * t7, t14) + t15;
-        let t46 = T::fused(rotor_wz, t11, -T::fused(t21, t16, t24 * t17));
-        let t47 = T::fused(rotor_wy, t11, -T::fused(-t24, t16, t21 * t17));
-        let t48 = k(0.08) * t38;
-        let t49 = T::fused(k(0.08), t42, k(0.8));
-        let t50 = k(0.1) + t49;
-        let t51 = k(0.1) + t50;
-        let t52 = k(0.08) * t44;
-        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t47);
-        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t46);
-        let t55 = T::fused(t21, t53, t24 * t54);
-        let t56 = inner_ring_e0 * inner_ring_e1;
-        let t57 = inner_ring_e2 * inner_ring_e3;
-        let t58 = inner_ring_e0 * inner_ring_e0;
-        let t59 = T::fused(
-            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t58))),
-            t49,
-            k(0.00025)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t48,
-        );
-        let t60 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, -t17),
-            T::fused(-(k(0.00025) * (t57 + t56)), t52, t59) - t55,
-        );
-        let t61 = T::fused(-k(1e-6), T::fused(outer_ring_wx, outer_ring_wy, t13), t60);
+        let t50 = (t49 + t48) * (t49 - t48);
+        let t51 = t49 * (k(2.0) * t48);
+        let t52 = T::fused(rotor_wz, t10, -T::fused(t50, t15, t51 * t16));
+        let t53 = T::fused(rotor_wy, t10, -T::fused(-t51, t15, t50 * t16));
+        let t54 = k(0.08) * t32;
+        let t55 = T::fused(k(0.08), t40, k(0.8));
+        let t56 = k(0.1) + t55;
+        let t57 = k(0.1) + t56;
+        let t58 = k(0.08) * t46;
+        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t53);
+        let t60 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t52);
+        let t61 = T::fused(t50, t59, t51 * t60);
         let t62 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, -t16),
+            T::fused(-t44, t58, T::fused(-t38, t55, t24 * t54)) - t61,
+        );
+        let t63 = T::fused(-k(1e-6), T::fused(outer_ring_wx, outer_ring_wy, t12), t62);
+        let t64 = T::fused(
             -base_e1,
             outer_ring_e3,
             T::fused(
@@ -4582,30 +4476,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
             ),
         );
-        let t63 = k(2.0) * t62;
-        let t64 = T::fused(-t62, t63, k(1.0));
-        let t65 = T::fused(-t24, t53, t21 * t54);
-        let t66 = T::fused(
-            k(0.00025) * (t57 - t56),
-            t49,
-            k(0.00025)
-                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t48,
-        );
-        let t67 = T::fused(
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t58)),
-            t52,
-            t66,
-        ) - t65;
-        let t68 = T::fused(-k(2e-6), t16, t67);
-        let t69 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t15),
-            k(1e-5) * t45,
-        );
-        let t70 = T::fused(t9, t68, t4 * t69);
-        let t71 = T::fused(-k(2e-6), t1, t70);
-        let t72 = T::fused(
+        let t65 = T::fused(
             base_e3,
             outer_ring_e3,
             T::fused(
@@ -4614,29 +4485,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
                 T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
             ),
         );
-        let t73 = t72 * t63;
-        let t74 = T::fused(-t64, t61, t73 * t71);
-        let t75 = base_e3 * base_e3;
-        let t76 = base_e2 * base_e2;
-        let t77 = base_e0 * base_e0;
-        let t78 = T::fused(base_e1, base_e1, t77);
-        let t79 = k(2.0) / (base_e0 * (t78 + (t76 + t75)));
-        let t80 = base_e0 * base_e2;
-        let t81 = base_e1 * base_e3;
-        let t82 = T::fused(-t4, t68, t9 * t69);
-        let t83 = T::fused(k(1e-6), T::fused(outer_ring_wx, outer_ring_wz, -t12), t82);
-        let t84 = base_e0 * base_e3;
-        let t85 = base_e1 * base_e2;
-        let t86 = T::fused(t73, t61, t64 * t71);
-        let t87 = T::fused(
-            (t81 + t80) * t79,
-            t74,
-            T::fused(-((t85 - t84) * t79), t83, t78 * t79 * t86),
+        let t66 = (t65 + t64) * (t65 - t64);
+        let t67 = T::fused(-t51, t59, t50 * t60);
+        let t68 = T::fused(
+            -k(2e-6),
+            t15,
+            T::fused(t42, t58, T::fused(t36, t55, t20 * t54)) - t67,
         );
-        let t88 = base_e0 * base_e1;
-        let t89 = base_e2 * base_e3;
-        let t90 = T::fused(-((t77 + t76) * t79), t83, (t85 + t84) * t79 * t86);
-        let t91 = T::fused(-((t89 + t88) * t79), t83, (t81 - t80) * t79 * t86);
+        let t69 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t14),
+            k(1e-5) * t47,
+        );
+        let t70 = T::fused(t8, t68, t4 * t69);
+        let t71 = T::fused(-k(2e-6), t1, t70);
+        let t72 = t65 * (k(2.0) * t64);
+        let t73 = T::fused(-t66, t63, t72 * t71);
+        let t74 = base_e3 * base_e3;
+        let t75 = base_e2 * base_e2;
+        let t76 = base_e0 * base_e0;
+        let t77 = T::fused(base_e1, base_e1, t76);
+        let t78 = k(2.0) / (base_e0 * (t77 + (t75 + t74)));
+        let t79 = base_e0 * base_e2;
+        let t80 = base_e1 * base_e3;
+        let t81 = T::fused(-t4, t68, t8 * t69);
+        let t82 = T::fused(k(1e-6), T::fused(outer_ring_wx, outer_ring_wz, -t11), t81);
+        let t83 = base_e0 * base_e3;
+        let t84 = base_e1 * base_e2;
+        let t85 = T::fused(t72, t63, t66 * t71);
+        let t86 = T::fused(
+            (t80 + t79) * t78,
+            t73,
+            T::fused(-((t84 - t83) * t78), t82, t77 * t78 * t85),
+        );
+        let t87 = base_e0 * base_e1;
+        let t88 = base_e2 * base_e3;
+        let t89 = T::fused(-((t76 + t75) * t78), t82, (t84 + t83) * t78 * t85);
+        let t90 = T::fused(-((t88 + t87) * t78), t82, (t80 - t79) * t78 * t85);
         *out = [
             k(0.0),
             k(0.0),
@@ -4648,41 +4533,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             t1,
+            -t11,
             -t12,
-            -t13,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t15,
-            t16,
-            -t17,
-            t38,
-            t42,
-            -t44,
-            -t45,
+            -t14,
+            t15,
+            -t16,
+            t32,
+            t40,
             -t46,
-            t47,
-            -t48,
-            -(k(0.01) + t51),
-            t52,
-            t87,
-            T::fused((t89 - t88) * t79, t74, t90),
-            T::fused((t77 + t75) * t79, t74, t91),
-            -t48,
-            -t51,
-            t52,
+            -t47,
+            -t52,
+            t53,
+            -t54,
+            -(k(0.01) + t57),
+            t58,
             t86,
-            -t74,
-            -t48,
-            -t50,
-            t52,
-            -t82,
+            T::fused((t88 - t87) * t78, t73, t89),
+            T::fused((t76 + t74) * t78, t73, t90),
+            -t54,
+            -t57,
+            t58,
+            t85,
+            -t73,
+            -t54,
+            -t56,
+            t58,
+            -t81,
             -t70,
-            -t48,
-            -t49,
-            t52,
-            t55,
-            t65,
+            -t54,
+            -t55,
+            t58,
+            t61,
+            t67,
         ];
     }
 }
@@ -4695,7 +4580,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 59 operations (14 ±, 44 ×, 1 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 58 operations (12 ±, 45 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -4708,40 +4593,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
-        let t1 = t0 * t0;
-        let t2 = k(1.0) / T::fused(k(3.000625), t1, k(1.0));
-        let t3 = k(500000.0) * t2;
-        let t4 = k(4.9937578027465666) * u2;
-        let t5 = t1 * t2;
-        let t6 = k(0.166631951676734) - t5;
-        let t7 = x1.sin();
-        let t8 = T::fused(
-            -(t7 * t6),
-            t4,
-            u0 * T::fused(t1, t5 - k(0.333263903353468), t6),
+        let t0 = x1.sin();
+        let t1 = u1 * t0;
+        let t2 = u0 * t0;
+        let t3 = T::fused(-k(0.20025), t2, u2);
+        let t4 = x1.cos();
+        let t5 = u1 * t4;
+        let t6 = u0 * t4;
+        let t7 = k(1.0) / T::fused(t4, t4, k(0.333263903353468));
+        let t8 = t3 * t5;
+        let t9 = T::fused(
+            -k(0.100125),
+            t7 * T::fused(k(4.9937578027465666), t3 * t1, t6 * t5),
+            t8 * (t0 * t4 * (t7 * t7)),
         );
-        let t9 = k(1.2017503125e-5) * (u1 * t8) * t3;
-        let t10 = k(2.0025e-6) * t0;
-        let t11 = u1 * t7 * t10 * t3;
-        let t12 = u0 * t7;
-        let t13 = t12 - t4;
-        let t14 = t13 * t10 * t3;
-        let t15 = k(1e-5) * u1;
-        let t16 = t0 * t15;
-        let t17 = t16 * t3;
-        let t18 = k(1.2503907471084714) * u2;
-        let t19 = T::fused(
-            -k(7.9975e-6),
-            u0 * T::fused(t7, t18, u0 * (k(0.5) - t1)),
-            k(0.0001) * t7,
+        let t10 = t7 * (t0 * t5);
+        let t11 = t7 * (t4 * t3);
+        let t12 = t5 * t7;
+        let t13 = k(0.399875) * t2;
+        let t14 = u2 + t13;
+        let t15 = T::fused(
+            k(0.399875),
+            t4 * (u0 * t6),
+            t0 * T::fused(-u0, t14, k(10.0)),
         );
-        let t20 = t0 * (k(1e-5) * u0);
-        let t21 = T::fused(
-            t7,
-            t9,
-            k(100000.0) * (t15 * T::fused(-k(1.00125), t5 * t13, t12)),
+        let t16 = k(1.6663195167673401) * t4;
+        let t17 = T::fused(
+            k(3.3326390335346803),
+            t0 * t9,
+            T::fused(t8 * t7, t16, u0 * t1),
         );
+        let t18 = k(1.6663195167673401) * t0;
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -4762,23 +4644,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t9,
+            -(k(3.3326390335346803) * t9),
             k(0.0),
-            t11,
-            t14,
-            -t17,
+            k(0.33368048323265986) * t10,
+            -(k(1.6663195167673401) * t11),
+            -(k(1.6663195167673401) * t12),
             k(0.0),
-            k(166631.95167673402) * t19,
+            k(1.6663195167673401) * t15,
             k(0.0),
-            k(1.3326390335346803) * (t0 * (t12 + t18)),
+            t16 * (t13 + t14),
             k(0.0),
-            k(166631.95167673402) * t20,
+            k(1.6663195167673401) * t6,
             k(0.0),
-            t21,
+            t17,
             k(0.0),
-            -T::fused(t7, t11, k(100000.0) * t16),
-            -T::fused(t7, t14, k(100000.0) * t20),
-            t7 * t17,
+            -T::fused(k(0.33368048323265986), t0 * t10, t5),
+            T::fused(t11, t18, -t6),
+            t12 * t18,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

@@ -10,42 +10,42 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 769 operations by relative Euler parameters, doubled; 790 operations by rotations of the bodies, doubled; 2 more compared
+//! * accelerations: 767 operations by relative Euler parameters, doubled; 788 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 742 operations by rotations of the bodies, doubled; 763 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 165 operations by normal form; 327 operations by orthogonal motions; 1 more compared
-//! * joint_accelerations_at: 203 operations by normal form; 365 operations by orthogonal motions; 3 more compared
-//! * corrected_accelerations: 340 operations by normal form in the bodies' frames; 432 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 496 operations by derivatives of u̇, from its leaves; 496 operations by normal form of that; 7 more compared
+//! * joint_accelerations: 165 operations by normal form; 326 operations by orthogonal motions; 1 more compared
+//! * joint_accelerations_at: 205 operations by normal form; 366 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 342 operations by normal form in the bodies' frames; 434 operations by normal form in the global frame; 9 more compared
+//! * joint_jacobian: 492 operations by derivatives of u̇, from its leaves; 492 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | set_up | what depends on parameters alone | 16 | 59 | 2 | 77 | 0 of 50 | 182 | 77 |
-//! | phi | Φ | 68 | 79 | 0 | 147 | 0 of 18 | 298 | 147 |
+//! | set_up | what depends on parameters alone | 16 | 62 | 2 | 80 | 0 of 53 | 185 | 80 |
+//! | phi | Φ | 68 | 63 | 0 | 131 | 0 of 18 | 222 | 131 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 92 | 146 | 0 | 238 | 0 of 91 | 783 | 238 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 70 | 114 | 0 | 184 | 0 of 53 | 816 | 184 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 154 | 228 | 0 | 382 | 6 of 15 | 2077 | 382 |
+//! | gamma | γ | 154 | 222 | 0 | 376 | 6 of 15 | 1501 | 376 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 108 | 149 | 0 | 257 | 0 of 15 | 889 | 257 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 8 of 18 | 32 | 26 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 320 | 435 | 5 | 760 | 6 of 18 | 6.0e7 | 764 |
 //! | multipliers | λ, the accelerations being known | 144 | 223 | 3 | 370 | 0 of 15 | 7425 | 370 |
 //! | project | (δr, δπ') that changes the rows as given | 310 | 427 | 5 | 742 | 0 of 18 | 2.0e7 | 743 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 23 | 36 | 0 | 59 | 0 of 2 | 59 | 59 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | energy | T and V | 23 | 33 | 0 | 56 | 0 of 2 | 56 | 56 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 213 | 339 | 3 | 555 | 6 of 21 | 7.3e9 | 555 |
-//! | solve_velocities | dependent velocities, eq. (19) | 120 | 194 | 3 | 317 | 6 of 18 | 36786 | 317 |
+//! | newton_step | dependent positions, one Newton step | 213 | 318 | 3 | 534 | 6 of 21 | 6.6e9 | 534 |
+//! | solve_velocities | dependent velocities, eq. (19) | 120 | 167 | 3 | 290 | 6 of 18 | 30164 | 290 |
 //! | joint_accelerations | u̇ in joint coordinates | 69 | 93 | 2 | 164 | 0 of 3 | 4084 | 165 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 64 | 108 | 0 | 172 | 16 of 39 | 1442 | 172 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 85 | 115 | 2 | 202 | 0 of 3 | 32466 | 203 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 140 | 197 | 2 | 339 | 6 of 18 | 540714 | 340 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 154 | 0 | 260 | 0 of 15 | 1811 | 260 |
-//! | corrected_solution | both | 212 | 308 | 2 | 522 | 6 of 33 | 1.7e7 | 523 |
+//! | to_maximal | (q, v) of a joint state | 66 | 93 | 0 | 159 | 16 of 39 | 1458 | 159 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 87 | 115 | 2 | 204 | 0 of 3 | 45178 | 205 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 142 | 197 | 2 | 341 | 6 of 18 | 752072 | 342 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 109 | 154 | 0 | 263 | 0 of 15 | 1979 | 263 |
+//! | corrected_solution | both | 215 | 308 | 2 | 525 | 6 of 33 | 2.3e7 | 526 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 198 | 292 | 2 | 492 | 24 of 42 | 44042 | 492 |
 //!
 //! # Proof
@@ -105,7 +105,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
 pub struct GyroscopeMisalignments<T> {
     parameters: Parameters<T>,
     /// What depends on parameters alone.
-    derived: [T; 50],
+    derived: [T; 53],
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMisalignments<T> {
     fn default() -> Self {
@@ -127,7 +127,7 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
     pub fn new(parameters: Parameters<T>) -> Self {
         let mut mechanism = Self {
             parameters,
-            derived: [T::constant(0.0); 50],
+            derived: [T::constant(0.0); 53],
         };
         mechanism.set_parameters(parameters);
         mechanism
@@ -159,8 +159,8 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
         self.set_parameters(parameters);
         true
     }
-    /// What depends on parameters alone: 77 operations (16 ±, 59 ×, 2 ÷).
-    fn set_up(&self, out: &mut [T; 50]) {
+    /// What depends on parameters alone: 80 operations (16 ±, 62 ×, 2 ÷).
+    fn set_up(&self, out: &mut [T; 53]) {
         let k = T::constant;
         let t0 = k(0.08) * self.parameters.imbalance_z;
         let t1 = self.parameters.imbalance_y * self.parameters.imbalance_y;
@@ -180,6 +180,11 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
         let t15 = self.parameters.imbalance_z * t0;
         let t16 = k(1e-5) + t15;
         *out = [
+            k(2.0) * self.parameters.offset_x,
+            k(2.0) * self.parameters.imbalance_z,
+            k(2.0) * self.parameters.imbalance_y,
+            k(2.0) * self.parameters.offset_z,
+            k(2.0) * self.parameters.offset_y,
             k(4.0) * self.parameters.offset_x,
             k(4.0) * self.parameters.imbalance_y,
             k(4.0) * self.parameters.imbalance_z,
@@ -189,8 +194,6 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
             t5,
             self.parameters.product_xz * t4,
             self.parameters.product_xz * t6,
-            k(2.0) * self.parameters.offset_z,
-            k(2.0) * self.parameters.offset_y,
             t0 * t4,
             t5 * t4,
             t5 * t6,
@@ -209,7 +212,6 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
                 T::fused(k(0.08), t1, k(5e-6)),
             ),
             k(0.08) * (t9 + t7),
-            k(2.0) * self.parameters.offset_x,
             k(0.08) * (t7 + t11),
             self.parameters.offset_x * t12,
             self.parameters.offset_y * t12,
@@ -219,10 +221,13 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
             t3,
             k(0.08) * t13,
             k(0.08) * t8,
-            k(0.5) * self.parameters.product_xz,
-            k(0.5) * self.parameters.product_xy,
-            k(2.0) * self.parameters.imbalance_z,
-            k(2.0) * self.parameters.imbalance_y,
+            k(1000000.0) * self.parameters.product_xz,
+            k(1000000.0) * self.parameters.product_xy,
+            k(0.5) * self.parameters.imbalance_z,
+            k(0.5) * self.parameters.imbalance_y,
+            k(0.5) * self.parameters.offset_z,
+            k(0.5) * self.parameters.offset_y,
+            k(0.5) * self.parameters.offset_x,
             k(2.0) * self.parameters.product_xy,
             k(2.0) * self.parameters.product_xz,
             k(0.16) * self.parameters.imbalance_y,
@@ -232,11 +237,9 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
             t12,
             t14 - t15,
             self.parameters.imbalance_z * t5,
-            k(0.5) * self.parameters.offset_z,
             t15,
             k(0.08) * (t7 - t11),
             T::fused(k(0.08), t1 + t9, k(8e-6)),
-            k(0.5) * self.parameters.offset_x,
             k(0.16) * self.parameters.offset_x,
         ];
     }
@@ -609,7 +612,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 147 operations (68 ±, 79 ×, 0 ÷).
+    /// Writes Φ: 131 operations (68 ±, 63 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -633,145 +636,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = k(2.0) * outer_ring_e2;
-        let t2 = T::fused(outer_ring_e1, t0, outer_ring_e3 * t1);
-        let t3 = outer_ring_e3 * t0;
-        let t4 = k(2.0) * outer_ring_e1;
-        let t5 = outer_ring_e2 * t4;
-        let t6 = t5 - t3;
-        let t7 = k(2.0) * inner_ring_e0;
-        let t8 = inner_ring_e2 * t7;
-        let t9 = k(2.0) * inner_ring_e1;
-        let t10 = inner_ring_e3 * t9;
-        let t11 = t10 + t8;
-        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t13 = inner_ring_e1 * t7;
-        let t14 = k(2.0) * inner_ring_e2;
-        let t15 = inner_ring_e3 * t14;
-        let t16 = t15 - t13;
-        let t17 = T::fused(-inner_ring_e0, t7, k(1.0));
-        let t18 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t17);
-        let t19 = T::fused(
-            T::fused(-outer_ring_e2, t0, outer_ring_e3 * t4),
-            t18,
-            -T::fused(-T::fused(-outer_ring_e1, t4, t12), t11, (t5 + t3) * t16),
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t1 = outer_ring_e0 * outer_ring_e3;
+        let t2 = outer_ring_e1 * outer_ring_e2;
+        let t3 = t2 - t1;
+        let t4 = inner_ring_e0 * inner_ring_e0;
+        let t5 = k(0.5) - t4;
+        let t6 = inner_ring_e3 * inner_ring_e3;
+        let t7 = t6 - t5;
+        let t8 = inner_ring_e0 * inner_ring_e1;
+        let t9 = inner_ring_e2 * inner_ring_e3;
+        let t10 = t9 - t8;
+        let t11 = T::fused(
+            T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t7,
+            (t2 + t1) * t10,
         );
-        let t20 = T::fused(
-            t2,
-            t18,
-            T::fused(-t6, t11, T::fused(-outer_ring_e2, t1, t12) * t16),
-        );
-        let t21 = inner_ring_e3 * t7;
-        let t22 = inner_ring_e2 * t9;
-        let t23 = t22 - t21;
-        let t24 = T::fused(
-            self.parameters.offset_z,
-            t11,
-            T::fused(
-                -self.parameters.offset_x,
-                T::fused(-inner_ring_e1, t9, t17),
-                self.parameters.offset_y * t23,
-            ),
-        );
-        let t25 = k(2.0) * rotor_e0;
-        let t26 = rotor_e3 * t25;
-        let t27 = k(2.0) * rotor_e1;
-        let t28 = rotor_e2 * t27;
-        let t29 = rotor_e2 * t25;
-        let t30 = rotor_e3 * t27;
-        let t31 = rotor_rx
-            + T::fused(
-                self.parameters.imbalance_y,
-                t28 - t26,
-                self.parameters.imbalance_z * (t30 + t29),
-            ) - (inner_ring_rx + t24);
-        let t32 = T::fused(-inner_ring_e2, t14, t17);
-        let t33 = inner_ring_ry
-            + T::fused(
-                self.parameters.offset_z,
-                t16,
-                -T::fused(
-                    -self.parameters.offset_x,
-                    t22 + t21,
-                    self.parameters.offset_y * t32,
-                ),
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = k(0.5) - t12;
+        let t14 = outer_ring_e1 * outer_ring_e1;
+        let t15 = inner_ring_e0 * inner_ring_e2;
+        let t16 = inner_ring_e1 * inner_ring_e3;
+        let t17 = t16 + t15;
+        let t18 = outer_ring_e2 * outer_ring_e2;
+        let t19 = k(4.0) * T::fused(t3, t17, T::fused(t0, t7, t10 * (t18 - t13)));
+        let t20 = inner_ring_e1 * inner_ring_e1;
+        let t21 = rotor_e0 * rotor_e2;
+        let t22 = rotor_e1 * rotor_e3;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = inner_ring_rx
+            - T::fused(
+                t24 - t23,
+                self.derived[2],
+                T::fused(t22 + t21, self.derived[1], rotor_rx),
             );
-        let t34 = k(2.0) * rotor_e2;
-        let t35 = T::fused(-rotor_e0, t25, k(1.0));
-        let t36 = rotor_e1 * t25;
-        let t37 = rotor_e3 * t34;
-        let t38 = rotor_ry
-            + T::fused(
-                -self.parameters.imbalance_y,
-                T::fused(-rotor_e2, t34, t35),
-                self.parameters.imbalance_z * (t37 - t36),
+        let t26 = inner_ring_e0 * inner_ring_e3;
+        let t27 = inner_ring_e1 * inner_ring_e2;
+        let t28 = t27 - t26;
+        let t29 = T::fused(
+            t20 - t5,
+            self.derived[0],
+            T::fused(t28, self.derived[4], T::fused(t17, self.derived[3], t25)),
+        );
+        let t30 = rotor_e0 * rotor_e0;
+        let t31 = k(0.5) - t30;
+        let t32 = rotor_e2 * rotor_e2;
+        let t33 = rotor_e0 * rotor_e1;
+        let t34 = rotor_e2 * rotor_e3;
+        let t35 = inner_ring_ry
+            - T::fused(
+                t32 - t31,
+                self.derived[2],
+                T::fused(t34 - t33, self.derived[1], rotor_ry),
             );
-        let t39 = t15 + t13;
+        let t36 = inner_ring_e2 * inner_ring_e2;
+        let t37 = t36 - t5;
+        let t38 = T::fused(
+            t27 + t26,
+            self.derived[0],
+            T::fused(t37, self.derived[4], T::fused(t10, self.derived[3], t35)),
+        );
+        let t39 = rotor_e3 * rotor_e3;
         let t40 = inner_ring_rz
             - T::fused(
-                self.parameters.offset_z,
-                t18,
-                -T::fused(
-                    self.parameters.offset_x,
-                    t10 - t8,
-                    self.parameters.offset_y * t39,
-                ),
+                t34 + t33,
+                self.derived[2],
+                T::fused(t39 - t31, self.derived[1], rotor_rz),
             );
-        let t41 = T::fused(
-            -self.parameters.imbalance_y,
-            t37 + t36,
-            self.parameters.imbalance_z * T::fused(-rotor_e3, k(2.0) * rotor_e3, t35),
+        let t41 = t9 + t8;
+        let t42 = T::fused(
+            t16 - t15,
+            self.derived[0],
+            T::fused(t41, self.derived[4], T::fused(t7, self.derived[3], t40)),
         );
-        let t42 = T::fused(-rotor_e1, t27, t35);
-        let t43 = t28 + t26;
-        let t44 = t30 - t29;
-        let t45 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
-            ),
-        );
-        let t46 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t47 = T::fused(
-            rotor_e3,
-            rotor_e3,
-            T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
-            ),
-        );
+        let t43 = t24 + t23;
+        let t44 = t22 - t21;
+        let t45 = rotor_e1 * rotor_e1;
+        let t46 = t45 - t31;
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            t2,
-            t6,
+            k(2.0) * t0,
+            k(2.0) * t3,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            -t19,
-            -t20,
-            t31,
-            t38 - t33,
-            rotor_rz - t41 - t40,
-            T::fused(t39, t44, -T::fused(t23, t42, t32 * t43)),
-            T::fused(-t18, t44, T::fused(-t11, t42, t16 * t43)),
-            t45 - k(1.0),
-            t46 - k(1.0),
-            t47 - k(1.0),
+            k(4.0) * T::fused(t17, t14 - t13, t11),
+            t19,
+            -t29,
+            -t38,
+            -t42,
+            k(4.0) * T::fused(t28, t46, T::fused(t43, t37, t41 * t44)),
+            k(4.0) * T::fused(t17, t46, T::fused(t44, t7, t10 * t43)),
+            t18 + (t14 + T::fused(outer_ring_e3, outer_ring_e3, t12)) - k(1.0),
+            t36 + (t20 + (t4 + t6)) - k(1.0),
+            t32 + (t45 + (t30 + t39)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 257 operations (108 ±, 149 ×, 0 ÷).
@@ -971,7 +932,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             -(t74 + t73),
         ];
     }
-    /// Kinetic and potential energy: 59 operations (23 ±, 36 ×, 0 ÷).
+    /// Kinetic and potential energy: 56 operations (23 ±, 33 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -996,74 +957,73 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wy,
-            T::fused(k(2.5e-6), rotor_wy, rotor_wx * self.derived[32]),
-            rotor_wx
-                * T::fused(
-                    rotor_wz,
-                    self.derived[31],
-                    T::fused(rotor_wy, self.derived[32], k(5e-6) * rotor_wx),
-                ),
-        );
-        let t1 = T::fused(
-            k(0.04),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            T::fused(
-                rotor_wz,
-                T::fused(k(2.5e-6), rotor_wz, rotor_wx * self.derived[31]),
-                t0,
-            ),
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(5e-7) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(1e-6) * inner_ring_wy,
-                inner_ring_wx * (k(5e-7) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.005),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(5e-7) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(5e-7) * outer_ring_wy,
-                outer_ring_wx * (k(1e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.005),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            rotor_wx,
+            T::fused(
+                rotor_wz,
+                self.derived[33],
+                T::fused(rotor_wy, self.derived[34], k(10.0) * rotor_wx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            rotor_wz,
+            T::fused(k(5.0), rotor_wz, rotor_wx * self.derived[33]),
+            T::fused(
+                rotor_wy,
+                T::fused(k(5.0), rotor_wy, rotor_wx * self.derived[34]),
+                t3,
+            ),
+        );
+        let t5 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
             t4,
         );
         gyro_sim::Energy {
-            kinetic: t5 + t3 + t1,
-            potential: T::fused(
-                k(0.8),
-                rotor_ry,
-                k(0.1) * (outer_ring_ry + inner_ring_ry),
-            ),
+            kinetic: k(5e-7) * t5,
+            potential: k(0.1) * T::fused(k(8.0), rotor_ry, outer_ring_ry + inner_ring_ry),
         }
     }
-    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
+    /// Writes the joint readings: 104 operations (54 ±, 50 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1085,71 +1045,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e3 * outer_ring_e3;
         let t3 = outer_ring_e0 * outer_ring_e0;
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
-        let t5 = outer_ring_e3 * outer_ring_e3;
-        let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
-            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
-        );
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = k(0.5) * (k(1.0) - (t5 + (t4 + t2)));
+        let t7 = inner_ring_e3 * inner_ring_e3;
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = T::fused(inner_ring_e1, inner_ring_e1, t8);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = k(0.5) * (k(1.0) - (t10 + (t9 + t7)));
+        let t12 = k(0.5) - t9 - t11;
+        let t13 = outer_ring_e0 * outer_ring_e3;
+        let t14 = outer_ring_e1 * outer_ring_e2;
+        let t15 = inner_ring_e0 * inner_ring_e3;
+        let t16 = inner_ring_e1 * inner_ring_e2;
+        let t17 = t16 + t15;
+        let t18 = T::fused(t14 - t13, t12, t17 * (k(0.5) - (t3 + t5) - t6));
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = t20 - t19;
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            t1 - t0,
+            t21,
+            T::fused(t12, k(0.5) - t4 - t6, (t14 + t13) * t17),
         );
-        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t24 = rotor_e2 * rotor_e2;
-        let t25 = rotor_e0 * rotor_e0;
-        let t26 = T::fused(
-            k(2.0),
-            k(0.5) - (t25 + t24),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        let t23 = rotor_e2 * rotor_e2;
+        let t24 = rotor_e0 * rotor_e0;
+        let t25 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t24 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t24 + t23))),
         );
+        let t26 = k(0.5) * (k(1.0) - (t23 + t25));
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t29 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
-            t26,
-            k(2.0) * (t11 - t10) * t29,
+            t30,
+            k(0.5) - (t8 + t7) - t11,
+            -T::fused(t28 - t27, t26, (t20 + t19) * t29),
         );
+        let t32 = T::fused(-(k(0.5) - (t8 + t10) - t11), t26, (t16 - t15) * t29);
         *out = [
             k(2.0) * (t1 + t0),
-            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
+            -(k(2.0) * (k(0.5) - (t3 + t2) - t6)),
             outer_ring_wy,
-            T::fused(
-                k(2.0)
-                    * T::fused(
+            k(4.0)
+                * T::fused(
+                    T::fused(
                         outer_ring_e0,
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
-            ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+                    t21,
+                    -t18,
+                ),
+            k(4.0) * t22,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
-            T::fused(k(2.0) * (t28 + t27), t23, t31),
+            -(k(4.0) * t31),
+            k(4.0) * T::fused(t28 + t27, t30, t32),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1293,7 +1249,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 555 operations (213 ±, 339 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 534 operations (213 ±, 318 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1321,330 +1277,331 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-        let t11 = t2 * t4;
-        let t12 = t3 * t5;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-        let t16 = k(2.0) * (t12 - t11);
-        let t17 = T::fused(t9, t15, t16 * t13);
-        let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t9 = T::fused(t2, t3, t7 * t6);
+        let t10 = t3 * t6;
+        let t11 = t2 * t7;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t3, t7, t2 * t6);
+        let t14 = t11 + t10;
+        let t15 = k(2.0) - T::fused(t7, t7, t4);
+        let t16 = T::fused(-t14, t12, t15 * t5);
+        let t17 = k(1.0) / (t8 * t16);
+        let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+        let t19 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
+        );
         let t20 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t19),
         );
         let t21 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t22 = k(0.5) * t21;
+        let t22 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t23 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            t9,
+            T::fused(t5, t21, t14 * t22),
+            t13 * T::fused(t15, t22, t12 * t21),
         );
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(
-            t10,
-            T::fused(t16, t22, t9 * t24),
-            t14 * T::fused(-t13, t24, t15 * t22),
-        );
-        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
-        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
-        let t28 = T::fused(
+        let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+        let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)), t3);
+        let t27 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)), t2);
+        let t28 = T::fused(k(0.5), T::fused(t2, t25, T::fused(t7, t18, t3 * t24)), t6);
+        let t29 = T::fused(
             -k(0.5),
-            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-            t3,
+            T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+            t7,
         );
-        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
-        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
-        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
-        let t32 = t29 * t30;
-        let t33 = t28 * t31;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t30 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t36 = k(0.5) * (t35 - k(3.0));
-        let t37 = inner_ring_e2 * t36;
-        let t38 = inner_ring_e1 * t36;
-        let t39 = t38 * t37;
-        let t40 = inner_ring_e3 * t36;
-        let t41 = inner_ring_e0 * t36;
-        let t42 = t41 * t40;
-        let t43 = k(2.0) * (t42 - t39);
-        let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
-        let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
-        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
-        let t49 = t37 * t40;
-        let t50 = t41 * t38;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
-        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
-        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
-        let t55 = k(2.0) * (t42 + t39);
-        let t56 = k(2.0) * (t33 + t32);
-        let t57 = t38 * t40;
-        let t58 = t41 * t37;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
-        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
-        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
-        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
-        let t64 = T::fused(-t61, t52, t63 * t62);
-        let t65 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t37,
-            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
-        );
-        let t66 = T::fused(
-            -chart1_3,
-            t38,
-            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
-        );
-        let t67 = k(0.5) * t66;
-        let t68 = T::fused(
+        let t31 = k(3.0) - t30;
+        let t32 = inner_ring_e3 * t31;
+        let t33 = inner_ring_e2 * t31;
+        let t34 = inner_ring_e1 * t31;
+        let t35 = inner_ring_e0 * t31;
+        let t36 = T::fused(
             chart1_3,
-            t37,
-            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+            t35,
+            -T::fused(chart1_2, t34, -T::fused(-chart1_0, t32, chart1_1 * t33)),
         );
-        let t69 = k(0.5) * t68;
-        let t70 = k(2.0) * (t58 + t57);
-        let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
-        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
-        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t37 = t33 * t35;
+        let t38 = t34 * t32;
+        let t39 = t38 - t37;
+        let t40 = T::fused(t26, t27, t28 * t29);
+        let t41 = t32 * t35;
+        let t42 = t33 * t34;
+        let t43 = t42 + t41;
+        let t44 = t26 * t26;
+        let t45 = k(2.0) - T::fused(t28, t28, t44);
+        let t46 = t35 * t35;
+        let t47 = k(2.0) - T::fused(t34, t34, t46);
+        let t48 = t26 * t29;
+        let t49 = t27 * t28;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t47, T::fused(-t40, t39, t45 * t43));
+        let t52 = k(2.0) - T::fused(t32, t32, t46);
+        let t53 = T::fused(-t26, t28, t27 * t29);
+        let t54 = t34 * t35;
+        let t55 = t33 * t32;
+        let t56 = t55 - t54;
+        let t57 = t49 + t48;
+        let t58 = t38 + t37;
+        let t59 = k(2.0) - T::fused(t27, t27, t44);
+        let t60 = T::fused(t59, t58, -T::fused(-t53, t52, t57 * t56));
+        let t61 = T::fused(t47, t59, T::fused(t39, t53, t43 * t57));
+        let t62 = T::fused(t50, t58, -T::fused(t40, t52, t45 * t56));
+        let t63 = t55 + t54;
+        let t64 = k(2.0) - T::fused(t33, t33, t46);
+        let t65 = t42 - t41;
+        let t66 = T::fused(t65, t59, T::fused(-t63, t53, t64 * t57));
+        let t67 = T::fused(t50, t65, T::fused(t40, t63, t45 * t64));
+        let t68 = T::fused(-t51, t66, t67 * t61);
+        let t69 = k(1.0) / (t68 * t36);
+        let t70 = t69 * T::fused(-t60, t51 * t36, t62 * (t61 * t36));
+        let t71 = t69 * T::fused(-t60, t67 * t36, t62 * (t66 * t36));
+        let t72 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t35, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t34, inner_ring_e1),
+        );
+        let t73 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t32, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t33, inner_ring_e2), t72),
+        );
+        let t74 = T::fused(
+            chart1_3,
+            t34,
+            T::fused(chart1_2, t35, -T::fused(chart1_0, t33, chart1_1 * t32)),
+        );
         let t75 = T::fused(
-            t73,
-            T::fused(-t63, t67, t61 * t69),
-            t74 * T::fused(-t62, t69, t52 * t67),
+            chart1_3,
+            t33,
+            -T::fused(chart1_2, t32, T::fused(-chart1_0, t34, chart1_1 * t35)),
         );
         let t76 = T::fused(
-            -chart1_3,
-            t41,
-            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+            -T::fused(t67, t74, t51 * t75),
+            t60,
+            T::fused(t61, t75, t66 * t74) * t62,
         );
-        let t77 = k(0.5) * t76;
-        let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
-        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
-        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t77 = T::fused(k(4.0), t68 * t73, t76) * t69;
+        let t78 = T::fused(
+            -k(0.5),
+            T::fused(t32, t77, -T::fused(-t34, t70, t33 * t71)),
+            t35,
+        );
+        let t79 = T::fused(
+            k(0.5),
+            T::fused(t33, t77, T::fused(t35, t70, t32 * t71)),
+            t34,
+        );
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t34, t77, T::fused(-t32, t70, t35 * t71)),
+            t33,
+        );
+        let t81 = T::fused(
+            k(0.5),
+            T::fused(t35, t77, -T::fused(t33, t70, t34 * t71)),
+            t32,
+        );
         let t82 = T::fused(
-            k(0.5),
-            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
-            t41,
-        );
-        let t83 = T::fused(
-            -k(0.5),
-            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
-            t38,
-        );
-        let t84 = T::fused(
-            -k(0.5),
-            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
-            t37,
-        );
-        let t85 = T::fused(
-            k(0.5),
-            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
-            t40,
-        );
-        let t86 = T::fused(
-            rotor_e3,
-            rotor_e3,
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t87 = k(0.5) * (t86 - k(3.0));
-        let t88 = rotor_e2 * t87;
-        let t89 = rotor_e3 * t87;
-        let t90 = rotor_e0 * t87;
-        let t91 = rotor_e1 * t87;
-        let t92 = T::fused(
+        let t83 = k(3.0) - t82;
+        let t84 = rotor_e0 * t83;
+        let t85 = rotor_e1 * t83;
+        let t86 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t84, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t85, rotor_e1),
+        );
+        let t87 = rotor_e2 * t83;
+        let t88 = rotor_e3 * t83;
+        let t89 = T::fused(
             chart2_3,
-            t88,
-            T::fused(-chart2_2, t89, T::fused(-chart2_1, t90, chart2_0 * t91)),
+            T::fused(-k(0.5), t88, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t87, rotor_e2), t86),
         );
-        let t93 = k(0.5) * t92;
-        let t94 = t83 * t84;
-        let t95 = t82 * t85;
-        let t96 = k(2.0) * (t95 - t94);
-        let t97 = t91 * t89;
-        let t98 = t90 * t88;
-        let t99 = k(2.0) * (t98 + t97);
-        let t100 = t82 * t82;
-        let t101 = k(2.0) * (k(0.5) - T::fused(t84, t84, t100));
-        let t102 = t88 * t89;
-        let t103 = t90 * t91;
-        let t104 = k(2.0) * (t103 - t102);
-        let t105 = t84 * t85;
-        let t106 = t82 * t83;
-        let t107 = k(2.0) * (t106 + t105);
-        let t108 = t90 * t90;
-        let t109 = k(2.0) * (k(0.5) - T::fused(t89, t89, t108));
-        let t110 = T::fused(t109, t107, -T::fused(-t99, t96, t104 * t101));
-        let t111 = t83 * t85;
-        let t112 = t82 * t84;
-        let t113 = k(2.0) * (t112 + t111);
-        let t114 = k(2.0) * (k(0.5) - T::fused(t91, t91, t108));
-        let t115 = k(2.0) * (t106 - t105);
-        let t116 = t91 * t88;
-        let t117 = t90 * t89;
-        let t118 = k(2.0) * (t117 + t116);
-        let t119 = k(2.0) * (k(0.5) - T::fused(t85, t85, t100));
-        let t120 = k(2.0) * (t98 - t97);
-        let t121 = T::fused(t120, t119, -T::fused(t114, t113, t118 * t115));
-        let t122 = T::fused(t109, t119, T::fused(t99, t113, t104 * t115));
-        let t123 = T::fused(t107, t120, T::fused(-t96, t114, t101 * t118));
-        let t124 = k(2.0) * (t117 - t116);
-        let t125 = k(2.0) * (k(0.5) - T::fused(t88, t88, t108));
-        let t126 = k(2.0) * (t103 + t102);
-        let t127 = T::fused(t107, t126, T::fused(t96, t124, t101 * t125));
-        let t128 = T::fused(t126, t119, -T::fused(-t124, t113, t125 * t115));
-        let t129 = T::fused(-t127, t122, t110 * t128);
-        let t130 = k(1.0) / (t93 * t129);
-        let t131 = t130 * T::fused(-t121, t110 * t93, t123 * (t122 * t93));
-        let t132 = t130 * T::fused(-t121, t127 * t93, t123 * (t128 * t93));
-        let t133 = T::fused(
-            chart2_2,
-            rotor_e2 + t88,
-            T::fused(chart2_1, rotor_e1 + t91, chart2_0 * (rotor_e0 + t90)),
+        let t90 = t84 * t85;
+        let t91 = t87 * t88;
+        let t92 = t91 + t90;
+        let t93 = t78 * t78;
+        let t94 = k(2.0) - T::fused(t81, t81, t93);
+        let t95 = t84 * t84;
+        let t96 = k(2.0) - T::fused(t87, t87, t95);
+        let t97 = t78 * t79;
+        let t98 = t80 * t81;
+        let t99 = t98 - t97;
+        let t100 = t88 * t84;
+        let t101 = t87 * t85;
+        let t102 = t101 - t100;
+        let t103 = t78 * t80;
+        let t104 = t79 * t81;
+        let t105 = t104 + t103;
+        let t106 = T::fused(t105, t102, -T::fused(t94, t92, t99 * t96));
+        let t107 = k(2.0) - T::fused(t88, t88, t95);
+        let t108 = t98 + t97;
+        let t109 = t91 - t90;
+        let t110 = k(2.0) - T::fused(t80, t80, t93);
+        let t111 = t87 * t84;
+        let t112 = t88 * t85;
+        let t113 = t112 + t111;
+        let t114 = t78 * t81;
+        let t115 = t79 * t80;
+        let t116 = t115 - t114;
+        let t117 = T::fused(t116, t113, -T::fused(t108, t107, t110 * t109));
+        let t118 = T::fused(t116, t102, T::fused(t108, t92, t110 * t96));
+        let t119 = T::fused(t105, t113, T::fused(t107, t94, t109 * t99));
+        let t120 = T::fused(-t117, t106, t119 * t118);
+        let t121 = T::fused(
+            chart2_3,
+            t84,
+            -T::fused(chart2_2, t85, -T::fused(-chart2_0, t88, chart2_1 * t87)),
         );
+        let t122 = T::fused(
+            chart2_3,
+            t85,
+            T::fused(chart2_2, t84, -T::fused(chart2_0, t87, chart2_1 * t88)),
+        );
+        let t123 = t112 - t111;
+        let t124 = t101 + t100;
+        let t125 = k(2.0) - T::fused(t85, t85, t95);
+        let t126 = T::fused(t116, t125, T::fused(-t108, t123, t110 * t124));
+        let t127 = T::fused(t105, t125, -T::fused(-t94, t123, t99 * t124));
+        let t128 = T::fused(
+            -t126,
+            T::fused(t119, t121, t106 * t122),
+            t127 * T::fused(t118, t122, t117 * t121),
+        );
+        let t129 = T::fused(
+            chart2_3,
+            t87,
+            -T::fused(chart2_2, t88, T::fused(-chart2_0, t85, chart2_1 * t84)),
+        );
+        let t130 = k(1.0) / (t129 * t120);
+        let t131 = t130 * T::fused(k(4.0), t120 * t89, t128);
+        let t132 = t130 * T::fused(-t126, t129 * t106, t127 * (t129 * t118));
+        let t133 = T::fused(-(t129 * t119), t126, t129 * t117 * t127) * t130;
         let t134 = T::fused(
-            -chart2_3,
-            t90,
-            T::fused(chart2_2, t91, T::fused(-chart2_1, t88, chart2_0 * t89)),
+            k(0.5),
+            T::fused(t88, t133, T::fused(t85, t131, t87 * t132)),
+            t84,
         );
-        let t135 = k(0.5) * t134;
+        let t135 = T::fused(
+            k(0.5),
+            T::fused(t85, t133, -T::fused(t88, t131, t84 * t132)),
+            t87,
+        );
         let t136 = T::fused(
-            -chart2_3,
-            t91,
-            T::fused(-chart2_2, t90, T::fused(chart2_1, t89, chart2_0 * t88)),
-        );
-        let t137 = k(0.5) * t136;
-        let t138 = T::fused(
-            t121,
-            T::fused(-t110, t135, t127 * t137),
-            t123 * T::fused(-t128, t137, t122 * t135),
-        );
-        let t139 = t130 * T::fused(T::fused(chart2_3, rotor_e3 + t89, t133), t129, t138);
-        let t140 = T::fused(
             -k(0.5),
-            T::fused(t90, t131, T::fused(-t91, t132, t88 * t139)),
-            t89,
-        );
-        let t141 = T::fused(
-            k(0.5),
-            T::fused(-t88, t131, T::fused(-t89, t132, t90 * t139)),
-            t91,
-        );
-        let t142 = T::fused(
-            k(0.5),
-            T::fused(t91, t131, T::fused(t90, t132, t89 * t139)),
+            T::fused(t84, t133, T::fused(-t87, t131, t85 * t132)),
             t88,
         );
-        let t143 = T::fused(
+        let t137 = T::fused(
             -k(0.5),
-            T::fused(-t89, t131, T::fused(t88, t132, t91 * t139)),
-            t90,
+            T::fused(t87, t133, -T::fused(-t84, t131, t88 * t132)),
+            t85,
+        );
+        let t138 = T::fused(
+            T::fused(t135, t134, t137 * t136),
+            self.derived[35],
+            T::fused(-t136, t134, t135 * t137) * self.derived[36],
+        );
+        let t139 = T::fused(
+            self.derived[39],
+            k(2.0) - T::fused(t79, t79, t93),
+            -T::fused(self.derived[38], t116, T::fused(self.derived[37], t105, -t138)),
+        );
+        let t140 = t137 * t134;
+        let t141 = t135 * t136;
+        let t142 = t134 * t134;
+        let t143 = T::fused(
+            -(t141 - t140),
+            self.derived[35],
+            (k(2.0) - T::fused(t135, t135, t142)) * self.derived[36],
         );
         let t144 = T::fused(
-            -T::fused(t141, t140, t143 * t142),
-            self.derived[33],
-            T::fused(-t141, t142, t143 * t140) * self.derived[34],
+            self.derived[39],
+            t115 + t114,
+            -T::fused(self.derived[38], t110, -T::fused(self.derived[37], t99, t143)),
         );
         let t145 = T::fused(
-            self.parameters.offset_z,
-            t113,
-            -T::fused(
-                k(0.5) - T::fused(t83, t83, t100),
-                self.derived[21],
-                self.parameters.offset_y * t96,
-            ),
+            -(k(2.0) - T::fused(t136, t136, t142)),
+            self.derived[35],
+            (t141 + t140) * self.derived[36],
         );
-        let t146 = t142 * t140;
-        let t147 = t143 * t141;
-        let t148 = t143 * t143;
-        let t149 = T::fused(
-            t147 - t146,
-            self.derived[33],
-            (k(0.5) - T::fused(t142, t142, t148)) * self.derived[34],
+        let t146 = T::fused(
+            self.derived[39],
+            t104 - t103,
+            T::fused(self.derived[38], t108, -T::fused(self.derived[37], t94, t145)),
         );
-        let t150 = T::fused(
-            self.parameters.offset_z,
-            t115,
-            T::fused(-(t95 + t94), self.derived[21], self.parameters.offset_y * t101),
-        ) - t149;
-        let t151 = T::fused(
-            -(k(0.5) - T::fused(t140, t140, t148)),
-            self.derived[33],
-            (t147 + t146) * self.derived[34],
-        );
-        let t152 = T::fused(
-            self.parameters.offset_z,
-            t119,
-            -T::fused(-(t112 - t111), self.derived[21], self.parameters.offset_y * t107),
-        ) + t151;
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t28;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t31;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t27;
+        y[5] = k(0.5) * t28;
+        y[6] = k(0.5) * t29;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t82;
-        y[11] = -t83;
-        y[12] = -t84;
-        y[13] = -t85;
-        y[14] = t145 + t144;
-        y[15] = -t150;
-        y[16] = -t152;
-        y[17] = -t143;
-        y[18] = -t141;
-        y[19] = -t142;
-        y[20] = -t140;
+        y[10] = k(0.5) * t78;
+        y[11] = k(0.5) * t79;
+        y[12] = k(0.5) * t80;
+        y[13] = k(0.5) * t81;
+        y[14] = -t139;
+        y[15] = t144;
+        y[16] = t146;
+        y[17] = k(0.5) * t134;
+        y[18] = k(0.5) * t137;
+        y[19] = k(0.5) * t135;
+        y[20] = k(0.5) * t136;
     }
-    /// Solves eq. (19) for the dependent velocities: 317 operations (120 ±, 194 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 290 operations (120 ±, 167 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1669,145 +1626,142 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
-        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
-        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
-        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
+        let t1 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(t1, outer_ring_wx, t4 * outer_ring_wz);
+        let t6 = t3 + t2;
+        let t7 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, outer_ring_wx, t7 * outer_ring_wz);
+        let t10 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, outer_ring_wx));
+        let t11 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t21 = inner_ring_e0 * inner_ring_e2;
-        let t22 = inner_ring_e1 * inner_ring_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = outer_ring_e0 * outer_ring_e1;
-        let t25 = outer_ring_e2 * outer_ring_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
-        let t30 = k(2.0) * (t15 + t14);
-        let t31 = inner_ring_e0 * inner_ring_e1;
-        let t32 = inner_ring_e2 * inner_ring_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
-        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
-        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
-        let t38 = k(2.0) * (t22 + t21);
-        let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
-        let t42 = T::fused(
+        let t13 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12);
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e0 * inner_ring_e1;
+        let t24 = inner_ring_e2 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0);
+        let t27 = T::fused(t1, t13, T::fused(t6, t19, (t15 - t14) * t25));
+        let t28 = T::fused(
+            -T::fused(t26, t25, -T::fused(-t16, t13, t22 * t19)),
             t11,
-            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            outer_ring_wy * t27,
         );
-        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t29 = t24 + t23;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12);
+        let t31 = t21 + t20;
+        let t32 = inner_ring_e0 * inner_ring_e3;
+        let t33 = inner_ring_e1 * inner_ring_e2;
+        let t34 = t33 - t32;
+        let t35 = T::fused(t7, t34, T::fused(-t4, t29, t31 * t30));
+        let t36 = t18 - t17;
+        let t37 = t33 + t32;
+        let t38 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12);
+        let t39 = T::fused(t7, t38, T::fused(t4, t36, t31 * t37));
+        let t40 = T::fused(inner_ring_wy, t39, T::fused(inner_ring_wx, t35, -t28));
+        let t41 = T::fused(t26, t30, T::fused(t16, t29, t22 * t34));
+        let t42 = T::fused(t22, t38, T::fused(-t16, t36, t26 * t37));
+        let t43 = k(1.0) / T::fused(-t41, t39, t42 * t35);
         let t44 = T::fused(
-            t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
-            outer_ring_wy * t41,
+            -t27,
+            t10,
+            T::fused(t7, t19, -T::fused(-t4, t13, t31 * t25)) * t11,
         );
-        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
-        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
-        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
-        let t53 = rotor_e0 * rotor_e1;
-        let t54 = rotor_e2 * rotor_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
-        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
-        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
-        let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        let t45 = T::fused(inner_ring_wy, t42, T::fused(inner_ring_wx, t41, t44));
+        let t46 = T::fused(t39 * t43, t45, T::fused(-(t42 * t43), t40, inner_ring_wx));
+        let t47 = T::fused(t35 * t43, t45, -T::fused(t41 * t43, t40, inner_ring_wy));
+        let t48 = T::fused(
+            T::fused(t19, t47, t34 * inner_ring_wz),
+            self.derived[0],
+            T::fused(t19, t46, t38 * inner_ring_wz) * self.derived[4],
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
-        let t72 = T::fused(
-            inner_ring_wz,
-            t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+        let t49 = rotor_e0 * rotor_e2;
+        let t50 = rotor_e1 * rotor_e3;
+        let t51 = t50 - t49;
+        let t52 = rotor_e0 * rotor_e3;
+        let t53 = rotor_e1 * rotor_e2;
+        let t54 = t53 + t52;
+        let t55 = rotor_e0 * rotor_e0;
+        let t56 = k(0.5) - T::fused(rotor_e1, rotor_e1, t55);
+        let t57 = T::fused(t38, t56, T::fused(t36, t51, t37 * t54));
+        let t58 = T::fused(
+            T::fused(t19, t56, -T::fused(-t13, t51, t25 * t54)),
+            t46,
+            inner_ring_wz * t57,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
-        let t74 = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        let t75 = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        let t59 = k(0.5) - T::fused(rotor_e3, rotor_e3, t55);
+        let t60 = t50 + t49;
+        let t61 = rotor_e0 * rotor_e1;
+        let t62 = rotor_e2 * rotor_e3;
+        let t63 = t62 - t61;
+        let t64 = T::fused(t30, t63, -T::fused(-t29, t59, t34 * t60));
+        let t65 = t62 + t61;
+        let t66 = t53 - t52;
+        let t67 = k(0.5) - T::fused(rotor_e2, rotor_e2, t55);
+        let t68 = T::fused(t30, t67, T::fused(t29, t65, t34 * t66));
+        let t69 = T::fused(rotor_wz, t68, T::fused(rotor_wy, t64, -t58));
+        let t70 = T::fused(t13, t59, T::fused(t19, t60, t25 * t63));
+        let t71 = T::fused(t25, t67, -T::fused(-t13, t65, t19 * t66));
+        let t72 = k(1.0) / T::fused(-t68, t70, t64 * t71);
+        let t73 = T::fused(
+            -T::fused(t34, t56, T::fused(-t29, t51, t30 * t54)),
+            t46,
+            t57 * t47,
+        );
+        let t74 = T::fused(rotor_wz, t71, T::fused(rotor_wy, t70, t73));
+        let t75 = T::fused(t64 * t72, t74, -T::fused(t70 * t72, t69, rotor_wz));
         let t76 = T::fused(
-            -self.parameters.imbalance_z,
-            T::fused(t66, t74, t52 * rotor_wx),
-            self.parameters.imbalance_y * T::fused(t66, t75, t60 * rotor_wx),
+            T::fused(-t56, t75, t60 * rotor_wx),
+            self.derived[2],
+            -T::fused(T::fused(-t34, t46, t38 * t47), self.derived[3], t48),
         );
-        let t77 = T::fused(
-            -self.parameters.offset_y,
-            T::fused(t13, inner_ring_wz, t38 * t46),
-            self.parameters.offset_x * T::fused(-t28, inner_ring_wz, t38 * t47),
-        );
+        let t77 = T::fused(t68 * t72, t74, T::fused(-(t71 * t72), t69, rotor_wy));
         let t78 = T::fused(
-            self.parameters.imbalance_z,
-            T::fused(t67, t74, t49 * rotor_wx),
-            self.parameters.imbalance_y * T::fused(-t67, t75, t57 * rotor_wx),
+            T::fused(-t25, t47, t30 * inner_ring_wz),
+            self.derived[0],
+            T::fused(-t25, t46, t37 * inner_ring_wz) * self.derived[4],
         );
         let t79 = T::fused(
-            -self.parameters.offset_y,
-            T::fused(-t19, inner_ring_wz, t39 * t46),
-            self.parameters.offset_x * T::fused(t29, inner_ring_wz, t39 * t47),
+            T::fused(t54, t75, t63 * rotor_wx),
+            self.derived[2],
+            T::fused(T::fused(-t30, t46, t37 * t47), self.derived[3], t78),
         );
         let t80 = T::fused(
-            self.parameters.imbalance_z,
-            T::fused(-t68, t74, t55 * rotor_wx),
-            self.parameters.imbalance_y * T::fused(t68, t75, t61 * rotor_wx),
+            -T::fused(-t13, t47, t29 * inner_ring_wz),
+            self.derived[0],
+            T::fused(t13, t46, t36 * inner_ring_wz) * self.derived[4],
         );
         let t81 = T::fused(
-            -self.parameters.offset_y,
-            T::fused(t23, inner_ring_wz, t40 * t46),
-            self.parameters.offset_x * T::fused(t33, inner_ring_wz, t40 * t47),
+            T::fused(-t51, t75, t59 * rotor_wx),
+            self.derived[2],
+            -T::fused(T::fused(t29, t46, t36 * t47), self.derived[3], t80),
         );
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
         y[24] = t10;
-        y[26] = t11;
+        y[26] = -t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = t46;
-        y[31] = t47;
-        y[33] = -(T::fused(self.parameters.offset_z, T::fused(t13, t47, t28 * t46), t77)
-            + t76);
-        y[34] = -(T::fused(-self.parameters.offset_z, T::fused(t19, t47, t29 * t46), t79)
-            + t78);
-        y[35] = T::fused(-self.parameters.offset_z, T::fused(-t23, t47, t33 * t46), t81)
-            + t80;
-        y[37] = t74;
-        y[38] = t75;
+        y[31] = -t47;
+        y[33] = T::fused(T::fused(t56, t77, t66 * rotor_wx), self.derived[1], -t76);
+        y[34] = -T::fused(T::fused(t54, t77, t67 * rotor_wx), self.derived[1], t79);
+        y[35] = T::fused(T::fused(-t51, t77, t65 * rotor_wx), self.derived[1], t81);
+        y[37] = t77;
+        y[38] = -t75;
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMisalignments<T> {
@@ -2135,7 +2089,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             T::fused(t26, t27, T::fused(-t10, t28, t13 * t29)),
             k(-1.0),
             T::fused(-self.parameters.offset_x, t20, t30) - t31,
-            -(t33 + T::fused(inner_ring_e1, self.derived[0], t32)),
+            -(t33 + T::fused(inner_ring_e1, self.derived[5], t32)),
             -(t35 + t34),
             t36 - t37,
             k(1.0),
@@ -2151,7 +2105,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             k(1.0),
             T::fused(self.parameters.imbalance_y, t55, -t49),
             -t45,
-            T::fused(rotor_e2, self.derived[1], t43),
+            T::fused(rotor_e2, self.derived[6], t43),
             t41,
             k(-1.0),
             -T::fused(self.parameters.offset_z, t20, t35 - t51),
@@ -2162,7 +2116,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             T::fused(self.parameters.imbalance_z, t55, t47),
             t48,
             t39,
-            T::fused(rotor_e3, self.derived[2], t42),
+            T::fused(rotor_e3, self.derived[7], t42),
             T::fused(t13, t56, T::fused(t20, t57, t59)),
             T::fused(t5, t56, -t60),
             T::fused(t4, t56, -T::fused(-t53, t57, t61)),
@@ -2355,7 +2309,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 382 operations (154 ±, 228 ×, 0 ÷).
+    /// Writes γ: 376 operations (154 ±, 222 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2379,214 +2333,223 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = outer_ring_wx * outer_ring_wy;
-        let t6 = outer_ring_e1 * t0;
-        let t7 = k(2.0) * outer_ring_e2;
-        let t8 = outer_ring_e3 * t7;
-        let t9 = t8 + t6;
-        let t10 = outer_ring_wz * outer_ring_wz;
-        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
-        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
-        let t14 = outer_ring_wy * outer_ring_wz;
-        let t15 = T::fused(-outer_ring_e1, t2, t12);
-        let t16 = outer_ring_e3 * t0;
-        let t17 = outer_ring_e2 * t2;
-        let t18 = t17 - t16;
-        let t19 = t3 + t1;
-        let t20 = k(2.0) * inner_ring_e0;
-        let t21 = inner_ring_e2 * t20;
-        let t22 = k(2.0) * inner_ring_e1;
-        let t23 = inner_ring_e3 * t22;
-        let t24 = t23 + t21;
-        let t25 = inner_ring_e1 * t20;
-        let t26 = k(2.0) * inner_ring_e2;
-        let t27 = inner_ring_e3 * t26;
-        let t28 = t27 - t25;
-        let t29 = t17 + t16;
-        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
-        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
-        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
-        let t33 = T::fused(-outer_ring_e2, t7, t12);
-        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
-        let t35 = t8 - t6;
-        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
-        let t37 = T::fused(
-            outer_ring_wx * outer_ring_wz,
-            t36,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_wy * outer_ring_wz;
+        let t3 = outer_ring_wz * outer_ring_wz;
+        let t4 = T::fused(outer_ring_wx, outer_ring_wx, t3);
+        let t5 = outer_ring_e0 * outer_ring_e1;
+        let t6 = outer_ring_e2 * outer_ring_e3;
+        let t7 = t6 + t5;
+        let t8 = outer_ring_wx * outer_ring_wy;
+        let t9 = outer_ring_e0 * outer_ring_e2;
+        let t10 = outer_ring_e1 * outer_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t13 = t10 + t9;
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e1;
+        let t18 = inner_ring_e2 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t21 = T::fused(inner_ring_e2, inner_ring_e2, -t20);
+        let t22 = t6 - t5;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = t24 + t23;
+        let t30 = T::fused(inner_ring_e1, inner_ring_e1, -t20);
+        let t31 = T::fused(
+            -inner_ring_wx,
+            T::fused(t13, t25, T::fused(t19, t1, t22 * t21)),
+            inner_ring_wy * T::fused(t13, t30, T::fused(t28, t1, t22 * t29)),
         );
-        let t38 = T::fused(-inner_ring_e1, t22, t30);
-        let t39 = inner_ring_e3 * t20;
-        let t40 = inner_ring_e2 * t22;
-        let t41 = t40 + t39;
-        let t42 = t23 - t21;
-        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
-        let t44 = t40 - t39;
-        let t45 = T::fused(-inner_ring_e2, t26, t30);
-        let t46 = t27 + t25;
-        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
-        let t48 = T::fused(
-            -inner_ring_wy,
-            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
-            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
-        );
-        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
-        let t50 = inner_ring_wx * inner_ring_wz;
-        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
-        let t52 = inner_ring_wy * inner_ring_wz;
-        let t53 = inner_ring_wx * inner_ring_wx;
-        let t54 = inner_ring_wy * inner_ring_wy;
-        let t55 = t54 + t53;
-        let t56 = T::fused(
-            -k(2.0),
-            T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
-                outer_ring_wy * t48,
-            ),
-            T::fused(t55, t32, T::fused(t50, t49, t52 * t51)),
-        );
-        let t57 = T::fused(
+        let t32 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t33 = T::fused(t16, t25, T::fused(t32, t21, t7 * t19));
+        let t34 = T::fused(t16, t30, T::fused(t29, t32, t7 * t28));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t20);
+        let t36 = t18 - t17;
+        let t37 = t15 + t14;
+        let t38 = t27 + t26;
+        let t39 = T::fused(t38, t12, T::fused(t11, t35, t37 * t36));
+        let t40 = inner_ring_wx * inner_ring_wx;
+        let t41 = inner_ring_wy * inner_ring_wy;
+        let t42 = t41 + t40;
+        let t43 = T::fused(t25, t12, T::fused(t37, t21, t11 * t19));
+        let t44 = inner_ring_wy * inner_ring_wz;
+        let t45 = T::fused(t30, t12, T::fused(t11, t28, t37 * t29));
+        let t46 = inner_ring_wx * inner_ring_wz;
+        let t47 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
-                outer_ring_wx * t48,
+                -outer_ring_wy,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t33, inner_ring_wy * t34),
             ),
-            T::fused(t55, t34, T::fused(t50, t43, t52 * t47)),
+            T::fused(t46, t45, T::fused(-t42, t39, t44 * t43)),
         );
-        let t58 = inner_ring_wz * inner_ring_wz;
-        let t59 = t58 + t54;
-        let t60 = inner_ring_wx * inner_ring_wy;
-        let t61 = t58 + t53;
-        let t62 = T::fused(
-            self.parameters.offset_x,
-            T::fused(t50, t24, T::fused(t59, t38, t60 * t44)),
-            self.parameters.offset_y * T::fused(t52, t24, -T::fused(t60, t38, t61 * t44)),
+        let t48 = T::fused(t13, t38, T::fused(t35, t1, t22 * t36));
+        let t49 = T::fused(t16, t38, T::fused(t7, t35, t36 * t32));
+        let t50 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t3),
+            t39,
+            -T::fused(t8, t49, T::fused(outer_ring_wx * outer_ring_wz, t48, t47)),
         );
-        let t63 = T::fused(
-            self.parameters.offset_z,
-            T::fused(t55, t24, -T::fused(-t50, t38, t52 * t44)),
-            -t62,
+        let t51 = T::fused(
+            -k(2.0),
+            T::fused(
+                -outer_ring_wx,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t43, inner_ring_wy * t45),
+            ),
+            T::fused(t46, t34, T::fused(-t42, t49, t44 * t33)),
         );
-        let t64 = k(2.0) * rotor_e1;
-        let t65 = k(2.0) * rotor_e0;
-        let t66 = T::fused(-rotor_e0, t65, k(1.0));
-        let t67 = T::fused(-rotor_e1, t64, t66);
-        let t68 = rotor_wx * rotor_wy;
-        let t69 = rotor_e3 * t65;
-        let t70 = rotor_e2 * t64;
-        let t71 = t70 - t69;
-        let t72 = rotor_wx * rotor_wx;
-        let t73 = rotor_wz * rotor_wz;
-        let t74 = t73 + t72;
-        let t75 = rotor_e2 * t65;
-        let t76 = rotor_e3 * t64;
-        let t77 = t76 + t75;
-        let t78 = rotor_wy * rotor_wz;
-        let t79 = rotor_wx * rotor_wz;
-        let t80 = rotor_wy * rotor_wy;
-        let t81 = t80 + t72;
+        let t52 = k(4.0)
+            * T::fused(t8, t39, -T::fused(t4, t49, -T::fused(t2, t48, t51)));
+        let t53 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t54 = T::fused(rotor_e1, rotor_e1, -t53);
+        let t55 = rotor_wx * rotor_wz;
+        let t56 = rotor_wx * rotor_wx;
+        let t57 = rotor_wy * rotor_wy;
+        let t58 = t57 + t56;
+        let t59 = rotor_e0 * rotor_e2;
+        let t60 = rotor_e1 * rotor_e3;
+        let t61 = t60 + t59;
+        let t62 = rotor_wy * rotor_wz;
+        let t63 = rotor_e0 * rotor_e3;
+        let t64 = rotor_e1 * rotor_e2;
+        let t65 = t64 - t63;
+        let t66 = rotor_wx * rotor_wy;
+        let t67 = rotor_wz * rotor_wz;
+        let t68 = t67 + t56;
+        let t69 = T::fused(
+            -T::fused(t55, t54, T::fused(-t61, t58, t65 * t62)),
+            self.derived[1],
+            T::fused(-t66, t54, T::fused(-t61, t62, t65 * t68)) * self.derived[2],
+        );
+        let t70 = T::fused(
+            T::fused(t46, t30, T::fused(-t38, t42, t25 * t44)),
+            self.derived[3],
+            t69,
+        );
+        let t71 = inner_ring_wx * inner_ring_wy;
+        let t72 = inner_ring_wz * inner_ring_wz;
+        let t73 = t72 + t40;
+        let t74 = T::fused(
+            T::fused(-t71, t30, T::fused(-t38, t44, t25 * t73)),
+            self.derived[4],
+            -t70,
+        );
+        let t75 = t72 + t41;
+        let t76 = T::fused(
+            T::fused(-t75, t30, T::fused(t38, t46, t25 * t71)),
+            self.derived[0],
+            -t74,
+        );
+        let t77 = T::fused(rotor_e2, rotor_e2, -t53);
+        let t78 = rotor_e0 * rotor_e1;
+        let t79 = rotor_e2 * rotor_e3;
+        let t80 = t79 - t78;
+        let t81 = t64 + t63;
         let t82 = T::fused(
-            -self.parameters.imbalance_y,
-            T::fused(t78, t77, -T::fused(t68, t67, t74 * t71)),
-            self.parameters.imbalance_z
-                * T::fused(t81, t77, -T::fused(-t79, t67, t78 * t71)),
+            T::fused(t81, t55, -T::fused(-t62, t77, t80 * t58)),
+            self.derived[1],
+            T::fused(t81, t66, T::fused(-t68, t77, t80 * t62)) * self.derived[2],
         );
         let t83 = T::fused(
-            self.parameters.offset_x,
-            T::fused(t50, t28, -T::fused(t59, t41, t60 * t45)),
-            self.parameters.offset_y * T::fused(t52, t28, T::fused(t60, t41, t61 * t45)),
+            T::fused(t29, t46, -T::fused(-t44, t21, t36 * t42)),
+            self.derived[3],
+            -t82,
         );
         let t84 = T::fused(
-            self.parameters.offset_z,
-            T::fused(t55, t28, T::fused(-t50, t41, t52 * t45)),
-            -t83,
+            T::fused(t29, t71, T::fused(-t73, t21, t36 * t44)),
+            self.derived[4],
+            t83,
         );
-        let t85 = t70 + t69;
-        let t86 = k(2.0) * rotor_e2;
-        let t87 = T::fused(-rotor_e2, t86, t66);
-        let t88 = rotor_e1 * t65;
-        let t89 = rotor_e3 * t86;
-        let t90 = t89 - t88;
+        let t85 = T::fused(
+            T::fused(t29, t75, -T::fused(t71, t21, t36 * t46)),
+            self.derived[0],
+            -t84,
+        );
+        let t86 = T::fused(rotor_e3, rotor_e3, -t53);
+        let t87 = t79 + t78;
+        let t88 = t60 - t59;
+        let t89 = T::fused(
+            T::fused(t88, t55, T::fused(-t58, t86, t87 * t62)),
+            self.derived[1],
+            T::fused(t88, t66, -T::fused(-t62, t86, t87 * t68)) * self.derived[2],
+        );
+        let t90 = T::fused(
+            T::fused(t28, t46, T::fused(-t42, t35, t19 * t44)),
+            self.derived[3],
+            -t89,
+        );
         let t91 = T::fused(
-            -self.parameters.imbalance_y,
-            T::fused(t78, t90, T::fused(t68, t85, t74 * t87)),
-            self.parameters.imbalance_z
-                * T::fused(t81, t90, T::fused(-t79, t85, t78 * t87)),
+            T::fused(t28, t71, -T::fused(-t44, t35, t19 * t73)),
+            self.derived[4],
+            t90,
         );
         let t92 = T::fused(
-            self.parameters.offset_x,
-            T::fused(t50, t31, -T::fused(-t59, t42, t60 * t46)),
-            self.parameters.offset_y * T::fused(t52, t31, T::fused(-t60, t42, t61 * t46)),
+            T::fused(t28, t75, -T::fused(t46, t35, t19 * t71)),
+            self.derived[0],
+            -t91,
         );
-        let t93 = T::fused(
-            self.parameters.offset_z,
-            T::fused(t55, t31, T::fused(t50, t42, t52 * t46)),
-            -t92,
+        let t93 = T::fused(t38, t61, T::fused(t86, t35, t36 * t80));
+        let t94 = T::fused(t38, t65, T::fused(t87, t35, t36 * t77));
+        let t95 = T::fused(
+            -rotor_wy,
+            T::fused(t61, t30, T::fused(t28, t86, t29 * t80)),
+            rotor_wz * T::fused(t65, t30, T::fused(t29, t77, t28 * t87)),
         );
-        let t94 = t76 - t75;
-        let t95 = t89 + t88;
-        let t96 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t66);
-        let t97 = T::fused(
-            -self.parameters.imbalance_y,
-            T::fused(t78, t96, T::fused(-t68, t94, t74 * t95)),
-            self.parameters.imbalance_z
-                * T::fused(t81, t96, T::fused(t79, t94, t78 * t95)),
-        );
-        let t98 = T::fused(t42, t94, T::fused(t38, t67, t41 * t85));
-        let t99 = T::fused(t46, t94, -T::fused(t44, t67, t45 * t85));
-        let t100 = T::fused(t31, t94, -T::fused(-t24, t67, t28 * t85));
-        let t101 = T::fused(
-            rotor_wz,
-            T::fused(t42, t95, -T::fused(t38, t71, t41 * t87)),
-            rotor_wy * T::fused(t42, t96, -T::fused(-t38, t77, t41 * t90)),
-        );
-        let t102 = T::fused(t31, t95, T::fused(-t24, t71, t28 * t87));
-        let t103 = T::fused(t31, t96, T::fused(t24, t77, t28 * t90));
-        let t104 = t73 + t80;
-        let t105 = T::fused(t46, t95, T::fused(t44, t71, t45 * t87));
-        let t106 = T::fused(t46, t96, T::fused(-t44, t77, t45 * t90));
-        let t107 = T::fused(
+        let t96 = T::fused(t25, t61, T::fused(t19, t86, t80 * t21));
+        let t97 = T::fused(t25, t65, T::fused(t77, t21, t19 * t87));
+        let t98 = T::fused(t25, t54, T::fused(t81, t21, t19 * t88));
+        let t99 = t67 + t57;
+        let t100 = T::fused(
             k(2.0),
             T::fused(
-                inner_ring_wz,
-                t101,
-                inner_ring_wx * T::fused(rotor_wz, t102, rotor_wy * t103),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t93, rotor_wz * t94),
+                inner_ring_wz * t95,
             ),
-            T::fused(t79, t106, -T::fused(-t104, t99, t68 * t105)),
+            T::fused(t99, t98, -T::fused(t55, t96, t66 * t97)),
         );
-        let t108 = T::fused(
+        let t101 = T::fused(t38, t54, T::fused(t88, t35, t36 * t81));
+        let t102 = T::fused(t30, t54, T::fused(t28, t88, t29 * t81));
+        let t103 = k(4.0)
+            * T::fused(t71, t102, -T::fused(t73, t98, -T::fused(t44, t101, -t100)));
+        let t104 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t101,
-                inner_ring_wx * T::fused(rotor_wz, t105, rotor_wy * t106),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t96, rotor_wz * t97),
+                inner_ring_wy * t95,
             ),
-            T::fused(t79, t103, -T::fused(-t104, t100, t68 * t102)),
+            T::fused(t99, t101, -T::fused(t55, t93, t66 * t94)),
         );
+        let t105 = k(4.0)
+            * T::fused(t46, t102, T::fused(t44, t98, -T::fused(t42, t101, t104)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
-            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
+            -(k(2.0) * T::fused(t11, t8, -T::fused(-t2, t1, t7 * t4))),
+            k(2.0) * T::fused(-t8, t12, T::fused(-t13, t2, t16 * t4)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t56 + t37),
-            -(t57 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
-            t82 - t63,
-            t91 - t84,
-            t93 - t97,
-            t107 + T::fused(t52, t100, T::fused(-t60, t98, t61 * t99)),
-            -(t108 + T::fused(t55, t100, T::fused(t50, t98, t52 * t99))),
+            k(4.0) * t50,
+            -t52,
+            t76,
+            -t85,
+            -t92,
+            -t103,
+            -t105,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 26 operations (7 ±, 19 ×, 0 ÷).
@@ -2727,15 +2690,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t17 = t6 * t13;
         let t18 = t17 + t16;
         let t19 = T::fused(
-            self.derived[5],
+            self.derived[10],
             t18,
-            T::fused(-self.derived[3], t12, self.derived[4] * t15),
+            T::fused(-self.derived[8], t12, self.derived[9] * t15),
         );
         let t20 = t11 + t7;
         let t21 = T::fused(
-            self.derived[8],
+            self.derived[13],
             t18,
-            T::fused(self.derived[6], t12, self.derived[7] * t15),
+            T::fused(self.derived[11], t12, self.derived[12] * t15),
         );
         let t22 = t10 * t5;
         let t23 = t6 * t9;
@@ -2745,46 +2708,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t27 = t17 - t16;
         let t28 = T::fused(-t6, k(2.0) * t6, t14);
         let t29 = T::fused(
-            self.derived[5],
+            self.derived[10],
             t28,
-            T::fused(self.derived[3], t26, self.derived[4] * t27),
+            T::fused(self.derived[8], t26, self.derived[9] * t27),
         );
         let t30 = T::fused(
-            self.derived[8],
+            self.derived[13],
             t28,
-            T::fused(-self.derived[6], t26, self.derived[7] * t27),
+            T::fused(-self.derived[11], t26, self.derived[12] * t27),
         );
         let t31 = T::fused(t20, t29, t24 * t30);
         let t32 = T::fused(
             t27,
-            T::fused(self.derived[11], t27, self.derived[12] * t28),
-            t28 * T::fused(self.derived[12], t27, self.derived[13] * t28),
+            T::fused(self.derived[14], t27, self.derived[15] * t28),
+            t28 * T::fused(self.derived[15], t27, self.derived[16] * t28),
         );
-        let t33 = T::fused(self.derived[11], t15, self.derived[12] * t18);
-        let t34 = T::fused(self.derived[12], t15, self.derived[13] * t18);
+        let t33 = T::fused(self.derived[14], t15, self.derived[15] * t18);
+        let t34 = T::fused(self.derived[15], t15, self.derived[16] * t18);
         let t35 = T::fused(t27, t33, t28 * t34);
-        let t36 = self.derived[15] * t35;
+        let t36 = self.derived[18] * t35;
         let t37 = T::fused(t15, t33, t18 * t34);
-        let t38 = T::fused(self.derived[16], t37, t36)
-            + T::fused(self.derived[14], t32, t36)
-            + T::fused(t25, self.derived[9], t31 * self.derived[10]);
-        let t39 = T::fused(-self.derived[17], t20, self.derived[18] * t24);
-        let t40 = T::fused(-self.derived[18], t20, self.derived[19] * t24);
+        let t38 = T::fused(self.derived[19], t37, t36)
+            + T::fused(self.derived[17], t32, t36)
+            + T::fused(t25, self.derived[3], t31 * self.derived[4]);
+        let t39 = T::fused(-self.derived[20], t20, self.derived[21] * t24);
+        let t40 = T::fused(-self.derived[21], t20, self.derived[22] * t24);
         let t41 = T::fused(-t8, t9, t14);
         let t42 = T::fused(
-            self.derived[5],
+            self.derived[10],
             t24,
-            -T::fused(-self.derived[3], t41, self.derived[4] * t20),
+            -T::fused(-self.derived[8], t41, self.derived[9] * t20),
         );
         let t43 = T::fused(
-            self.derived[8],
+            self.derived[13],
             t24,
-            -T::fused(self.derived[6], t41, self.derived[7] * t20),
+            -T::fused(self.derived[11], t41, self.derived[12] * t20),
         );
         let t44 = T::fused(-t27, t42, t28 * t43);
         let t45 = T::fused(-t27, t19, t28 * t21);
-        let t46 = T::fused(-self.derived[11], t20, self.derived[12] * t24);
-        let t47 = T::fused(-self.derived[12], t20, self.derived[13] * t24);
+        let t46 = T::fused(-self.derived[14], t20, self.derived[15] * t24);
+        let t47 = T::fused(-self.derived[15], t20, self.derived[16] * t24);
         let t48 = T::fused(-t20, t46, t24 * t47);
         let t49 = T::fused(t15, t46, t18 * t47);
         let t50 = T::fused(
@@ -2801,13 +2764,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             -self.parameters.offset_y,
             t50,
             self.parameters.offset_x * t51,
-        ) + T::fused(-t44, self.derived[10], t45 * self.derived[21]);
+        ) + T::fused(-t44, self.derived[4], t45 * self.derived[0]);
         let t53 = T::fused(
             t27,
-            T::fused(self.derived[17], t27, self.derived[18] * t28),
-            t28 * T::fused(self.derived[18], t27, self.derived[19] * t28),
+            T::fused(self.derived[20], t27, self.derived[21] * t28),
+            t28 * T::fused(self.derived[21], t27, self.derived[22] * t28),
         );
-        let t54 = k(1.0) / (k(1e-6) + (self.derived[22] + t53 - t52));
+        let t54 = k(1.0) / (k(1e-6) + (self.derived[24] + t53 - t52));
         let t55 = T::fused(t27, t46, t28 * t47);
         let t56 = self.parameters.offset_x * t35;
         let t57 = T::fused(-self.parameters.offset_y, t55, t56);
@@ -2820,12 +2783,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         ) + T::fused(self.parameters.offset_z, t45, self.parameters.offset_y * t58);
         let t61 = t60
             + T::fused(self.parameters.offset_z, t51, self.parameters.offset_y * t57)
-            - (T::fused(t27, t39, t28 * t40) + self.derived[23]);
+            - (T::fused(t27, t39, t28 * t40) + self.derived[25]);
         let t62 = t61 * t54;
         let t63 = T::fused(
             t61,
             t62,
-            -(k(1e-6) + (self.derived[20] + T::fused(-t20, t39, t24 * t40) - t38)),
+            -(k(1e-6) + (self.derived[23] + T::fused(-t20, t39, t24 * t40) - t38)),
         );
         let t64 = T::fused(
             outer_ring_e3,
@@ -2868,8 +2831,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         );
         let t71 = t70 * t69;
         let t72 = t71 - t67;
-        let t73 = T::fused(self.derived[17], t15, self.derived[18] * t18);
-        let t74 = T::fused(self.derived[18], t15, self.derived[19] * t18);
+        let t73 = T::fused(self.derived[20], t15, self.derived[21] * t18);
+        let t74 = T::fused(self.derived[21], t15, self.derived[22] * t18);
         let t75 = T::fused(-t15, t42, t18 * t43);
         let t76 = T::fused(-t15, t19, t18 * t21);
         let t77 = T::fused(
@@ -2879,7 +2842,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         ) - T::fused(self.parameters.offset_z, t44, self.parameters.offset_x * t58);
         let t78 = t77
             - T::fused(self.parameters.offset_z, t50, self.parameters.offset_x * t57)
-            - (T::fused(t27, t73, t28 * t74) + self.derived[24]);
+            - (T::fused(t27, t73, t28 * t74) + self.derived[26]);
         let t79 = T::fused(
             self.parameters.offset_z,
             t55,
@@ -2893,7 +2856,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 self.parameters.offset_z,
                 T::fused(self.parameters.offset_z, t49, t56),
                 self.parameters.offset_y * t79,
-            ) - (self.derived[25] - T::fused(t15, t39, t18 * t40));
+            ) - (self.derived[27] - T::fused(t15, t39, t18 * t40));
         let t83 = T::fused(-t78, t62, t82);
         let t84 = k(2.0) * t70;
         let t85 = T::fused(-t64, t65, k(1.0));
@@ -2902,12 +2865,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t88 = T::fused(
             self.parameters.offset_x,
             t79,
-            T::fused(self.derived[16], t48, self.derived[26] * t55),
-        ) - T::fused(t75, self.derived[9], t80 * self.derived[21]);
+            T::fused(self.derived[19], t48, self.derived[28] * t55),
+        ) - T::fused(t75, self.derived[3], t80 * self.derived[0]);
         let t89 = T::fused(
             t78,
             t78 * t54,
-            -(k(2e-6) + (self.derived[27] + T::fused(t15, t73, t18 * t74) - t88)),
+            -(k(2e-6) + (self.derived[29] + T::fused(t15, t73, t18 * t74) - t88)),
         );
         let t90 = T::fused(t72, t83, t86 * t89);
         let t91 = k(5e-6) * rotor_wx;
@@ -2946,7 +2909,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 self.parameters.imbalance_y * t108,
             ),
         );
-        let t111 = self.derived[28] * t110;
+        let t111 = self.derived[30] * t110;
         let t112 = T::fused(
             inner_ring_wz,
             t26,
@@ -3002,10 +2965,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t132 = T::fused(rotor_wy, t130, rotor_wx * t127)
             - T::fused(t126, t28, -T::fused(t123, t24, t125 * t18));
         let t133 = T::fused(
-            self.derived[8],
+            self.derived[13],
             t132,
-            T::fused(-self.derived[6], t129, self.derived[7] * t131),
-        ) - T::fused(-self.derived[18], t119, self.derived[19] * t120);
+            T::fused(-self.derived[11], t129, self.derived[12] * t131),
+        ) - T::fused(-self.derived[21], t119, self.derived[22] * t120);
         let t134 = t133
             - T::fused(
                 self.parameters.product_xz,
@@ -3022,10 +2985,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             ),
         );
         let t136 = T::fused(
-            self.derived[5],
+            self.derived[10],
             t132,
-            T::fused(self.derived[3], t129, self.derived[4] * t131),
-        ) + T::fused(-self.derived[17], t119, self.derived[18] * t120);
+            T::fused(self.derived[8], t129, self.derived[9] * t131),
+        ) + T::fused(-self.derived[20], t119, self.derived[21] * t120);
         let t137 = t136
             - T::fused(
                 self.parameters.product_xy,
@@ -3036,22 +2999,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             - T::fused(
                 k(0.08),
                 t129,
-                T::fused(-self.derived[3], t119, self.derived[6] * t120),
+                T::fused(-self.derived[8], t119, self.derived[11] * t120),
             );
-        let t139 = T::fused(self.derived[4], t119, self.derived[7] * t120)
+        let t139 = T::fused(self.derived[9], t119, self.derived[12] * t120)
             + T::fused(
                 -k(0.08),
                 t131,
-                T::fused(self.derived[11], t131, self.derived[12] * t132),
+                T::fused(self.derived[14], t131, self.derived[15] * t132),
             );
-        let t140 = T::fused(self.derived[3], t111, t104) - t139;
-        let t141 = T::fused(self.derived[5], t119, self.derived[8] * t120)
+        let t140 = T::fused(self.derived[8], t111, t104) - t139;
+        let t141 = T::fused(self.derived[10], t119, self.derived[13] * t120)
             + T::fused(
                 -k(0.08),
                 t132,
-                T::fused(self.derived[12], t131, self.derived[13] * t132),
+                T::fused(self.derived[15], t131, self.derived[16] * t132),
             );
-        let t142 = T::fused(self.derived[6], t111, t108) - t141;
+        let t142 = T::fused(self.derived[11], t111, t108) - t141;
         let t143 = T::fused(t24, t142, -T::fused(t41, t138, t20 * t140));
         let t144 = T::fused(t18, t142, T::fused(t12, t138, t15 * t140));
         let t145 = T::fused(
@@ -3156,8 +3119,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             self.parameters.product_xy,
             t182,
             self.parameters.product_xz * t183,
-        ) + T::fused(self.derived[3], t185, self.derived[6] * t186);
-        let t188 = self.derived[28] * (t110 - t187);
+        ) + T::fused(self.derived[8], t185, self.derived[11] * t186);
+        let t188 = self.derived[30] * (t110 - t187);
         let t189 = T::fused(self.parameters.imbalance_z, t188, t185);
         let t190 = T::fused(self.parameters.imbalance_y, t188, t186);
         let t191 = rotor_e2 * t95;
@@ -3550,7 +3513,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
             self.parameters.imbalance_y * t18,
         );
         let t20 = k(0.08) * t19;
-        let t21 = self.derived[28] * t20;
+        let t21 = self.derived[30] * t20;
         let t22 = t20 * t21;
         let t23 = k(2.0) * inner_ring_e0;
         let t24 = inner_ring_e3 * t23;
@@ -3606,11 +3569,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
             self.parameters.offset_y * t54,
         );
         let t56 = T::fused(t55, t52, T::fused(t31, t22, t47 * t40));
-        let t57 = self.derived[28] * t39;
+        let t57 = self.derived[30] * t39;
         let t58 = t39 * t57;
         let t59 = t51 * t57;
         let t60 = T::fused(t55, t59, T::fused(t31, t40, t47 * t58));
-        let t61 = self.derived[28] * t51;
+        let t61 = self.derived[30] * t51;
         let t62 = t51 * t61;
         let t63 = T::fused(t55, t62, T::fused(t31, t52, t47 * t59));
         let t64 = T::fused(-rotor_e1, t13, t33);
@@ -3641,8 +3604,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
             T::fused(t55, t86, T::fused(t31, t74, t47 * t80)),
             T::fused(t55, t63, T::fused(t31, t56, t47 * t60)),
         );
-        let t88 = T::fused(self.derived[17], t70, self.derived[18] * t73);
-        let t89 = T::fused(self.derived[18], t70, self.derived[19] * t73);
+        let t88 = T::fused(self.derived[20], t70, self.derived[21] * t73);
+        let t89 = T::fused(self.derived[21], t70, self.derived[22] * t73);
         let t90 = T::fused(
             self.parameters.offset_y,
             t67,
@@ -3668,7 +3631,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         let t100 = T::fused(-t96, t83, t97 * t85);
         let t101 = T::fused(t92, t86, T::fused(-t90, t74, t91 * t80))
             + T::fused(t55, t100, T::fused(t31, t98, t47 * t99));
-        let t102 = self.derived[29] + T::fused(t96, t88, t97 * t89)
+        let t102 = self.derived[31] + T::fused(t96, t88, t97 * t89)
             - (t101 + T::fused(t55, t95, T::fused(t31, t93, t47 * t94)));
         let t103 = T::fused(
             k(2.0),
@@ -3677,15 +3640,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         );
         let t104 = T::fused(
             t96,
-            T::fused(self.derived[17], t96, self.derived[18] * t97),
-            t97 * T::fused(self.derived[18], t96, self.derived[19] * t97),
+            T::fused(self.derived[20], t96, self.derived[21] * t97),
+            t97 * T::fused(self.derived[21], t96, self.derived[22] * t97),
         );
-        let t105 = k(1.0) / (k(1e-6) + (self.derived[22] + t104 - t103));
+        let t105 = k(1.0) / (k(1e-6) + (self.derived[24] + t104 - t103));
         let t106 = t105 * t102;
         let t107 = T::fused(
             t102,
             t106,
-            -(k(1e-6) + (self.derived[20] + T::fused(t70, t88, t73 * t89) - t87)),
+            -(k(1e-6) + (self.derived[23] + T::fused(t70, t88, t73 * t89) - t87)),
         );
         let t108 = outer_ring_e3 * t0;
         let t109 = outer_ring_e2 * t3;
@@ -3721,13 +3684,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         let t127 = T::fused(-t123, t83, t124 * t85);
         let t128 = T::fused(t119, t86, T::fused(t117, t74, t118 * t80))
             - T::fused(t55, t127, T::fused(t31, t125, t47 * t126));
-        let t129 = self.derived[25] - T::fused(t123, t88, t124 * t89)
+        let t129 = self.derived[27] - T::fused(t123, t88, t124 * t89)
             - (t128 + T::fused(t55, t122, T::fused(t31, t120, t47 * t121)));
         let t130 = T::fused(t92, t127, T::fused(-t90, t125, t91 * t126))
             - T::fused(t119, t100, T::fused(t117, t98, t118 * t99));
-        let t131 = T::fused(self.derived[17], t123, self.derived[18] * t124);
-        let t132 = T::fused(self.derived[18], t123, self.derived[19] * t124);
-        let t133 = self.derived[30] + T::fused(t96, t131, t97 * t132)
+        let t131 = T::fused(self.derived[20], t123, self.derived[21] * t124);
+        let t132 = T::fused(self.derived[21], t123, self.derived[22] * t124);
+        let t133 = self.derived[32] + T::fused(t96, t131, t97 * t132)
             - (t130 - T::fused(t119, t95, T::fused(t117, t93, t118 * t94)));
         let t134 = T::fused(t133, t106, t129);
         let t135 = T::fused(t115, t53, T::fused(t110, t27, t112 * t43));
@@ -3740,15 +3703,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         let t138 = T::fused(
             t133,
             t105 * t133,
-            -(k(2e-6) + (self.derived[27] + T::fused(t123, t131, t124 * t132) + t137)),
+            -(k(2e-6) + (self.derived[29] + T::fused(t123, t131, t124 * t132) + t137)),
         );
         let t139 = T::fused(t116, t134, t135 * t138);
         let t140 = k(1.0) / T::fused(-t124, t96, t123 * t97);
         let t141 = T::fused(row13, t96 * t140, row14 * (t123 * t140));
         let t142 = T::fused(row13, t97 * t140, row14 * (t124 * t140));
-        let t143 = T::fused(self.derived[17], t141, self.derived[18] * t142)
+        let t143 = T::fused(self.derived[20], t141, self.derived[21] * t142)
             + T::fused(row12, t83, -T::fused(row10, t66, row11 * t77));
-        let t144 = T::fused(self.derived[18], t141, self.derived[19] * t142)
+        let t144 = T::fused(self.derived[21], t141, self.derived[22] * t142)
             - T::fused(row12, t85, -T::fused(row10, t72, row11 * t79));
         let t145 = T::fused(
             k(0.08),
@@ -3840,7 +3803,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
             t194,
             self.parameters.product_xz * t195,
         ) + T::fused(t51, t193, -T::fused(t20, t191, t39 * t192));
-        let t197 = self.derived[28] * t196;
+        let t197 = self.derived[30] * t196;
         *out = [
             row0,
             row1,
@@ -3887,55 +3850,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let u2 = x[5];
         let t0 = x2.cos();
         let t1 = x2.sin();
-        let t2 = T::fused(-t0, self.derived[35], t1 * self.derived[36]);
+        let t2 = T::fused(-t0, self.derived[40], t1 * self.derived[41]);
         let t3 = x1.cos();
         let t4 = x1.sin();
         let t5 = self.parameters.offset_y * t4;
         let t6 = T::fused(-self.parameters.offset_x, t3, t5);
         let t7 = self.parameters.imbalance_z * t1;
-        let t8 = t0 * self.derived[37];
+        let t8 = t0 * self.derived[42];
         let t9 = T::fused(-k(0.16), t7, t8);
         let t10 = T::fused(t3, t2, t9 * t6);
-        let t11 = T::fused(self.derived[3], t0, self.derived[6] * t1);
+        let t11 = T::fused(self.derived[8], t0, self.derived[11] * t1);
         let t12 = self.parameters.offset_z * t11;
-        let t13 = self.derived[38] - t12;
-        let t14 = T::fused(-k(0.5), t10, t4 * (self.derived[39] + t13));
+        let t13 = self.derived[43] - t12;
+        let t14 = T::fused(-k(0.5), t10, t4 * (self.derived[44] + t13));
         let t15 = T::fused(
             self.parameters.product_xy,
             t1,
             self.parameters.product_xz * t0,
         );
         let t16 = T::fused(self.parameters.offset_x, t11, t15);
-        let t17 = self.derived[40] * t16;
+        let t17 = self.derived[45] * t16;
         let t18 = self.parameters.offset_y * t3;
         let t19 = T::fused(
             -t0,
-            T::fused(t1, self.derived[42], self.parameters.imbalance_z * t8),
-            self.derived[43],
+            T::fused(t1, self.derived[47], self.parameters.imbalance_z * t8),
+            self.derived[48],
         );
-        let t20 = T::fused(self.derived[44], t9, t19);
+        let t20 = T::fused(self.derived[37], t9, t19);
         let t21 = T::fused(
-            -(self.derived[41] - t11),
+            -(self.derived[46] - t11),
             T::fused(self.parameters.offset_x, t4, t18),
             T::fused(t4, t15, t3 * t20),
         );
         let t22 = T::fused(-t17, t14, t21);
-        let t23 = t0 * T::fused(-t0, self.derived[42], self.derived[37] * t7);
-        let t24 = self.derived[45] - t23;
+        let t23 = t0 * T::fused(-t0, self.derived[47], self.derived[42] * t7);
+        let t24 = self.derived[49] - t23;
         let t25 = k(1.0)
             / T::fused(
                 t16,
                 t17,
-                -(self.derived[22]
+                -(self.derived[24]
                     + (T::fused(-self.parameters.offset_y, t9, k(6e-6)) + t24)),
             );
         let t26 = t25 * t22;
-        let t27 = self.derived[40] * t14;
-        let t28 = k(4e-6) + (self.derived[46] + t24);
+        let t27 = self.derived[45] * t14;
+        let t28 = k(4e-6) + (self.derived[50] + t24);
         let t29 = T::fused(
-            self.derived[49],
-            T::fused(-t3, t5, self.derived[48]),
-            t23 + T::fused(t4, T::fused(t4, t28, -t10), self.derived[47]),
+            self.derived[52],
+            T::fused(-t3, t5, self.derived[39]),
+            t23 + T::fused(t4, T::fused(t4, t28, -t10), self.derived[51]),
         );
         let t30 = T::fused(self.parameters.offset_x, t9, -t2);
         let t31 = T::fused(t4, t30, t9 * t18);
@@ -3951,8 +3914,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t37 = T::fused(-k(2.0), u2 * T::fused(k(0.25), u2 * t30, t33), k(0.8) * t6);
         let t38 = T::fused(
             t4,
-            T::fused(t3, t28, self.derived[49] * t5),
-            -T::fused(t4, t31, self.derived[25]),
+            T::fused(t3, t28, self.derived[52] * t5),
+            -T::fused(t4, t31, self.derived[27]),
         );
         let t39 = u0 * T::fused(k(2.0), t38, t30);
         let t40 = t4 * t9;
@@ -3965,11 +3928,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t43 = T::fused(
             -k(2.0),
             T::fused(-(k(5e-6) + (t23 + t13)), u1 * t3, t35),
-            u2 * T::fused(-self.derived[44], t40, t34),
+            u2 * T::fused(-self.derived[37], t40, t34),
         );
         let t44 = T::fused(
             -u1,
-            T::fused(u1, T::fused(t4, t20, T::fused(-self.derived[41], t6, t34)), -t39),
+            T::fused(u1, T::fused(t4, t20, T::fused(-self.derived[46], t6, t34)), -t39),
             u2 * t43,
         );
         let t45 = T::fused(t42, t26, T::fused(-t36, t27, t44))
@@ -3978,7 +3941,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         *out = [
             t45,
             t46,
-            -T::fused(t17, t46, T::fused(t27, t45, self.derived[40] * t36)),
+            -T::fused(t17, t46, T::fused(t27, t45, self.derived[45] * t36)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -3990,7 +3953,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 172 operations (64 ±, 108 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 159 operations (66 ±, 93 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -4009,112 +3972,111 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t7 = t2 * t6;
         let t8 = t2 * t4;
         let t9 = t1 * t6;
-        let t10 = k(0.5) * x2;
-        let t11 = t10.sin();
-        let t12 = t10.cos();
-        let t13 = T::fused(t9, t11, t8 * t12);
-        let t14 = T::fused(-t7, t11, t5 * t12);
-        let t15 = t14 * t13;
-        let t16 = T::fused(-t8, t11, t9 * t12);
-        let t17 = T::fused(t5, t11, t7 * t12);
-        let t18 = t17 * t16;
-        let t19 = k(2.0) * (t18 + t15);
-        let t20 = t14 * t16;
-        let t21 = t17 * t13;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = t5 * t8;
-        let t24 = t7 * t9;
-        let t25 = k(2.0) * (t24 + t23);
-        let t26 = t5 * t9;
-        let t27 = t7 * t8;
-        let t28 = k(2.0) * (t27 - t26);
-        let t29 = t5 * t5;
-        let t30 = k(2.0) * (k(0.5) - T::fused(t7, t7, t29));
-        let t31 = T::fused(
-            -self.parameters.offset_z,
-            t25,
-            T::fused(-self.parameters.offset_y, t28, self.parameters.offset_x * t30),
-        )
-            + T::fused(
-                self.parameters.imbalance_z,
-                t19,
-                self.parameters.imbalance_y * t22,
-            );
-        let t32 = t14 * t17;
-        let t33 = t13 * t16;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = t14 * t14;
-        let t36 = k(2.0) * (k(0.5) - T::fused(t13, t13, t35));
-        let t37 = t5 * t7;
-        let t38 = t8 * t9;
-        let t39 = k(2.0) * (t38 - t37);
-        let t40 = k(2.0) * (k(0.5) - T::fused(t8, t8, t29));
-        let t41 = k(2.0) * (t27 + t26);
-        let t42 = T::fused(
-            self.parameters.offset_z,
-            t39,
-            T::fused(-self.parameters.offset_y, t40, self.parameters.offset_x * t41),
-        )
-            + T::fused(
-                -self.parameters.imbalance_z,
-                t34,
-                self.parameters.imbalance_y * t36,
-            );
-        let t43 = k(2.0) * (k(0.5) - T::fused(t16, t16, t35));
-        let t44 = k(2.0) * (t33 + t32);
-        let t45 = k(2.0) * (k(0.5) - T::fused(t9, t9, t29));
-        let t46 = k(2.0) * (t38 + t37);
-        let t47 = k(2.0) * (t24 - t23);
-        let t48 = T::fused(
-            -self.parameters.offset_z,
-            t45,
-            T::fused(self.parameters.offset_y, t46, self.parameters.offset_x * t47),
-        )
-            - T::fused(
-                -self.parameters.imbalance_z,
-                t43,
-                self.parameters.imbalance_y * t44,
-            );
-        let t49 = k(2.0) * t6;
-        let t50 = u0 * (t4 * t49);
-        let t51 = u0 * T::fused(-t6, t49, k(1.0));
-        let t52 = T::fused(
-            -self.parameters.offset_z,
-            t51,
-            self.parameters.offset_y * u1,
+        let t10 = t5 * t5;
+        let t11 = k(0.5) - T::fused(t7, t7, t10);
+        let t12 = t5 * t9;
+        let t13 = t7 * t8;
+        let t14 = t13 - t12;
+        let t15 = t5 * t8;
+        let t16 = t7 * t9;
+        let t17 = t16 + t15;
+        let t18 = k(0.5) * x2;
+        let t19 = t18.sin();
+        let t20 = t18.cos();
+        let t21 = T::fused(-t8, t19, t9 * t20);
+        let t22 = T::fused(-t7, t19, t5 * t20);
+        let t23 = t22 * t21;
+        let t24 = T::fused(t9, t19, t8 * t20);
+        let t25 = T::fused(t5, t19, t7 * t20);
+        let t26 = t25 * t24;
+        let t27 = t26 - t23;
+        let t28 = T::fused(
+            t27,
+            self.derived[2],
+            -T::fused(
+                t17,
+                self.derived[3],
+                T::fused(-t11, self.derived[0], t14 * self.derived[4]),
+            ),
         );
-        let t53 = T::fused(
+        let t29 = t22 * t24;
+        let t30 = t25 * t21;
+        let t31 = t30 + t29;
+        let t32 = t13 + t12;
+        let t33 = k(0.5) - T::fused(t8, t8, t10);
+        let t34 = t5 * t7;
+        let t35 = t8 * t9;
+        let t36 = t35 - t34;
+        let t37 = t22 * t22;
+        let t38 = k(0.5) - T::fused(t24, t24, t37);
+        let t39 = T::fused(
+            t38,
+            self.derived[2],
+            T::fused(
+                t36,
+                self.derived[3],
+                -T::fused(-t32, self.derived[0], t33 * self.derived[4]),
+            ),
+        );
+        let t40 = t22 * t25;
+        let t41 = t24 * t21;
+        let t42 = t41 - t40;
+        let t43 = t16 - t15;
+        let t44 = t35 + t34;
+        let t45 = k(0.5) - T::fused(t9, t9, t10);
+        let t46 = t41 + t40;
+        let t47 = T::fused(
+            t46,
+            self.derived[2],
+            T::fused(
+                t45,
+                self.derived[3],
+                -T::fused(t43, self.derived[0], t44 * self.derived[4]),
+            ),
+        );
+        let t48 = k(0.5) - T::fused(t21, t21, t37);
+        let t49 = k(2.0) * (u0 * (t6 * t4));
+        let t50 = u0 * ((t6 - t4) * (t6 + t4));
+        let t51 = T::fused(
             -self.parameters.offset_z,
-            t50,
+            t49,
             self.parameters.offset_x * u1,
         );
-        let t54 = T::fused(
-            -self.parameters.offset_y,
-            t50,
-            self.parameters.offset_x * t51,
+        let t52 = T::fused(
+            self.parameters.offset_y,
+            t49,
+            self.parameters.offset_x * t50,
         );
-        let t55 = k(2.0) * t11;
-        let t56 = T::fused(-t11, t55, k(1.0));
-        let t57 = t12 * t55;
-        let t58 = T::fused(t56, t51, u1 * t57);
-        let t59 = T::fused(-t57, t51, u1 * t56);
-        let t60 = T::fused(
-            -self.parameters.imbalance_z,
-            t58,
-            self.parameters.imbalance_y * t59,
+        let t53 = k(2.0) * (t19 * t20);
+        let t54 = (t19 - t20) * (t19 + t20);
+        let t55 = T::fused(u1, t53, t54 * t50);
+        let t56 = T::fused(-t50, t53, u1 * t54);
+        let t57 = T::fused(
+            self.parameters.imbalance_z,
+            t55,
+            self.parameters.imbalance_y * t56,
         );
-        let t61 = u2 + t50;
-        let t62 = self.parameters.imbalance_z * t61;
-        let t63 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(t17, t17, t35))),
-            t60,
-            t22 * t62,
+        let t58 = u2 + t49;
+        let t59 = self.parameters.imbalance_y * t58;
+        let t60 = self.parameters.imbalance_z * t58;
+        let t61 = T::fused(
+            k(0.5) - T::fused(t25, t25, t37),
+            t57,
+            T::fused(-t31, t59, t27 * t60),
         );
-        let t64 = self.parameters.imbalance_y * t61;
-        let t65 = T::fused(t19, t64, -t63)
-            + T::fused(t25, t54, -T::fused(t30, t52, t28 * t53));
-        let t66 = T::fused(t34, t64, T::fused(-(k(2.0) * (t21 + t20)), t60, t36 * t62));
-        let t67 = T::fused(t43, t64, T::fused(k(2.0) * (t18 - t15), t60, t44 * t62));
+        let t62 = T::fused(self.parameters.offset_z, t50, self.parameters.offset_y * u1);
+        let t63 = k(2.0)
+            * T::fused(t11, t62, T::fused(t14, t51, T::fused(t17, t52, t61)));
+        let t64 = T::fused(
+            -t36,
+            t52,
+            T::fused(t26 + t23, t57, T::fused(t42, t59, t38 * t60)),
+        );
+        let t65 = T::fused(
+            -t45,
+            t52,
+            T::fused(-(t30 - t29), t57, T::fused(t48, t59, t46 * t60)),
+        );
         *y = [
             k(0.0),
             k(0.0),
@@ -4130,13 +4092,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             t7,
             t8,
             t9,
-            -t31,
-            t42,
-            t48,
-            t14,
-            t17,
-            t13,
-            t16,
+            -T::fused(t31, self.derived[1], t28),
+            T::fused(-t42, self.derived[1], t39),
+            T::fused(t48, self.derived[1], -t47),
+            t22,
+            t25,
+            t24,
+            t21,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -4146,18 +4108,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t50,
-            t51,
+            t49,
+            -t50,
             u1,
-            -t65,
-            -(t66 + T::fused(t39, t54, T::fused(t41, t52, t40 * t53))),
-            t67 + T::fused(t45, t54, T::fused(-t47, t52, t46 * t53)),
-            t61,
+            t63,
+            -(k(2.0) * T::fused(t32, t62, T::fused(t33, t51, t64))),
+            -(k(2.0) * T::fused(t43, t62, -T::fused(t44, t51, t65))),
             t58,
-            t59,
+            t55,
+            -t56,
         ];
     }
-    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    /// Writes the joint state of a maximal state: 125 operations (63 ±, 62 ×, 0 ÷) and 9 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4180,83 +4142,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = x0.cos();
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
-        let t8 = outer_ring_e3 * outer_ring_e3;
-        let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
-        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
-        let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
+        let t6 = x0.cos();
+        let t7 = x0.sin();
+        let t8 = outer_ring_e0 * outer_ring_e2;
+        let t9 = outer_ring_e1 * outer_ring_e3;
+        let t10 = t9 + t8;
+        let t11 = (k(2.0) * T::fused(t7, t5, t10 * t6))
+            .atan2(k(2.0) * T::fused(-t6, t5, t10 * t7));
+        let t12 = inner_ring_e3 * inner_ring_e3;
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = T::fused(inner_ring_e1, inner_ring_e1, t13);
+        let t15 = inner_ring_e2 * inner_ring_e2;
+        let t16 = k(0.5) * (k(1.0) - (t15 + (t14 + t12)));
+        let t17 = k(0.5) - t14 - t16;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = outer_ring_e0 * outer_ring_e3;
+        let t22 = outer_ring_e1 * outer_ring_e2;
+        let t23 = inner_ring_e0 * inner_ring_e2;
+        let t24 = inner_ring_e1 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(
+            t9 - t8,
+            t25,
+            T::fused(t17, k(0.5) - t2 - t4, (t22 + t21) * t20),
         );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
-            t15,
-            t27,
+        let t27 = x1.cos();
+        let t28 = T::fused(t22 - t21, t17, t20 * (k(0.5) - (t1 + t3) - t4));
+        let t29 = T::fused(
+            T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
+            t25,
+            -t28,
         );
-        let t29 = x1.cos();
-        let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        let t30 = x1.sin();
+        let t31 = (k(4.0) * T::fused(-t30, t26, t27 * t29))
+            .atan2(k(4.0) * T::fused(t27, t26, t30 * t29));
+        let t32 = rotor_e2 * rotor_e2;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t33 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t33 + t32))),
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
-        let t33 = x2.sin();
-        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t35 = rotor_e2 * rotor_e2;
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = T::fused(
-            k(2.0),
-            k(0.5) - (t36 + t35),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        let t35 = k(0.5) * (k(1.0) - (t32 + t34));
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t39 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t40 = T::fused(
+            t39,
+            k(0.5) - (t13 + t12) - t16,
+            -T::fused(t37 - t36, t35, (t24 + t23) * t38),
         );
-        let t38 = inner_ring_e0 * inner_ring_e1;
-        let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
-        let t43 = x2.cos();
-        let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
-            t37,
-            k(2.0) * (t17 - t16) * t40,
-        );
-        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
-        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
+        let t41 = x2.sin();
+        let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
+        let t43 = T::fused(t37 + t36, t39, t42);
+        let t44 = x2.cos();
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
+            .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
-        x[1] = x1 + t32;
-        x[2] = x2 + t46;
+        x[1] = x1 + t31;
+        x[2] = x2 + t45;
         x[3] = outer_ring_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 202 operations (85 ±, 115 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 204 operations (87 ±, 115 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4285,9 +4243,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = T::fused(
+        let t1 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4296,9 +4252,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t4 = t3 * t1;
-        let t5 = T::fused(t2, self.derived[35], t4 * self.derived[36]);
-        let t6 = T::fused(
+        let t2 = (t1 + t0) * (t1 - t0);
+        let t3 = t1 * (k(2.0) * t0);
+        let t4 = T::fused(t2, self.derived[40], t3 * self.derived[41]);
+        let t5 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4307,9 +4264,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t7 = k(2.0) * t6;
-        let t8 = T::fused(-t6, t7, k(1.0));
-        let t9 = T::fused(
+        let t6 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4318,109 +4273,106 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t10 = t9 * t7;
-        let t11 = self.parameters.offset_y * t10;
-        let t12 = T::fused(self.parameters.offset_x, t8, t11);
-        let t13 = self.parameters.imbalance_z * t4;
-        let t14 = t2 * self.derived[37];
-        let t15 = T::fused(k(0.16), t13, t14);
-        let t16 = T::fused(t8, t5, t15 * t12);
-        let t17 = T::fused(-self.derived[3], t2, self.derived[6] * t4);
-        let t18 = self.parameters.offset_z * t17;
-        let t19 = self.derived[38] + t18;
-        let t20 = T::fused(-k(0.5), t16, t10 * (self.derived[39] + t19));
-        let t21 = T::fused(
+        let t7 = (t6 + t5) * (t6 - t5);
+        let t8 = t6 * (k(2.0) * t5);
+        let t9 = self.parameters.offset_y * t8;
+        let t10 = T::fused(self.parameters.offset_x, t7, t9);
+        let t11 = self.parameters.imbalance_z * t3;
+        let t12 = t2 * self.derived[42];
+        let t13 = T::fused(k(0.16), t11, t12);
+        let t14 = T::fused(t7, t4, t13 * t10);
+        let t15 = T::fused(-self.derived[8], t2, self.derived[11] * t3);
+        let t16 = self.parameters.offset_z * t15;
+        let t17 = self.derived[43] + t16;
+        let t18 = T::fused(-k(0.5), t14, t8 * (self.derived[44] + t17));
+        let t19 = T::fused(
             -self.parameters.product_xy,
-            t4,
+            t3,
             self.parameters.product_xz * t2,
         );
-        let t22 = T::fused(self.parameters.offset_x, t17, -t21);
-        let t23 = self.derived[40] * t22;
-        let t24 = self.parameters.offset_y * t8;
-        let t25 = T::fused(
+        let t20 = T::fused(self.parameters.offset_x, t15, -t19);
+        let t21 = self.derived[45] * t20;
+        let t22 = self.parameters.offset_y * t7;
+        let t23 = T::fused(
             -t2,
-            T::fused(-t4, self.derived[42], self.parameters.imbalance_z * t14),
-            self.derived[43],
+            T::fused(-t3, self.derived[47], self.parameters.imbalance_z * t12),
+            self.derived[48],
         );
-        let t26 = T::fused(self.derived[44], t15, t25);
-        let t27 = T::fused(
-            -(self.derived[41] + t17),
-            T::fused(-self.parameters.offset_x, t10, t24),
-            T::fused(-t10, t21, t8 * t26),
+        let t24 = T::fused(self.derived[37], t13, t23);
+        let t25 = T::fused(
+            -(self.derived[46] + t15),
+            T::fused(-self.parameters.offset_x, t8, t22),
+            T::fused(-t8, t19, t7 * t24),
         );
-        let t28 = T::fused(-t23, t20, t27);
-        let t29 = t2 * T::fused(t2, self.derived[42], self.derived[37] * t13);
-        let t30 = self.derived[45] + t29;
-        let t31 = k(1.0)
+        let t26 = T::fused(-t21, t18, t25);
+        let t27 = t2 * T::fused(t2, self.derived[47], self.derived[42] * t11);
+        let t28 = self.derived[49] + t27;
+        let t29 = k(1.0)
             / T::fused(
-                t22,
-                t23,
-                -(self.derived[22]
-                    + (T::fused(-self.parameters.offset_y, t15, k(6e-6)) + t30)),
+                t20,
+                t21,
+                -(self.derived[24]
+                    + (T::fused(-self.parameters.offset_y, t13, k(6e-6)) + t28)),
             );
-        let t32 = t31 * t28;
-        let t33 = self.derived[40] * t20;
-        let t34 = k(4e-6) + (self.derived[46] + t30);
-        let t35 = T::fused(
-            self.derived[49],
-            T::fused(t8, t11, self.derived[48]),
-            -(t29 - T::fused(t10, T::fused(t10, t34, -t16), self.derived[47])),
+        let t30 = t29 * t26;
+        let t31 = self.derived[45] * t18;
+        let t32 = k(4e-6) + (self.derived[50] + t28);
+        let t33 = T::fused(
+            self.derived[52],
+            T::fused(t7, t9, self.derived[39]),
+            -(t27 - T::fused(t8, T::fused(t8, t32, -t14), self.derived[51])),
         );
-        let t36 = T::fused(self.parameters.offset_x, t15, t5);
-        let t37 = T::fused(-t10, t36, t15 * t24);
-        let t38 = T::fused(t8, T::fused(k(2.0), t30, k(1e-5)), -t37);
-        let t39 = outer_ring_wz - inner_ring_wz;
-        let t40 = t39 * T::fused(self.parameters.offset_y, t17, -t25);
-        let t41 = T::fused(-t8, t21, t17 * t12);
-        let t42 = outer_ring_wy * T::fused(t10, T::fused(-t10, t25, t41), t26);
-        let t43 = T::fused(
+        let t34 = T::fused(self.parameters.offset_x, t13, t4);
+        let t35 = T::fused(-t8, t34, t13 * t22);
+        let t36 = T::fused(t7, T::fused(k(2.0), t28, k(1e-5)), -t35);
+        let t37 = outer_ring_wz - inner_ring_wz;
+        let t38 = t37 * T::fused(self.parameters.offset_y, t15, -t23);
+        let t39 = T::fused(-t7, t19, t15 * t10);
+        let t40 = outer_ring_wy * T::fused(t8, T::fused(-t8, t23, t39), t24);
+        let t41 = T::fused(
             outer_ring_wy,
-            t42,
-            -T::fused(-t39, T::fused(-outer_ring_wy, t38, t40), k(10.0) * (t8 * t17)),
+            t40,
+            -T::fused(-t37, T::fused(-outer_ring_wy, t36, t38), k(10.0) * (t7 * t15)),
         );
-        let t44 = inner_ring_wx - rotor_wx;
-        let t45 = T::fused(
+        let t42 = inner_ring_wx - rotor_wx;
+        let t43 = T::fused(
             -k(2.0),
-            t44 * T::fused(-k(0.25), t44 * t36, t40),
-            k(0.8) * t12,
+            t42 * T::fused(-k(0.25), t42 * t34, t38),
+            k(0.8) * t10,
         );
-        let t46 = T::fused(
-            t10,
-            T::fused(-t8, t34, self.derived[49] * t11),
-            -T::fused(-t10, t37, self.derived[25]),
+        let t44 = T::fused(
+            t8,
+            T::fused(-t7, t32, self.derived[52] * t9),
+            -T::fused(-t8, t35, self.derived[27]),
         );
-        let t47 = outer_ring_wy * T::fused(k(2.0), t46, t36);
-        let t48 = t10 * t15;
-        let t49 = T::fused(
+        let t45 = outer_ring_wy * T::fused(k(2.0), t44, t34);
+        let t46 = t8 * t13;
+        let t47 = T::fused(
             k(5.0),
-            t48,
-            -T::fused(outer_ring_wy, T::fused(-k(0.5), t47, t44 * t38), t45),
+            t46,
+            -T::fused(outer_ring_wy, T::fused(-k(0.5), t45, t42 * t36), t43),
         );
-        let t50 = T::fused(-t23, t43, t49);
-        let t51 = T::fused(
+        let t48 = T::fused(-t21, t41, t47);
+        let t49 = T::fused(
             k(2.0),
-            T::fused(k(5e-6) - (t29 - t19), t39 * t8, t42),
-            t44 * T::fused(self.derived[44], t48, t41),
+            T::fused(k(5e-6) - (t27 - t17), t37 * t7, t40),
+            t42 * T::fused(self.derived[37], t46, t39),
         );
-        let t52 = T::fused(
-            -t39,
-            T::fused(
-                t39,
-                T::fused(-t10, t26, T::fused(self.derived[41], t12, t41)),
-                t47,
-            ),
-            t44 * t51,
+        let t50 = T::fused(
+            -t37,
+            T::fused(t37, T::fused(-t8, t24, T::fused(self.derived[46], t10, t39)), t45),
+            t42 * t49,
         );
-        let t53 = T::fused(-t50, t32, T::fused(t43, t33, t52))
-            / T::fused(t28, t32, T::fused(-t20, t33, T::fused(k(2.0), t18, t35)));
-        let t54 = T::fused(t32, t53, t31 * t50);
+        let t51 = T::fused(-t48, t30, T::fused(t41, t31, t50))
+            / T::fused(t26, t30, T::fused(-t18, t31, T::fused(k(2.0), t16, t33)));
+        let t52 = T::fused(t30, t51, t29 * t48);
         *out = [
-            -t53,
-            -t54,
-            -T::fused(t23, t54, T::fused(t33, t53, self.derived[40] * t43)),
+            -t51,
+            -t52,
+            -T::fused(t21, t52, T::fused(t31, t51, self.derived[45] * t41)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 339 operations (140 ±, 197 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 341 operations (142 ±, 197 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -4459,9 +4411,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4470,9 +4420,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t5 = t4 * t2;
-        let t6 = T::fused(t3, self.derived[35], t5 * self.derived[36]);
-        let t7 = T::fused(
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = t2 * (k(2.0) * t1);
+        let t5 = T::fused(t3, self.derived[40], t4 * self.derived[41]);
+        let t6 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4481,9 +4432,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
-        let t10 = T::fused(
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4492,205 +4441,202 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t11 = t10 * t8;
-        let t12 = self.parameters.offset_y * t11;
-        let t13 = T::fused(self.parameters.offset_x, t9, t12);
-        let t14 = self.parameters.imbalance_z * t5;
-        let t15 = t3 * self.derived[37];
-        let t16 = T::fused(k(0.16), t14, t15);
-        let t17 = T::fused(t9, t6, t16 * t13);
-        let t18 = T::fused(-self.derived[3], t3, self.derived[6] * t5);
-        let t19 = self.parameters.offset_z * t18;
-        let t20 = self.derived[38] + t19;
-        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[39] + t20));
-        let t22 = T::fused(
+        let t8 = (t7 + t6) * (t7 - t6);
+        let t9 = t7 * (k(2.0) * t6);
+        let t10 = self.parameters.offset_y * t9;
+        let t11 = T::fused(self.parameters.offset_x, t8, t10);
+        let t12 = self.parameters.imbalance_z * t4;
+        let t13 = t3 * self.derived[42];
+        let t14 = T::fused(k(0.16), t12, t13);
+        let t15 = T::fused(t8, t5, t14 * t11);
+        let t16 = T::fused(-self.derived[8], t3, self.derived[11] * t4);
+        let t17 = self.parameters.offset_z * t16;
+        let t18 = self.derived[43] + t17;
+        let t19 = T::fused(-k(0.5), t15, t9 * (self.derived[44] + t18));
+        let t20 = T::fused(
             -self.parameters.product_xy,
-            t5,
+            t4,
             self.parameters.product_xz * t3,
         );
-        let t23 = T::fused(self.parameters.offset_x, t18, -t22);
-        let t24 = self.derived[40] * t23;
-        let t25 = self.parameters.offset_y * t9;
-        let t26 = T::fused(
+        let t21 = T::fused(self.parameters.offset_x, t16, -t20);
+        let t22 = self.derived[45] * t21;
+        let t23 = self.parameters.offset_y * t8;
+        let t24 = T::fused(
             -t3,
-            T::fused(-t5, self.derived[42], self.parameters.imbalance_z * t15),
-            self.derived[43],
+            T::fused(-t4, self.derived[47], self.parameters.imbalance_z * t13),
+            self.derived[48],
         );
-        let t27 = T::fused(self.derived[44], t16, t26);
-        let t28 = T::fused(
-            -(self.derived[41] + t18),
-            T::fused(-self.parameters.offset_x, t11, t25),
-            T::fused(-t11, t22, t9 * t27),
+        let t25 = T::fused(self.derived[37], t14, t24);
+        let t26 = T::fused(
+            -(self.derived[46] + t16),
+            T::fused(-self.parameters.offset_x, t9, t23),
+            T::fused(-t9, t20, t8 * t25),
         );
-        let t29 = T::fused(-t24, t21, t28);
-        let t30 = t3 * T::fused(t3, self.derived[42], self.derived[37] * t14);
-        let t31 = self.derived[45] + t30;
-        let t32 = k(1.0)
+        let t27 = T::fused(-t22, t19, t26);
+        let t28 = t3 * T::fused(t3, self.derived[47], self.derived[42] * t12);
+        let t29 = self.derived[49] + t28;
+        let t30 = k(1.0)
             / T::fused(
-                t23,
-                t24,
-                -(self.derived[22]
-                    + (T::fused(-self.parameters.offset_y, t16, k(6e-6)) + t31)),
+                t21,
+                t22,
+                -(self.derived[24]
+                    + (T::fused(-self.parameters.offset_y, t14, k(6e-6)) + t29)),
             );
-        let t33 = t32 * t29;
-        let t34 = self.derived[40] * t21;
-        let t35 = k(4e-6) + (self.derived[46] + t31);
-        let t36 = T::fused(
-            self.derived[49],
-            T::fused(t9, t12, self.derived[48]),
-            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[47])),
+        let t31 = t30 * t27;
+        let t32 = self.derived[45] * t19;
+        let t33 = k(4e-6) + (self.derived[50] + t29);
+        let t34 = T::fused(
+            self.derived[52],
+            T::fused(t8, t10, self.derived[39]),
+            -(t28 - T::fused(t9, T::fused(t9, t33, -t15), self.derived[51])),
         );
-        let t37 = T::fused(self.parameters.offset_x, t16, t6);
-        let t38 = T::fused(-t11, t37, t16 * t25);
-        let t39 = T::fused(t9, T::fused(k(2.0), t31, k(1e-5)), -t38);
-        let t40 = outer_ring_wz - inner_ring_wz;
-        let t41 = t40 * T::fused(self.parameters.offset_y, t18, -t26);
-        let t42 = T::fused(-t9, t22, t18 * t13);
-        let t43 = outer_ring_wy * T::fused(t11, T::fused(-t11, t26, t42), t27);
-        let t44 = T::fused(
+        let t35 = T::fused(self.parameters.offset_x, t14, t5);
+        let t36 = T::fused(-t9, t35, t14 * t23);
+        let t37 = T::fused(t8, T::fused(k(2.0), t29, k(1e-5)), -t36);
+        let t38 = outer_ring_wz - inner_ring_wz;
+        let t39 = t38 * T::fused(self.parameters.offset_y, t16, -t24);
+        let t40 = T::fused(-t8, t20, t16 * t11);
+        let t41 = outer_ring_wy * T::fused(t9, T::fused(-t9, t24, t40), t25);
+        let t42 = T::fused(
             outer_ring_wy,
-            t43,
-            -T::fused(-t40, T::fused(-outer_ring_wy, t39, t41), k(10.0) * (t9 * t18)),
+            t41,
+            -T::fused(-t38, T::fused(-outer_ring_wy, t37, t39), k(10.0) * (t8 * t16)),
         );
-        let t45 = inner_ring_wx - rotor_wx;
-        let t46 = T::fused(
+        let t43 = inner_ring_wx - rotor_wx;
+        let t44 = T::fused(
             -k(2.0),
-            t45 * T::fused(-k(0.25), t45 * t37, t41),
-            k(0.8) * t13,
+            t43 * T::fused(-k(0.25), t43 * t35, t39),
+            k(0.8) * t11,
         );
-        let t47 = T::fused(
-            t11,
-            T::fused(-t9, t35, self.derived[49] * t12),
-            -T::fused(-t11, t38, self.derived[25]),
+        let t45 = T::fused(
+            t9,
+            T::fused(-t8, t33, self.derived[52] * t10),
+            -T::fused(-t9, t36, self.derived[27]),
         );
-        let t48 = outer_ring_wy * T::fused(k(2.0), t47, t37);
-        let t49 = t11 * t16;
-        let t50 = T::fused(
+        let t46 = outer_ring_wy * T::fused(k(2.0), t45, t35);
+        let t47 = t9 * t14;
+        let t48 = T::fused(
             k(5.0),
-            t49,
-            -T::fused(outer_ring_wy, T::fused(-k(0.5), t48, t45 * t39), t46),
+            t47,
+            -T::fused(outer_ring_wy, T::fused(-k(0.5), t46, t43 * t37), t44),
         );
-        let t51 = T::fused(-t24, t44, t50);
-        let t52 = T::fused(
+        let t49 = T::fused(-t22, t42, t48);
+        let t50 = T::fused(
             k(2.0),
-            T::fused(k(5e-6) - (t30 - t20), t40 * t9, t43),
-            t45 * T::fused(self.derived[44], t49, t42),
+            T::fused(k(5e-6) - (t28 - t18), t38 * t8, t41),
+            t43 * T::fused(self.derived[37], t47, t40),
         );
-        let t53 = T::fused(
-            -t40,
-            T::fused(
-                t40,
-                T::fused(-t11, t27, T::fused(self.derived[41], t13, t42)),
-                t48,
-            ),
-            t45 * t52,
+        let t51 = T::fused(
+            -t38,
+            T::fused(t38, T::fused(-t9, t25, T::fused(self.derived[46], t11, t40)), t46),
+            t43 * t50,
         );
-        let t54 = T::fused(-t51, t33, T::fused(t44, t34, t53))
-            / T::fused(t29, t33, T::fused(-t21, t34, T::fused(k(2.0), t19, t36)));
-        let t55 = outer_ring_wx * outer_ring_wy;
-        let t56 = T::fused(inner_ring_wy, t40, T::fused(-t11, t54, t0 * t9));
-        let t57 = T::fused(inner_ring_wx, t40, -T::fused(t9, t54, t0 * t11));
-        let t58 = T::fused(t33, t54, t32 * t51);
-        let t59 = t55 - t58;
-        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[40] * t44)) + t56;
-        let t61 = T::fused(
+        let t52 = T::fused(-t49, t31, T::fused(t42, t32, t51))
+            / T::fused(t27, t31, T::fused(-t19, t32, T::fused(k(2.0), t17, t34)));
+        let t53 = outer_ring_wx * outer_ring_wy;
+        let t54 = T::fused(inner_ring_wy, t38, T::fused(-t9, t52, t0 * t8));
+        let t55 = T::fused(inner_ring_wx, t38, -T::fused(t8, t52, t0 * t9));
+        let t56 = T::fused(t31, t52, t30 * t49);
+        let t57 = t53 - t56;
+        let t58 = T::fused(t22, t56, T::fused(t32, t52, self.derived[45] * t42)) + t54;
+        let t59 = T::fused(
+            self.parameters.offset_x,
+            t55,
+            self.parameters.offset_y * t54,
+        );
+        let t60 = T::fused(
             self.parameters.offset_x,
             t57,
-            self.parameters.offset_y * t56,
+            self.parameters.offset_z * t54,
         );
-        let t62 = T::fused(
-            self.parameters.offset_x,
-            t59,
-            self.parameters.offset_z * t56,
-        );
-        let t63 = T::fused(
+        let t61 = T::fused(
             -inner_ring_wy,
             self.parameters.offset_x,
             inner_ring_wx * self.parameters.offset_y,
         );
-        let t64 = T::fused(
+        let t62 = T::fused(
             -inner_ring_wz,
             self.parameters.offset_y,
             inner_ring_wy * self.parameters.offset_z,
         );
-        let t65 = T::fused(-inner_ring_wx, t63, inner_ring_wz * t64);
-        let t66 = T::fused(
+        let t63 = T::fused(-inner_ring_wx, t61, inner_ring_wz * t62);
+        let t64 = T::fused(
             -inner_ring_wx,
             self.parameters.offset_z,
             inner_ring_wz * self.parameters.offset_x,
         );
-        let t67 = T::fused(-inner_ring_wy, t64, inner_ring_wx * t66);
-        let t68 = T::fused(
+        let t65 = T::fused(-inner_ring_wy, t62, inner_ring_wx * t64);
+        let t66 = T::fused(
             -rotor_wz,
             self.parameters.imbalance_y,
             rotor_wy * self.parameters.imbalance_z,
         );
-        let t69 = rotor_wx * self.parameters.imbalance_z;
-        let t70 = T::fused(rotor_wy, t68, rotor_wx * t69) + T::fused(t65, t5, t67 * t3);
-        let t71 = T::fused(
+        let t67 = rotor_wx * self.parameters.imbalance_z;
+        let t68 = T::fused(rotor_wy, t66, rotor_wx * t67) + T::fused(t63, t4, t65 * t3);
+        let t69 = T::fused(
             self.parameters.imbalance_y,
-            t60,
-            t70 + T::fused(-t3, t61, t5 * t62),
+            t58,
+            t68 + T::fused(-t3, t59, t4 * t60),
         );
-        let t72 = rotor_e0 * rotor_e2;
-        let t73 = rotor_e1 * rotor_e3;
-        let t74 = rotor_wx * self.parameters.imbalance_y;
-        let t75 = T::fused(-rotor_wx, t74, rotor_wz * t68)
-            + T::fused(-t65, t3, t67 * t5);
-        let t76 = T::fused(
+        let t70 = rotor_e0 * rotor_e2;
+        let t71 = rotor_e1 * rotor_e3;
+        let t72 = rotor_wx * self.parameters.imbalance_y;
+        let t73 = T::fused(-rotor_wx, t72, rotor_wz * t66)
+            + T::fused(-t63, t3, t65 * t4);
+        let t74 = T::fused(
             self.parameters.imbalance_z,
-            t60,
-            t75 - T::fused(t5, t61, t3 * t62),
+            t58,
+            t73 - T::fused(t4, t59, t3 * t60),
         );
-        let t77 = rotor_e0 * rotor_e3;
-        let t78 = rotor_e1 * rotor_e2;
-        let t79 = T::fused(rotor_wy, t45, T::fused(t3, t59, t5 * t57));
-        let t80 = T::fused(rotor_wz, t45, -T::fused(-t5, t59, t3 * t57));
-        let t81 = T::fused(-inner_ring_wz, t66, inner_ring_wy * t63)
-            - T::fused(rotor_wz, t69, rotor_wy * t74);
-        let t82 = t81
-            + T::fused(-self.parameters.offset_y, t59, self.parameters.offset_z * t57)
+        let t75 = rotor_e0 * rotor_e3;
+        let t76 = rotor_e1 * rotor_e2;
+        let t77 = T::fused(rotor_wy, t43, T::fused(t3, t57, t4 * t55));
+        let t78 = T::fused(rotor_wz, t43, -T::fused(-t4, t57, t3 * t55));
+        let t79 = T::fused(-inner_ring_wz, t64, inner_ring_wy * t61)
+            - T::fused(rotor_wz, t67, rotor_wy * t72);
+        let t80 = t79
+            + T::fused(-self.parameters.offset_y, t57, self.parameters.offset_z * t55)
             + T::fused(
                 self.parameters.imbalance_y,
-                t79,
-                self.parameters.imbalance_z * t80,
+                t77,
+                self.parameters.imbalance_z * t78,
             );
-        let t83 = rotor_e0 * rotor_e0;
-        let t84 = T::fused(
-            k(2.0) * (t78 - t77),
-            t76,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t83)) * t82,
+        let t81 = rotor_e0 * rotor_e0;
+        let t82 = T::fused(
+            k(2.0) * (t76 - t75),
+            t74,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t81)) * t80,
         );
-        let t85 = rotor_e0 * rotor_e1;
-        let t86 = rotor_e2 * rotor_e3;
-        let t87 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t83)),
-            t76,
-            k(2.0) * (t78 + t77) * t82,
+        let t83 = rotor_e0 * rotor_e1;
+        let t84 = rotor_e2 * rotor_e3;
+        let t85 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t81)),
+            t74,
+            k(2.0) * (t76 + t75) * t80,
         );
-        let t88 = T::fused(-(k(2.0) * (t86 + t85)), t76, k(2.0) * (t73 - t72) * t82);
+        let t86 = T::fused(-(k(2.0) * (t84 + t83)), t74, k(2.0) * (t71 - t70) * t80);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -t52,
+            t53,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t54,
             t55,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t56,
             t57,
-            t59,
-            T::fused(k(2.0) * (t73 + t72), t71, -t84),
-            T::fused(k(2.0) * (t86 - t85), t71, t87),
-            T::fused(-(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t83))), t71, t88),
-            -t60,
-            -t80,
-            t79,
+            T::fused(k(2.0) * (t71 + t70), t69, -t82),
+            T::fused(k(2.0) * (t84 - t83), t69, t85),
+            T::fused(-(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t81))), t69, t86),
+            -t58,
+            -t78,
+            t77,
         ];
     }
-    /// Writes λ: 260 operations (106 ±, 154 ×, 0 ÷).
+    /// Writes λ: 263 operations (109 ±, 154 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -4747,13 +4693,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t8 = rotor_e2 * rotor_e3;
         let t9 = T::fused(
             k(0.5) - T::fused(rotor_e3, rotor_e3, t6),
-            self.derived[34],
-            (t8 + t7) * self.derived[33],
+            self.derived[2],
+            (t8 + t7) * self.derived[1],
         );
         let t10 = T::fused(
             t8 - t7,
-            self.derived[34],
-            (k(0.5) - T::fused(rotor_e2, rotor_e2, t6)) * self.derived[33],
+            self.derived[2],
+            (k(0.5) - T::fused(rotor_e2, rotor_e2, t6)) * self.derived[1],
         );
         let t11 = rotor_e0 * rotor_e2;
         let t12 = rotor_e1 * rotor_e3;
@@ -4762,7 +4708,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t15 = T::fused(
             -t2,
             t10,
-            t0 * T::fused(-(t12 + t11), self.derived[34], (t14 - t13) * self.derived[33]),
+            t0 * T::fused(-(t12 + t11), self.derived[2], (t14 - t13) * self.derived[1]),
         );
         let t16 = rotor_wz * self.parameters.product_xy;
         let t17 = rotor_wy * self.parameters.product_xz;
@@ -4812,8 +4758,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t36 = k(2.0) * t35;
-        let t37 = T::fused(-t35, t36, k(1.0));
+        let t36 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t37 = (t36 + t35) * (t36 - t35);
         let t38 = k(5e-6) * rotor_wx;
         let t39 = rotor_wx * rotor_wx;
         let t40 = T::fused(
@@ -4849,8 +4803,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t47 = k(2.0) * t46;
-        let t48 = T::fused(
+        let t47 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4859,8 +4812,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t49 = t48 * t47;
-        let t50 = T::fused(
+        let t48 = t47 * (k(2.0) * t46);
+        let t49 = T::fused(
             rotor_wy,
             t16,
             T::fused(
@@ -4869,7 +4822,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t39),
             ),
         );
-        let t51 = T::fused(
+        let t50 = T::fused(
             t4,
             t43 * self.parameters.imbalance_z,
             T::fused(
@@ -4878,82 +4831,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 t2 * (t42 * self.parameters.imbalance_z),
             ),
         );
-        let t52 = t51
+        let t51 = t50
             - (T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx)
-                + t50);
-        let t53 = T::fused(-t46, t47, k(1.0));
-        let t54 = T::fused(-t49, t45, t53 * t52);
-        let t55 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25));
-        let t56 = k(2.0) * (t20 + t19);
-        let t57 = T::fused(
+                + t49);
+        let t52 = (t47 + t46) * (t47 - t46);
+        let t53 = T::fused(-t48, t45, t52 * t51);
+        let t54 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25));
+        let t55 = k(2.0) * (t20 + t19);
+        let t56 = T::fused(
             t0,
-            T::fused(t55, self.parameters.offset_z, t24 * self.parameters.offset_x),
-            t2 * T::fused(-t56, self.parameters.offset_z, t29 * self.parameters.offset_x),
+            T::fused(t54, self.parameters.offset_z, t24 * self.parameters.offset_x),
+            t2 * T::fused(-t55, self.parameters.offset_z, t29 * self.parameters.offset_x),
         );
-        let t58 = k(2.0) * (t23 - t22);
-        let t59 = T::fused(
+        let t57 = k(2.0) * (t23 - t22);
+        let t58 = T::fused(
             k(2e-6),
             inner_ring_dwy,
             T::fused(
                 t4,
-                T::fused(t58, self.parameters.offset_z, t32 * self.parameters.offset_x),
-                -t57,
-            ) - t54,
+                T::fused(t57, self.parameters.offset_z, t32 * self.parameters.offset_x),
+                -t56,
+            ) - t53,
         );
-        let t60 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t61 = t60 * t36;
-        let t62 = T::fused(-t37, t34, t61 * t59);
-        let t63 = T::fused(k(2e-6), outer_ring_dwx, t62);
-        let t64 = k(2.0) * outer_ring_e2;
-        let t65 = T::fused(-outer_ring_e2, t64, k(1.0));
-        let t66 = T::fused(t53, t45, t49 * t52);
-        let t67 = T::fused(
+        let t59 = t36 * (k(2.0) * t35);
+        let t60 = T::fused(-t37, t34, t59 * t58);
+        let t61 = T::fused(k(2e-6), outer_ring_dwx, t60);
+        let t62 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t63 = T::fused(t52, t45, t48 * t51);
+        let t64 = T::fused(
             -t0,
-            T::fused(t55, self.parameters.offset_y, t21 * self.parameters.offset_x),
-            t2 * T::fused(t56, self.parameters.offset_y, t26 * self.parameters.offset_x),
+            T::fused(t54, self.parameters.offset_y, t21 * self.parameters.offset_x),
+            t2 * T::fused(t55, self.parameters.offset_y, t26 * self.parameters.offset_x),
         );
-        let t68 = T::fused(
+        let t65 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
             T::fused(
                 t4,
-                T::fused(-t58, self.parameters.offset_y, t31 * self.parameters.offset_x),
-                -t67,
-            ) + t66,
+                T::fused(-t57, self.parameters.offset_y, t31 * self.parameters.offset_x),
+                -t64,
+            ) + t63,
         );
-        let t69 = T::fused(
+        let t66 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t68,
+            -t65,
         );
-        let t70 = outer_ring_e0 * t64;
+        let t67 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t65, t63, t70 * t69),
-            -T::fused(t70, t63, t65 * t69),
+            T::fused(-t62, t61, t67 * t66),
+            -T::fused(t67, t61, t62 * t66),
             -t1,
             -t3,
             -t5,
-            -T::fused(t61, t34, t37 * t59),
-            t62,
+            -T::fused(t59, t34, t37 * t58),
+            t60,
             -t0,
             -t2,
             -t4,
-            -t66,
-            -t54,
+            -t63,
+            -t53,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 522 operations (212 ±, 308 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 525 operations (215 ±, 308 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4987,9 +4930,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4998,9 +4939,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t5 = t4 * t2;
-        let t6 = T::fused(t3, self.derived[35], t5 * self.derived[36]);
-        let t7 = T::fused(
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = t2 * (k(2.0) * t1);
+        let t5 = T::fused(t3, self.derived[40], t4 * self.derived[41]);
+        let t6 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -5009,9 +4951,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
-        let t10 = T::fused(
+        let t7 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -5020,370 +4960,366 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t11 = t10 * t8;
-        let t12 = self.parameters.offset_y * t11;
-        let t13 = T::fused(self.parameters.offset_x, t9, t12);
-        let t14 = self.parameters.imbalance_z * t5;
-        let t15 = t3 * self.derived[37];
-        let t16 = T::fused(k(0.16), t14, t15);
-        let t17 = T::fused(t9, t6, t16 * t13);
-        let t18 = T::fused(-self.derived[3], t3, self.derived[6] * t5);
-        let t19 = self.parameters.offset_z * t18;
-        let t20 = self.derived[38] + t19;
-        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[39] + t20));
-        let t22 = T::fused(
+        let t8 = (t7 + t6) * (t7 - t6);
+        let t9 = t7 * (k(2.0) * t6);
+        let t10 = self.parameters.offset_y * t9;
+        let t11 = T::fused(self.parameters.offset_x, t8, t10);
+        let t12 = self.parameters.imbalance_z * t4;
+        let t13 = t3 * self.derived[42];
+        let t14 = T::fused(k(0.16), t12, t13);
+        let t15 = T::fused(t8, t5, t14 * t11);
+        let t16 = T::fused(-self.derived[8], t3, self.derived[11] * t4);
+        let t17 = self.parameters.offset_z * t16;
+        let t18 = self.derived[43] + t17;
+        let t19 = T::fused(-k(0.5), t15, t9 * (self.derived[44] + t18));
+        let t20 = T::fused(
             -self.parameters.product_xy,
-            t5,
+            t4,
             self.parameters.product_xz * t3,
         );
-        let t23 = T::fused(self.parameters.offset_x, t18, -t22);
-        let t24 = self.derived[40] * t23;
-        let t25 = self.parameters.offset_y * t9;
-        let t26 = T::fused(
+        let t21 = T::fused(self.parameters.offset_x, t16, -t20);
+        let t22 = self.derived[45] * t21;
+        let t23 = self.parameters.offset_y * t8;
+        let t24 = T::fused(
             -t3,
-            T::fused(-t5, self.derived[42], self.parameters.imbalance_z * t15),
-            self.derived[43],
+            T::fused(-t4, self.derived[47], self.parameters.imbalance_z * t13),
+            self.derived[48],
         );
-        let t27 = T::fused(self.derived[44], t16, t26);
-        let t28 = T::fused(
-            -(self.derived[41] + t18),
-            T::fused(-self.parameters.offset_x, t11, t25),
-            T::fused(-t11, t22, t9 * t27),
+        let t25 = T::fused(self.derived[37], t14, t24);
+        let t26 = T::fused(
+            -(self.derived[46] + t16),
+            T::fused(-self.parameters.offset_x, t9, t23),
+            T::fused(-t9, t20, t8 * t25),
         );
-        let t29 = T::fused(-t24, t21, t28);
-        let t30 = t3 * T::fused(t3, self.derived[42], self.derived[37] * t14);
-        let t31 = self.derived[45] + t30;
-        let t32 = k(1.0)
+        let t27 = T::fused(-t22, t19, t26);
+        let t28 = t3 * T::fused(t3, self.derived[47], self.derived[42] * t12);
+        let t29 = self.derived[49] + t28;
+        let t30 = k(1.0)
             / T::fused(
-                t23,
-                t24,
-                -(self.derived[22]
-                    + (T::fused(-self.parameters.offset_y, t16, k(6e-6)) + t31)),
+                t21,
+                t22,
+                -(self.derived[24]
+                    + (T::fused(-self.parameters.offset_y, t14, k(6e-6)) + t29)),
             );
-        let t33 = t32 * t29;
-        let t34 = self.derived[40] * t21;
-        let t35 = k(4e-6) + (self.derived[46] + t31);
-        let t36 = T::fused(
-            self.derived[49],
-            T::fused(t9, t12, self.derived[48]),
-            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[47])),
+        let t31 = t30 * t27;
+        let t32 = self.derived[45] * t19;
+        let t33 = k(4e-6) + (self.derived[50] + t29);
+        let t34 = T::fused(
+            self.derived[52],
+            T::fused(t8, t10, self.derived[39]),
+            -(t28 - T::fused(t9, T::fused(t9, t33, -t15), self.derived[51])),
         );
-        let t37 = T::fused(self.parameters.offset_x, t16, t6);
-        let t38 = T::fused(-t11, t37, t16 * t25);
-        let t39 = T::fused(t9, T::fused(k(2.0), t31, k(1e-5)), -t38);
-        let t40 = outer_ring_wz - inner_ring_wz;
-        let t41 = t40 * T::fused(self.parameters.offset_y, t18, -t26);
-        let t42 = T::fused(-t9, t22, t18 * t13);
-        let t43 = outer_ring_wy * T::fused(t11, T::fused(-t11, t26, t42), t27);
-        let t44 = T::fused(
+        let t35 = T::fused(self.parameters.offset_x, t14, t5);
+        let t36 = T::fused(-t9, t35, t14 * t23);
+        let t37 = T::fused(t8, T::fused(k(2.0), t29, k(1e-5)), -t36);
+        let t38 = outer_ring_wz - inner_ring_wz;
+        let t39 = t38 * T::fused(self.parameters.offset_y, t16, -t24);
+        let t40 = T::fused(-t8, t20, t16 * t11);
+        let t41 = outer_ring_wy * T::fused(t9, T::fused(-t9, t24, t40), t25);
+        let t42 = T::fused(
             outer_ring_wy,
-            t43,
-            -T::fused(-t40, T::fused(-outer_ring_wy, t39, t41), k(10.0) * (t9 * t18)),
+            t41,
+            -T::fused(-t38, T::fused(-outer_ring_wy, t37, t39), k(10.0) * (t8 * t16)),
         );
-        let t45 = inner_ring_wx - rotor_wx;
-        let t46 = T::fused(
+        let t43 = inner_ring_wx - rotor_wx;
+        let t44 = T::fused(
             -k(2.0),
-            t45 * T::fused(-k(0.25), t45 * t37, t41),
-            k(0.8) * t13,
+            t43 * T::fused(-k(0.25), t43 * t35, t39),
+            k(0.8) * t11,
         );
-        let t47 = T::fused(
-            t11,
-            T::fused(-t9, t35, self.derived[49] * t12),
-            -T::fused(-t11, t38, self.derived[25]),
+        let t45 = T::fused(
+            t9,
+            T::fused(-t8, t33, self.derived[52] * t10),
+            -T::fused(-t9, t36, self.derived[27]),
         );
-        let t48 = outer_ring_wy * T::fused(k(2.0), t47, t37);
-        let t49 = t11 * t16;
-        let t50 = T::fused(
+        let t46 = outer_ring_wy * T::fused(k(2.0), t45, t35);
+        let t47 = t9 * t14;
+        let t48 = T::fused(
             k(5.0),
-            t49,
-            -T::fused(outer_ring_wy, T::fused(-k(0.5), t48, t45 * t39), t46),
+            t47,
+            -T::fused(outer_ring_wy, T::fused(-k(0.5), t46, t43 * t37), t44),
         );
-        let t51 = T::fused(-t24, t44, t50);
-        let t52 = T::fused(
+        let t49 = T::fused(-t22, t42, t48);
+        let t50 = T::fused(
             k(2.0),
-            T::fused(k(5e-6) - (t30 - t20), t40 * t9, t43),
-            t45 * T::fused(self.derived[44], t49, t42),
+            T::fused(k(5e-6) - (t28 - t18), t38 * t8, t41),
+            t43 * T::fused(self.derived[37], t47, t40),
         );
-        let t53 = T::fused(
-            -t40,
-            T::fused(
-                t40,
-                T::fused(-t11, t27, T::fused(self.derived[41], t13, t42)),
-                t48,
-            ),
-            t45 * t52,
+        let t51 = T::fused(
+            -t38,
+            T::fused(t38, T::fused(-t9, t25, T::fused(self.derived[46], t11, t40)), t46),
+            t43 * t50,
         );
-        let t54 = T::fused(-t51, t33, T::fused(t44, t34, t53))
-            / T::fused(t29, t33, T::fused(-t21, t34, T::fused(k(2.0), t19, t36)));
-        let t55 = outer_ring_wx * outer_ring_wy;
-        let t56 = T::fused(inner_ring_wy, t40, T::fused(-t11, t54, t0 * t9));
-        let t57 = T::fused(inner_ring_wx, t40, -T::fused(t9, t54, t0 * t11));
-        let t58 = T::fused(t33, t54, t32 * t51);
-        let t59 = t55 - t58;
-        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[40] * t44)) + t56;
-        let t61 = T::fused(
+        let t52 = T::fused(-t49, t31, T::fused(t42, t32, t51))
+            / T::fused(t27, t31, T::fused(-t19, t32, T::fused(k(2.0), t17, t34)));
+        let t53 = outer_ring_wx * outer_ring_wy;
+        let t54 = T::fused(inner_ring_wy, t38, T::fused(-t9, t52, t0 * t8));
+        let t55 = T::fused(inner_ring_wx, t38, -T::fused(t8, t52, t0 * t9));
+        let t56 = T::fused(t31, t52, t30 * t49);
+        let t57 = t53 - t56;
+        let t58 = T::fused(t22, t56, T::fused(t32, t52, self.derived[45] * t42)) + t54;
+        let t59 = T::fused(
+            self.parameters.offset_x,
+            t55,
+            self.parameters.offset_y * t54,
+        );
+        let t60 = T::fused(
             self.parameters.offset_x,
             t57,
-            self.parameters.offset_y * t56,
+            self.parameters.offset_z * t54,
         );
-        let t62 = T::fused(
-            self.parameters.offset_x,
-            t59,
-            self.parameters.offset_z * t56,
-        );
-        let t63 = T::fused(
+        let t61 = T::fused(
             -inner_ring_wy,
             self.parameters.offset_x,
             inner_ring_wx * self.parameters.offset_y,
         );
-        let t64 = T::fused(
+        let t62 = T::fused(
             -inner_ring_wz,
             self.parameters.offset_y,
             inner_ring_wy * self.parameters.offset_z,
         );
-        let t65 = T::fused(-inner_ring_wx, t63, inner_ring_wz * t64);
-        let t66 = T::fused(
+        let t63 = T::fused(-inner_ring_wx, t61, inner_ring_wz * t62);
+        let t64 = T::fused(
             -inner_ring_wx,
             self.parameters.offset_z,
             inner_ring_wz * self.parameters.offset_x,
         );
-        let t67 = T::fused(-inner_ring_wy, t64, inner_ring_wx * t66);
-        let t68 = T::fused(
+        let t65 = T::fused(-inner_ring_wy, t62, inner_ring_wx * t64);
+        let t66 = T::fused(
             -rotor_wz,
             self.parameters.imbalance_y,
             rotor_wy * self.parameters.imbalance_z,
         );
-        let t69 = rotor_wx * self.parameters.imbalance_z;
-        let t70 = T::fused(rotor_wy, t68, rotor_wx * t69) + T::fused(t65, t5, t67 * t3);
-        let t71 = T::fused(
+        let t67 = rotor_wx * self.parameters.imbalance_z;
+        let t68 = T::fused(rotor_wy, t66, rotor_wx * t67) + T::fused(t63, t4, t65 * t3);
+        let t69 = T::fused(
             self.parameters.imbalance_y,
-            t60,
-            t70 + T::fused(-t3, t61, t5 * t62),
+            t58,
+            t68 + T::fused(-t3, t59, t4 * t60),
         );
-        let t72 = rotor_e0 * rotor_e2;
-        let t73 = rotor_e1 * rotor_e3;
-        let t74 = k(2.0) * (t73 + t72);
-        let t75 = rotor_wx * self.parameters.imbalance_y;
-        let t76 = T::fused(-rotor_wx, t75, rotor_wz * t68)
-            + T::fused(-t65, t3, t67 * t5);
-        let t77 = T::fused(
+        let t70 = rotor_e0 * rotor_e2;
+        let t71 = rotor_e1 * rotor_e3;
+        let t72 = k(2.0) * (t71 + t70);
+        let t73 = rotor_wx * self.parameters.imbalance_y;
+        let t74 = T::fused(-rotor_wx, t73, rotor_wz * t66)
+            + T::fused(-t63, t3, t65 * t4);
+        let t75 = T::fused(
             self.parameters.imbalance_z,
-            t60,
-            t76 - T::fused(t5, t61, t3 * t62),
+            t58,
+            t74 - T::fused(t4, t59, t3 * t60),
         );
-        let t78 = rotor_e0 * rotor_e3;
-        let t79 = rotor_e1 * rotor_e2;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = T::fused(rotor_wy, t45, T::fused(t3, t59, t5 * t57));
-        let t82 = T::fused(rotor_wz, t45, -T::fused(-t5, t59, t3 * t57));
-        let t83 = T::fused(-inner_ring_wz, t66, inner_ring_wy * t63)
-            - T::fused(rotor_wz, t69, rotor_wy * t75);
-        let t84 = t83
-            + T::fused(-self.parameters.offset_y, t59, self.parameters.offset_z * t57)
+        let t76 = rotor_e0 * rotor_e3;
+        let t77 = rotor_e1 * rotor_e2;
+        let t78 = k(2.0) * (t77 - t76);
+        let t79 = T::fused(rotor_wy, t43, T::fused(t3, t57, t4 * t55));
+        let t80 = T::fused(rotor_wz, t43, -T::fused(-t4, t57, t3 * t55));
+        let t81 = T::fused(-inner_ring_wz, t64, inner_ring_wy * t61)
+            - T::fused(rotor_wz, t67, rotor_wy * t73);
+        let t82 = t81
+            + T::fused(-self.parameters.offset_y, t57, self.parameters.offset_z * t55)
             + T::fused(
                 self.parameters.imbalance_y,
-                t81,
-                self.parameters.imbalance_z * t82,
+                t79,
+                self.parameters.imbalance_z * t80,
             );
-        let t85 = rotor_e0 * rotor_e0;
-        let t86 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t85));
-        let t87 = T::fused(-t74, t71, T::fused(t80, t77, t86 * t84));
-        let t88 = rotor_e0 * rotor_e1;
-        let t89 = rotor_e2 * rotor_e3;
-        let t90 = k(2.0) * (t89 - t88);
-        let t91 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t85));
-        let t92 = k(2.0) * (t79 + t78);
-        let t93 = T::fused(t90, t71, T::fused(t91, t77, t92 * t84));
-        let t94 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t85));
-        let t95 = k(2.0) * (t89 + t88);
-        let t96 = k(2.0) * (t73 - t72);
-        let t97 = T::fused(-t94, t71, T::fused(-t95, t77, t96 * t84));
-        let t98 = k(0.08) * t87;
-        let t99 = T::fused(k(0.08), t93, k(0.8));
-        let t100 = k(0.1) + t99;
-        let t101 = k(0.08) * t97;
-        let t102 = inner_ring_e0 * inner_ring_e0;
-        let t103 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t102));
-        let t104 = inner_ring_e0 * inner_ring_e3;
-        let t105 = inner_ring_e1 * inner_ring_e2;
-        let t106 = k(2.0) * (t105 - t104);
-        let t107 = k(2.0) * (t105 + t104);
-        let t108 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t102));
-        let t109 = T::fused(
-            T::fused(t103, self.parameters.offset_y, t106 * self.parameters.offset_x),
-            t98,
-            T::fused(t107, self.parameters.offset_y, t108 * self.parameters.offset_x)
-                * t99,
+        let t83 = rotor_e0 * rotor_e0;
+        let t84 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t83));
+        let t85 = T::fused(-t72, t69, T::fused(t78, t75, t84 * t82));
+        let t86 = rotor_e0 * rotor_e1;
+        let t87 = rotor_e2 * rotor_e3;
+        let t88 = k(2.0) * (t87 - t86);
+        let t89 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t83));
+        let t90 = k(2.0) * (t77 + t76);
+        let t91 = T::fused(t88, t69, T::fused(t89, t75, t90 * t82));
+        let t92 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t83));
+        let t93 = k(2.0) * (t87 + t86);
+        let t94 = k(2.0) * (t71 - t70);
+        let t95 = T::fused(-t92, t69, T::fused(-t93, t75, t94 * t82));
+        let t96 = k(0.08) * t85;
+        let t97 = T::fused(k(0.08), t91, k(0.8));
+        let t98 = k(0.1) + t97;
+        let t99 = k(0.08) * t95;
+        let t100 = inner_ring_e0 * inner_ring_e0;
+        let t101 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t100));
+        let t102 = inner_ring_e0 * inner_ring_e3;
+        let t103 = inner_ring_e1 * inner_ring_e2;
+        let t104 = k(2.0) * (t103 - t102);
+        let t105 = k(2.0) * (t103 + t102);
+        let t106 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t100));
+        let t107 = T::fused(
+            T::fused(t101, self.parameters.offset_y, t104 * self.parameters.offset_x),
+            t96,
+            T::fused(t105, self.parameters.offset_y, t106 * self.parameters.offset_x)
+                * t97,
         );
-        let t110 = inner_ring_e0 * inner_ring_e2;
-        let t111 = inner_ring_e1 * inner_ring_e3;
-        let t112 = k(2.0) * (t111 - t110);
-        let t113 = inner_ring_e0 * inner_ring_e1;
-        let t114 = inner_ring_e2 * inner_ring_e3;
-        let t115 = k(2.0) * (t114 + t113);
-        let t116 = T::fused(
-            t96 * self.parameters.imbalance_y,
-            t101,
+        let t108 = inner_ring_e0 * inner_ring_e2;
+        let t109 = inner_ring_e1 * inner_ring_e3;
+        let t110 = k(2.0) * (t109 - t108);
+        let t111 = inner_ring_e0 * inner_ring_e1;
+        let t112 = inner_ring_e2 * inner_ring_e3;
+        let t113 = k(2.0) * (t112 + t111);
+        let t114 = T::fused(
+            t94 * self.parameters.imbalance_y,
+            t99,
             T::fused(
-                t86 * self.parameters.imbalance_y,
-                t98,
-                t92 * self.parameters.imbalance_y * t99,
+                t84 * self.parameters.imbalance_y,
+                t96,
+                t90 * self.parameters.imbalance_y * t97,
             ),
         );
-        let t117 = k(5e-6) * rotor_wx;
-        let t118 = rotor_wx * rotor_wx;
-        let t119 = rotor_wy * self.parameters.product_xz;
-        let t120 = T::fused(
+        let t115 = k(5e-6) * rotor_wx;
+        let t116 = rotor_wx * rotor_wx;
+        let t117 = rotor_wy * self.parameters.product_xz;
+        let t118 = T::fused(
             rotor_wz,
-            t119,
+            t117,
             T::fused(
                 rotor_wy,
-                t117,
-                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t118),
+                t115,
+                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t116),
             ),
         );
-        let t121 = t120 + T::fused(-k(5e-6), t81, self.parameters.product_xz * t60)
-            - t116;
-        let t122 = T::fused(
-            t96 * self.parameters.imbalance_z,
-            t101,
+        let t119 = t118 + T::fused(-k(5e-6), t79, self.parameters.product_xz * t58)
+            - t114;
+        let t120 = T::fused(
+            t94 * self.parameters.imbalance_z,
+            t99,
             T::fused(
-                t86 * self.parameters.imbalance_z,
-                t98,
-                t92 * self.parameters.imbalance_z * t99,
+                t84 * self.parameters.imbalance_z,
+                t96,
+                t90 * self.parameters.imbalance_z * t97,
             ),
         );
-        let t123 = rotor_wz * self.parameters.product_xy;
-        let t124 = T::fused(
+        let t121 = rotor_wz * self.parameters.product_xy;
+        let t122 = T::fused(
             rotor_wy,
-            t123,
+            t121,
             T::fused(
                 rotor_wz,
-                t117,
-                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t118),
+                t115,
+                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t116),
             ),
         );
-        let t125 = t124 - T::fused(k(5e-6), t82, self.parameters.product_xy * t60)
-            - t122;
-        let t126 = T::fused(t3, t121, t5 * t125);
-        let t127 = T::fused(
+        let t123 = t122 - T::fused(k(5e-6), t80, self.parameters.product_xy * t58)
+            - t120;
+        let t124 = T::fused(t3, t119, t4 * t123);
+        let t125 = T::fused(
             -k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t59),
-            t126
+            T::fused(inner_ring_wx, inner_ring_wy, t57),
+            t124
                 - T::fused(
                     T::fused(
-                        -t112,
+                        -t110,
                         self.parameters.offset_y,
-                        t115 * self.parameters.offset_x,
+                        t113 * self.parameters.offset_x,
                     ),
-                    t101,
-                    -t109,
+                    t99,
+                    -t107,
                 ),
         );
-        let t128 = k(2.0) * outer_ring_e2;
-        let t129 = outer_ring_e0 * t128;
-        let t130 = T::fused(
+        let t126 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
+        let t127 = T::fused(
             -T::fused(
-                -t80,
+                -t78,
                 self.parameters.imbalance_z,
-                t74 * self.parameters.imbalance_y,
+                t72 * self.parameters.imbalance_y,
             ),
-            t98,
-            T::fused(t91, self.parameters.imbalance_z, t90 * self.parameters.imbalance_y)
-                * t99,
+            t96,
+            T::fused(t89, self.parameters.imbalance_z, t88 * self.parameters.imbalance_y)
+                * t97,
         );
-        let t131 = T::fused(
+        let t128 = T::fused(
             rotor_wx,
-            t119 - t123,
+            t117 - t121,
             -T::fused(
                 -self.parameters.product_xz,
-                t81,
-                T::fused(self.parameters.product_xy, t82, k(1e-5) * t60),
+                t79,
+                T::fused(self.parameters.product_xy, t80, k(1e-5) * t58),
             ),
         );
-        let t132 = k(2.0) * (t111 + t110);
-        let t133 = k(2.0) * (t114 - t113);
-        let t134 = T::fused(
-            -T::fused(-t106, self.parameters.offset_z, t132 * self.parameters.offset_y),
-            t98,
-            T::fused(t108, self.parameters.offset_z, t133 * self.parameters.offset_y)
-                * t99,
+        let t129 = k(2.0) * (t109 + t108);
+        let t130 = k(2.0) * (t112 - t111);
+        let t131 = T::fused(
+            -T::fused(-t104, self.parameters.offset_z, t129 * self.parameters.offset_y),
+            t96,
+            T::fused(t106, self.parameters.offset_z, t130 * self.parameters.offset_y)
+                * t97,
         );
-        let t135 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t102));
-        let t136 = T::fused(
-            T::fused(t115, self.parameters.offset_z, t135 * self.parameters.offset_y),
-            t101,
-            -t134,
+        let t132 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t100));
+        let t133 = T::fused(
+            T::fused(t113, self.parameters.offset_z, t132 * self.parameters.offset_y),
+            t99,
+            -t131,
         )
-            - (t131
+            - (t128
                 + T::fused(
                     T::fused(
-                        t95,
+                        t93,
                         self.parameters.imbalance_z,
-                        t94 * self.parameters.imbalance_y,
+                        t92 * self.parameters.imbalance_y,
                     ),
-                    t101,
-                    -t130,
+                    t99,
+                    -t127,
                 ));
-        let t137 = T::fused(k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t56), t136);
-        let t138 = T::fused(
-            -T::fused(t103, self.parameters.offset_z, t132 * self.parameters.offset_x),
-            t98,
-            T::fused(-t107, self.parameters.offset_z, t133 * self.parameters.offset_x)
-                * t99,
+        let t134 = T::fused(k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t54), t133);
+        let t135 = T::fused(
+            -T::fused(t101, self.parameters.offset_z, t129 * self.parameters.offset_x),
+            t96,
+            T::fused(-t105, self.parameters.offset_z, t130 * self.parameters.offset_x)
+                * t97,
         );
-        let t139 = T::fused(-t5, t121, t3 * t125);
-        let t140 = T::fused(
+        let t136 = T::fused(-t4, t119, t3 * t123);
+        let t137 = T::fused(
             k(2e-6),
-            t57,
-            t139
+            t55,
+            t136
                 + T::fused(
                     T::fused(
-                        t112,
+                        t110,
                         self.parameters.offset_z,
-                        t135 * self.parameters.offset_x,
+                        t132 * self.parameters.offset_x,
                     ),
-                    t101,
-                    -t138,
+                    t99,
+                    -t135,
                 ),
         );
-        let t141 = T::fused(-t9, t137, t11 * t140);
-        let t142 = T::fused(k(2e-6), t0, -t141);
-        let t143 = T::fused(-outer_ring_e2, t128, k(1.0));
+        let t138 = T::fused(-t8, t134, t9 * t137);
+        let t139 = T::fused(k(2e-6), t0, -t138);
+        let t140 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -t52,
+            t53,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t54,
             t55,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t56,
             t57,
-            t59,
-            -t87,
-            t93,
-            t97,
-            -t60,
-            -t82,
-            t81,
-            t98,
-            -(k(0.1) + t100),
-            -t101,
-            T::fused(t129, t127, t143 * t142),
-            T::fused(-t143, t127, t129 * t142),
-            t98,
-            -t100,
-            -t101,
-            -T::fused(t11, t137, t9 * t140),
-            t141,
-            t98,
+            -t85,
+            t91,
+            t95,
+            -t58,
+            -t80,
+            t79,
+            t96,
+            -(k(0.1) + t98),
             -t99,
-            -t101,
-            t126,
-            t139,
+            T::fused(t126, t125, t140 * t139),
+            T::fused(-t140, t125, t126 * t139),
+            t96,
+            -t98,
+            -t99,
+            -T::fused(t9, t134, t8 * t137),
+            t138,
+            t96,
+            -t97,
+            -t99,
+            t124,
+            t136,
         ];
     }
 }
@@ -5412,13 +5348,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let u2 = x[5];
         let t0 = x2.cos();
         let t1 = x2.sin();
-        let t2 = T::fused(self.derived[3], t0, self.derived[6] * t1);
+        let t2 = T::fused(self.derived[8], t0, self.derived[11] * t1);
         let t3 = k(10.0) * t2;
         let t4 = x1.cos();
-        let t5 = t1 * self.derived[42];
-        let t6 = t0 * self.derived[37];
+        let t5 = t1 * self.derived[47];
+        let t6 = t0 * self.derived[42];
         let t7 = T::fused(self.parameters.imbalance_z, t6, t5);
-        let t8 = T::fused(-t0, t7, self.derived[43]);
+        let t8 = T::fused(-t0, t7, self.derived[48]);
         let t9 = T::fused(self.parameters.offset_y, t2, t8);
         let t10 = u1 * t9;
         let t11 = self.parameters.imbalance_z * t1;
@@ -5433,10 +5369,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let t16 = x1.sin();
         let t17 = self.parameters.offset_y * t4;
         let t18 = T::fused(-t16, t15, t12 * t17);
-        let t19 = t0 * self.derived[42];
-        let t20 = T::fused(self.derived[37], t11, -t19);
+        let t19 = t0 * self.derived[47];
+        let t20 = T::fused(self.derived[42], t11, -t19);
         let t21 = t0 * t20;
-        let t22 = self.derived[45] - t21;
+        let t22 = self.derived[49] - t21;
         let t23 = T::fused(k(2.0), t22, k(1e-5));
         let t24 = T::fused(t4, t23, -t18);
         let t25 = u0 * t24;
@@ -5451,21 +5387,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let t30 = T::fused(-self.parameters.offset_x, t4, t29);
         let t31 = T::fused(t2, t30, -t28);
         let t32 = T::fused(t16, t8, t31);
-        let t33 = T::fused(self.derived[44], t12, t8);
+        let t33 = T::fused(self.derived[37], t12, t8);
         let t34 = T::fused(-t16, t32, t33);
         let t35 = u0 * t34;
         let t36 = T::fused(u0, t35, T::fused(t4, t3, u1 * t26));
         let t37 = T::fused(self.parameters.offset_x, t2, t27);
-        let t38 = self.derived[40] * t37;
+        let t38 = self.derived[45] * t37;
         let t39 = k(2.0) * u2;
         let t40 = k(0.25) * u2;
         let t41 = T::fused(-t15, t40, t10);
-        let t42 = k(4e-6) + (self.derived[46] + t22);
+        let t42 = k(4e-6) + (self.derived[50] + t22);
         let t43 = t4 * t42;
-        let t44 = T::fused(self.derived[49], t29, t43);
+        let t44 = T::fused(self.derived[52], t29, t43);
         let t45 = T::fused(
             k(2.0),
-            T::fused(-t16, t44, T::fused(t16, t18, self.derived[25])),
+            T::fused(-t16, t44, T::fused(t16, t18, self.derived[27])),
             t15,
         );
         let t46 = u0 * t45;
@@ -5478,49 +5414,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         );
         let t50 = T::fused(-t38, t36, t49);
         let t51 = T::fused(self.parameters.offset_x, t16, t17);
-        let t52 = self.derived[41] - t2;
+        let t52 = self.derived[46] - t2;
         let t53 = t16 * t27;
         let t54 = t4 * t33;
         let t55 = T::fused(t12, t30, t4 * t14);
         let t56 = self.parameters.offset_z * t2;
-        let t57 = self.derived[38] - t56;
-        let t58 = self.derived[39] + t57;
+        let t57 = self.derived[43] - t56;
+        let t58 = self.derived[44] + t57;
         let t59 = T::fused(-k(0.5), t55, t16 * t58);
         let t60 = T::fused(t38, t59, -T::fused(-t52, t51, t54 + t53));
         let t61 = k(1.0)
             / T::fused(
                 t37,
                 t38,
-                -(self.derived[22]
+                -(self.derived[24]
                     + (T::fused(-self.parameters.offset_y, t12, k(6e-6)) + t22)),
             );
         let t62 = t61 * t60;
-        let t63 = self.derived[40] * t59;
+        let t63 = self.derived[45] * t59;
         let t64 = u1 * t4;
         let t65 = k(5e-6) + (t21 + t57);
-        let t66 = u2 * T::fused(-self.derived[44], t48, t31);
+        let t66 = u2 * T::fused(-self.derived[37], t48, t31);
         let t67 = T::fused(-k(2.0), T::fused(-t65, t64, t35), t66);
         let t68 = t16 * t33;
-        let t69 = u1 * (T::fused(-self.derived[41], t30, t31) + t68);
+        let t69 = u1 * (T::fused(-self.derived[46], t30, t31) + t68);
         let t70 = t46 + t69;
         let t71 = T::fused(t62, t50, T::fused(t63, t36, T::fused(-u2, t67, u1 * t70)));
         let t72 = T::fused(-t16, t14, t12 * t51);
         let t73 = T::fused(-t4, t58, k(0.5) * t72);
         let t74 = T::fused(t38, t73, T::fused(t52, t30, t28 - t68));
         let t75 = t61 * t74;
-        let t76 = self.derived[40] * t73;
+        let t76 = self.derived[45] * t73;
         let t77 = t16 * t42;
         let t78 = t55 - t77;
         let t79 = T::fused(
-            self.derived[49],
+            self.derived[52],
             T::fused(-t4, t17, t16 * t29),
             -T::fused(-t16, t43 - t72, t4 * t78),
         );
         let t80 = t79 + T::fused(t59, t76, t63 * t73) - T::fused(t60, t75, t62 * t74);
         let t81 = T::fused(
-            self.derived[49],
-            T::fused(-t4, t29, self.derived[48]),
-            t21 + T::fused(-t16, t78, self.derived[47]),
+            self.derived[52],
+            T::fused(-t4, t29, self.derived[39]),
+            t21 + T::fused(-t16, t78, self.derived[51]),
         );
         let t82 = k(1.0)
             / T::fused(t60, t62, -T::fused(t59, t63, -T::fused(-k(2.0), t56, t81)));
@@ -5530,18 +5466,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let t86 = T::fused(t2, t51, t53);
         let t87 = u0 * T::fused(t16, T::fused(t4, t8, t86), t4 * t32);
         let t88 = T::fused(u0, t87, -T::fused(-t16, t3, u1 * (u0 * t85)));
-        let t89 = T::fused(-t16, T::fused(-self.derived[49], t17, t77), t4 * t44)
+        let t89 = T::fused(-t16, T::fused(-self.derived[52], t17, t77), t4 * t44)
             - T::fused(-t16, t84, t4 * t18);
         let t90 = u0 * (k(2.0) * t89);
         let t91 = t4 * t12;
         let t92 = T::fused(
             -u2,
-            T::fused(-self.derived[44], t91, t86),
+            T::fused(-self.derived[37], t91, t86),
             k(2.0) * T::fused(t65, u1 * t16, -t87),
         );
         let t93 = T::fused(
             u1,
-            T::fused(u1, t54 + T::fused(-self.derived[41], t51, t86), -t90),
+            T::fused(u1, t54 + T::fused(-self.derived[46], t51, t86), -t90),
             u2 * t92,
         );
         let t94 = T::fused(
@@ -5552,30 +5488,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let t95 = T::fused(t38, t88, t94);
         let t96 = T::fused(-t75, t50, t62 * t95) + (t93 - T::fused(t76, t36, t63 * t88));
         let t97 = T::fused(-(t83 * t80), t71, t82 * t96);
-        let t98 = T::fused(-self.derived[3], t1, self.derived[6] * t0);
+        let t98 = T::fused(-self.derived[8], t1, self.derived[11] * t0);
         let t99 = self.parameters.offset_z * t98;
         let t100 = k(2.0) * t27;
         let t101 = self.parameters.imbalance_z * t0;
-        let t102 = t1 * self.derived[37];
+        let t102 = t1 * self.derived[42];
         let t103 = T::fused(k(0.16), t101, t102);
         let t104 = T::fused(-t4, t100, t30 * t103);
         let t105 = T::fused(-t16, t99, k(0.5) * t104);
         let t106 = T::fused(-self.parameters.offset_x, t98, t13);
-        let t107 = self.derived[40] * t106;
+        let t107 = self.derived[45] * t106;
         let t108 = T::fused(
             -t0,
             T::fused(-self.parameters.imbalance_z, t102, t19),
             t1 * t7,
         );
-        let t109 = T::fused(-self.derived[44], t103, t108);
+        let t109 = T::fused(-self.derived[37], t103, t108);
         let t110 = T::fused(t98, t51, -T::fused(-t4, t109, t16 * t13))
             + T::fused(-t38, t105, t59 * t107);
-        let t111 = T::fused(-t0, T::fused(self.derived[37], t101, t5), t1 * t20);
+        let t111 = T::fused(-t0, T::fused(self.derived[42], t101, t5), t1 * t20);
         let t112 = t61 * t61
             * (T::fused(self.parameters.offset_y, t103, t111)
                 + T::fused(t37, t107, t38 * t106));
         let t113 = T::fused(-t61, t110, t60 * t112);
-        let t114 = self.derived[40] * t105;
+        let t114 = self.derived[45] * t105;
         let t115 = T::fused(k(2.0), t99, T::fused(-t16, T::fused(t16, t111, t104), t111))
             + T::fused(t59, t114, t63 * t105);
         let t116 = T::fused(self.parameters.offset_x, t103, t100);
@@ -5593,7 +5529,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let t124 = t16 * t103;
         let t125 = T::fused(
             -u2,
-            T::fused(self.derived[44], t124, t120),
+            T::fused(self.derived[37], t124, t120),
             k(2.0) * T::fused(t64, t99 + t111, -t121),
         );
         let t126 = T::fused(
@@ -5637,10 +5573,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let t147 = T::fused(
             t38,
             t142,
-            -T::fused(-self.derived[40], t88, T::fused(-t76, t141, t63 * t97)),
+            -T::fused(-self.derived[45], t88, T::fused(-t76, t141, t63 * t97)),
         );
         let t148 = T::fused(t107, T::fused(-t62, t141, t61 * t50), t38 * t143)
-            + T::fused(self.derived[40], t122, -T::fused(t114, t141, t63 * t130));
+            + T::fused(self.derived[45], t122, -T::fused(t114, t141, t63 * t130));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -5675,8 +5611,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
             k(0.0),
             t147,
             t148,
-            -T::fused(t38, t144, T::fused(t63, t134, self.derived[40] * t131)),
-            T::fused(-t38, t145, T::fused(t63, t138, self.derived[40] * t135)),
+            -T::fused(t38, t144, T::fused(t63, t134, self.derived[45] * t131)),
+            T::fused(-t38, t145, T::fused(t63, t138, self.derived[45] * t135)),
             T::fused(-t38, t146, t63 * t140),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];

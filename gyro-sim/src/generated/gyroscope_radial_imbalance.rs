@@ -11,41 +11,41 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 390 operations by relative Euler parameters, doubled; 411 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 388 operations by relative Euler parameters, doubled; 392 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 61 operations by normal form; 91 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 3 more compared
-//! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 242 operations by derivatives of u̇, from its leaves; 242 operations by normal form of that; 7 more compared
+//! * accelerations: 389 operations by relative Euler parameters, doubled; 397 operations by relative Euler parameters; 2 more compared
+//! * project: 381 operations by relative Euler parameters; 388 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 61 operations by normal form; 85 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 101 operations by normal form; 128 operations by recursion; 3 more compared
+//! * corrected_accelerations: 176 operations by normal form in the bodies' frames; 186 operations by normal form in the global frame; 9 more compared
+//! * joint_jacobian: 236 operations by derivatives of u̇, from its leaves; 236 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 51 | 60 | 0 | 111 | 0 of 18 | 178 | 111 |
+//! | phi | Φ | 50 | 51 | 0 | 101 | 0 of 18 | 158 | 101 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 670 | 188 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 116 | 180 | 0 | 296 | 6 of 15 | 1741 | 296 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 113 | 0 | 197 | 0 of 15 | 701 | 197 |
+//! | gamma | γ | 116 | 174 | 0 | 290 | 6 of 15 | 1237 | 290 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 | 495 | 191 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 156 | 228 | 5 | 389 | 6 of 18 | 588476 | 393 |
-//! | multipliers | λ, the accelerations being known | 108 | 172 | 3 | 283 | 0 of 15 | 5195 | 283 |
-//! | project | (δr, δπ') that changes the rows as given | 143 | 240 | 5 | 388 | 0 of 18 | 513043 | 389 |
+//! | multipliers | λ, the accelerations being known | 108 | 163 | 3 | 274 | 0 of 15 | 3550 | 274 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 229 | 5 | 381 | 0 of 18 | 477519 | 382 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 | 4.2e9 | 519 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 17329 | 257 |
+//! | newton_step | dependent positions, one Newton step | 193 | 302 | 3 | 498 | 6 of 21 | 3.7e9 | 498 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 | 14205 | 230 |
 //! | joint_accelerations | u̇ in joint coordinates | 18 | 41 | 2 | 61 | 0 of 3 | 290 | 62 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 633 | 78 |
-//! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 63 | 2 | 99 | 0 of 3 | 2548 | 100 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 | 18438 | 180 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 853 | 134 |
-//! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 | 214232 | 245 |
+//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 | 646 | 75 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 36 | 63 | 2 | 101 | 0 of 3 | 3934 | 102 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 67 | 107 | 2 | 176 | 6 of 18 | 27868 | 177 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 | 1021 | 137 |
+//! | corrected_solution | both | 92 | 153 | 2 | 247 | 6 of 33 | 328430 | 248 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 70 | 164 | 2 | 236 | 24 of 42 | 2805 | 236 |
 //!
 //! # Proof
@@ -458,7 +458,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 111 operations (51 ±, 60 ×, 0 ÷).
+    /// Writes Φ: 101 operations (50 ±, 51 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -482,78 +482,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = T::fused(outer_ring_e1, outer_ring_e1, t5);
+        let t3 = t2 - t1;
+        let t4 = inner_ring_e0 * inner_ring_e0;
+        let t5 = T::fused(inner_ring_e3, inner_ring_e3, t4);
+        let t6 = k(0.5) - t5;
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = T::fused(-(k(2.0) * (k(0.5) - t6)), t4, k(2.0) * (t2 + t1) * t9);
-        let t11 = inner_ring_e3 * inner_ring_e3;
-        let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + t11));
-        let t14 = outer_ring_e2 * outer_ring_e2;
-        let t15 = T::fused(
-            t0,
-            t13,
-            -T::fused(-(k(2.0) * (k(0.5) - (t5 + t14))), t9, t3 * t4),
+        let t9 = t8 - t7;
+        let t10 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t6,
+            (t2 + t1) * t9,
         );
+        let t11 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t12 = outer_ring_e0 * outer_ring_e0;
+        let t13 = T::fused(outer_ring_e1, outer_ring_e1, t12);
+        let t14 = outer_ring_e2 * outer_ring_e2;
+        let t15 = T::fused(k(0.5) - (t12 + t14), t9, -T::fused(-t0, t6, t3 * t11));
         let t16 = rotor_e0 * rotor_e3;
         let t17 = rotor_e1 * rotor_e2;
         let t18 = rotor_e2 * rotor_e2;
         let t19 = rotor_e0 * rotor_e0;
-        let t20 = T::fused(rotor_e1, rotor_e1, t19);
-        let t21 = k(2.0) * (k(0.5) - t20);
-        let t22 = k(2.0) * (t17 + t16);
-        let t23 = inner_ring_e2 * inner_ring_e2;
-        let t24 = T::fused(
-            k(2.0)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
-            t21,
-            k(2.0) * (k(0.5) - (t12 + t23)) * t22,
+        let t20 = T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t21 = t17 + t16;
+        let t22 = inner_ring_e2 * inner_ring_e2;
+        let t23 = T::fused(rotor_e1, rotor_e1, t19);
+        let t24 = k(0.5) - t23;
+        let t25 = T::fused(
+            T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t24,
+            T::fused(-(t8 + t7), t20, (k(0.5) - (t4 + t22)) * t21),
         );
-        let t25 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            t0,
-            t3,
+            k(2.0) * t0,
+            k(2.0) * t3,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t13,
-                t10,
-            ),
-            -t15,
-            T::fused(k(0.0004), t17 - t16, rotor_rx) - inner_ring_rx,
-            T::fused(-k(0.0004), k(0.5) - (t19 + t18), rotor_ry) - inner_ring_ry,
+            -(k(4.0) * T::fused(k(0.5) - t13, t11, -t10)),
+            -(k(4.0) * t15),
+            T::fused(k(0.0004), t17 - t16, -(inner_ring_rx - rotor_rx)),
+            -T::fused(k(0.0004), k(0.5) - (t19 + t18), inner_ring_ry - rotor_ry),
             T::fused(
                 k(0.0004),
                 T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3),
-                rotor_rz,
-            ) - inner_ring_rz,
-            T::fused(k(2.0) * (t8 + t7), t25, -t24),
-            T::fused(-t13, t25, T::fused(-t4, t21, t9 * t22)),
-            T::fused(outer_ring_e3, outer_ring_e3, t6 + t14) - k(1.0),
-            t11 + (T::fused(inner_ring_e1, inner_ring_e1, t12) + t23) - k(1.0),
-            T::fused(rotor_e3, rotor_e3, t20 + t18) - k(1.0),
+                -(inner_ring_rz - rotor_rz),
+            ),
+            -(k(4.0) * t25),
+            -(k(4.0) * T::fused(t11, t24, -T::fused(-t6, t20, t9 * t21))),
+            t14 + T::fused(outer_ring_e3, outer_ring_e3, t13) - k(1.0),
+            t22 + T::fused(inner_ring_e1, inner_ring_e1, t5) - k(1.0),
+            t18 + T::fused(rotor_e3, rotor_e3, t23) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 197 operations (84 ±, 113 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 191 operations (84 ±, 107 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -586,126 +574,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
-        let t7 = T::fused(-outer_ring_e1, t2, t5);
-        let t8 = t3 + t1;
-        let t9 = k(2.0) * inner_ring_e0;
-        let t10 = inner_ring_e2 * t9;
-        let t11 = k(2.0) * inner_ring_e1;
-        let t12 = inner_ring_e3 * t11;
-        let t13 = t12 + t10;
-        let t14 = outer_ring_e3 * t0;
-        let t15 = outer_ring_e2 * t2;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e1 * t9;
-        let t18 = k(2.0) * inner_ring_e2;
-        let t19 = inner_ring_e3 * t18;
-        let t20 = t19 - t17;
-        let t21 = k(2.0) * outer_ring_e2;
-        let t22 = T::fused(-outer_ring_e2, t21, t5);
-        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
-        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
-        let t25 = outer_ring_e1 * t0;
-        let t26 = outer_ring_e3 * t21;
-        let t27 = t26 + t25;
-        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t6 = t3 + t2;
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t9 = inner_ring_e0 * inner_ring_e1;
+        let t10 = inner_ring_e2 * inner_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e2;
+        let t15 = inner_ring_e1 * inner_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(t6, t16, T::fused(t8, t1, (t13 - t12) * t11));
+        let t18 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t19 = outer_ring_e0 * outer_ring_e3;
+        let t20 = outer_ring_e1 * outer_ring_e2;
+        let t21 = t20 + t19;
+        let t22 = t10 + t9;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t27 = t15 - t14;
+        let t28 = t24 + t23;
         let t29 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t5, T::fused(t21, t18, t4 * t22)),
+            inner_ring_wy * T::fused(t26, t5, T::fused(t4, t27, t21 * t28)),
+        );
+        let t30 = t13 + t12;
+        let t31 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t32 = t20 - t19;
+        let t33 = T::fused(
             outer_ring_wz,
-            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
-            outer_ring_wy * t28,
+            T::fused(t32, t16, T::fused(t30, t8, t11 * t31)),
+            T::fused(-outer_ring_wy, t17, t29),
         );
-        let t30 = T::fused(-inner_ring_e1, t11, t23);
-        let t31 = inner_ring_e3 * t9;
-        let t32 = inner_ring_e2 * t11;
-        let t33 = t32 + t31;
-        let t34 = t15 + t14;
-        let t35 = t12 - t10;
-        let t36 = t32 - t31;
-        let t37 = T::fused(-inner_ring_e2, t18, t23);
-        let t38 = t19 + t17;
-        let t39 = T::fused(
-            -inner_ring_wy,
-            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
-            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
+        let t34 = T::fused(
+            -inner_ring_wx,
+            T::fused(t32, t25, T::fused(t31, t18, t30 * t22)),
+            inner_ring_wy * T::fused(t32, t26, T::fused(t28, t31, t30 * t27)),
         );
-        let t40 = T::fused(
+        let t35 = T::fused(
             outer_ring_wz,
-            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
-            outer_ring_wx * t28,
+            T::fused(t16, t5, T::fused(t4, t8, t21 * t11)),
+            -T::fused(outer_ring_wx, t17, t34),
         );
-        let t41 = T::fused(
-            -inner_ring_wy,
-            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
-            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
+        let t36 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t37 = T::fused(rotor_e1, rotor_e1, -t36);
+        let t38 = rotor_e0 * rotor_e2;
+        let t39 = rotor_e1 * rotor_e3;
+        let t40 = t39 + t38;
+        let t41 = rotor_e0 * rotor_e1;
+        let t42 = rotor_e2 * rotor_e3;
+        let t43 = t42 - t41;
+        let t44 = rotor_e0 * rotor_e3;
+        let t45 = rotor_e1 * rotor_e2;
+        let t46 = t45 + t44;
+        let t47 = T::fused(rotor_e3, rotor_e3, -t36);
+        let t48 = t39 - t38;
+        let t49 = T::fused(rotor_e2, rotor_e2, -t36);
+        let t50 = t42 + t41;
+        let t51 = t45 - t44;
+        let t52 = T::fused(
+            -rotor_wy,
+            T::fused(t25, t40, T::fused(t22, t47, t43 * t18)),
+            rotor_wz * T::fused(t25, t51, T::fused(t49, t18, t22 * t50)),
         );
-        let t42 = k(2.0) * rotor_e1;
-        let t43 = k(2.0) * rotor_e0;
-        let t44 = T::fused(-rotor_e0, t43, k(1.0));
-        let t45 = T::fused(-rotor_e1, t42, t44);
-        let t46 = rotor_e2 * t43;
-        let t47 = rotor_e3 * t42;
-        let t48 = t47 + t46;
-        let t49 = rotor_e3 * t43;
-        let t50 = rotor_e2 * t42;
-        let t51 = t50 + t49;
-        let t52 = rotor_e1 * t43;
-        let t53 = k(2.0) * rotor_e2;
-        let t54 = rotor_e3 * t53;
-        let t55 = t54 - t52;
-        let t56 = t47 - t46;
-        let t57 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
-        let t58 = T::fused(t35, t56, T::fused(t30, t45, t33 * t51));
-        let t59 = T::fused(
-            inner_ring_wz,
-            t58,
-            inner_ring_wx * T::fused(t24, t56, -T::fused(-t13, t45, t20 * t51)),
+        let t53 = T::fused(
+            inner_ring_wx,
+            T::fused(t16, t37, T::fused(t48, t8, t11 * t46)),
+            t52,
         );
-        let t60 = t50 - t49;
-        let t61 = T::fused(-rotor_e2, t53, t44);
-        let t62 = t54 + t52;
-        let t63 = T::fused(
-            rotor_wz,
-            T::fused(t38, t62, T::fused(t36, t60, t37 * t61)),
-            rotor_wy * T::fused(t38, t57, T::fused(-t36, t48, t37 * t55)),
+        let t54 = T::fused(t26, t37, T::fused(t27, t48, t28 * t46));
+        let t55 = T::fused(
+            -rotor_wy,
+            T::fused(t16, t40, T::fused(t47, t8, t11 * t43)),
+            rotor_wz * T::fused(t16, t51, T::fused(t50, t8, t11 * t49)),
         );
-        let t64 = T::fused(
-            -inner_ring_wy,
-            t58,
-            inner_ring_wx * T::fused(t38, t56, -T::fused(t36, t45, t37 * t51)),
-        );
-        let t65 = T::fused(
-            rotor_wz,
-            T::fused(t24, t62, T::fused(-t13, t60, t20 * t61)),
-            rotor_wy * T::fused(t24, t57, T::fused(t13, t48, t20 * t55)),
+        let t56 = T::fused(
+            -inner_ring_wx,
+            T::fused(t25, t37, T::fused(t46, t18, t22 * t48)),
+            t55,
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
-            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
+            -(k(2.0) * T::fused(-outer_ring_wx, t1, t4 * outer_ring_wz)),
+            k(2.0) * T::fused(-outer_ring_wz, t5, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t39 + t29),
-            t40 - t41,
-            T::fused(k(0.0002), T::fused(rotor_wz, t45, rotor_wx * t48), rotor_sx)
-                - inner_ring_sx,
-            T::fused(k(0.0002), T::fused(-rotor_wz, t51, rotor_wx * t55), rotor_sy)
-                - inner_ring_sy,
-            T::fused(-k(0.0002), T::fused(rotor_wz, t56, rotor_wx * t57), rotor_sz)
-                - inner_ring_sz,
-            t63 - t59,
-            -(t65 + t64),
+            k(4.0) * t33,
+            -(k(4.0) * t35),
+            T::fused(
+                k(0.0004),
+                T::fused(-rotor_wz, t37, t40 * rotor_wx),
+                -(inner_ring_sx - rotor_sx),
+            ),
+            -T::fused(
+                k(0.0004),
+                T::fused(-t43, rotor_wx, t46 * rotor_wz),
+                inner_ring_sy - rotor_sy,
+            ),
+            -T::fused(
+                k(0.0004),
+                T::fused(-rotor_wx, t47, t48 * rotor_wz),
+                inner_ring_sz - rotor_sz,
+            ),
+            -(k(4.0) * T::fused(inner_ring_wz, t54, -t53)),
+            k(4.0) * T::fused(inner_ring_wy, t54, t56),
         ];
     }
-    /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
+    /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -730,65 +718,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
-        );
-        let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.01),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t2),
+            ),
+        );
+        let t4 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t3,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: T::fused(
-                k(0.8),
-                rotor_ry,
-                k(0.1) * (outer_ring_ry + inner_ring_ry),
-            ),
+            kinetic: k(5e-7) * t4,
+            potential: k(0.1) * T::fused(k(8.0), rotor_ry, outer_ring_ry + inner_ring_ry),
         }
     }
-    /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
+    /// Writes the joint readings: 104 operations (54 ±, 50 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -810,71 +797,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e3 * outer_ring_e3;
         let t3 = outer_ring_e0 * outer_ring_e0;
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
-        let t5 = outer_ring_e3 * outer_ring_e3;
-        let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
-            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
-        );
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = k(0.5) * (k(1.0) - (t5 + (t4 + t2)));
+        let t7 = inner_ring_e3 * inner_ring_e3;
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = T::fused(inner_ring_e1, inner_ring_e1, t8);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = k(0.5) * (k(1.0) - (t10 + (t9 + t7)));
+        let t12 = k(0.5) - t9 - t11;
+        let t13 = outer_ring_e0 * outer_ring_e3;
+        let t14 = outer_ring_e1 * outer_ring_e2;
+        let t15 = inner_ring_e0 * inner_ring_e3;
+        let t16 = inner_ring_e1 * inner_ring_e2;
+        let t17 = t16 + t15;
+        let t18 = T::fused(t14 - t13, t12, t17 * (k(0.5) - (t3 + t5) - t6));
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = t20 - t19;
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            t1 - t0,
+            t21,
+            T::fused(t12, k(0.5) - t4 - t6, (t14 + t13) * t17),
         );
-        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t24 = rotor_e2 * rotor_e2;
-        let t25 = rotor_e0 * rotor_e0;
-        let t26 = T::fused(
-            k(2.0),
-            k(0.5) - (t25 + t24),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        let t23 = rotor_e2 * rotor_e2;
+        let t24 = rotor_e0 * rotor_e0;
+        let t25 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t24 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t24 + t23))),
         );
+        let t26 = k(0.5) * (k(1.0) - (t23 + t25));
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t29 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
-            t26,
-            k(2.0) * (t11 - t10) * t29,
+            t30,
+            k(0.5) - (t8 + t7) - t11,
+            -T::fused(t28 - t27, t26, (t20 + t19) * t29),
         );
+        let t32 = T::fused(-(k(0.5) - (t8 + t10) - t11), t26, (t16 - t15) * t29);
         *out = [
             k(2.0) * (t1 + t0),
-            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
+            -(k(2.0) * (k(0.5) - (t3 + t2) - t6)),
             outer_ring_wy,
-            T::fused(
-                k(2.0)
-                    * T::fused(
+            k(4.0)
+                * T::fused(
+                    T::fused(
                         outer_ring_e0,
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
-            ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+                    t21,
+                    -t18,
+                ),
+            k(4.0) * t22,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
-            T::fused(k(2.0) * (t28 + t27), t23, t31),
+            -(k(4.0) * t31),
+            k(4.0) * T::fused(t28 + t27, t30, t32),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1018,7 +1001,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRadialImbalance<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 519 operations (193 ±, 323 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 498 operations (193 ±, 302 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1046,289 +1029,294 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRadialImbalance<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-        let t11 = t2 * t4;
-        let t12 = t3 * t5;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-        let t16 = k(2.0) * (t12 - t11);
-        let t17 = T::fused(t9, t15, t16 * t13);
-        let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t9 = T::fused(t2, t3, t7 * t6);
+        let t10 = t3 * t6;
+        let t11 = t2 * t7;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t3, t7, t2 * t6);
+        let t14 = t11 + t10;
+        let t15 = k(2.0) - T::fused(t7, t7, t4);
+        let t16 = T::fused(-t14, t12, t15 * t5);
+        let t17 = k(1.0) / (t8 * t16);
+        let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+        let t19 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
+        );
         let t20 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t19),
         );
         let t21 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t22 = k(0.5) * t21;
+        let t22 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t23 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            t9,
+            T::fused(t5, t21, t14 * t22),
+            t13 * T::fused(t15, t22, t12 * t21),
         );
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(
-            t10,
-            T::fused(t16, t22, t9 * t24),
-            t14 * T::fused(-t13, t24, t15 * t22),
-        );
-        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
-        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
-        let t28 = T::fused(
+        let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+        let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)), t3);
+        let t27 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)), t2);
+        let t28 = T::fused(k(0.5), T::fused(t2, t25, T::fused(t7, t18, t3 * t24)), t6);
+        let t29 = T::fused(
             -k(0.5),
-            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-            t3,
+            T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+            t7,
         );
-        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
-        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
-        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
-        let t32 = t29 * t30;
-        let t33 = t28 * t31;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t30 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t36 = k(0.5) * (t35 - k(3.0));
-        let t37 = inner_ring_e2 * t36;
-        let t38 = inner_ring_e1 * t36;
-        let t39 = t38 * t37;
-        let t40 = inner_ring_e3 * t36;
-        let t41 = inner_ring_e0 * t36;
-        let t42 = t41 * t40;
-        let t43 = k(2.0) * (t42 - t39);
-        let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
-        let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
-        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
-        let t49 = t37 * t40;
-        let t50 = t41 * t38;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
-        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
-        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
-        let t55 = k(2.0) * (t42 + t39);
-        let t56 = k(2.0) * (t33 + t32);
-        let t57 = t38 * t40;
-        let t58 = t41 * t37;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
-        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
-        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
-        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
-        let t64 = T::fused(-t61, t52, t63 * t62);
-        let t65 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t37,
-            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
-        );
-        let t66 = T::fused(
-            -chart1_3,
-            t38,
-            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
-        );
-        let t67 = k(0.5) * t66;
-        let t68 = T::fused(
+        let t31 = k(3.0) - t30;
+        let t32 = inner_ring_e3 * t31;
+        let t33 = inner_ring_e2 * t31;
+        let t34 = inner_ring_e1 * t31;
+        let t35 = inner_ring_e0 * t31;
+        let t36 = T::fused(
             chart1_3,
-            t37,
-            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+            t35,
+            -T::fused(chart1_2, t34, -T::fused(-chart1_0, t32, chart1_1 * t33)),
         );
-        let t69 = k(0.5) * t68;
-        let t70 = k(2.0) * (t58 + t57);
-        let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
-        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
-        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t37 = t33 * t35;
+        let t38 = t34 * t32;
+        let t39 = t38 - t37;
+        let t40 = T::fused(t26, t27, t28 * t29);
+        let t41 = t32 * t35;
+        let t42 = t33 * t34;
+        let t43 = t42 + t41;
+        let t44 = t26 * t26;
+        let t45 = k(2.0) - T::fused(t28, t28, t44);
+        let t46 = t35 * t35;
+        let t47 = k(2.0) - T::fused(t34, t34, t46);
+        let t48 = t26 * t29;
+        let t49 = t27 * t28;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t47, T::fused(-t40, t39, t45 * t43));
+        let t52 = k(2.0) - T::fused(t32, t32, t46);
+        let t53 = T::fused(-t26, t28, t27 * t29);
+        let t54 = t34 * t35;
+        let t55 = t33 * t32;
+        let t56 = t55 - t54;
+        let t57 = t49 + t48;
+        let t58 = t38 + t37;
+        let t59 = k(2.0) - T::fused(t27, t27, t44);
+        let t60 = T::fused(t59, t58, -T::fused(-t53, t52, t57 * t56));
+        let t61 = T::fused(t47, t59, T::fused(t39, t53, t43 * t57));
+        let t62 = T::fused(t50, t58, -T::fused(t40, t52, t45 * t56));
+        let t63 = t55 + t54;
+        let t64 = k(2.0) - T::fused(t33, t33, t46);
+        let t65 = t42 - t41;
+        let t66 = T::fused(t65, t59, T::fused(-t63, t53, t64 * t57));
+        let t67 = T::fused(t50, t65, T::fused(t40, t63, t45 * t64));
+        let t68 = T::fused(-t51, t66, t67 * t61);
+        let t69 = k(1.0) / (t68 * t36);
+        let t70 = t69 * T::fused(-t60, t51 * t36, t62 * (t61 * t36));
+        let t71 = t69 * T::fused(-t60, t67 * t36, t62 * (t66 * t36));
+        let t72 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t35, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t34, inner_ring_e1),
+        );
+        let t73 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t32, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t33, inner_ring_e2), t72),
+        );
+        let t74 = T::fused(
+            chart1_3,
+            t34,
+            T::fused(chart1_2, t35, -T::fused(chart1_0, t33, chart1_1 * t32)),
+        );
         let t75 = T::fused(
-            t73,
-            T::fused(-t63, t67, t61 * t69),
-            t74 * T::fused(-t62, t69, t52 * t67),
+            chart1_3,
+            t33,
+            -T::fused(chart1_2, t32, T::fused(-chart1_0, t34, chart1_1 * t35)),
         );
         let t76 = T::fused(
-            -chart1_3,
-            t41,
-            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+            -T::fused(t67, t74, t51 * t75),
+            t60,
+            T::fused(t61, t75, t66 * t74) * t62,
         );
-        let t77 = k(0.5) * t76;
-        let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
-        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
-        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t77 = T::fused(k(4.0), t68 * t73, t76) * t69;
+        let t78 = T::fused(
+            -k(0.5),
+            T::fused(t32, t77, -T::fused(-t34, t70, t33 * t71)),
+            t35,
+        );
+        let t79 = T::fused(
+            k(0.5),
+            T::fused(t33, t77, T::fused(t35, t70, t32 * t71)),
+            t34,
+        );
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t34, t77, T::fused(-t32, t70, t35 * t71)),
+            t33,
+        );
+        let t81 = T::fused(
+            k(0.5),
+            T::fused(t35, t77, -T::fused(t33, t70, t34 * t71)),
+            t32,
+        );
         let t82 = T::fused(
-            k(0.5),
-            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
-            t41,
-        );
-        let t83 = T::fused(
-            -k(0.5),
-            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
-            t38,
-        );
-        let t84 = T::fused(
-            -k(0.5),
-            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
-            t37,
-        );
-        let t85 = T::fused(
-            k(0.5),
-            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
-            t40,
-        );
-        let t86 = T::fused(
-            rotor_e3,
-            rotor_e3,
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t87 = k(0.5) * (t86 - k(3.0));
-        let t88 = rotor_e2 * t87;
-        let t89 = rotor_e3 * t87;
-        let t90 = rotor_e0 * t87;
-        let t91 = rotor_e1 * t87;
-        let t92 = T::fused(
+        let t83 = k(3.0) - t82;
+        let t84 = rotor_e0 * t83;
+        let t85 = rotor_e1 * t83;
+        let t86 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t84, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t85, rotor_e1),
+        );
+        let t87 = rotor_e2 * t83;
+        let t88 = rotor_e3 * t83;
+        let t89 = T::fused(
             chart2_3,
-            t88,
-            T::fused(-chart2_2, t89, T::fused(-chart2_1, t90, chart2_0 * t91)),
+            T::fused(-k(0.5), t88, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t87, rotor_e2), t86),
         );
-        let t93 = k(0.5) * t92;
-        let t94 = k(2.0) * T::fused(-t83, t84, t82 * t85);
-        let t95 = t91 * t89;
-        let t96 = t90 * t88;
-        let t97 = k(2.0) * (t96 + t95);
-        let t98 = t82 * t82;
-        let t99 = k(2.0) * (k(0.5) - T::fused(t84, t84, t98));
-        let t100 = t88 * t89;
-        let t101 = t90 * t91;
-        let t102 = k(2.0) * (t101 - t100);
-        let t103 = t84 * t85;
-        let t104 = t82 * t83;
-        let t105 = k(2.0) * (t104 + t103);
-        let t106 = t90 * t90;
-        let t107 = k(2.0) * (k(0.5) - T::fused(t89, t89, t106));
-        let t108 = T::fused(t107, t105, -T::fused(-t97, t94, t102 * t99));
-        let t109 = k(2.0) * T::fused(t83, t85, t82 * t84);
-        let t110 = k(2.0) * (k(0.5) - T::fused(t91, t91, t106));
-        let t111 = k(2.0) * (t104 - t103);
-        let t112 = t91 * t88;
-        let t113 = t90 * t89;
-        let t114 = k(2.0) * (t113 + t112);
-        let t115 = k(2.0) * (k(0.5) - T::fused(t85, t85, t98));
-        let t116 = k(2.0) * (t96 - t95);
-        let t117 = T::fused(t116, t115, -T::fused(t110, t109, t114 * t111));
-        let t118 = T::fused(t107, t115, T::fused(t97, t109, t102 * t111));
-        let t119 = T::fused(t105, t116, T::fused(-t94, t110, t99 * t114));
-        let t120 = k(2.0) * (t113 - t112);
-        let t121 = k(2.0) * (k(0.5) - T::fused(t88, t88, t106));
-        let t122 = k(2.0) * (t101 + t100);
-        let t123 = T::fused(t105, t122, T::fused(t94, t120, t99 * t121));
-        let t124 = T::fused(t122, t115, -T::fused(-t120, t109, t121 * t111));
-        let t125 = T::fused(-t123, t118, t108 * t124);
-        let t126 = k(1.0) / (t93 * t125);
-        let t127 = t126 * T::fused(-t117, t108 * t93, t119 * (t118 * t93));
-        let t128 = t126 * T::fused(-t117, t123 * t93, t119 * (t124 * t93));
-        let t129 = T::fused(
-            chart2_2,
-            rotor_e2 + t88,
-            T::fused(chart2_1, rotor_e1 + t91, chart2_0 * (rotor_e0 + t90)),
+        let t90 = t84 * t85;
+        let t91 = t87 * t88;
+        let t92 = t91 + t90;
+        let t93 = t78 * t78;
+        let t94 = k(2.0) - T::fused(t81, t81, t93);
+        let t95 = t84 * t84;
+        let t96 = k(2.0) - T::fused(t87, t87, t95);
+        let t97 = t78 * t79;
+        let t98 = t80 * t81;
+        let t99 = t98 - t97;
+        let t100 = t88 * t84;
+        let t101 = t87 * t85;
+        let t102 = t101 - t100;
+        let t103 = T::fused(t78, t80, t79 * t81);
+        let t104 = T::fused(t103, t102, -T::fused(t94, t92, t99 * t96));
+        let t105 = k(2.0) - T::fused(t88, t88, t95);
+        let t106 = t98 + t97;
+        let t107 = t91 - t90;
+        let t108 = k(2.0) - T::fused(t80, t80, t93);
+        let t109 = t87 * t84;
+        let t110 = t88 * t85;
+        let t111 = t110 + t109;
+        let t112 = T::fused(-t78, t81, t79 * t80);
+        let t113 = T::fused(t112, t111, -T::fused(t106, t105, t108 * t107));
+        let t114 = T::fused(t112, t102, T::fused(t106, t92, t108 * t96));
+        let t115 = T::fused(t111, t103, T::fused(t105, t94, t107 * t99));
+        let t116 = T::fused(-t113, t104, t115 * t114);
+        let t117 = T::fused(
+            chart2_3,
+            t84,
+            -T::fused(chart2_2, t85, -T::fused(-chart2_0, t88, chart2_1 * t87)),
         );
+        let t118 = T::fused(
+            chart2_3,
+            t85,
+            T::fused(chart2_2, t84, -T::fused(chart2_0, t87, chart2_1 * t88)),
+        );
+        let t119 = t110 - t109;
+        let t120 = t101 + t100;
+        let t121 = k(2.0) - T::fused(t85, t85, t95);
+        let t122 = T::fused(t112, t121, T::fused(-t106, t119, t108 * t120));
+        let t123 = T::fused(t103, t121, -T::fused(-t94, t119, t99 * t120));
+        let t124 = T::fused(
+            -t122,
+            T::fused(t115, t117, t104 * t118),
+            t123 * T::fused(t114, t118, t113 * t117),
+        );
+        let t125 = T::fused(
+            chart2_3,
+            t87,
+            -T::fused(chart2_2, t88, T::fused(-chart2_0, t85, chart2_1 * t84)),
+        );
+        let t126 = k(1.0) / (t125 * t116);
+        let t127 = t126 * T::fused(k(4.0), t116 * t89, t124);
+        let t128 = t126 * T::fused(-t122, t125 * t104, t123 * (t125 * t114));
+        let t129 = T::fused(-(t125 * t115), t122, t125 * t113 * t123) * t126;
         let t130 = T::fused(
-            -chart2_3,
-            t90,
-            T::fused(chart2_2, t91, T::fused(-chart2_1, t88, chart2_0 * t89)),
-        );
-        let t131 = k(0.5) * t130;
-        let t132 = T::fused(
-            -chart2_3,
-            t91,
-            T::fused(-chart2_2, t90, T::fused(chart2_1, t89, chart2_0 * t88)),
-        );
-        let t133 = k(0.5) * t132;
-        let t134 = T::fused(
-            t117,
-            T::fused(-t108, t131, t123 * t133),
-            t119 * T::fused(-t124, t133, t118 * t131),
-        );
-        let t135 = t126 * T::fused(T::fused(chart2_3, rotor_e3 + t89, t129), t125, t134);
-        let t136 = T::fused(
             k(0.5),
-            T::fused(t91, t127, T::fused(t90, t128, t89 * t135)),
+            T::fused(t88, t129, T::fused(t85, t127, t87 * t128)),
+            t84,
+        );
+        let t131 = T::fused(
+            -k(0.5),
+            T::fused(t84, t129, T::fused(-t87, t127, t85 * t128)),
             t88,
         );
-        let t137 = T::fused(
+        let t132 = T::fused(
+            -k(0.5),
+            T::fused(t87, t129, -T::fused(-t84, t127, t88 * t128)),
+            t85,
+        );
+        let t133 = T::fused(
             k(0.5),
-            T::fused(-t88, t127, T::fused(-t89, t128, t90 * t135)),
-            t91,
-        );
-        let t138 = T::fused(
-            -k(0.5),
-            T::fused(t90, t127, T::fused(-t91, t128, t88 * t135)),
-            t89,
-        );
-        let t139 = T::fused(
-            -k(0.5),
-            T::fused(-t89, t127, T::fused(t88, t128, t91 * t135)),
-            t90,
+            T::fused(t85, t129, -T::fused(t88, t127, t84 * t128)),
+            t87,
         );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t28;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t31;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t27;
+        y[5] = k(0.5) * t28;
+        y[6] = k(0.5) * t29;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t82;
-        y[11] = -t83;
-        y[12] = -t84;
-        y[13] = -t85;
-        y[14] = k(0.0004) * T::fused(-t137, t136, t139 * t138);
-        y[15] = k(0.0004) * (k(0.5) - T::fused(t139, t139, t136 * t136));
-        y[16] = -(k(0.0004) * T::fused(t136, t138, t139 * t137));
-        y[17] = -t139;
-        y[18] = -t137;
-        y[19] = -t136;
-        y[20] = -t138;
+        y[10] = k(0.5) * t78;
+        y[11] = k(0.5) * t79;
+        y[12] = k(0.5) * t80;
+        y[13] = k(0.5) * t81;
+        y[14] = -(k(0.0001) * T::fused(-t131, t130, t133 * t132));
+        y[15] = k(0.0001) * (k(2.0) - T::fused(t133, t133, t130 * t130));
+        y[16] = -(k(0.0001) * T::fused(t132, t130, t133 * t131));
+        y[17] = k(0.5) * t130;
+        y[18] = k(0.5) * t132;
+        y[19] = k(0.5) * t133;
+        y[20] = k(0.5) * t131;
     }
-    /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
+    /// Solves eq. (19) for the dependent velocities: 230 operations (96 ±, 131 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1353,111 +1341,111 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRadialImbalance<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
-        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
-        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
-        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
+        let t1 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0);
+        let t2 = outer_ring_e0 * outer_ring_e2;
+        let t3 = outer_ring_e1 * outer_ring_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(t1, outer_ring_wx, t4 * outer_ring_wz);
+        let t6 = t3 + t2;
+        let t7 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, outer_ring_wx, t7 * outer_ring_wz);
+        let t10 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, outer_ring_wx));
+        let t11 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t21 = inner_ring_e0 * inner_ring_e2;
-        let t22 = inner_ring_e1 * inner_ring_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = outer_ring_e0 * outer_ring_e1;
-        let t25 = outer_ring_e2 * outer_ring_e3;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
-        let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
-        let t30 = k(2.0) * (t15 + t14);
-        let t31 = inner_ring_e0 * inner_ring_e1;
-        let t32 = inner_ring_e2 * inner_ring_e3;
-        let t33 = k(2.0) * (t32 + t31);
-        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
-        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
-        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
-        let t38 = k(2.0) * (t22 + t21);
-        let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
-        let t42 = T::fused(
+        let t13 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12);
+        let t14 = outer_ring_e0 * outer_ring_e1;
+        let t15 = outer_ring_e2 * outer_ring_e3;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e0 * inner_ring_e1;
+        let t24 = inner_ring_e2 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0);
+        let t27 = T::fused(t1, t13, T::fused(t6, t19, (t15 - t14) * t25));
+        let t28 = T::fused(
+            -T::fused(t26, t25, -T::fused(-t16, t13, t22 * t19)),
             t11,
-            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            outer_ring_wy * t27,
         );
-        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t29 = t24 + t23;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12);
+        let t31 = t21 + t20;
+        let t32 = inner_ring_e0 * inner_ring_e3;
+        let t33 = inner_ring_e1 * inner_ring_e2;
+        let t34 = t33 - t32;
+        let t35 = T::fused(t7, t34, T::fused(-t4, t29, t31 * t30));
+        let t36 = t18 - t17;
+        let t37 = t33 + t32;
+        let t38 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12);
+        let t39 = T::fused(t7, t38, T::fused(t4, t36, t31 * t37));
+        let t40 = T::fused(inner_ring_wy, t39, T::fused(inner_ring_wx, t35, -t28));
+        let t41 = T::fused(t26, t30, T::fused(t16, t29, t22 * t34));
+        let t42 = T::fused(t22, t38, T::fused(-t16, t36, t26 * t37));
+        let t43 = k(1.0) / T::fused(-t41, t39, t42 * t35);
         let t44 = T::fused(
-            t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
-            outer_ring_wy * t41,
+            -t27,
+            t10,
+            T::fused(t7, t19, -T::fused(-t4, t13, t31 * t25)) * t11,
         );
-        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
-        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
-        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
-        let t53 = rotor_e0 * rotor_e1;
-        let t54 = rotor_e2 * rotor_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
-        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
-        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
-        let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        let t45 = T::fused(inner_ring_wy, t42, T::fused(inner_ring_wx, t41, t44));
+        let t46 = T::fused(t39 * t43, t45, T::fused(-(t42 * t43), t40, inner_ring_wx));
+        let t47 = T::fused(t35 * t43, t45, -T::fused(t41 * t43, t40, inner_ring_wy));
+        let t48 = rotor_e0 * rotor_e2;
+        let t49 = rotor_e1 * rotor_e3;
+        let t50 = t49 - t48;
+        let t51 = rotor_e0 * rotor_e3;
+        let t52 = rotor_e1 * rotor_e2;
+        let t53 = t52 + t51;
+        let t54 = rotor_e0 * rotor_e0;
+        let t55 = k(0.5) - T::fused(rotor_e1, rotor_e1, t54);
+        let t56 = T::fused(t38, t55, T::fused(t36, t50, t37 * t53));
+        let t57 = T::fused(
+            T::fused(t19, t55, -T::fused(-t13, t50, t25 * t53)),
+            t46,
+            inner_ring_wz * t56,
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t58 = k(0.5) - T::fused(rotor_e3, rotor_e3, t54);
+        let t59 = t49 + t48;
+        let t60 = rotor_e0 * rotor_e1;
+        let t61 = rotor_e2 * rotor_e3;
+        let t62 = t61 - t60;
+        let t63 = T::fused(t30, t62, -T::fused(-t29, t58, t34 * t59));
+        let t64 = t61 + t60;
+        let t65 = t52 - t51;
+        let t66 = k(0.5) - T::fused(rotor_e2, rotor_e2, t54);
+        let t67 = T::fused(t30, t66, T::fused(t29, t64, t34 * t65));
+        let t68 = T::fused(rotor_wz, t67, T::fused(rotor_wy, t63, -t57));
+        let t69 = T::fused(t13, t58, T::fused(t19, t59, t25 * t62));
+        let t70 = T::fused(t25, t66, -T::fused(-t13, t64, t19 * t65));
+        let t71 = k(1.0) / T::fused(-t69, t67, t70 * t63);
         let t72 = T::fused(
-            inner_ring_wz,
-            t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+            -T::fused(t34, t55, T::fused(-t29, t50, t30 * t53)),
+            t46,
+            t56 * t47,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
-        let t74 = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        let t73 = T::fused(rotor_wz, t70, T::fused(rotor_wy, t69, t72));
+        let t74 = T::fused(t63 * t71, t73, -T::fused(t69 * t71, t68, rotor_wz));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
         y[24] = t10;
-        y[26] = t11;
+        y[26] = -t11;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = t46;
-        y[31] = t47;
-        y[33] = -(k(0.0002) * T::fused(t66, t74, t60 * rotor_wx));
-        y[34] = -(k(0.0002) * T::fused(-t67, t74, t57 * rotor_wx));
-        y[35] = k(0.0002) * T::fused(t68, t74, t61 * rotor_wx);
-        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        y[38] = t74;
+        y[31] = -t47;
+        y[33] = -(k(0.0004) * T::fused(-t55, t74, t59 * rotor_wx));
+        y[34] = -(k(0.0004) * T::fused(t53, t74, t62 * rotor_wx));
+        y[35] = k(0.0004) * T::fused(-t50, t74, t58 * rotor_wx);
+        y[37] = T::fused(t67 * t71, t73, T::fused(-(t70 * t71), t68, rotor_wy));
+        y[38] = -t74;
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
@@ -1924,7 +1912,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 296 operations (116 ±, 180 ×, 0 ÷).
+    /// Writes γ: 290 operations (116 ±, 174 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1948,167 +1936,162 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = outer_ring_wx * outer_ring_wy;
-        let t6 = outer_ring_e1 * t0;
-        let t7 = k(2.0) * outer_ring_e2;
-        let t8 = outer_ring_e3 * t7;
-        let t9 = t8 + t6;
-        let t10 = outer_ring_wz * outer_ring_wz;
-        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
-        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
-        let t14 = outer_ring_wy * outer_ring_wz;
-        let t15 = T::fused(-outer_ring_e1, t2, t12);
-        let t16 = outer_ring_e3 * t0;
-        let t17 = outer_ring_e2 * t2;
-        let t18 = t17 - t16;
-        let t19 = t3 + t1;
-        let t20 = k(2.0) * inner_ring_e0;
-        let t21 = inner_ring_e2 * t20;
-        let t22 = k(2.0) * inner_ring_e1;
-        let t23 = inner_ring_e3 * t22;
-        let t24 = t23 + t21;
-        let t25 = inner_ring_e1 * t20;
-        let t26 = k(2.0) * inner_ring_e2;
-        let t27 = inner_ring_e3 * t26;
-        let t28 = t27 - t25;
-        let t29 = t17 + t16;
-        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
-        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
-        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
-        let t33 = T::fused(-outer_ring_e2, t7, t12);
-        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
-        let t35 = t8 - t6;
-        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
-        let t37 = T::fused(
-            outer_ring_wx * outer_ring_wz,
-            t36,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = outer_ring_wy * outer_ring_wz;
+        let t3 = outer_ring_wz * outer_ring_wz;
+        let t4 = T::fused(outer_ring_wx, outer_ring_wx, t3);
+        let t5 = outer_ring_e0 * outer_ring_e1;
+        let t6 = outer_ring_e2 * outer_ring_e3;
+        let t7 = t6 + t5;
+        let t8 = outer_ring_wx * outer_ring_wy;
+        let t9 = outer_ring_e0 * outer_ring_e2;
+        let t10 = outer_ring_e1 * outer_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t13 = t10 + t9;
+        let t14 = outer_ring_e0 * outer_ring_e3;
+        let t15 = outer_ring_e1 * outer_ring_e2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e1;
+        let t18 = inner_ring_e2 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t21 = T::fused(inner_ring_e2, inner_ring_e2, -t20);
+        let t22 = t6 - t5;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 - t23;
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = t24 + t23;
+        let t30 = T::fused(inner_ring_e1, inner_ring_e1, -t20);
+        let t31 = T::fused(
+            -inner_ring_wx,
+            T::fused(t13, t25, T::fused(t19, t1, t22 * t21)),
+            inner_ring_wy * T::fused(t13, t30, T::fused(t28, t1, t22 * t29)),
         );
-        let t38 = T::fused(-inner_ring_e1, t22, t30);
-        let t39 = inner_ring_e3 * t20;
-        let t40 = inner_ring_e2 * t22;
-        let t41 = t40 + t39;
-        let t42 = t23 - t21;
-        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
-        let t44 = t40 - t39;
-        let t45 = T::fused(-inner_ring_e2, t26, t30);
-        let t46 = t27 + t25;
-        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
-        let t48 = T::fused(
-            -inner_ring_wy,
-            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
-            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
-        );
-        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
-        let t50 = inner_ring_wx * inner_ring_wz;
-        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
-        let t52 = inner_ring_wy * inner_ring_wz;
-        let t53 = inner_ring_wx * inner_ring_wx;
-        let t54 = T::fused(inner_ring_wy, inner_ring_wy, t53);
-        let t55 = T::fused(
-            -k(2.0),
-            T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
-                outer_ring_wy * t48,
-            ),
-            T::fused(t54, t32, T::fused(t50, t49, t52 * t51)),
-        );
-        let t56 = T::fused(
+        let t32 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t33 = T::fused(t16, t25, T::fused(t32, t21, t7 * t19));
+        let t34 = T::fused(t16, t30, T::fused(t29, t32, t7 * t28));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t20);
+        let t36 = t18 - t17;
+        let t37 = t15 + t14;
+        let t38 = t27 + t26;
+        let t39 = T::fused(t38, t12, T::fused(t11, t35, t37 * t36));
+        let t40 = inner_ring_wx * inner_ring_wx;
+        let t41 = T::fused(inner_ring_wy, inner_ring_wy, t40);
+        let t42 = T::fused(t25, t12, T::fused(t37, t21, t11 * t19));
+        let t43 = inner_ring_wy * inner_ring_wz;
+        let t44 = T::fused(t30, t12, T::fused(t11, t28, t37 * t29));
+        let t45 = inner_ring_wx * inner_ring_wz;
+        let t46 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
-                outer_ring_wx * t48,
+                -outer_ring_wy,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t33, inner_ring_wy * t34),
             ),
-            T::fused(t54, t34, T::fused(t50, t43, t52 * t47)),
+            T::fused(t45, t44, T::fused(-t41, t39, t43 * t42)),
         );
-        let t57 = k(2.0) * rotor_e1;
-        let t58 = k(2.0) * rotor_e0;
-        let t59 = T::fused(-rotor_e0, t58, k(1.0));
-        let t60 = T::fused(-rotor_e1, t57, t59);
-        let t61 = rotor_wx * rotor_wy;
-        let t62 = rotor_e3 * t58;
-        let t63 = rotor_e2 * t57;
-        let t64 = t63 - t62;
-        let t65 = rotor_wz * rotor_wz;
-        let t66 = T::fused(rotor_wx, rotor_wx, t65);
-        let t67 = rotor_e2 * t58;
-        let t68 = rotor_e3 * t57;
-        let t69 = t68 + t67;
-        let t70 = rotor_wy * rotor_wz;
-        let t71 = t63 + t62;
-        let t72 = k(2.0) * rotor_e2;
-        let t73 = T::fused(-rotor_e2, t72, t59);
-        let t74 = rotor_e1 * t58;
-        let t75 = rotor_e3 * t72;
-        let t76 = t75 - t74;
-        let t77 = t68 - t67;
-        let t78 = t75 + t74;
-        let t79 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t59);
-        let t80 = T::fused(t42, t77, T::fused(t38, t60, t41 * t71));
-        let t81 = T::fused(t46, t77, -T::fused(t44, t60, t45 * t71));
-        let t82 = T::fused(t31, t77, -T::fused(-t24, t60, t28 * t71));
-        let t83 = T::fused(
-            t52,
-            t82,
+        let t47 = T::fused(t13, t38, T::fused(t35, t1, t22 * t36));
+        let t48 = T::fused(t16, t38, T::fused(t7, t35, t36 * t32));
+        let t49 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t3),
+            t39,
+            -T::fused(t8, t48, T::fused(outer_ring_wx * outer_ring_wz, t47, t46)),
+        );
+        let t50 = T::fused(
+            -k(2.0),
             T::fused(
-                -(inner_ring_wx * inner_ring_wy),
-                t80,
-                T::fused(inner_ring_wz, inner_ring_wz, t53) * t81,
+                -outer_ring_wx,
+                t31,
+                outer_ring_wz * T::fused(-inner_ring_wx, t42, inner_ring_wy * t44),
+            ),
+            T::fused(t45, t34, T::fused(-t41, t48, t43 * t33)),
+        );
+        let t51 = k(4.0)
+            * T::fused(t8, t39, -T::fused(t4, t48, -T::fused(t2, t47, t50)));
+        let t52 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t53 = T::fused(rotor_e1, rotor_e1, -t52);
+        let t54 = rotor_wx * rotor_wy;
+        let t55 = rotor_wy * rotor_wz;
+        let t56 = rotor_e0 * rotor_e2;
+        let t57 = rotor_e1 * rotor_e3;
+        let t58 = t57 + t56;
+        let t59 = rotor_wz * rotor_wz;
+        let t60 = T::fused(rotor_wx, rotor_wx, t59);
+        let t61 = rotor_e0 * rotor_e3;
+        let t62 = rotor_e1 * rotor_e2;
+        let t63 = t62 - t61;
+        let t64 = rotor_e0 * rotor_e1;
+        let t65 = rotor_e2 * rotor_e3;
+        let t66 = t65 - t64;
+        let t67 = T::fused(rotor_e2, rotor_e2, -t52);
+        let t68 = t62 + t61;
+        let t69 = T::fused(rotor_e3, rotor_e3, -t52);
+        let t70 = t65 + t64;
+        let t71 = t57 - t56;
+        let t72 = T::fused(t38, t58, T::fused(t69, t35, t36 * t66));
+        let t73 = T::fused(t38, t63, T::fused(t70, t35, t36 * t67));
+        let t74 = T::fused(
+            -rotor_wy,
+            T::fused(t58, t30, T::fused(t28, t69, t29 * t66)),
+            rotor_wz * T::fused(t63, t30, T::fused(t29, t67, t28 * t70)),
+        );
+        let t75 = T::fused(t25, t58, T::fused(t19, t69, t66 * t21));
+        let t76 = rotor_wx * rotor_wz;
+        let t77 = T::fused(t25, t63, T::fused(t67, t21, t19 * t70));
+        let t78 = T::fused(t25, t53, T::fused(t68, t21, t19 * t71));
+        let t79 = T::fused(rotor_wy, rotor_wy, t59);
+        let t80 = T::fused(
+            k(2.0),
+            T::fused(
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t72, rotor_wz * t73),
+                inner_ring_wz * t74,
+            ),
+            T::fused(t79, t78, -T::fused(t76, t75, t54 * t77)),
+        );
+        let t81 = T::fused(t38, t53, T::fused(t71, t35, t36 * t68));
+        let t82 = T::fused(t30, t53, T::fused(t28, t71, t29 * t68));
+        let t83 = T::fused(
+            inner_ring_wx * inner_ring_wy,
+            t82,
+            -T::fused(
+                T::fused(inner_ring_wz, inner_ring_wz, t40),
+                t78,
+                -T::fused(t43, t81, -t80),
             ),
         );
         let t84 = T::fused(
-            rotor_wz,
-            T::fused(t42, t78, -T::fused(t38, t64, t41 * t73)),
-            rotor_wy * T::fused(t42, t79, -T::fused(-t38, t69, t41 * t76)),
-        );
-        let t85 = T::fused(t31, t78, T::fused(-t24, t64, t28 * t73));
-        let t86 = T::fused(t31, t79, T::fused(t24, t69, t28 * t76));
-        let t87 = T::fused(rotor_wy, rotor_wy, t65);
-        let t88 = T::fused(t46, t78, T::fused(t44, t64, t45 * t73));
-        let t89 = T::fused(t46, t79, T::fused(-t44, t69, t45 * t76));
-        let t90 = rotor_wx * rotor_wz;
-        let t91 = T::fused(
-            k(2.0),
-            T::fused(
-                inner_ring_wz,
-                t84,
-                inner_ring_wx * T::fused(rotor_wz, t85, rotor_wy * t86),
-            ),
-            T::fused(t90, t89, -T::fused(-t87, t81, t61 * t88)),
-        );
-        let t92 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t84,
-                inner_ring_wx * T::fused(rotor_wz, t88, rotor_wy * t89),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t75, rotor_wz * t77),
+                inner_ring_wy * t74,
             ),
-            T::fused(t90, t86, -T::fused(-t87, t82, t61 * t85)),
+            T::fused(t79, t81, -T::fused(t76, t72, t54 * t73)),
         );
+        let t85 = k(4.0)
+            * T::fused(t45, t82, T::fused(t43, t78, -T::fused(t41, t81, t84)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
-            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
+            -(k(2.0) * T::fused(t11, t8, -T::fused(-t2, t1, t7 * t4))),
+            k(2.0) * T::fused(-t8, t12, T::fused(-t13, t2, t16 * t4)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t55 + t37),
-            -(t56 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
-            -(k(0.0002) * T::fused(t70, t69, -T::fused(t61, t60, t66 * t64))),
-            -(k(0.0002) * T::fused(t70, t76, T::fused(t61, t71, t66 * t73))),
-            k(0.0002) * T::fused(t70, t79, T::fused(-t61, t77, t66 * t78)),
-            t91 + t83,
-            -(t92 + T::fused(t54, t82, T::fused(t50, t80, t52 * t81))),
+            k(4.0) * t49,
+            -t51,
+            k(0.0004) * T::fused(-t54, t53, T::fused(-t58, t55, t63 * t60)),
+            -(k(0.0004) * T::fused(t68, t54, -T::fused(-t66, t55, t60 * t67))),
+            -(k(0.0004) * T::fused(t71, t54, -T::fused(-t55, t69, t70 * t60))),
+            -(k(4.0) * t83),
+            -t85,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
@@ -2433,7 +2416,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             -t99,
         ];
     }
-    /// Writes λ: 283 operations (108 ±, 172 ×, 3 ÷).
+    /// Writes λ: 274 operations (108 ±, 163 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2479,162 +2462,141 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = k(2.0) * rotor_e0;
-        let t7 = rotor_e2 * t6;
-        let t8 = k(2.0) * rotor_e1;
-        let t9 = rotor_e3 * t8;
-        let t10 = t9 + t7;
-        let t11 = rotor_e1 * t6;
-        let t12 = k(2.0) * rotor_e2;
-        let t13 = rotor_e3 * t12;
-        let t14 = t13 - t11;
-        let t15 = T::fused(-rotor_e0, t6, k(1.0));
-        let t16 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t15);
-        let t17 = T::fused(
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = rotor_dsy + k(10.0);
+        let t2 = k(10.0) + T::fused(k(8.0), t1, inner_ring_dsy);
+        let t3 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t4 = k(0.15625) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t5 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t6 = T::fused(rotor_e2, rotor_e2, -t5);
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = t8 + t7;
+        let t10 = rotor_e0 * rotor_e1;
+        let t11 = rotor_e2 * rotor_e3;
+        let t12 = t11 + t10;
+        let t13 = inner_ring_e0 * inner_ring_e2;
+        let t14 = inner_ring_e1 * inner_ring_e3;
+        let t15 = t14 - t13;
+        let t16 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t17 = T::fused(inner_ring_e1, inner_ring_e1, -t16);
+        let t18 = rotor_e0 * rotor_e3;
+        let t19 = rotor_e1 * rotor_e2;
+        let t20 = t19 - t18;
+        let t21 = T::fused(rotor_e1, rotor_e1, -t5);
+        let t22 = rotor_e0 * rotor_e2;
+        let t23 = rotor_e1 * rotor_e3;
+        let t24 = t23 - t22;
+        let t25 = t19 + t18;
+        let t26 = T::fused(
+            t25,
+            t1,
+            T::fused(
+                -k(0.15625),
+                T::fused(rotor_wx, rotor_wy, -rotor_dwz),
+                t24 * rotor_dsz,
+            ),
+        );
+        let t27 = T::fused(rotor_dsx, t21, t26);
+        let t28 = T::fused(rotor_e3, rotor_e3, -t5);
+        let t29 = t11 - t10;
+        let t30 = t23 + t22;
+        let t31 = T::fused(
+            -T::fused(t30, t17, T::fused(t15, t28, t9 * t29)),
+            t27,
+            k(0.0078125) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+        );
+        let t32 = T::fused(-T::fused(t20, t17, T::fused(t9, t6, t15 * t12)), t4, t31);
+        let t33 = T::fused(
+            t30,
+            rotor_dsx,
+            T::fused(t29, t1, -T::fused(-rotor_dsz, t28, k(0.3125) * rotor_dwx)),
+        );
+        let t34 = T::fused(T::fused(t17, t21, T::fused(t15, t24, t9 * t25)), t33, t32);
+        let t35 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t36 = T::fused(outer_ring_e1, outer_ring_e1, -t35);
+        let t37 = outer_ring_e0 * outer_ring_e2;
+        let t38 = outer_ring_e1 * outer_ring_e3;
+        let t39 = t38 - t37;
+        let t40 = outer_ring_e0 * outer_ring_e3;
+        let t41 = outer_ring_e1 * outer_ring_e2;
+        let t42 = t41 + t40;
+        let t43 = T::fused(t17, t36, T::fused(t39, t15, t42 * t9));
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t16);
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
+        let t47 = t46 + t45;
+        let t48 = t8 - t7;
+        let t49 = T::fused(t48, t20, T::fused(t6, t44, t47 * t12));
+        let t50 = T::fused(t48, t30, T::fused(t47, t28, t29 * t44));
+        let t51 = T::fused(
+            T::fused(t48, t21, T::fused(t25, t44, t47 * t24)),
+            t33,
+            -T::fused(t49, t4, T::fused(t50, t27, k(0.015625) * inner_ring_dwy)),
+        );
+        let t52 = T::fused(t48, t36, T::fused(t42, t44, t39 * t47));
+        let t53 = T::fused(inner_ring_e3, inner_ring_e3, -t16);
+        let t54 = t46 - t45;
+        let t55 = t14 + t13;
+        let t56 = T::fused(t55, t20, T::fused(t12, t53, t54 * t6));
+        let t57 = T::fused(t55, t30, T::fused(t28, t53, t54 * t29));
+        let t58 = T::fused(
+            t56,
             t4,
-            k(0.0002) * t16,
-            -T::fused(t0, k(0.0002) * t10, t2 * (k(0.0002) * t14)),
+            T::fused(
+                t57,
+                t27,
+                k(0.0078125) * T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            ),
         );
-        let t18 = T::fused(k(1e-5), rotor_dwx, t17);
-        let t19 = T::fused(-rotor_e1, t8, t15);
-        let t20 = k(2.0) * inner_ring_e1;
-        let t21 = k(2.0) * inner_ring_e0;
-        let t22 = T::fused(-inner_ring_e0, t21, k(1.0));
-        let t23 = T::fused(-inner_ring_e1, t20, t22);
-        let t24 = rotor_e3 * t6;
-        let t25 = rotor_e2 * t8;
-        let t26 = t25 + t24;
-        let t27 = inner_ring_e3 * t21;
-        let t28 = inner_ring_e2 * t20;
-        let t29 = t28 + t27;
-        let t30 = t9 - t7;
-        let t31 = inner_ring_e2 * t21;
-        let t32 = inner_ring_e3 * t20;
-        let t33 = t32 - t31;
-        let t34 = t25 - t24;
-        let t35 = T::fused(-rotor_e2, t12, t15);
-        let t36 = t13 + t11;
-        let t37 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t38 = T::fused(
-            T::fused(t33, t30, T::fused(t23, t19, t29 * t26)),
-            t18,
-            t37 * T::fused(t33, t36, -T::fused(t23, t34, t29 * t35)),
+        let t59 = T::fused(T::fused(t55, t21, T::fused(t24, t53, t54 * t25)), t33, -t58);
+        let t60 = T::fused(
+            -T::fused(t55, t36, T::fused(t39, t53, t42 * t54)),
+            t59,
+            k(0.00390625) * outer_ring_dwx,
         );
-        let t39 = T::fused(
-            t4,
-            k(0.0002) * t30,
-            T::fused(-t0, k(0.0002) * t19, t2 * (k(0.0002) * t26)),
+        let t61 = T::fused(-t43, t34, T::fused(-t52, t51, t60));
+        let t62 = T::fused(outer_ring_e3, outer_ring_e3, -t35);
+        let t63 = t38 + t37;
+        let t64 = k(1.0) / T::fused(-t36, t62, t63 * t39);
+        let t65 = outer_ring_e0 * outer_ring_e1;
+        let t66 = outer_ring_e2 * outer_ring_e3;
+        let t67 = t66 - t65;
+        let t68 = T::fused(
+            T::fused(t63, t55, T::fused(t53, t62, t67 * t54)),
+            t59,
+            k(0.001953125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t40 = T::fused(k(5e-6), T::fused(rotor_wx, rotor_wy, -rotor_dwz), -t39);
-        let t41 = T::fused(
-            T::fused(t33, t16, -T::fused(-t23, t10, t29 * t14)),
-            t40,
-            t38,
-        );
-        let t42 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t41,
-        );
-        let t43 = k(2.0) * outer_ring_e1;
-        let t44 = k(2.0) * outer_ring_e0;
-        let t45 = T::fused(-outer_ring_e0, t44, k(1.0));
-        let t46 = T::fused(-outer_ring_e1, t43, t45);
-        let t47 = outer_ring_e3 * t44;
-        let t48 = outer_ring_e2 * t43;
-        let t49 = t48 + t47;
-        let t50 = outer_ring_e2 * t44;
-        let t51 = outer_ring_e3 * t43;
-        let t52 = t51 - t50;
-        let t53 = T::fused(t52, t33, T::fused(t46, t23, t49 * t29));
-        let t54 = t28 - t27;
-        let t55 = k(2.0) * inner_ring_e2;
-        let t56 = T::fused(-inner_ring_e2, t55, t22);
-        let t57 = inner_ring_e1 * t21;
-        let t58 = inner_ring_e3 * t55;
-        let t59 = t58 + t57;
-        let t60 = T::fused(t59, t36, T::fused(t54, t34, t56 * t35));
-        let t61 = T::fused(
-            T::fused(t59, t30, -T::fused(t54, t19, t56 * t26)),
-            t18,
-            t37 * t60,
-        );
-        let t62 = T::fused(t59, t16, T::fused(-t54, t10, t56 * t14));
-        let t63 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t62, t40, t61));
-        let t64 = T::fused(t52, t59, -T::fused(t46, t54, t49 * t56));
-        let t65 = t32 + t31;
-        let t66 = t58 - t57;
-        let t67 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t22);
-        let t68 = T::fused(t67, t36, T::fused(-t65, t34, t66 * t35));
-        let t69 = T::fused(
-            T::fused(t67, t30, -T::fused(-t65, t19, t66 * t26)),
-            t18,
-            t37 * t68,
-        );
-        let t70 = T::fused(t67, t16, T::fused(t65, t10, t66 * t14));
-        let t71 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -T::fused(t70, t40, t69),
-        );
-        let t72 = T::fused(
-            T::fused(t52, t67, -T::fused(-t46, t65, t49 * t66)),
-            t71,
-            -T::fused(-t53, t42, t64 * t63),
-        );
-        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
-        let t74 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t45);
-        let t75 = t51 + t50;
-        let t76 = k(1.0) / T::fused(-t46, t74, t75 * t52);
-        let t77 = outer_ring_e1 * t44;
-        let t78 = k(2.0) * outer_ring_e2;
-        let t79 = outer_ring_e3 * t78;
-        let t80 = t79 - t77;
-        let t81 = T::fused(
-            -T::fused(t74, t33, -T::fused(-t75, t23, t80 * t29)),
-            t42,
-            T::fused(t74, t59, T::fused(-t75, t54, t80 * t56)) * t63,
-        );
-        let t82 = T::fused(T::fused(t74, t67, T::fused(t75, t65, t80 * t66)), t71, -t81);
-        let t83 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t82,
-        );
-        let t84 = t48 - t47;
-        let t85 = T::fused(-outer_ring_e2, t78, t45);
-        let t86 = t79 + t77;
-        let t87 = T::fused(t86, t33, -T::fused(t84, t23, t85 * t29));
-        let t88 = T::fused(t86, t59, T::fused(t84, t54, t85 * t56));
-        let t89 = k(1.0) / T::fused(-t87, t64, t53 * t88);
-        let t90 = k(1.0) / T::fused(-t68, t62, t60 * t70);
+        let t69 = T::fused(T::fused(t63, t48, T::fused(t47, t62, t67 * t44)), t51, t68);
+        let t70 = T::fused(T::fused(t63, t17, T::fused(t15, t62, t67 * t9)), t34, t69);
+        let t71 = T::fused(outer_ring_e2, outer_ring_e2, -t35);
+        let t72 = t66 + t65;
+        let t73 = t41 - t40;
+        let t74 = T::fused(t73, t48, T::fused(t71, t44, t72 * t47));
+        let t75 = T::fused(t73, t17, T::fused(t9, t71, t72 * t15));
+        let t76 = k(1.0) / T::fused(-t74, t43, t75 * t52);
+        let t77 = k(1.0) / T::fused(-t57, t49, t56 * t50);
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t46 * t76, t73, t75 * t76 * t83),
-            -T::fused(t52 * t76, t73, t74 * t76 * t83),
-            -t1,
-            -t3,
-            -t5,
-            T::fused(-(t88 * t89), t63, t87 * t89 * t42),
-            T::fused(-(t53 * t89), t42, t64 * t89 * t63),
-            -t0,
-            -t2,
-            -t4,
-            T::fused(t37, t68 * t90, t70 * t90 * t40),
-            T::fused(t37, t60 * t90, t62 * t90 * t40),
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (k(10.0) + (outer_ring_dsy + t2))),
+            -(k(0.01) * (outer_ring_dsz + t3)),
+            -(k(0.000256) * T::fused(-(t36 * t64), t61, t63 * t64 * t70)),
+            k(0.000256) * T::fused(-(t39 * t64), t61, t62 * t64 * t70),
+            -(k(0.01) * t0),
+            -(k(0.01) * t2),
+            -(k(0.01) * t3),
+            -(k(3.2e-5) * T::fused(t75 * t76, t34, t74 * t76 * t51)),
+            k(3.2e-5) * T::fused(t43 * t76, t34, t52 * t76 * t51),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t1),
+            -(k(0.08) * rotor_dsz),
+            k(8e-6) * T::fused(t56 * t77, t4, t57 * t77 * t27),
+            -(k(8e-6) * T::fused(t49 * t77, t4, t50 * t77 * t27)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 388 operations (143 ±, 240 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 381 operations (147 ±, 229 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2670,48 +2632,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
-        let t3 = k(2.0) * outer_ring_e1;
-        let t4 = T::fused(-outer_ring_e1, t3, t1);
-        let t5 = outer_ring_e2 * t0;
-        let t6 = outer_ring_e3 * t3;
-        let t7 = t6 - t5;
-        let t8 = t6 + t5;
-        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
-        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
-        let t11 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t12 = k(2.0) * t11;
-        let t13 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t14 = t13 * t12;
-        let t15 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t16 = k(2.0) * t15;
-        let t17 = T::fused(
+        let t0 = outer_ring_e0 * outer_ring_e2;
+        let t1 = outer_ring_e1 * outer_ring_e3;
+        let t2 = t1 - t0;
+        let t3 = t1 + t0;
+        let t4 = outer_ring_e0 * outer_ring_e0;
+        let t5 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t4);
+        let t6 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t4);
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t8 = T::fused(row4, t2 * t7, row3 * (t6 * t7));
+        let t9 = T::fused(
             -inner_ring_e0,
             rotor_e3,
             T::fused(
@@ -2720,82 +2650,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t18 = t17 * t16;
-        let t19 = t18 - t14;
-        let t20 = t18 + t14;
-        let t21 = T::fused(-t11, t12, k(1.0));
-        let t22 = T::fused(-t17, k(2.0) * t17, t21);
-        let t23 = T::fused(-t15, t16, t21);
-        let t24 = k(1.0) / T::fused(-t20, t19, t23 * t22);
-        let t25 = T::fused(row13, t19 * t24, row14 * (t23 * t24));
-        let t26 = k(5e-6) * t25;
-        let t27 = k(2.0) * t13;
-        let t28 = T::fused(t17, t12, t15 * t27);
-        let t29 = T::fused(row13, t22 * t24, row14 * (t20 * t24));
-        let t30 = k(2.0) * rotor_e1;
-        let t31 = k(2.0) * rotor_e0;
-        let t32 = T::fused(-rotor_e0, t31, k(1.0));
-        let t33 = T::fused(-rotor_e1, t30, t32);
-        let t34 = k(1.6e-5) * t33;
-        let t35 = T::fused(rotor_e3, t31, rotor_e2 * t30);
-        let t36 = k(1.6e-5) * t35;
-        let t37 = rotor_e2 * t31;
-        let t38 = rotor_e3 * t30;
-        let t39 = t38 - t37;
-        let t40 = k(1.6e-5) * t39;
-        let t41 = T::fused(
-            -k(5.0032e-6),
-            t29,
-            T::fused(row12, t40, T::fused(-row10, t34, row11 * t36)),
-        );
-        let t42 = T::fused(-t15, t12, t17 * t27);
-        let t43 = T::fused(-t19, t26, t22 * t41);
-        let t44 = k(1.0)
-            / (k(1e-6) + T::fused(t19, k(5e-6) * t19, t22 * (k(5.0032e-6) * t22)));
-        let t45 = t44 * t43;
-        let t46 = k(5e-6) * t28;
-        let t47 = k(5.0032e-6) * t42;
-        let t48 = T::fused(-t19, t46, t22 * t47);
-        let t49 = t22 * t34;
-        let t50 = t44 * t49;
-        let t51 = T::fused(-t42, t34, t48 * t50);
-        let t52 = t22 * t36;
-        let t53 = t44 * t52;
-        let t54 = T::fused(-t42, t36, t48 * t53);
-        let t55 = t22 * t40;
-        let t56 = t44 * t55;
-        let t57 = T::fused(-t42, t40, t48 * t56);
-        let t58 = T::fused(
-            outer_ring_e3,
+        let t10 = T::fused(
             inner_ring_e3,
+            rotor_e3,
             T::fused(
-                outer_ring_e2,
                 inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t59 = k(2.0) * t58;
-        let t60 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t11 = t10 * t10;
+        let t12 = k(0.5) - T::fused(t9, t9, t11);
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t61 = t60 * t59;
-        let t62 = T::fused(
-            outer_ring_e2,
-            inner_ring_e3,
+        let t14 = k(0.5) - T::fused(t13, t13, t11);
+        let t15 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
             T::fused(
-                -outer_ring_e3,
-                inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t63 = k(2.0) * t62;
-        let t64 = T::fused(
+        let t16 = t10 * t15;
+        let t17 = t13 * t9;
+        let t18 = t17 - t16;
+        let t19 = t17 + t16;
+        let t20 = k(1.0) / T::fused(-t14, t12, t19 * t18);
+        let t21 = T::fused(row14, t14 * t20, row13 * (t18 * t20));
+        let t22 = k(0.078125) * t21;
+        let t23 = T::fused(t10, t9, t15 * t13);
+        let t24 = T::fused(row14, t19 * t20, row13 * (t12 * t20));
+        let t25 = rotor_e0 * rotor_e2;
+        let t26 = rotor_e1 * rotor_e3;
+        let t27 = t26 - t25;
+        let t28 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t29 = rotor_e0 * rotor_e0;
+        let t30 = k(0.5) - T::fused(rotor_e1, rotor_e1, t29);
+        let t31 = T::fused(
+            -k(0.078175),
+            t24,
+            T::fused(t30, row10, -T::fused(t27, row12, t28 * row11)),
+        );
+        let t32 = T::fused(-t18, t22, t12 * t31);
+        let t33 = k(0.9993604093380236) * t18;
+        let t34 = k(1.0) / (k(0.049968020466901186) + T::fused(t18, t33, t12 * t12));
+        let t35 = t34 * t32;
+        let t36 = T::fused(-t10, t13, t15 * t9);
+        let t37 = T::fused(-t23, t33, t36 * t12);
+        let t38 = t30 * t12;
+        let t39 = t34 * t38;
+        let t40 = T::fused(-t37, t39, t30 * t36);
+        let t41 = t28 * t12;
+        let t42 = t34 * t41;
+        let t43 = T::fused(-t37, t42, t28 * t36);
+        let t44 = t27 * t12;
+        let t45 = t34 * t44;
+        let t46 = T::fused(-t37, t45, t27 * t36);
+        let t47 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2804,93 +2724,155 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t65 = t64 * t63;
-        let t66 = t65 - t61;
-        let t67 = t65 + t61;
-        let t68 = k(2.0) * t64;
-        let t69 = T::fused(-t58, t59, k(1.0));
-        let t70 = T::fused(-t64, t68, t69);
-        let t71 = T::fused(-t62, t63, t69);
-        let t72 = k(1.0) / T::fused(-t67, t66, t71 * t70);
-        let t73 = T::fused(row8, t66 * t72, row9 * (t71 * t72));
-        let t74 = t44 * t48;
-        let t75 = T::fused(t48, t74, -(k(1e-6) + T::fused(t28, t46, t42 * t47)));
-        let t76 = T::fused(row8, t70 * t72, row9 * (t67 * t72));
-        let t77 = k(5e-6) * t23;
-        let t78 = k(5.0032e-6) * t20;
-        let t79 = T::fused(t19, t77, t22 * t78);
-        let t80 = T::fused(t79, t74, -T::fused(-t23, t46, t20 * t47));
-        let t81 = T::fused(-t75, t73, t80 * t76)
-            - T::fused(row7, t57, T::fused(-row5, t51, row6 * t54));
-        let t82 = T::fused(-t20, t34, t79 * t50);
-        let t83 = T::fused(-t20, t36, t79 * t53);
-        let t84 = T::fused(-t20, t40, t79 * t56);
-        let t85 = T::fused(t79, t44 * t79, -(k(2e-6) + T::fused(t23, t77, t20 * t78)));
-        let t86 = T::fused(-t80, t73, t85 * t76)
-            - T::fused(row7, t84, T::fused(-row5, t82, row6 * t83));
+        let t48 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t49 = t48 * t48;
+        let t50 = k(0.5) - T::fused(t47, t47, t49);
+        let t51 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t52 = k(0.5) - T::fused(t51, t51, t49);
+        let t53 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t54 = t48 * t53;
+        let t55 = t51 * t47;
+        let t56 = t55 - t54;
+        let t57 = t55 + t54;
+        let t58 = k(1.0) / T::fused(-t52, t50, t57 * t56);
+        let t59 = T::fused(row9, t52 * t58, row8 * (t56 * t58));
+        let t60 = t34 * t37;
+        let t61 = k(0.049968020466901186)
+            + T::fused(k(0.9993604093380236), t23 * t23, T::fused(-t37, t60, t36 * t36));
+        let t62 = T::fused(row9, t57 * t58, row8 * (t50 * t58));
+        let t63 = k(0.9993604093380236) * t14;
+        let t64 = T::fused(t14, t33, t19 * t12);
+        let t65 = T::fused(-t23, t63, T::fused(-t64, t60, t36 * t19));
+        let t66 = T::fused(
+            row6,
+            t43,
+            T::fused(row7, t46, k(0.15635) * T::fused(-t61, t59, t65 * t62)),
+        );
+        let t67 = T::fused(
+            t23,
+            t22,
+            T::fused(t36, t31, -T::fused(t37, t35, T::fused(-row5, t40, t66))),
+        );
+        let t68 = T::fused(-t64, t39, t30 * t19);
+        let t69 = T::fused(-t64, t42, t28 * t19);
+        let t70 = T::fused(-t64, t45, t27 * t19);
+        let t71 = k(0.09993604093380237)
+            + T::fused(t14, t63, T::fused(-t64, t64 * t34, t19 * t19));
+        let t72 = T::fused(
+            row6,
+            t69,
+            T::fused(row7, t70, k(0.15635) * T::fused(-t65, t59, t71 * t62)),
+        );
+        let t73 = T::fused(
+            -t14,
+            t22,
+            T::fused(t19, t31, -T::fused(t64, t35, T::fused(-row5, t68, t72))),
+        );
+        let t74 = T::fused(
+            -t56,
+            T::fused(-t52, t61, t57 * t65),
+            t50 * T::fused(-t52, t65, t57 * t71),
+        );
+        let t75 = T::fused(row4, t5 * t7, row3 * (t3 * t7));
+        let t76 = T::fused(-t56, t61, t50 * t65);
+        let t77 = T::fused(t48, t47, t51 * t53);
+        let t78 = T::fused(-t56, t65, t50 * t71);
+        let t79 = T::fused(-t48, t51, t47 * t53);
+        let t80 = T::fused(
+            row2,
+            T::fused(-t56, t46, t50 * t70),
+            k(0.3127) * T::fused(-t74, t8, T::fused(t77, t76, t79 * t78) * t75),
+        );
+        let t81 = T::fused(
+            -row0,
+            T::fused(-t56, t40, t50 * t68),
+            T::fused(row1, T::fused(-t56, t43, t50 * t69), t80),
+        );
+        let t82 = T::fused(t56, t67, T::fused(-t50, t73, t81))
+            / (k(0.012492005116725297) + T::fused(-t56, t76, t50 * t78));
+        let t83 = row0 + row5;
+        let t84 = row1 + row6;
+        let t85 = row2 + row7;
+        let t86 = k(3.197953309881676) * t82;
         let t87 = T::fused(
-            -t66,
-            t81 - T::fused(t48, t45, -T::fused(t28, t26, t42 * t41)),
-            t70 * (t86 - T::fused(t79, t45, -T::fused(-t23, t26, t20 * t41))),
+            t52,
+            t8,
+            T::fused(t56, t86, T::fused(-k(0.5), t59, t77 * t75)),
         );
         let t88 = T::fused(
-            -row0,
-            T::fused(-t66, t51, t70 * t82),
-            row1 * T::fused(-t66, t54, t70 * t83),
+            t57,
+            t8,
+            -T::fused(-t50, t86, T::fused(k(0.5), t62, t79 * t75)),
         );
         let t89 = T::fused(
-            -t66,
-            T::fused(-t71, t75, t67 * t80),
-            t70 * T::fused(-t71, t80, t67 * t85),
+            t85,
+            t44,
+            -T::fused(-k(0.3127), t37 * t87, T::fused(k(0.3127), t64 * t88, t32)),
         );
-        let t90 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
-        let t91 = T::fused(-t66, t75, t70 * t80);
-        let t92 = T::fused(t64, t59, t60 * t63);
-        let t93 = T::fused(-t66, t80, t70 * t85);
-        let t94 = T::fused(-t62, t59, t60 * t68);
-        let t95 = T::fused(-t89, t10, T::fused(t92, t91, t94 * t93) * t90)
-            - T::fused(row2, T::fused(-t66, t57, t70 * t84), t88);
-        let t96 = (t95 + t87) / (k(1e-6) - T::fused(-t66, t91, t70 * t93));
-        let t97 = row0 + row5;
-        let t98 = row1 + row6;
-        let t99 = row2 + row7;
-        let t100 = t73 - T::fused(t92, t90, -T::fused(-t71, t10, t66 * t96));
-        let t101 = t76 + T::fused(t94, t90, T::fused(-t67, t10, t70 * t96));
-        let t102 = T::fused(-t48, t100, t79 * t101)
-            - T::fused(t99, t55, T::fused(-t97, t49, t98 * t52));
-        let t103 = t44 * (t43 - t102);
-        let t104 = t29 + T::fused(t22, t103, T::fused(-t42, t100, t20 * t101));
-        let t105 = t38 + t37;
-        let t106 = row10 + t97;
-        let t107 = T::fused(-rotor_e1, t31, rotor_e3 * (k(2.0) * rotor_e2));
-        let t108 = row11 + t98;
-        let t109 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t32);
-        let t110 = row12 + t99;
-        let t111 = T::fused(
-            t110,
-            k(1.6e-5) * t109,
-            -T::fused(t106, k(1.6e-5) * t105, t108 * (k(1.6e-5) * t107)),
+        let t90 = k(3.197953309881676)
+            * (t34 * T::fused(t83, t38, -T::fused(t84, t41, t89)));
+        let t91 = row12 + t85;
+        let t92 = k(0.5) - T::fused(rotor_e3, rotor_e3, t29);
+        let t93 = row11 + t84;
+        let t94 = T::fused(-rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t95 = row10 + t83;
+        let t96 = t26 + t25;
+        let t97 = T::fused(t96, t95, T::fused(-t92, t91, t94 * t93));
+        let t98 = k(0.0012795905310300703) * t97;
+        let t99 = T::fused(
+            t36,
+            t87,
+            T::fused(-t19, t88, T::fused(t12, t90, k(0.25) * t24)),
         );
-        let t112 = k(99968.01023672425) * t111;
+        let t100 = k(0.0008) * t99;
+        let t101 = T::fused(
+            -t23,
+            t87,
+            T::fused(-t14, t88, T::fused(t18, t90, k(0.25) * t21)),
+        );
         *out = [
             row0,
             row1,
             row2,
-            t10,
-            t96,
+            -(k(0.5) * t8),
+            k(1.598976654940838) * t82,
+            k(0.5) * t75,
+            t83,
+            t84,
+            t85,
+            t87,
+            -t88,
             -t90,
-            t97,
-            t98,
-            t99,
-            t100,
-            -t101,
-            t103,
-            t106 + T::fused(k(0.0002) * t33, t104, k(0.0002) * t105 * t112),
-            t108 + T::fused(-(k(0.0002) * t35), t104, k(0.0002) * t107 * t112),
-            t110 - T::fused(k(0.0002) * t39, t104, k(0.0002) * t109 * t112),
-            -t112,
-            t25 + T::fused(t19, t103, T::fused(t28, t100, t23 * t101)),
-            -t104,
+            T::fused(-t30, t100, T::fused(-t96, t98, t95)),
+            T::fused(t28, t100, T::fused(-t94, t98, t93)),
+            T::fused(t27, t100, T::fused(t92, t98, t91)),
+            k(3.198976327575176) * t97,
+            -(k(2.0) * t101),
+            k(2.0) * t99,
         ];
     }
 }
@@ -2964,7 +2946,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 75 operations (26 ±, 49 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -2995,29 +2977,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let t19 = t14 * t14;
         let t20 = t14 * t17;
         let t21 = t16 * t13;
-        let t22 = k(2.0) * t6;
-        let t23 = u0 * (t4 * t22);
-        let t24 = u0 * T::fused(-t6, t22, k(1.0));
-        let t25 = k(2.0) * t11;
-        let t26 = t12 * t25;
-        let t27 = T::fused(-t11, t25, k(1.0));
-        let t28 = T::fused(-t26, t24, u1 * t27);
-        let t29 = k(0.0002) * t28;
-        let t30 = u2 + t23;
-        let t31 = k(0.0002) * t30;
-        let t32 = t14 * t16;
-        let t33 = t17 * t13;
-        let t34 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t17, t17, t19)),
-            t29,
-            k(2.0) * (t33 + t32) * t31,
-        );
-        let t35 = T::fused(-(k(2.0) * (t18 + t15)), t29, k(2.0) * (t21 - t20) * t31);
-        let t36 = T::fused(
-            k(2.0) * (t33 - t32),
-            t29,
-            k(2.0) * (k(0.5) - T::fused(t13, t13, t19)) * t31,
-        );
+        let t22 = k(2.0) * (u0 * (t6 * t4));
+        let t23 = u0 * ((t6 - t4) * (t6 + t4));
+        let t24 = k(2.0) * (t11 * t12);
+        let t25 = (t11 - t12) * (t11 + t12);
+        let t26 = T::fused(-t23, t24, u1 * t25);
+        let t27 = u2 + t22;
+        let t28 = t14 * t16;
+        let t29 = t17 * t13;
+        let t30 = T::fused(-(k(0.5) - T::fused(t17, t17, t19)), t26, (t29 + t28) * t27);
+        let t31 = T::fused(-(t29 - t28), t26, (k(0.5) - T::fused(t13, t13, t19)) * t27);
         *y = [
             k(0.0),
             k(0.0),
@@ -3049,18 +3018,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t23,
-            t24,
+            t22,
+            -t23,
             u1,
-            -t34,
-            -t35,
-            t36,
-            t30,
-            T::fused(t27, t24, u1 * t26),
-            t28,
+            -(k(0.0004) * t30),
+            -(k(0.0004) * T::fused(t18 + t15, t26, (t21 - t20) * t27)),
+            k(0.0004) * t31,
+            t27,
+            T::fused(u1, t24, t25 * t23),
+            -t26,
         ];
     }
-    /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
+    /// Writes the joint state of a maximal state: 125 operations (63 ±, 62 ×, 0 ÷) and 9 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3083,83 +3052,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = x0.cos();
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
-        let t8 = outer_ring_e3 * outer_ring_e3;
-        let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
-        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
-        let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
+        let t6 = x0.cos();
+        let t7 = x0.sin();
+        let t8 = outer_ring_e0 * outer_ring_e2;
+        let t9 = outer_ring_e1 * outer_ring_e3;
+        let t10 = t9 + t8;
+        let t11 = (k(2.0) * T::fused(t7, t5, t10 * t6))
+            .atan2(k(2.0) * T::fused(-t6, t5, t10 * t7));
+        let t12 = inner_ring_e3 * inner_ring_e3;
+        let t13 = inner_ring_e0 * inner_ring_e0;
+        let t14 = T::fused(inner_ring_e1, inner_ring_e1, t13);
+        let t15 = inner_ring_e2 * inner_ring_e2;
+        let t16 = k(0.5) * (k(1.0) - (t15 + (t14 + t12)));
+        let t17 = k(0.5) - t14 - t16;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = outer_ring_e0 * outer_ring_e3;
+        let t22 = outer_ring_e1 * outer_ring_e2;
+        let t23 = inner_ring_e0 * inner_ring_e2;
+        let t24 = inner_ring_e1 * inner_ring_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(
+            t9 - t8,
+            t25,
+            T::fused(t17, k(0.5) - t2 - t4, (t22 + t21) * t20),
         );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
-            t15,
-            t27,
+        let t27 = x1.cos();
+        let t28 = T::fused(t22 - t21, t17, t20 * (k(0.5) - (t1 + t3) - t4));
+        let t29 = T::fused(
+            T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
+            t25,
+            -t28,
         );
-        let t29 = x1.cos();
-        let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        let t30 = x1.sin();
+        let t31 = (k(4.0) * T::fused(-t30, t26, t27 * t29))
+            .atan2(k(4.0) * T::fused(t27, t26, t30 * t29));
+        let t32 = rotor_e2 * rotor_e2;
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t33 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t33 + t32))),
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
-        let t33 = x2.sin();
-        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t35 = rotor_e2 * rotor_e2;
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = T::fused(
-            k(2.0),
-            k(0.5) - (t36 + t35),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        let t35 = k(0.5) * (k(1.0) - (t32 + t34));
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t39 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t40 = T::fused(
+            t39,
+            k(0.5) - (t13 + t12) - t16,
+            -T::fused(t37 - t36, t35, (t24 + t23) * t38),
         );
-        let t38 = inner_ring_e0 * inner_ring_e1;
-        let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
-        let t43 = x2.cos();
-        let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
-            t37,
-            k(2.0) * (t17 - t16) * t40,
-        );
-        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
-        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
+        let t41 = x2.sin();
+        let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
+        let t43 = T::fused(t37 + t36, t39, t42);
+        let t44 = x2.cos();
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
+            .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
-        x[1] = x1 + t32;
-        x[2] = x2 + t46;
+        x[1] = x1 + t31;
+        x[2] = x2 + t45;
         x[3] = outer_ring_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 99 operations (34 ±, 63 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 101 operations (36 ±, 63 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3188,8 +3153,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(
+        let t1 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3198,10 +3162,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t3 = t2 * t1;
-        let t4 = outer_ring_wy * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = T::fused(
+        let t2 = t1 * (k(2.0) * t0);
+        let t3 = outer_ring_wy * t2;
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3210,15 +3174,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = k(2.0) * t6;
-        let t8 = T::fused(-t6, t7, k(1.0));
-        let t9 = k(3.2e-9) * t8;
-        let t10 = T::fused(-t0, t1, k(1.0));
-        let t11 = outer_ring_wy * t10;
-        let t12 = T::fused(-t11, outer_ring_wy * t9, k(0.00016));
-        let t13 = inner_ring_wx - rotor_wx;
-        let t14 = T::fused(-t3, t12, k(6.4e-9) * (t11 * (t13 * t8)));
-        let t15 = T::fused(
+        let t6 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3227,38 +3183,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t16 = t15 * t7;
-        let t17 = t8 * t8;
-        let t18 = k(6.4e-9) * t5;
-        let t19 = t13 * t18;
-        let t20 = T::fused(t19, k(1563.5) - t17, T::fused(-k(2e-6), t5 * t4, t16 * t14));
-        let t21 = T::fused(
-            t8,
-            T::fused(t16, t19, t14),
-            k(1e-5) * (t11 * T::fused(k(0.4), t4, t13)),
+        let t7 = (t6 + t5) * (t6 - t5);
+        let t8 = k(3.2e-9) * t7;
+        let t9 = (t1 + t0) * (t1 - t0);
+        let t10 = outer_ring_wy * t9;
+        let t11 = T::fused(-t10, outer_ring_wy * t8, k(0.00016));
+        let t12 = inner_ring_wx - rotor_wx;
+        let t13 = T::fused(-t2, t11, k(6.4e-9) * (t10 * (t12 * t7)));
+        let t14 = t6 * (k(2.0) * t5);
+        let t15 = t7 * t7;
+        let t16 = k(6.4e-9) * t4;
+        let t17 = t12 * t16;
+        let t18 = T::fused(t17, k(1563.5) - t15, T::fused(-k(2e-6), t4 * t3, t14 * t13));
+        let t19 = T::fused(
+            t7,
+            T::fused(t14, t17, t13),
+            k(1e-5) * (t10 * T::fused(k(0.4), t3, t12)),
         );
-        let t22 = t16 * t9;
-        let t23 = t10 * t22;
-        let t24 = k(1.0) / T::fused(t8, t9, k(6e-6));
-        let t25 = t24 * t23;
-        let t26 = T::fused(
+        let t20 = t14 * t8;
+        let t21 = t9 * t20;
+        let t22 = k(1.0) / T::fused(t7, t8, k(6e-6));
+        let t23 = t22 * t21;
+        let t24 = T::fused(
+            t21,
             t23,
-            t25,
-            -T::fused(k(3.2e-9), (k(1876.0) - t17) * (t10 * t10), k(2e-6)),
+            -T::fused(k(3.2e-9), (k(1876.0) - t15) * (t9 * t9), k(2e-6)),
         );
-        let t27 = T::fused(-t10, t20, t25 * t21) / t26;
-        let t28 = T::fused(
-            t10,
-            T::fused(t16, t12, t18 * (outer_ring_wy * (k(1562.5) + t17))),
-            t22 * (t5 * t5),
+        let t25 = T::fused(-t9, t18, t23 * t19) / t24;
+        let t26 = T::fused(
+            t9,
+            T::fused(t14, t11, t16 * (outer_ring_wy * (k(1562.5) + t15))),
+            t20 * (t4 * t4),
         );
         *out = [
-            -t27,
-            T::fused(-t24, t21, t25 * t27),
-            T::fused(-t3, t27, k(99968.01023672425) * t28),
+            -t25,
+            T::fused(-t22, t19, t23 * t25),
+            T::fused(-t2, t25, k(99968.01023672425) * t26),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 179 operations (65 ±, 112 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 176 operations (67 ±, 107 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3289,28 +3252,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
         let t1 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t4 = t3 * t2;
-        let t5 = outer_ring_wy * t4;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3319,15 +3260,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
-        let t10 = k(3.2e-9) * t9;
-        let t11 = T::fused(-t1, t2, k(1.0));
-        let t12 = outer_ring_wy * t11;
-        let t13 = T::fused(-t12, outer_ring_wy * t10, k(0.00016));
-        let t14 = inner_ring_wx - rotor_wx;
-        let t15 = T::fused(-t4, t13, k(6.4e-9) * (t12 * (t14 * t9)));
-        let t16 = T::fused(
+        let t2 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3336,83 +3269,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t17 = t16 * t8;
-        let t18 = t9 * t9;
-        let t19 = k(6.4e-9) * t6;
-        let t20 = t14 * t19;
-        let t21 = T::fused(t20, k(1563.5) - t18, T::fused(-k(2e-6), t6 * t5, t17 * t15));
-        let t22 = T::fused(
-            t9,
-            T::fused(t17, t20, t15),
-            k(1e-5) * (t12 * T::fused(k(0.4), t5, t14)),
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
         );
-        let t23 = t17 * t10;
-        let t24 = t11 * t23;
-        let t25 = k(1.0) / T::fused(t9, t10, k(6e-6));
-        let t26 = t25 * t24;
-        let t27 = T::fused(
-            t24,
-            t26,
-            -T::fused(k(3.2e-9), (k(1876.0) - t18) * (t11 * t11), k(2e-6)),
+        let t5 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
         );
-        let t28 = T::fused(-t11, t21, t26 * t22) / t27;
-        let t29 = outer_ring_wx * outer_ring_wy;
-        let t30 = t4 * t28;
-        let t31 = T::fused(inner_ring_wy, t6, -T::fused(-t0, t11, t30));
-        let t32 = T::fused(inner_ring_wx, t6, -T::fused(t11, t28, t0 * t4));
-        let t33 = t29 + T::fused(-t25, t22, t26 * t28);
-        let t34 = T::fused(rotor_wy, t14, T::fused(t17, t32, t9 * t33));
-        let t35 = k(0.0002) * rotor_wx;
-        let t36 = T::fused(-k(0.0002), t34, rotor_wy * t35);
-        let t37 = rotor_e0 * rotor_e0;
-        let t38 = k(0.0002) * rotor_wz;
-        let t39 = T::fused(rotor_wx, t35, rotor_wz * t38);
+        let t6 = (t5 + t4) * (t5 - t4);
+        let t7 = outer_ring_wy * t6;
+        let t8 = T::fused(-t7, outer_ring_wy * t3, k(50000.0));
+        let t9 = t5 * t4;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-t9, t8, t7 * (t10 * t3));
+        let t12 = t2 * t1;
+        let t13 = k(2.0) * t12;
+        let t14 = outer_ring_wz - inner_ring_wz;
+        let t15 = t14 * t10;
+        let t16 = t3 * t3;
+        let t17 = outer_ring_wy * t9;
+        let t18 = T::fused(
+            k(625.0),
+            t14 * t17,
+            -T::fused(t13, t11, (k(1563.5) - t16) * t15),
+        );
+        let t19 = k(1.0) / (k(1875.0) + t16);
+        let t20 = t12 * t3;
+        let t21 = t6 * t20;
+        let t22 = t21 * t19;
+        let t23 = T::fused(
+            k(0.00128),
+            t3 * T::fused(k(0.5), t11, t12 * t15),
+            t7 * T::fused(k(0.8), t17, t10),
+        );
+        let t24 = T::fused(-k(0.25), (k(1876.0) - t16) * (t6 * t6), t21 * t22)
+            - k(156.25);
+        let t25 = T::fused(k(0.00032), t6 * t18, t23 * t22) / t24;
+        let t26 = outer_ring_wx * outer_ring_wy;
+        let t27 = k(3125.0) * (t9 * t25);
+        let t28 = T::fused(t0, t6, T::fused(inner_ring_wy, t14, -t27));
+        let t29 = T::fused(
+            -k(1562.5),
+            t6 * t25,
+            T::fused(-k(2.0), t0 * t9, inner_ring_wx * t14),
+        );
+        let t30 = T::fused(t23, t19, -T::fused(t22, t25, k(0.00032) * t26));
+        let t31 = T::fused(t13, t29, T::fused(-k(3125.0), t3 * t30, rotor_wy * t10));
+        let t32 = T::fused(rotor_wx, rotor_wy, -t31);
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            t14 * t14,
+            t20,
+            t6 * T::fused(t14, outer_ring_wy * (k(1562.5) + t16), t12 * t8),
+        );
+        let t35 = t28 - T::fused(k(0.0006397952655150352), t34, -t27);
+        let t36 = T::fused(rotor_wy, rotor_wz, -t35);
+        let t37 = rotor_e0 * rotor_e2;
+        let t38 = rotor_e1 * rotor_e3;
+        let t39 = T::fused(rotor_wx, rotor_wx, rotor_wz * rotor_wz);
         let t40 = rotor_e0 * rotor_e3;
         let t41 = rotor_e1 * rotor_e2;
         let t42 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t37)),
+            k(0.5) - T::fused(rotor_e1, rotor_e1, t33),
+            t32,
+            T::fused(-(t38 + t37), t36, (t41 - t40) * t39),
+        );
+        let t43 = rotor_e0 * rotor_e1;
+        let t44 = rotor_e2 * rotor_e3;
+        let t45 = T::fused(
+            t44 - t43,
             t36,
-            k(2.0) * (t41 - t40) * t39,
+            (k(0.5) - T::fused(rotor_e2, rotor_e2, t33)) * t39,
         );
-        let t43 = T::fused(
-            t11,
-            T::fused(t17, t13, t19 * (outer_ring_wy * (k(1562.5) + t18))),
-            t23 * (t6 * t6),
-        );
-        let t44 = T::fused(-k(99968.01023672425), t43, t30) + t31;
-        let t45 = T::fused(-k(0.0002), t44, rotor_wy * t38);
-        let t46 = rotor_e0 * rotor_e2;
-        let t47 = rotor_e1 * rotor_e3;
-        let t48 = T::fused(
-            k(2.0) * (t41 + t40),
+        let t46 = T::fused(
+            k(0.5) - T::fused(rotor_e3, rotor_e3, t33),
             t36,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37)) * t39,
+            (t44 + t43) * t39,
         );
-        let t49 = rotor_e0 * rotor_e1;
-        let t50 = rotor_e2 * rotor_e3;
-        let t51 = T::fused(-(k(2.0) * (t47 - t46)), t36, k(2.0) * (t50 + t49) * t39);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -(k(1562.5) * t25),
+            t26,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t28,
             t29,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t31,
-            t32,
-            t33,
-            T::fused(-(k(2.0) * (t47 + t46)), t45, t42),
-            -T::fused(k(2.0) * (t50 - t49), t45, t48),
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t37)), t45, t51),
-            -t44,
-            -T::fused(rotor_wz, t14, T::fused(-t9, t32, t17 * t33)),
-            t34,
+            -(k(3125.0) * t30),
+            k(0.0004) * t42,
+            -(k(0.0004) * T::fused(t41 + t40, t32, t45)),
+            k(0.0004) * T::fused(-(t38 - t37), t32, t46),
+            -t35,
+            T::fused(t3, t29, -T::fused(-k(6250.0), t12 * t30, rotor_wz * t10)),
+            t31,
         ];
     }
-    /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
+    /// Writes λ: 137 operations (57 ±, 80 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3491,8 +3458,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t13 = k(2.0) * t12;
-        let t14 = T::fused(-t12, t13, k(1.0));
+        let t13 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t14 = (t13 + t12) * (t13 - t12);
         let t15 = T::fused(
             inner_ring_e2,
             rotor_e3,
@@ -3502,8 +3477,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t16 = k(2.0) * t15;
-        let t17 = T::fused(-t15, t16, k(1.0));
+        let t16 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t17 = (t16 + t15) * (t16 - t15);
         let t18 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
         let t19 = T::fused(
             -t0,
@@ -3515,62 +3498,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             T::fused(rotor_wx, rotor_wy, -rotor_dwz),
             -T::fused(t4, k(0.0004) * (t7 - t6), t19),
         );
-        let t21 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t22 = t21 * t16;
-        let t23 = T::fused(-t18, t17, t22 * t20);
-        let t24 = T::fused(k(2e-6), inner_ring_dwy, -t23);
-        let t25 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t26 = t25 * t13;
-        let t27 = T::fused(-t14, t11, t26 * t24);
-        let t28 = T::fused(k(2e-6), outer_ring_dwx, t27);
-        let t29 = k(2.0) * outer_ring_e2;
-        let t30 = T::fused(-outer_ring_e2, t29, k(1.0));
-        let t31 = T::fused(t18, t22, t17 * t20);
-        let t32 = T::fused(
+        let t21 = t16 * (k(2.0) * t15);
+        let t22 = T::fused(-t18, t17, t21 * t20);
+        let t23 = T::fused(k(2e-6), inner_ring_dwy, -t22);
+        let t24 = t13 * (k(2.0) * t12);
+        let t25 = T::fused(-t14, t11, t24 * t23);
+        let t26 = T::fused(k(2e-6), outer_ring_dwx, t25);
+        let t27 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t28 = T::fused(t18, t21, t17 * t20);
+        let t29 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
             -T::fused(
                 k(1e-6),
                 T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-                -t31,
+                -t28,
             ),
         );
-        let t33 = outer_ring_e0 * t29;
+        let t30 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t30, t28, t33 * t32),
-            -T::fused(t33, t28, t30 * t32),
+            T::fused(-t27, t26, t30 * t29),
+            -T::fused(t30, t26, t27 * t29),
             -t1,
             -t3,
             -t5,
-            -T::fused(t26, t11, t14 * t24),
-            t27,
+            -T::fused(t24, t11, t14 * t23),
+            t25,
             -t0,
             -t2,
             -t4,
-            t31,
-            -t23,
+            t28,
+            -t22,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 244 operations (89 ±, 153 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 247 operations (92 ±, 153 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3604,8 +3568,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3614,10 +3577,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t4 = t3 * t2;
-        let t5 = outer_ring_wy * t4;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = T::fused(
+        let t3 = t2 * (k(2.0) * t1);
+        let t4 = outer_ring_wy * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3626,15 +3589,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
-        let t10 = k(3.2e-9) * t9;
-        let t11 = T::fused(-t1, t2, k(1.0));
-        let t12 = outer_ring_wy * t11;
-        let t13 = T::fused(-t12, outer_ring_wy * t10, k(0.00016));
-        let t14 = inner_ring_wx - rotor_wx;
-        let t15 = T::fused(-t4, t13, k(6.4e-9) * (t12 * (t14 * t9)));
-        let t16 = T::fused(
+        let t7 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3643,137 +3598,143 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t17 = t16 * t8;
-        let t18 = t9 * t9;
-        let t19 = k(6.4e-9) * t6;
-        let t20 = t14 * t19;
-        let t21 = T::fused(t20, k(1563.5) - t18, T::fused(-k(2e-6), t6 * t5, t17 * t15));
-        let t22 = T::fused(
-            t9,
-            T::fused(t17, t20, t15),
-            k(1e-5) * (t12 * T::fused(k(0.4), t5, t14)),
+        let t8 = (t7 + t6) * (t7 - t6);
+        let t9 = k(3.2e-9) * t8;
+        let t10 = (t2 + t1) * (t2 - t1);
+        let t11 = outer_ring_wy * t10;
+        let t12 = T::fused(-t11, outer_ring_wy * t9, k(0.00016));
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = T::fused(-t3, t12, k(6.4e-9) * (t11 * (t13 * t8)));
+        let t15 = t7 * (k(2.0) * t6);
+        let t16 = t8 * t8;
+        let t17 = k(6.4e-9) * t5;
+        let t18 = t13 * t17;
+        let t19 = T::fused(t18, k(1563.5) - t16, T::fused(-k(2e-6), t5 * t4, t15 * t14));
+        let t20 = T::fused(
+            t8,
+            T::fused(t15, t18, t14),
+            k(1e-5) * (t11 * T::fused(k(0.4), t4, t13)),
         );
-        let t23 = t17 * t10;
-        let t24 = t11 * t23;
-        let t25 = k(1.0) / T::fused(t9, t10, k(6e-6));
-        let t26 = t25 * t24;
-        let t27 = T::fused(
+        let t21 = t15 * t9;
+        let t22 = t10 * t21;
+        let t23 = k(1.0) / T::fused(t8, t9, k(6e-6));
+        let t24 = t23 * t22;
+        let t25 = T::fused(
+            t22,
             t24,
-            t26,
-            -T::fused(k(3.2e-9), (k(1876.0) - t18) * (t11 * t11), k(2e-6)),
+            -T::fused(k(3.2e-9), (k(1876.0) - t16) * (t10 * t10), k(2e-6)),
         );
-        let t28 = T::fused(-t11, t21, t26 * t22) / t27;
-        let t29 = outer_ring_wx * outer_ring_wy;
-        let t30 = t4 * t28;
-        let t31 = T::fused(inner_ring_wy, t6, -T::fused(-t0, t11, t30));
-        let t32 = T::fused(inner_ring_wx, t6, -T::fused(t11, t28, t0 * t4));
-        let t33 = t29 + T::fused(-t25, t22, t26 * t28);
-        let t34 = T::fused(rotor_wy, t14, T::fused(t17, t32, t9 * t33));
-        let t35 = k(0.0002) * rotor_wx;
-        let t36 = T::fused(-k(0.0002), t34, rotor_wy * t35);
-        let t37 = rotor_e0 * rotor_e0;
-        let t38 = k(0.5) - T::fused(rotor_e1, rotor_e1, t37);
-        let t39 = k(0.0002) * rotor_wz;
-        let t40 = T::fused(rotor_wx, t35, rotor_wz * t39);
-        let t41 = rotor_e0 * rotor_e3;
-        let t42 = rotor_e1 * rotor_e2;
-        let t43 = T::fused(
-            t11,
-            T::fused(t17, t13, t19 * (outer_ring_wy * (k(1562.5) + t18))),
-            t23 * (t6 * t6),
+        let t26 = T::fused(-t10, t19, t24 * t20) / t25;
+        let t27 = outer_ring_wx * outer_ring_wy;
+        let t28 = t3 * t26;
+        let t29 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t10, t28));
+        let t30 = T::fused(inner_ring_wx, t5, -T::fused(t10, t26, t0 * t3));
+        let t31 = t27 + T::fused(-t23, t20, t24 * t26);
+        let t32 = T::fused(rotor_wy, t13, T::fused(t15, t30, t8 * t31));
+        let t33 = k(0.0002) * rotor_wx;
+        let t34 = T::fused(-k(0.0002), t32, rotor_wy * t33);
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = k(0.5) - T::fused(rotor_e1, rotor_e1, t35);
+        let t37 = k(0.0002) * rotor_wz;
+        let t38 = T::fused(rotor_wx, t33, rotor_wz * t37);
+        let t39 = rotor_e0 * rotor_e3;
+        let t40 = rotor_e1 * rotor_e2;
+        let t41 = T::fused(
+            t10,
+            T::fused(t15, t12, t17 * (outer_ring_wy * (k(1562.5) + t16))),
+            t21 * (t5 * t5),
         );
-        let t44 = T::fused(-k(99968.01023672425), t43, t30) + t31;
-        let t45 = T::fused(-k(0.0002), t44, rotor_wy * t39);
-        let t46 = rotor_e0 * rotor_e2;
-        let t47 = rotor_e1 * rotor_e3;
-        let t48 = t47 + t46;
+        let t42 = T::fused(-k(99968.01023672425), t41, t28) + t29;
+        let t43 = T::fused(-k(0.0002), t42, rotor_wy * t37);
+        let t44 = rotor_e0 * rotor_e2;
+        let t45 = rotor_e1 * rotor_e3;
+        let t46 = t45 + t44;
+        let t47 = T::fused(
+            k(2.0) * t46,
+            t43,
+            -T::fused(k(2.0) * t36, t34, k(2.0) * (t40 - t39) * t38),
+        );
+        let t48 = t40 + t39;
         let t49 = T::fused(
             k(2.0) * t48,
-            t45,
-            -T::fused(k(2.0) * t38, t36, k(2.0) * (t42 - t41) * t40),
+            t34,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35)) * t38,
         );
-        let t50 = t42 + t41;
-        let t51 = T::fused(
-            k(2.0) * t50,
-            t36,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37)) * t40,
+        let t50 = rotor_e0 * rotor_e1;
+        let t51 = rotor_e2 * rotor_e3;
+        let t52 = t51 - t50;
+        let t53 = T::fused(k(2.0) * t52, t43, t49);
+        let t54 = t45 - t44;
+        let t55 = k(0.5) - T::fused(rotor_e3, rotor_e3, t35);
+        let t56 = T::fused(
+            k(2.0) * t55,
+            t43,
+            T::fused(-(k(2.0) * t54), t34, k(2.0) * (t51 + t50) * t38),
         );
-        let t52 = rotor_e0 * rotor_e1;
-        let t53 = rotor_e2 * rotor_e3;
-        let t54 = t53 - t52;
-        let t55 = T::fused(k(2.0) * t54, t45, t51);
-        let t56 = t47 - t46;
-        let t57 = k(0.5) - T::fused(rotor_e3, rotor_e3, t37);
-        let t58 = T::fused(
-            k(2.0) * t57,
-            t45,
-            T::fused(-(k(2.0) * t56), t36, k(2.0) * (t53 + t52) * t40),
+        let t57 = T::fused(rotor_wz, t13, T::fused(-t8, t30, t15 * t31));
+        let t58 = k(0.08) * t47;
+        let t59 = T::fused(-k(0.08), t53, k(0.8));
+        let t60 = k(0.1) + t59;
+        let t61 = k(0.08) * t56;
+        let t62 = T::fused(
+            k(0.0004) * t54,
+            t61,
+            T::fused(k(0.0004) * t48, t59, k(0.0004) * t36 * t58),
         );
-        let t59 = T::fused(rotor_wz, t14, T::fused(-t9, t32, t17 * t33));
-        let t60 = k(0.08) * t49;
-        let t61 = T::fused(-k(0.08), t55, k(0.8));
-        let t62 = k(0.1) + t61;
-        let t63 = k(0.08) * t58;
-        let t64 = T::fused(
-            k(0.0004) * t56,
-            t63,
-            T::fused(k(0.0004) * t50, t61, k(0.0004) * t38 * t60),
+        let t63 = T::fused(-k(5e-6), T::fused(rotor_wx, rotor_wy, -t32), t62);
+        let t64 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t57);
+        let t65 = T::fused(-t8, t63, t15 * t64);
+        let t66 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t31), t65);
+        let t67 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
+        let t68 = T::fused(t15, t63, t8 * t64);
+        let t69 = T::fused(k(2e-6), t30, t68);
+        let t70 = T::fused(
+            k(0.0004) * t55,
+            t61,
+            T::fused(-(k(0.0004) * t52), t59, k(0.0004) * t46 * t58),
         );
-        let t65 = T::fused(-k(5e-6), T::fused(rotor_wx, rotor_wy, -t34), t64);
-        let t66 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t59);
-        let t67 = T::fused(-t9, t65, t17 * t66);
-        let t68 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t33), t67);
-        let t69 = k(2.0) * outer_ring_e2;
-        let t70 = outer_ring_e0 * t69;
-        let t71 = T::fused(t17, t65, t9 * t66);
-        let t72 = T::fused(k(2e-6), t32, t71);
-        let t73 = T::fused(
-            k(0.0004) * t57,
-            t63,
-            T::fused(-(k(0.0004) * t54), t61, k(0.0004) * t48 * t60),
-        );
-        let t74 = T::fused(
+        let t71 = T::fused(
             -k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t31),
-            T::fused(-k(1e-5), t44, t73),
+            T::fused(inner_ring_wy, inner_ring_wz, t29),
+            T::fused(-k(1e-5), t42, t70),
         );
-        let t75 = T::fused(t4, t72, t11 * t74);
-        let t76 = T::fused(-k(2e-6), t0, t75);
-        let t77 = T::fused(-outer_ring_e2, t69, k(1.0));
+        let t72 = T::fused(t3, t69, t10 * t71);
+        let t73 = T::fused(-k(2e-6), t0, t72);
+        let t74 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t28,
-            t29,
+            -t26,
+            t27,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t31,
+            -t29,
+            t30,
+            t31,
+            -t47,
+            -t53,
+            t56,
+            -t42,
+            -t57,
             t32,
-            t33,
-            -t49,
-            -t55,
             t58,
-            -t44,
-            -t59,
-            t34,
-            t60,
-            -(k(0.1) + t62),
-            -t63,
-            T::fused(-t77, t76, t70 * t68),
-            -T::fused(t77, t68, t70 * t76),
-            t60,
-            -t62,
-            -t63,
-            T::fused(-t11, t72, t4 * t74),
-            t75,
-            t60,
+            -(k(0.1) + t60),
             -t61,
-            -t63,
-            t67,
-            t71,
+            T::fused(-t74, t73, t67 * t66),
+            -T::fused(t74, t66, t67 * t73),
+            t58,
+            -t60,
+            -t61,
+            T::fused(-t10, t69, t3 * t71),
+            t72,
+            t58,
+            -t59,
+            -t61,
+            t65,
+            t68,
         ];
     }
 }

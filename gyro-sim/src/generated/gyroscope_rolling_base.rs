@@ -11,42 +11,42 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 455 operations by relative Euler parameters, doubled; 465 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 389 operations by rotations of the bodies, doubled; 396 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 68 operations by normal form; 84 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 3 more compared
-//! * corrected_accelerations: 455 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 9 more compared
-//! * joint_jacobian: 1406 operations by derivatives of u̇, from its roots; 1406 operations by normal form of that; 7 more compared
+//! * accelerations: 455 operations by relative Euler parameters, doubled; 463 operations by relative Euler parameters; 2 more compared
+//! * project: 365 operations by rotations of the bodies, doubled; 369 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 66 operations by normal form; 79 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 98 operations by recursion on the bodies' spins; 98 operations by normal form; 3 more compared
+//! * corrected_accelerations: 455 operations by elimination in maximal coordinates; 189 operations by recursion on the bodies' spins in the global frame; 9 more compared
+//! * joint_jacobian: 1403 operations by derivatives of u̇, from its leaves; 1403 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 51 | 62 | 0 | 113 | 0 of 18 | 190 | 113 |
+//! | phi | Φ | 51 | 53 | 0 | 104 | 0 of 18 | 169 | 104 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 130 | 0 | 198 | 0 of 77 | 692 | 198 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 60 | 96 | 0 | 156 | 0 of 41 | 676 | 156 |
-//! | nu | ν | 4 | 13 | 0 | 17 | 14 of 15 | 22 | 17 |
-//! | gamma | γ | 129 | 201 | 0 | 330 | 6 of 15 | 1899 | 330 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 124 | 0 | 212 | 0 of 15 | 746 | 212 |
+//! | nu | ν | 4 | 11 | 0 | 15 | 14 of 15 | 19 | 15 |
+//! | gamma | γ | 129 | 198 | 0 | 327 | 6 of 15 | 1365 | 327 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 119 | 0 | 207 | 0 of 15 | 532 | 207 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 184 | 266 | 5 | 455 | 7 of 18 | 533802 | 459 |
-//! | multipliers | λ, the accelerations being known | 110 | 178 | 3 | 291 | 0 of 15 | 4619 | 291 |
-//! | project | (δr, δπ') that changes the rows as given | 146 | 238 | 5 | 389 | 1 of 18 | 479963 | 390 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 115 | 196 | 1 | 312 | 0 of 22 | 1325 | 312 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 56 | 65 | 0 | 121 | 0 of 9 | 227 | 121 |
+//! | multipliers | λ, the accelerations being known | 110 | 167 | 3 | 280 | 0 of 15 | 3206 | 280 |
+//! | project | (δr, δπ') that changes the rows as given | 144 | 216 | 5 | 365 | 1 of 18 | 326595 | 366 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 115 | 173 | 1 | 289 | 0 of 22 | 944 | 289 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
+//! | read_joints | joint coordinates and rates | 56 | 54 | 0 | 110 | 0 of 9 | 217 | 110 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 200 | 330 | 3 | 533 | 6 of 21 | 1.5e9 | 533 |
-//! | solve_velocities | dependent velocities, eq. (19) | 102 | 173 | 3 | 278 | 6 of 18 | 13921 | 278 |
-//! | joint_accelerations | u̇ in joint coordinates | 20 | 47 | 1 | 68 | 0 of 3 | 143 | 69 |
-//! | joint_derivative | ẋ but for u̇ | 159 | 286 | 2 | 447 | 0 of 4 | 23620 | 448 |
-//! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 | 962 | 104 |
-//! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 | 473 | 142 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 69 | 1 | 104 | 0 of 3 | 697 | 105 |
+//! | newton_step | dependent positions, one Newton step | 200 | 306 | 3 | 509 | 6 of 21 | 1.3e9 | 509 |
+//! | solve_velocities | dependent velocities, eq. (19) | 102 | 147 | 3 | 252 | 6 of 18 | 11706 | 252 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 45 | 1 | 66 | 0 of 3 | 137 | 67 |
+//! | joint_derivative | ẋ but for u̇ | 162 | 263 | 2 | 427 | 0 of 4 | 23715 | 428 |
+//! | to_maximal | (q, v) of a joint state | 35 | 69 | 0 | 104 | 12 of 39 | 978 | 104 |
+//! | to_joints | (x, u) of a maximal state | 65 | 66 | 0 | 131 | 0 of 6 | 447 | 131 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 62 | 1 | 98 | 0 of 3 | 842 | 99 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 184 | 266 | 5 | 455 | 7 of 18 | 533802 | 459 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
-//! | corrected_solution | both | 221 | 320 | 5 | 546 | 7 of 33 | 4.4e6 | 550 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 528 | 873 | 2 | 1403 | 29 of 56 | 8.8e6 | 1403 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 59 | 86 | 0 | 145 | 0 of 15 | 967 | 145 |
+//! | corrected_solution | both | 218 | 319 | 5 | 542 | 7 of 33 | 4.1e6 | 546 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 529 | 872 | 2 | 1403 | 29 of 56 | 9.3e6 | 1403 |
 //!
 //! # Proof
 //!
@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRollingBase<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 312 operations (115 ±, 196 ×, 1 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -185,145 +185,116 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRollingBase<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(2.0) * rotor_e1;
-        let t1 = k(2.0) * rotor_e0;
-        let t2 = T::fused(-rotor_e0, t1, k(1.0));
-        let t3 = T::fused(-rotor_e1, t0, t2);
-        let t4 = k(2.0) * inner_ring_e1;
-        let t5 = k(2.0) * inner_ring_e0;
-        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
-        let t7 = T::fused(-inner_ring_e1, t4, t6);
-        let t8 = rotor_e3 * t1;
-        let t9 = rotor_e2 * t0;
-        let t10 = t9 + t8;
-        let t11 = inner_ring_e3 * t5;
-        let t12 = inner_ring_e2 * t4;
-        let t13 = t12 + t11;
-        let t14 = rotor_e2 * t1;
-        let t15 = rotor_e3 * t0;
+        let t0 = k(125.66370614359172) * t;
+        let t1 = k(0.5) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t5 = t1.sin();
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = T::fused(
+            T::fused(outer_ring_e2, outer_ring_e2, -t4),
+            t3 * t2,
+            (t7 + t6) * (t3 * t5),
+        );
+        let t9 = k(2.0) * rotor_dwx;
+        let t10 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t11 = T::fused(rotor_e1, rotor_e1, -t10);
+        let t12 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t13 = T::fused(inner_ring_e1, inner_ring_e1, -t12);
+        let t14 = rotor_e0 * rotor_e2;
+        let t15 = rotor_e1 * rotor_e3;
         let t16 = t15 - t14;
-        let t17 = inner_ring_e2 * t5;
-        let t18 = inner_ring_e3 * t4;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
         let t19 = t18 - t17;
-        let t20 = k(1e-5) * rotor_dwx;
-        let t21 = t9 - t8;
-        let t22 = k(2.0) * rotor_e2;
-        let t23 = T::fused(-rotor_e2, t22, t2);
-        let t24 = rotor_e1 * t1;
-        let t25 = rotor_e3 * t22;
-        let t26 = t25 + t24;
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t28 = T::fused(
-            t20,
-            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
-            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
+        let t20 = rotor_e0 * rotor_e3;
+        let t21 = rotor_e1 * rotor_e2;
+        let t22 = t21 + t20;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 + t23;
+        let t26 = T::fused(rotor_e3, rotor_e3, -t10);
+        let t27 = rotor_e0 * rotor_e1;
+        let t28 = rotor_e2 * rotor_e3;
+        let t29 = t28 - t27;
+        let t30 = t15 + t14;
+        let t31 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t32 = T::fused(
+            t31,
+            T::fused(t30, t13, T::fused(t19, t26, t25 * t29)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t29 = t15 + t14;
-        let t30 = t25 - t24;
-        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
-        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
-        let t34 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t33,
-        );
-        let t35 = k(2.0) * outer_ring_e1;
-        let t36 = k(2.0) * outer_ring_e0;
-        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
-        let t38 = T::fused(-outer_ring_e1, t35, t37);
-        let t39 = T::fused(outer_ring_e3, t36, outer_ring_e2 * t35);
-        let t40 = outer_ring_e2 * t36;
-        let t41 = outer_ring_e3 * t35;
+        let t33 = T::fused(rotor_e2, rotor_e2, -t10);
+        let t34 = t28 + t27;
+        let t35 = t21 - t20;
+        let t36 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t37 = T::fused(t36, T::fused(t35, t13, T::fused(t25, t33, t19 * t34)), -t32);
+        let t38 = T::fused(T::fused(t13, t11, T::fused(t19, t16, t25 * t22)), t9, t37);
+        let t39 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
+        let t40 = outer_ring_e0 * outer_ring_e2;
+        let t41 = outer_ring_e1 * outer_ring_e3;
         let t42 = t41 - t40;
-        let t43 = t12 - t11;
-        let t44 = k(2.0) * inner_ring_e2;
-        let t45 = T::fused(-inner_ring_e2, t44, t6);
-        let t46 = inner_ring_e1 * t5;
-        let t47 = inner_ring_e3 * t44;
-        let t48 = t47 + t46;
-        let t49 = T::fused(
-            t20,
-            T::fused(t48, t16, -T::fused(t43, t3, t45 * t10)),
-            t27 * T::fused(t48, t26, T::fused(t43, t21, t45 * t23)),
+        let t43 = T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t12);
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
+        let t47 = t46 + t45;
+        let t48 = t24 - t23;
+        let t49 = T::fused(inner_ring_e3, inner_ring_e3, -t12);
+        let t50 = rotor_dsy + k(10.0);
+        let t51 = t46 - t45;
+        let t52 = t18 + t17;
+        let t53 = T::fused(
+            t52,
+            rotor_dsx,
+            T::fused(t51, t50, -T::fused(-rotor_dsz, t49, k(0.1) * inner_ring_dwy)),
         );
-        let t50 = T::fused(t32, T::fused(t48, t31, T::fused(-t43, t29, t45 * t30)), t49);
-        let t51 = t18 + t17;
-        let t52 = k(0.08) * rotor_dsx;
-        let t53 = t47 - t46;
-        let t54 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t55 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
-        let t56 = k(0.08) * rotor_dsz;
+        let t54 = T::fused(t31, T::fused(t48, t30, T::fused(t47, t26, t29 * t44)), t53);
+        let t55 = T::fused(t36, T::fused(t48, t35, T::fused(t33, t44, t47 * t34)), -t54);
+        let t56 = T::fused(T::fused(t48, t11, T::fused(t22, t44, t47 * t16)), t9, t55);
         let t57 = T::fused(
-            t56,
-            k(0.000125) * t55,
-            -T::fused(t52, k(0.000125) * t51, t54 * (k(0.000125) * t53)),
+            t44,
+            t50,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t47 * rotor_dsz,
+            ),
         );
-        let t58 = T::fused(k(2e-6), inner_ring_dwy, t57 + t50);
-        let t59 = T::fused(
-            -T::fused(t42, t19, T::fused(t38, t7, t39 * t13)),
-            t34,
-            T::fused(t42, t48, -T::fused(t38, t43, t39 * t45)) * t58,
+        let t58 = T::fused(
+            t31,
+            T::fused(t52, t30, T::fused(t26, t49, t51 * t29)),
+            -T::fused(t48, rotor_dsx, t57),
         );
-        let t60 = T::fused(
-            t20,
-            T::fused(t55, t16, -T::fused(-t51, t3, t53 * t10)),
-            t27 * T::fused(t55, t26, T::fused(-t51, t21, t53 * t23)),
+        let t59 = T::fused(t36, T::fused(t52, t35, T::fused(t34, t49, t51 * t33)), -t58);
+        let t60 = T::fused(T::fused(t52, t11, T::fused(t16, t49, t51 * t22)), t9, t59);
+        let t61 = T::fused(
+            T::fused(t52, t39, T::fused(t42, t49, t43 * t51)),
+            t60,
+            k(0.025) * outer_ring_dwx,
         );
-        let t61 = T::fused(t32, T::fused(t55, t31, T::fused(t51, t29, t53 * t30)), t60);
-        let t62 = T::fused(
-            t56,
-            k(0.000125) * t48,
-            -T::fused(-t52, k(0.000125) * t43, t54 * (k(0.000125) * t45)),
+        let t62 = T::fused(T::fused(t48, t39, T::fused(t43, t44, t42 * t47)), t56, t61);
+        let t63 = T::fused(T::fused(t39, t13, T::fused(t42, t19, t43 * t25)), t38, t62);
+        let t64 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
+        let t65 = t7 - t6;
+        let t66 = t41 + t40;
+        let t67 = T::fused(
+            t39,
+            T::fused(-t2, t64, t5 * t65),
+            t66 * T::fused(-t5, t43, t2 * t42),
         );
-        let t63 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t62 - t61,
+        let t68 = k(1.0) / t67;
+        let t69 = T::fused(
+            -T::fused(t66, t52, T::fused(t64, t49, t65 * t51)),
+            t60,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t64 = T::fused(
-            T::fused(t42, t55, -T::fused(-t38, t51, t39 * t53)),
-            t63,
-            -t59,
-        );
-        let t65 = outer_ring_e1 * t36;
-        let t66 = k(2.0) * outer_ring_e2;
-        let t67 = outer_ring_e3 * t66;
-        let t68 = t67 - t65;
-        let t69 = k(125.66370614359172) * t;
-        let t70 = k(0.5) * t69.sin();
-        let t71 = t70.sin();
-        let t72 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
-        let t73 = t70.cos();
-        let t74 = t41 + t40;
-        let t75 = T::fused(
-            -t38,
-            T::fused(t71, t68, t73 * t72),
-            t74 * T::fused(-t71, t39, t73 * t42),
-        );
-        let t76 = k(1.0) / t75;
-        let t77 = T::fused(
-            -T::fused(t72, t19, -T::fused(-t74, t7, t68 * t13)),
-            t34,
-            T::fused(t72, t48, T::fused(-t74, t43, t68 * t45)) * t58,
-        );
-        let t78 = T::fused(T::fused(t72, t55, T::fused(t74, t51, t68 * t53)), t63, -t77);
-        let t79 = T::fused(
-            t38 * t76,
-            T::fused(k(2e-6), outer_ring_dwx, -t64),
-            t74 * t76
-                * T::fused(
-                    k(1e-6),
-                    T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-                    -t78,
-                ),
-        );
-        let t80 = k(62.83185307179586) * t69.cos();
-        let t81 = T::fused(
-            -(t80 * t71),
-            t67 + t65,
-            t80 * t73 * T::fused(-outer_ring_e2, t66, t37),
-        );
+        let t70 = T::fused(-T::fused(t66, t48, T::fused(t47, t64, t65 * t44)), t56, t69);
+        let t71 = T::fused(-T::fused(t66, t13, T::fused(t19, t64, t65 * t25)), t38, t70);
+        let t72 = k(0.005026548245743669)
+            * (T::fused(-(t39 * t68), t63, t66 * t68 * t71) * t8);
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -440,7 +411,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRollingBase<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t81 * t79),
+            t72,
         ];
     }
 }
@@ -457,7 +428,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 312 operations (115 ±, 196 ×, 1 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -503,145 +474,116 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(2.0) * rotor_e1;
-        let t1 = k(2.0) * rotor_e0;
-        let t2 = T::fused(-rotor_e0, t1, k(1.0));
-        let t3 = T::fused(-rotor_e1, t0, t2);
-        let t4 = k(2.0) * inner_ring_e1;
-        let t5 = k(2.0) * inner_ring_e0;
-        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
-        let t7 = T::fused(-inner_ring_e1, t4, t6);
-        let t8 = rotor_e3 * t1;
-        let t9 = rotor_e2 * t0;
-        let t10 = t9 + t8;
-        let t11 = inner_ring_e3 * t5;
-        let t12 = inner_ring_e2 * t4;
-        let t13 = t12 + t11;
-        let t14 = rotor_e2 * t1;
-        let t15 = rotor_e3 * t0;
+        let t0 = k(125.66370614359172) * t;
+        let t1 = k(0.5) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t5 = t1.sin();
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = T::fused(
+            T::fused(outer_ring_e2, outer_ring_e2, -t4),
+            t3 * t2,
+            (t7 + t6) * (t3 * t5),
+        );
+        let t9 = k(2.0) * rotor_dwx;
+        let t10 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t11 = T::fused(rotor_e1, rotor_e1, -t10);
+        let t12 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t13 = T::fused(inner_ring_e1, inner_ring_e1, -t12);
+        let t14 = rotor_e0 * rotor_e2;
+        let t15 = rotor_e1 * rotor_e3;
         let t16 = t15 - t14;
-        let t17 = inner_ring_e2 * t5;
-        let t18 = inner_ring_e3 * t4;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
         let t19 = t18 - t17;
-        let t20 = k(1e-5) * rotor_dwx;
-        let t21 = t9 - t8;
-        let t22 = k(2.0) * rotor_e2;
-        let t23 = T::fused(-rotor_e2, t22, t2);
-        let t24 = rotor_e1 * t1;
-        let t25 = rotor_e3 * t22;
-        let t26 = t25 + t24;
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t28 = T::fused(
-            t20,
-            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
-            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
+        let t20 = rotor_e0 * rotor_e3;
+        let t21 = rotor_e1 * rotor_e2;
+        let t22 = t21 + t20;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 + t23;
+        let t26 = T::fused(rotor_e3, rotor_e3, -t10);
+        let t27 = rotor_e0 * rotor_e1;
+        let t28 = rotor_e2 * rotor_e3;
+        let t29 = t28 - t27;
+        let t30 = t15 + t14;
+        let t31 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t32 = T::fused(
+            t31,
+            T::fused(t30, t13, T::fused(t19, t26, t25 * t29)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t29 = t15 + t14;
-        let t30 = t25 - t24;
-        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
-        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
-        let t34 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t33,
-        );
-        let t35 = k(2.0) * outer_ring_e1;
-        let t36 = k(2.0) * outer_ring_e0;
-        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
-        let t38 = T::fused(-outer_ring_e1, t35, t37);
-        let t39 = T::fused(outer_ring_e3, t36, outer_ring_e2 * t35);
-        let t40 = outer_ring_e2 * t36;
-        let t41 = outer_ring_e3 * t35;
+        let t33 = T::fused(rotor_e2, rotor_e2, -t10);
+        let t34 = t28 + t27;
+        let t35 = t21 - t20;
+        let t36 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t37 = T::fused(t36, T::fused(t35, t13, T::fused(t25, t33, t19 * t34)), -t32);
+        let t38 = T::fused(T::fused(t13, t11, T::fused(t19, t16, t25 * t22)), t9, t37);
+        let t39 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
+        let t40 = outer_ring_e0 * outer_ring_e2;
+        let t41 = outer_ring_e1 * outer_ring_e3;
         let t42 = t41 - t40;
-        let t43 = t12 - t11;
-        let t44 = k(2.0) * inner_ring_e2;
-        let t45 = T::fused(-inner_ring_e2, t44, t6);
-        let t46 = inner_ring_e1 * t5;
-        let t47 = inner_ring_e3 * t44;
-        let t48 = t47 + t46;
-        let t49 = T::fused(
-            t20,
-            T::fused(t48, t16, -T::fused(t43, t3, t45 * t10)),
-            t27 * T::fused(t48, t26, T::fused(t43, t21, t45 * t23)),
+        let t43 = T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t12);
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
+        let t47 = t46 + t45;
+        let t48 = t24 - t23;
+        let t49 = T::fused(inner_ring_e3, inner_ring_e3, -t12);
+        let t50 = rotor_dsy + k(10.0);
+        let t51 = t46 - t45;
+        let t52 = t18 + t17;
+        let t53 = T::fused(
+            t52,
+            rotor_dsx,
+            T::fused(t51, t50, -T::fused(-rotor_dsz, t49, k(0.1) * inner_ring_dwy)),
         );
-        let t50 = T::fused(t32, T::fused(t48, t31, T::fused(-t43, t29, t45 * t30)), t49);
-        let t51 = t18 + t17;
-        let t52 = k(0.08) * rotor_dsx;
-        let t53 = t47 - t46;
-        let t54 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t55 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
-        let t56 = k(0.08) * rotor_dsz;
+        let t54 = T::fused(t31, T::fused(t48, t30, T::fused(t47, t26, t29 * t44)), t53);
+        let t55 = T::fused(t36, T::fused(t48, t35, T::fused(t33, t44, t47 * t34)), -t54);
+        let t56 = T::fused(T::fused(t48, t11, T::fused(t22, t44, t47 * t16)), t9, t55);
         let t57 = T::fused(
-            t56,
-            k(0.000125) * t55,
-            -T::fused(t52, k(0.000125) * t51, t54 * (k(0.000125) * t53)),
+            t44,
+            t50,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t47 * rotor_dsz,
+            ),
         );
-        let t58 = T::fused(k(2e-6), inner_ring_dwy, t57 + t50);
-        let t59 = T::fused(
-            -T::fused(t42, t19, T::fused(t38, t7, t39 * t13)),
-            t34,
-            T::fused(t42, t48, -T::fused(t38, t43, t39 * t45)) * t58,
+        let t58 = T::fused(
+            t31,
+            T::fused(t52, t30, T::fused(t26, t49, t51 * t29)),
+            -T::fused(t48, rotor_dsx, t57),
         );
-        let t60 = T::fused(
-            t20,
-            T::fused(t55, t16, -T::fused(-t51, t3, t53 * t10)),
-            t27 * T::fused(t55, t26, T::fused(-t51, t21, t53 * t23)),
+        let t59 = T::fused(t36, T::fused(t52, t35, T::fused(t34, t49, t51 * t33)), -t58);
+        let t60 = T::fused(T::fused(t52, t11, T::fused(t16, t49, t51 * t22)), t9, t59);
+        let t61 = T::fused(
+            T::fused(t52, t39, T::fused(t42, t49, t43 * t51)),
+            t60,
+            k(0.025) * outer_ring_dwx,
         );
-        let t61 = T::fused(t32, T::fused(t55, t31, T::fused(t51, t29, t53 * t30)), t60);
-        let t62 = T::fused(
-            t56,
-            k(0.000125) * t48,
-            -T::fused(-t52, k(0.000125) * t43, t54 * (k(0.000125) * t45)),
+        let t62 = T::fused(T::fused(t48, t39, T::fused(t43, t44, t42 * t47)), t56, t61);
+        let t63 = T::fused(T::fused(t39, t13, T::fused(t42, t19, t43 * t25)), t38, t62);
+        let t64 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
+        let t65 = t7 - t6;
+        let t66 = t41 + t40;
+        let t67 = T::fused(
+            t39,
+            T::fused(-t2, t64, t5 * t65),
+            t66 * T::fused(-t5, t43, t2 * t42),
         );
-        let t63 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t62 - t61,
+        let t68 = k(1.0) / t67;
+        let t69 = T::fused(
+            -T::fused(t66, t52, T::fused(t64, t49, t65 * t51)),
+            t60,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t64 = T::fused(
-            T::fused(t42, t55, -T::fused(-t38, t51, t39 * t53)),
-            t63,
-            -t59,
-        );
-        let t65 = outer_ring_e1 * t36;
-        let t66 = k(2.0) * outer_ring_e2;
-        let t67 = outer_ring_e3 * t66;
-        let t68 = t67 - t65;
-        let t69 = k(125.66370614359172) * t;
-        let t70 = k(0.5) * t69.sin();
-        let t71 = t70.sin();
-        let t72 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
-        let t73 = t70.cos();
-        let t74 = t41 + t40;
-        let t75 = T::fused(
-            -t38,
-            T::fused(t71, t68, t73 * t72),
-            t74 * T::fused(-t71, t39, t73 * t42),
-        );
-        let t76 = k(1.0) / t75;
-        let t77 = T::fused(
-            -T::fused(t72, t19, -T::fused(-t74, t7, t68 * t13)),
-            t34,
-            T::fused(t72, t48, T::fused(-t74, t43, t68 * t45)) * t58,
-        );
-        let t78 = T::fused(T::fused(t72, t55, T::fused(t74, t51, t68 * t53)), t63, -t77);
-        let t79 = T::fused(
-            t38 * t76,
-            T::fused(k(2e-6), outer_ring_dwx, -t64),
-            t74 * t76
-                * T::fused(
-                    k(1e-6),
-                    T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-                    -t78,
-                ),
-        );
-        let t80 = k(62.83185307179586) * t69.cos();
-        let t81 = T::fused(
-            -(t80 * t71),
-            t67 + t65,
-            t80 * t73 * T::fused(-outer_ring_e2, t66, t37),
-        );
+        let t70 = T::fused(-T::fused(t66, t48, T::fused(t47, t64, t65 * t44)), t56, t69);
+        let t71 = T::fused(-T::fused(t66, t13, T::fused(t19, t64, t65 * t25)), t38, t70);
+        let t72 = k(0.005026548245743669)
+            * (T::fused(-(t39 * t68), t63, t66 * t68 * t71) * t8);
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
@@ -758,10 +700,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t81 * t79),
+            t72,
         ];
     }
-    /// Writes Φ: 113 operations (51 ±, 62 ×, 0 ÷) and 3 functions.
+    /// Writes Φ: 104 operations (51 ±, 53 ×, 0 ÷) and 3 functions.
     fn phi(&self, t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -785,70 +727,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e2 * outer_ring_e2;
-        let t1 = outer_ring_e0 * outer_ring_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + t0));
-        let t3 = k(0.5) * (k(125.66370614359172) * t).sin();
-        let t4 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t1 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = k(0.5) - (t3 + t2);
         let t5 = outer_ring_e0 * outer_ring_e3;
         let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = inner_ring_e0 * inner_ring_e2;
-        let t9 = inner_ring_e1 * inner_ring_e3;
-        let t10 = k(2.0) * (t9 + t8);
-        let t11 = T::fused(outer_ring_e1, outer_ring_e1, t1);
-        let t12 = inner_ring_e0 * inner_ring_e1;
-        let t13 = inner_ring_e2 * inner_ring_e3;
-        let t14 = k(2.0) * (t13 - t12);
-        let t15 = T::fused(-(k(2.0) * (k(0.5) - t11)), t10, k(2.0) * (t6 + t5) * t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - (t17 + t16));
-        let t19 = T::fused(inner_ring_e1, inner_ring_e1, t17);
+        let t7 = t6 - t5;
+        let t8 = inner_ring_e3 * inner_ring_e3;
+        let t9 = inner_ring_e0 * inner_ring_e0;
+        let t10 = k(0.5) - (t9 + t8);
+        let t11 = inner_ring_e0 * inner_ring_e1;
+        let t12 = inner_ring_e2 * inner_ring_e3;
+        let t13 = t12 - t11;
+        let t14 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t10,
+            (t6 + t5) * t13,
+        );
+        let t15 = inner_ring_e0 * inner_ring_e2;
+        let t16 = inner_ring_e1 * inner_ring_e3;
+        let t17 = t16 + t15;
+        let t18 = T::fused(outer_ring_e1, outer_ring_e1, t3);
+        let t19 = T::fused(inner_ring_e1, inner_ring_e1, t9);
         let t20 = inner_ring_e0 * inner_ring_e3;
         let t21 = inner_ring_e1 * inner_ring_e2;
-        let t22 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
-        let t23 = k(2.0) * (k(0.5) - t22);
-        let t24 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t25 = inner_ring_e2 * inner_ring_e2;
-        let t26 = T::fused(
-            k(2.0) * (t21 - t20),
-            t23,
-            k(2.0) * (k(0.5) - (t17 + t25)) * t24,
+        let t22 = T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t23 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t24 = inner_ring_e2 * inner_ring_e2;
+        let t25 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
+        let t26 = k(0.5) - t25;
+        let t27 = T::fused(
+            t21 - t20,
+            t26,
+            T::fused(-(t12 + t11), t22, (k(0.5) - (t9 + t24)) * t23),
         );
-        let t27 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            T::fused(t3.sin(), t2, t3.cos() * t4),
-            t7,
+            k(2.0) * T::fused(t1.cos(), t0, t1.sin() * t4),
+            k(2.0) * t7,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t18,
-                t15,
-            ),
-            T::fused(-t4, t18, T::fused(-t2, t14, t7 * t10)),
-            rotor_rx - T::fused(-k(0.00025), k(0.5) - t19, inner_ring_rx),
-            rotor_ry - T::fused(k(0.00025), t21 + t20, inner_ring_ry),
-            rotor_rz - T::fused(k(0.00025), t9 - t8, inner_ring_rz),
-            T::fused(k(2.0) * (t13 + t12), t27, -t26),
-            T::fused(-t18, t27, T::fused(-t10, t23, t14 * t24)),
-            T::fused(outer_ring_e3, outer_ring_e3, t11 + t0) - k(1.0),
-            t16 + (t19 + t25) - k(1.0),
-            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t22)) - k(1.0),
+            -(k(4.0) * T::fused(k(0.5) - t18, t17, -t14)),
+            -(k(4.0) * T::fused(t4, t13, -T::fused(-t0, t10, t7 * t17))),
+            T::fused(k(0.00025), k(0.5) - t19, -(inner_ring_rx - rotor_rx)),
+            -T::fused(k(0.00025), t21 + t20, inner_ring_ry - rotor_ry),
+            -T::fused(k(0.00025), t16 - t15, inner_ring_rz - rotor_rz),
+            -(k(4.0) * t27),
+            -(k(4.0) * T::fused(t17, t26, -T::fused(-t10, t22, t13 * t23))),
+            t2 + T::fused(outer_ring_e3, outer_ring_e3, t18) - k(1.0),
+            t24 + (t19 + t8) - k(1.0),
+            T::fused(rotor_e2, rotor_e2, T::fused(rotor_e3, rotor_e3, t25)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 212 operations (88 ±, 124 ×, 0 ÷) and 4 functions.
+    /// Writes Φ_r s + Φ_π' w' − ν: 207 operations (88 ±, 119 ×, 0 ÷) and 4 functions.
     fn velocity_residual(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -880,154 +816,143 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
-        let t7 = k(125.66370614359172) * t;
-        let t8 = k(0.5) * t7.sin();
-        let t9 = t8.cos();
-        let t10 = outer_ring_e1 * t0;
-        let t11 = k(2.0) * outer_ring_e2;
-        let t12 = outer_ring_e3 * t11;
-        let t13 = t12 + t10;
-        let t14 = t8.sin();
-        let t15 = k(62.83185307179586) * t7.cos();
-        let t16 = T::fused(
-            t9,
-            T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
-            t15 * t14 * t13,
+        let t0 = k(125.66370614359172) * t;
+        let t1 = k(0.5) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t5 = T::fused(outer_ring_e2, outer_ring_e2, -t4);
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = t7 - t6;
+        let t9 = outer_ring_e0 * outer_ring_e3;
+        let t10 = outer_ring_e1 * outer_ring_e2;
+        let t11 = t10 + t9;
+        let t12 = t1.sin();
+        let t13 = T::fused(
+            -t5,
+            t3 * t2,
+            k(0.015915494309189534)
+                * (t12 * T::fused(-t8, outer_ring_wx, t11 * outer_ring_wz)),
         );
-        let t17 = outer_ring_e3 * t0;
-        let t18 = outer_ring_e2 * t2;
-        let t19 = t18 + t17;
-        let t20 = t12 - t10;
-        let t21 = T::fused(-outer_ring_e2, t11, t5);
-        let t22 = T::fused(
-            -t14,
-            T::fused(-outer_ring_wz, t19, outer_ring_wx * t20),
-            t15 * t9 * t21,
+        let t14 = t7 + t6;
+        let t15 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
+        let t16 = outer_ring_e0 * outer_ring_e2;
+        let t17 = outer_ring_e1 * outer_ring_e3;
+        let t18 = t17 - t16;
+        let t19 = T::fused(
+            k(0.015915494309189534),
+            t2 * T::fused(-outer_ring_wx, t15, t18 * outer_ring_wz),
+            T::fused(t14, t3 * t12, -t13),
         );
-        let t23 = T::fused(-outer_ring_e1, t2, t5);
-        let t24 = t3 + t1;
-        let t25 = k(2.0) * inner_ring_e0;
-        let t26 = inner_ring_e2 * t25;
-        let t27 = k(2.0) * inner_ring_e1;
-        let t28 = inner_ring_e3 * t27;
-        let t29 = t28 + t26;
-        let t30 = t18 - t17;
-        let t31 = inner_ring_e1 * t25;
-        let t32 = k(2.0) * inner_ring_e2;
-        let t33 = inner_ring_e3 * t32;
-        let t34 = t33 - t31;
-        let t35 = T::fused(-inner_ring_e0, t25, k(1.0));
-        let t36 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t35);
-        let t37 = T::fused(t6, t36, T::fused(t24, t29, t20 * t34));
-        let t38 = T::fused(
+        let t20 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
+        let t21 = t17 + t16;
+        let t22 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t23 = T::fused(inner_ring_e3, inner_ring_e3, -t22);
+        let t24 = inner_ring_e0 * inner_ring_e1;
+        let t25 = inner_ring_e2 * inner_ring_e3;
+        let t26 = t25 - t24;
+        let t27 = inner_ring_e0 * inner_ring_e2;
+        let t28 = inner_ring_e1 * inner_ring_e3;
+        let t29 = t28 + t27;
+        let t30 = T::fused(t21, t29, T::fused(t15, t23, t8 * t26));
+        let t31 = T::fused(inner_ring_e2, inner_ring_e2, -t22);
+        let t32 = t25 + t24;
+        let t33 = inner_ring_e0 * inner_ring_e3;
+        let t34 = inner_ring_e1 * inner_ring_e2;
+        let t35 = t34 - t33;
+        let t36 = T::fused(inner_ring_e1, inner_ring_e1, -t22);
+        let t37 = t28 - t27;
+        let t38 = t34 + t33;
+        let t39 = T::fused(
+            -inner_ring_wx,
+            T::fused(t35, t20, T::fused(t11, t31, t18 * t32)),
+            inner_ring_wy * T::fused(t20, t36, T::fused(t18, t37, t11 * t38)),
+        );
+        let t40 = t10 - t9;
+        let t41 = T::fused(
             outer_ring_wz,
-            T::fused(t13, t36, T::fused(-t30, t29, t21 * t34)),
-            outer_ring_wy * t37,
+            T::fused(t40, t29, T::fused(t14, t23, t26 * t5)),
+            T::fused(-outer_ring_wy, t30, t39),
         );
-        let t39 = T::fused(-inner_ring_e1, t27, t35);
-        let t40 = inner_ring_e3 * t25;
-        let t41 = inner_ring_e2 * t27;
-        let t42 = t41 + t40;
-        let t43 = t28 - t26;
-        let t44 = t41 - t40;
-        let t45 = T::fused(-inner_ring_e2, t32, t35);
-        let t46 = t33 + t31;
-        let t47 = T::fused(
-            -inner_ring_wy,
-            T::fused(t4, t43, T::fused(t23, t39, t19 * t42)),
-            inner_ring_wx * T::fused(t4, t46, -T::fused(t23, t44, t19 * t45)),
+        let t42 = T::fused(
+            -inner_ring_wx,
+            T::fused(t40, t35, T::fused(t5, t31, t14 * t32)),
+            inner_ring_wy * T::fused(t40, t36, T::fused(t38, t5, t14 * t37)),
         );
-        let t48 = T::fused(
+        let t43 = T::fused(
             outer_ring_wz,
-            T::fused(t4, t36, -T::fused(-t23, t29, t19 * t34)),
-            outer_ring_wx * t37,
+            T::fused(t29, t20, T::fused(t18, t23, t11 * t26)),
+            -T::fused(outer_ring_wx, t30, t42),
         );
-        let t49 = T::fused(
-            -inner_ring_wy,
-            T::fused(t13, t43, -T::fused(t30, t39, t21 * t42)),
-            inner_ring_wx * T::fused(t13, t46, T::fused(t30, t44, t21 * t45)),
+        let t44 = rotor_e0 * rotor_e2;
+        let t45 = rotor_e1 * rotor_e3;
+        let t46 = t45 - t44;
+        let t47 = rotor_e0 * rotor_e3;
+        let t48 = rotor_e1 * rotor_e2;
+        let t49 = t48 + t47;
+        let t50 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t51 = T::fused(rotor_e1, rotor_e1, -t50);
+        let t52 = T::fused(rotor_e3, rotor_e3, -t50);
+        let t53 = rotor_e0 * rotor_e1;
+        let t54 = rotor_e2 * rotor_e3;
+        let t55 = t54 - t53;
+        let t56 = t45 + t44;
+        let t57 = T::fused(rotor_e2, rotor_e2, -t50);
+        let t58 = t54 + t53;
+        let t59 = t48 - t47;
+        let t60 = T::fused(
+            -rotor_wy,
+            T::fused(t35, t56, T::fused(t32, t52, t55 * t31)),
+            rotor_wz * T::fused(t35, t59, T::fused(t57, t31, t32 * t58)),
         );
-        let t50 = k(2.0) * rotor_e1;
-        let t51 = k(2.0) * rotor_e0;
-        let t52 = T::fused(-rotor_e0, t51, k(1.0));
-        let t53 = T::fused(-rotor_e1, t50, t52);
-        let t54 = rotor_e3 * t51;
-        let t55 = rotor_e2 * t50;
-        let t56 = t55 + t54;
-        let t57 = rotor_e2 * t51;
-        let t58 = rotor_e3 * t50;
-        let t59 = t58 - t57;
-        let t60 = T::fused(t43, t59, T::fused(t39, t53, t42 * t56));
         let t61 = T::fused(
-            inner_ring_wz,
+            inner_ring_wx,
+            T::fused(t29, t51, T::fused(t46, t23, t26 * t49)),
             t60,
-            inner_ring_wx * T::fused(t36, t59, -T::fused(-t29, t53, t34 * t56)),
         );
-        let t62 = t55 - t54;
-        let t63 = k(2.0) * rotor_e2;
-        let t64 = T::fused(-rotor_e2, t63, t52);
-        let t65 = rotor_e1 * t51;
-        let t66 = rotor_e3 * t63;
-        let t67 = t66 + t65;
-        let t68 = t58 + t57;
-        let t69 = t66 - t65;
-        let t70 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t52);
-        let t71 = T::fused(
-            rotor_wz,
-            T::fused(t46, t67, T::fused(t44, t62, t45 * t64)),
-            rotor_wy * T::fused(t46, t70, T::fused(-t44, t68, t45 * t69)),
+        let t62 = T::fused(t36, t51, T::fused(t37, t46, t38 * t49));
+        let t63 = T::fused(
+            -rotor_wy,
+            T::fused(t29, t56, T::fused(t52, t23, t26 * t55)),
+            rotor_wz * T::fused(t29, t59, T::fused(t58, t23, t26 * t57)),
         );
-        let t72 = T::fused(
-            -inner_ring_wy,
-            t60,
-            inner_ring_wx * T::fused(t46, t59, -T::fused(t44, t53, t45 * t56)),
-        );
-        let t73 = T::fused(
-            rotor_wz,
-            T::fused(t36, t67, T::fused(-t29, t62, t34 * t64)),
-            rotor_wy * T::fused(t36, t70, T::fused(t29, t68, t34 * t69)),
+        let t64 = T::fused(
+            -inner_ring_wx,
+            T::fused(t35, t51, T::fused(t49, t31, t32 * t46)),
+            t63,
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            t22 - t16,
-            T::fused(outer_ring_wz, t23, outer_ring_wx * t24),
+            -(k(125.66370614359172) * t19),
+            k(2.0) * T::fused(-outer_ring_wz, t20, t21 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t47 + t38),
-            t48 - t49,
-            rotor_sx
-                - T::fused(
-                    -k(0.000125),
-                    T::fused(-inner_ring_wz, t44, inner_ring_wy * t29),
-                    inner_ring_sx,
-                ),
-            rotor_sy
-                - T::fused(
-                    -k(0.000125),
-                    T::fused(inner_ring_wz, t45, inner_ring_wy * t34),
-                    inner_ring_sy,
-                ),
-            rotor_sz
-                - T::fused(
-                    k(0.000125),
-                    T::fused(inner_ring_wz, t46, inner_ring_wy * t36),
-                    inner_ring_sz,
-                ),
-            t71 - t61,
-            -(t73 + t72),
+            k(4.0) * t41,
+            -(k(4.0) * t43),
+            T::fused(
+                k(0.00025),
+                T::fused(-t35, inner_ring_wz, t29 * inner_ring_wy),
+                -(inner_ring_sx - rotor_sx),
+            ),
+            T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wz, t31, t26 * inner_ring_wy),
+                -(inner_ring_sy - rotor_sy),
+            ),
+            -T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wy, t23, t32 * inner_ring_wz),
+                inner_ring_sz - rotor_sz,
+            ),
+            -(k(4.0) * T::fused(inner_ring_wz, t62, -t61)),
+            k(4.0) * T::fused(inner_ring_wy, t62, t64),
         ];
     }
-    /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
+    /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -1052,65 +977,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
-        );
-        let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.01),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t2),
+            ),
+        );
+        let t4 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t3,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: T::fused(
-                k(0.8),
-                rotor_ry,
-                k(0.1) * (outer_ring_ry + inner_ring_ry),
-            ),
+            kinetic: k(5e-7) * t4,
+            potential: k(0.1) * T::fused(k(8.0), rotor_ry, outer_ring_ry + inner_ring_ry),
         }
     }
-    /// Writes the joint readings: 121 operations (56 ±, 65 ×, 0 ÷) and 3 functions.
+    /// Writes the joint readings: 110 operations (56 ±, 54 ×, 0 ÷) and 3 functions.
     fn read_joints(&self, t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1132,70 +1056,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
         let rotor_wx = y[36];
         let t0 = outer_ring_e0 * outer_ring_e2;
         let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = outer_ring_e2 * outer_ring_e2;
+        let t2 = outer_ring_e3 * outer_ring_e3;
         let t3 = outer_ring_e0 * outer_ring_e0;
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
-        let t5 = outer_ring_e3 * outer_ring_e3;
-        let t6 = k(1.0) - (t5 + (t4 + t2));
+        let t5 = outer_ring_e2 * outer_ring_e2;
+        let t6 = k(0.5) * (k(1.0) - (t5 + (t4 + t2)));
         let t7 = k(0.5) * (k(125.66370614359172) * t).sin();
         let t8 = outer_ring_e0 * outer_ring_e1;
         let t9 = outer_ring_e2 * outer_ring_e3;
-        let t10 = T::fused(
-            t7.cos(),
-            T::fused(k(2.0), k(0.5) - (t3 + t5), -t6),
-            t7.sin() * (k(2.0) * (t9 - t8)),
-        );
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = inner_ring_e0 * inner_ring_e3;
-        let t15 = inner_ring_e1 * inner_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = inner_ring_e2 * inner_ring_e2;
-        let t18 = inner_ring_e0 * inner_ring_e0;
-        let t19 = T::fused(inner_ring_e1, inner_ring_e1, t18);
-        let t20 = inner_ring_e3 * inner_ring_e3;
-        let t21 = k(1.0) - (t20 + (t19 + t17));
-        let t22 = T::fused(k(2.0), k(0.5) - t19, -t21);
-        let t23 = outer_ring_e0 * outer_ring_e3;
-        let t24 = outer_ring_e1 * outer_ring_e2;
-        let t25 = T::fused(
-            t16,
-            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t24 - t23) * t22,
-        );
+        let t10 = T::fused(t7.cos(), k(0.5) - (t3 + t2) - t6, t7.sin() * (t9 - t8));
+        let t11 = inner_ring_e3 * inner_ring_e3;
+        let t12 = inner_ring_e0 * inner_ring_e0;
+        let t13 = T::fused(inner_ring_e1, inner_ring_e1, t12);
+        let t14 = inner_ring_e2 * inner_ring_e2;
+        let t15 = k(0.5) * (k(1.0) - (t14 + (t13 + t11)));
+        let t16 = k(0.5) - t13 - t15;
+        let t17 = outer_ring_e0 * outer_ring_e3;
+        let t18 = outer_ring_e1 * outer_ring_e2;
+        let t19 = inner_ring_e0 * inner_ring_e3;
+        let t20 = inner_ring_e1 * inner_ring_e2;
+        let t21 = t20 + t19;
+        let t22 = T::fused(t18 - t17, t16, t21 * (k(0.5) - (t3 + t5) - t6));
+        let t23 = inner_ring_e0 * inner_ring_e2;
+        let t24 = inner_ring_e1 * inner_ring_e3;
+        let t25 = t24 - t23;
         let t26 = T::fused(
-            k(2.0) * (t24 + t23),
-            t16,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t22,
+            t1 - t0,
+            t25,
+            T::fused(t16, k(0.5) - t4 - t6, (t18 + t17) * t21),
         );
-        let t27 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t28 = rotor_e2 * rotor_e2;
-        let t29 = rotor_e0 * rotor_e0;
-        let t30 = T::fused(
-            k(2.0),
-            k(0.5) - (t29 + t28),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t29) + t28)),
+        let t27 = rotor_e2 * rotor_e2;
+        let t28 = rotor_e0 * rotor_e0;
+        let t29 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t28 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t28 + t27))),
         );
+        let t30 = k(0.5) * (k(1.0) - (t27 + t29));
         let t31 = inner_ring_e0 * inner_ring_e1;
         let t32 = inner_ring_e2 * inner_ring_e3;
-        let t33 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t34 = T::fused(-(k(2.0) * (t32 - t31)), t30, k(2.0) * (t12 + t11) * t33);
+        let t33 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t34 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t18 + t17), -t21),
-            t30,
-            k(2.0) * (t15 - t14) * t33,
+            t34,
+            k(0.5) - (t12 + t11) - t15,
+            -T::fused(t32 - t31, t30, (t24 + t23) * t33),
         );
+        let t36 = T::fused(-(k(0.5) - (t12 + t14) - t15), t30, (t20 - t19) * t33);
         *out = [
             k(2.0) * (t1 + t0),
-            -t10,
+            -(k(2.0) * t10),
             outer_ring_wy,
-            T::fused(k(2.0) * (t9 + t8), t13, -t25),
-            T::fused(k(2.0) * (t1 - t0), t13, t26),
+            k(4.0) * T::fused(t9 + t8, t25, -t22),
+            k(4.0) * t26,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t27, T::fused(k(2.0), k(0.5) - (t18 + t20), -t21), t34),
-            T::fused(k(2.0) * (t32 + t31), t27, t35),
+            -(k(4.0) * t35),
+            k(4.0) * T::fused(t32 + t31, t34, t36),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1339,7 +1255,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRollingBase<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 533 operations (200 ±, 330 ×, 3 ÷) and 3 functions.
+    /// One Newton step of the dependent positions: 509 operations (200 ±, 306 ×, 3 ÷) and 3 functions.
     fn newton_step_on(&self, t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1367,309 +1283,305 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRollingBase<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
+        let t1 = k(3.0) - t0;
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
+        let t4 = t3 * t3;
+        let t5 = k(2.0) - T::fused(t2, t2, t4);
+        let t6 = outer_ring_e2 * t1;
+        let t7 = outer_ring_e3 * t1;
+        let t8 = T::fused(
+            chart0_3,
             t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
         );
-        let t7 = k(0.5) * t6;
-        let t8 = t5 * t4;
-        let t9 = t3 * t2;
-        let t10 = k(0.5) * (k(125.66370614359172) * t).sin();
-        let t11 = t10.sin();
-        let t12 = t3 * t3;
-        let t13 = t10.cos();
-        let t14 = T::fused(
-            -t11,
-            k(2.0) * (t9 - t8),
-            t13 * (k(2.0) * (k(0.5) - T::fused(t4, t4, t12))),
+        let t9 = t2 * t3;
+        let t10 = t7 * t6;
+        let t11 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t12 = t11.cos();
+        let t13 = t11.sin();
+        let t14 = T::fused(t12, t10 + t9, t13 * (k(2.0) - T::fused(t6, t6, t4)));
+        let t15 = t3 * t6;
+        let t16 = t2 * t7;
+        let t17 = t3 * t7;
+        let t18 = t2 * t6;
+        let t19 = T::fused(-t12, t16 - t15, t13 * (t18 + t17));
+        let t20 = t18 - t17;
+        let t21 = t16 + t15;
+        let t22 = T::fused(t12, k(2.0) - T::fused(t7, t7, t4), t13 * (t10 - t9));
+        let t23 = T::fused(t21, t19, t22 * t5);
+        let t24 = k(1.0) / (t8 * t23);
+        let t25 = t24 * T::fused(-t14, t8 * t5, t20 * (t8 * t19));
+        let t26 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t2, outer_ring_e1),
         );
-        let t15 = t2 * t5;
-        let t16 = t3 * t4;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = t2 * t4;
-        let t19 = t3 * t5;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = T::fused(
-            t11,
-            k(2.0) * (k(0.5) - T::fused(t5, t5, t12)),
-            t13 * (k(2.0) * (t9 + t8)),
-        );
-        let t22 = k(2.0) * (k(0.5) - T::fused(t2, t2, t12));
-        let t23 = T::fused(t11, k(2.0) * (t16 + t15), t13 * (k(2.0) * (t19 - t18)));
-        let t24 = T::fused(t14, t22, t23 * t20);
-        let t25 = k(1.0) / (t7 * t24);
-        let t26 = t25 * T::fused(-t17, t14 * t7, t21 * (t20 * t7));
         let t27 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            T::fused(-k(0.5), t7, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t6, outer_ring_e2), t26),
         );
         let t28 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+            t6,
+            -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t29 = k(0.5) * t28;
+        let t29 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
+        );
         let t30 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            -t14,
+            T::fused(t5, t28, t21 * t29),
+            t20 * T::fused(-t22, t29, t19 * t28),
         );
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(
-            t17,
-            T::fused(t23, t29, t14 * t31),
-            t21 * T::fused(-t20, t31, t22 * t29),
-        );
-        let t33 = t25 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t27), t24, t32);
-        let t34 = t25 * T::fused(t17, t23 * t7, t21 * (t22 * t7));
-        let t35 = T::fused(
+        let t31 = t24 * T::fused(-k(4.0), t23 * t27, t30);
+        let t32 = T::fused(t8 * t21, t14, t8 * t22 * t20) * t24;
+        let t33 = T::fused(k(0.5), T::fused(t7, t32, T::fused(t2, t25, t6 * t31)), t3);
+        let t34 = T::fused(
             -k(0.5),
-            T::fused(-t4, t26, T::fused(-t5, t33, t2 * t34)),
-            t3,
+            T::fused(t6, t32, -T::fused(-t3, t25, t7 * t31)),
+            t2,
         );
-        let t36 = T::fused(k(0.5), T::fused(-t5, t26, T::fused(t4, t33, t3 * t34)), t2);
-        let t37 = T::fused(k(0.5), T::fused(t2, t26, T::fused(-t3, t33, t4 * t34)), t5);
-        let t38 = T::fused(-k(0.5), T::fused(t3, t26, T::fused(t2, t33, t5 * t34)), t4);
-        let t39 = t36 * t37;
-        let t40 = t35 * t38;
-        let t41 = k(2.0) * (t40 - t39);
-        let t42 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
+        let t35 = T::fused(k(0.5), T::fused(t2, t32, -T::fused(t7, t25, t3 * t31)), t6);
+        let t36 = T::fused(-k(0.5), T::fused(t3, t32, T::fused(-t6, t25, t2 * t31)), t7);
+        let t37 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
             T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
             ),
         );
-        let t43 = k(0.5) * (t42 - k(3.0));
-        let t44 = inner_ring_e2 * t43;
-        let t45 = inner_ring_e1 * t43;
-        let t46 = t45 * t44;
-        let t47 = inner_ring_e3 * t43;
-        let t48 = inner_ring_e0 * t43;
-        let t49 = t48 * t47;
-        let t50 = k(2.0) * (t49 - t46);
-        let t51 = t35 * t35;
-        let t52 = k(2.0) * (k(0.5) - T::fused(t37, t37, t51));
-        let t53 = t48 * t48;
-        let t54 = k(2.0) * (k(0.5) - T::fused(t44, t44, t53));
-        let t55 = k(2.0) * T::fused(t37, t38, t35 * t36);
-        let t56 = t44 * t47;
-        let t57 = t48 * t45;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = T::fused(t58, t55, T::fused(t50, t41, t54 * t52));
-        let t60 = k(2.0) * (k(0.5) - T::fused(t45, t45, t53));
-        let t61 = k(2.0) * (k(0.5) - T::fused(t36, t36, t51));
-        let t62 = k(2.0) * (t49 + t46);
-        let t63 = k(2.0) * (t40 + t39);
-        let t64 = t45 * t47;
-        let t65 = t48 * t44;
-        let t66 = k(2.0) * (t65 - t64);
-        let t67 = k(2.0) * T::fused(-t36, t38, t35 * t37);
-        let t68 = T::fused(t67, t66, T::fused(t61, t60, t63 * t62));
-        let t69 = T::fused(t66, t55, T::fused(-t60, t41, t62 * t52));
-        let t70 = T::fused(t58, t67, T::fused(-t50, t61, t54 * t63));
-        let t71 = T::fused(-t68, t59, t70 * t69);
-        let t72 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t44,
-            T::fused(chart1_1, inner_ring_e1 + t45, chart1_0 * (inner_ring_e0 + t48)),
-        );
-        let t73 = T::fused(
-            -chart1_3,
-            t45,
-            T::fused(-chart1_2, t48, T::fused(chart1_1, t47, chart1_0 * t44)),
-        );
-        let t74 = k(0.5) * t73;
-        let t75 = T::fused(
+        let t38 = k(3.0) - t37;
+        let t39 = inner_ring_e3 * t38;
+        let t40 = inner_ring_e2 * t38;
+        let t41 = inner_ring_e1 * t38;
+        let t42 = inner_ring_e0 * t38;
+        let t43 = T::fused(
             chart1_3,
-            t44,
-            T::fused(-chart1_2, t47, T::fused(-chart1_1, t48, chart1_0 * t45)),
+            t42,
+            -T::fused(chart1_2, t41, -T::fused(-chart1_0, t39, chart1_1 * t40)),
         );
-        let t76 = k(0.5) * t75;
-        let t77 = k(2.0) * (t65 + t64);
-        let t78 = k(2.0) * (t57 - t56);
-        let t79 = k(2.0) * (k(0.5) - T::fused(t47, t47, t53));
-        let t80 = T::fused(t79, t55, -T::fused(-t77, t41, t78 * t52));
-        let t81 = T::fused(t67, t79, -T::fused(t61, t77, t63 * t78));
+        let t44 = t40 * t42;
+        let t45 = t41 * t39;
+        let t46 = t45 - t44;
+        let t47 = T::fused(t33, t34, t35 * t36);
+        let t48 = t39 * t42;
+        let t49 = t40 * t41;
+        let t50 = t49 + t48;
+        let t51 = t33 * t33;
+        let t52 = k(2.0) - T::fused(t35, t35, t51);
+        let t53 = t42 * t42;
+        let t54 = k(2.0) - T::fused(t41, t41, t53);
+        let t55 = t33 * t36;
+        let t56 = t34 * t35;
+        let t57 = t56 - t55;
+        let t58 = T::fused(t57, t54, T::fused(-t47, t46, t52 * t50));
+        let t59 = k(2.0) - T::fused(t39, t39, t53);
+        let t60 = T::fused(-t33, t35, t34 * t36);
+        let t61 = t41 * t42;
+        let t62 = t40 * t39;
+        let t63 = t62 - t61;
+        let t64 = t56 + t55;
+        let t65 = t45 + t44;
+        let t66 = k(2.0) - T::fused(t34, t34, t51);
+        let t67 = T::fused(t66, t65, -T::fused(-t60, t59, t64 * t63));
+        let t68 = T::fused(t54, t66, T::fused(t46, t60, t50 * t64));
+        let t69 = T::fused(t57, t65, -T::fused(t47, t59, t52 * t63));
+        let t70 = t62 + t61;
+        let t71 = k(2.0) - T::fused(t40, t40, t53);
+        let t72 = t49 - t48;
+        let t73 = T::fused(t72, t66, T::fused(-t70, t60, t71 * t64));
+        let t74 = T::fused(t57, t72, T::fused(t47, t70, t52 * t71));
+        let t75 = T::fused(-t58, t73, t74 * t68);
+        let t76 = k(1.0) / (t75 * t43);
+        let t77 = t76 * T::fused(-t67, t58 * t43, t69 * (t68 * t43));
+        let t78 = t76 * T::fused(-t67, t74 * t43, t69 * (t73 * t43));
+        let t79 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t42, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t41, inner_ring_e1),
+        );
+        let t80 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t39, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t40, inner_ring_e2), t79),
+        );
+        let t81 = T::fused(
+            chart1_3,
+            t41,
+            T::fused(chart1_2, t42, -T::fused(chart1_0, t40, chart1_1 * t39)),
+        );
         let t82 = T::fused(
-            t80,
-            T::fused(-t70, t74, t68 * t76),
-            t81 * T::fused(-t69, t76, t59 * t74),
+            chart1_3,
+            t40,
+            -T::fused(chart1_2, t39, T::fused(-chart1_0, t41, chart1_1 * t42)),
         );
         let t83 = T::fused(
-            -chart1_3,
-            t48,
-            T::fused(chart1_2, t45, T::fused(-chart1_1, t44, chart1_0 * t47)),
+            -T::fused(t74, t81, t58 * t82),
+            t67,
+            T::fused(t68, t82, t73 * t81) * t69,
         );
-        let t84 = k(0.5) * t83;
-        let t85 = k(1.0) / (t84 * t71);
-        let t86 = t85
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t47, t72), t71, t82);
-        let t87 = t85 * T::fused(-t80, t70 * t84, t81 * (t59 * t84));
-        let t88 = t85 * T::fused(-t80, t68 * t84, t81 * (t69 * t84));
-        let t89 = T::fused(
-            k(0.5),
-            T::fused(t47, t86, T::fused(-t44, t87, t45 * t88)),
-            t48,
-        );
-        let t90 = T::fused(
+        let t84 = T::fused(k(4.0), t75 * t80, t83) * t76;
+        let t85 = T::fused(
             -k(0.5),
-            T::fused(t44, t86, T::fused(t47, t87, t48 * t88)),
-            t45,
+            T::fused(t39, t84, -T::fused(-t41, t77, t40 * t78)),
+            t42,
         );
-        let t91 = T::fused(
-            -k(0.5),
-            T::fused(-t45, t86, T::fused(-t48, t87, t47 * t88)),
-            t44,
-        );
-        let t92 = T::fused(
+        let t86 = T::fused(
             k(0.5),
-            T::fused(-t48, t86, T::fused(t45, t87, t44 * t88)),
-            t47,
+            T::fused(t40, t84, T::fused(t42, t77, t39 * t78)),
+            t41,
         );
-        let t93 = t89 * t89;
-        let t94 = t90 * t91;
-        let t95 = t89 * t92;
-        let t96 = t90 * t92;
-        let t97 = t89 * t91;
-        let t98 = T::fused(
-            rotor_e3,
-            rotor_e3,
+        let t87 = T::fused(
+            -k(0.5),
+            T::fused(t41, t84, T::fused(-t39, t77, t42 * t78)),
+            t40,
+        );
+        let t88 = T::fused(
+            k(0.5),
+            T::fused(t42, t84, -T::fused(t40, t77, t41 * t78)),
+            t39,
+        );
+        let t89 = t85 * t85;
+        let t90 = t85 * t88;
+        let t91 = t86 * t87;
+        let t92 = t85 * t87;
+        let t93 = t86 * t88;
+        let t94 = T::fused(
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t99 = k(0.5) * (t98 - k(3.0));
-        let t100 = rotor_e2 * t99;
-        let t101 = rotor_e3 * t99;
-        let t102 = rotor_e0 * t99;
-        let t103 = rotor_e1 * t99;
-        let t104 = T::fused(
+        let t95 = k(3.0) - t94;
+        let t96 = rotor_e0 * t95;
+        let t97 = rotor_e1 * t95;
+        let t98 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t96, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t97, rotor_e1),
+        );
+        let t99 = rotor_e2 * t95;
+        let t100 = rotor_e3 * t95;
+        let t101 = T::fused(
             chart2_3,
-            t100,
-            T::fused(-chart2_2, t101, T::fused(-chart2_1, t102, chart2_0 * t103)),
+            T::fused(-k(0.5), t100, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t99, rotor_e2), t98),
         );
-        let t105 = k(0.5) * t104;
-        let t106 = k(2.0) * (t95 - t94);
-        let t107 = t103 * t101;
-        let t108 = t102 * t100;
-        let t109 = k(2.0) * (t108 + t107);
-        let t110 = k(2.0) * (k(0.5) - T::fused(t91, t91, t93));
-        let t111 = t100 * t101;
-        let t112 = t102 * t103;
-        let t113 = k(2.0) * (t112 - t111);
-        let t114 = t91 * t92;
-        let t115 = t89 * t90;
-        let t116 = k(2.0) * (t115 + t114);
-        let t117 = t102 * t102;
-        let t118 = k(2.0) * (k(0.5) - T::fused(t101, t101, t117));
-        let t119 = T::fused(t118, t116, -T::fused(-t109, t106, t113 * t110));
-        let t120 = k(2.0) * (t97 + t96);
-        let t121 = k(2.0) * (k(0.5) - T::fused(t103, t103, t117));
-        let t122 = k(2.0) * (t115 - t114);
-        let t123 = t103 * t100;
-        let t124 = t102 * t101;
-        let t125 = k(2.0) * (t124 + t123);
-        let t126 = k(2.0) * (k(0.5) - T::fused(t92, t92, t93));
-        let t127 = k(2.0) * (t108 - t107);
-        let t128 = T::fused(t127, t126, -T::fused(t121, t120, t125 * t122));
-        let t129 = T::fused(t118, t126, T::fused(t109, t120, t113 * t122));
-        let t130 = T::fused(t116, t127, T::fused(-t106, t121, t110 * t125));
-        let t131 = k(2.0) * (t124 - t123);
-        let t132 = k(2.0) * (k(0.5) - T::fused(t100, t100, t117));
-        let t133 = k(2.0) * (t112 + t111);
-        let t134 = T::fused(t116, t133, T::fused(t106, t131, t110 * t132));
-        let t135 = T::fused(t133, t126, -T::fused(-t131, t120, t132 * t122));
-        let t136 = T::fused(-t134, t129, t119 * t135);
-        let t137 = k(1.0) / (t105 * t136);
-        let t138 = t137 * T::fused(-t128, t119 * t105, t130 * (t129 * t105));
-        let t139 = t137 * T::fused(-t128, t134 * t105, t130 * (t135 * t105));
-        let t140 = T::fused(
-            chart2_2,
-            rotor_e2 + t100,
-            T::fused(chart2_1, rotor_e1 + t103, chart2_0 * (rotor_e0 + t102)),
+        let t102 = t96 * t97;
+        let t103 = t99 * t100;
+        let t104 = t103 + t102;
+        let t105 = k(2.0) - T::fused(t88, t88, t89);
+        let t106 = t96 * t96;
+        let t107 = k(2.0) - T::fused(t99, t99, t106);
+        let t108 = t85 * t86;
+        let t109 = t87 * t88;
+        let t110 = t109 - t108;
+        let t111 = t100 * t96;
+        let t112 = t99 * t97;
+        let t113 = t112 - t111;
+        let t114 = t93 + t92;
+        let t115 = T::fused(t114, t113, -T::fused(t105, t104, t110 * t107));
+        let t116 = k(2.0) - T::fused(t100, t100, t106);
+        let t117 = t109 + t108;
+        let t118 = t103 - t102;
+        let t119 = k(2.0) - T::fused(t87, t87, t89);
+        let t120 = t99 * t96;
+        let t121 = t100 * t97;
+        let t122 = t121 + t120;
+        let t123 = t91 - t90;
+        let t124 = T::fused(t123, t122, -T::fused(t117, t116, t119 * t118));
+        let t125 = T::fused(t123, t113, T::fused(t117, t104, t119 * t107));
+        let t126 = T::fused(t122, t114, T::fused(t116, t105, t118 * t110));
+        let t127 = T::fused(-t124, t115, t126 * t125);
+        let t128 = T::fused(
+            chart2_3,
+            t96,
+            -T::fused(chart2_2, t97, -T::fused(-chart2_0, t100, chart2_1 * t99)),
         );
+        let t129 = T::fused(
+            chart2_3,
+            t97,
+            T::fused(chart2_2, t96, -T::fused(chart2_0, t99, chart2_1 * t100)),
+        );
+        let t130 = t121 - t120;
+        let t131 = t112 + t111;
+        let t132 = k(2.0) - T::fused(t97, t97, t106);
+        let t133 = T::fused(t123, t132, T::fused(-t117, t130, t119 * t131));
+        let t134 = T::fused(t114, t132, -T::fused(-t105, t130, t110 * t131));
+        let t135 = T::fused(
+            -t133,
+            T::fused(t126, t128, t115 * t129),
+            t134 * T::fused(t125, t129, t124 * t128),
+        );
+        let t136 = T::fused(
+            chart2_3,
+            t99,
+            -T::fused(chart2_2, t100, T::fused(-chart2_0, t97, chart2_1 * t96)),
+        );
+        let t137 = k(1.0) / (t136 * t127);
+        let t138 = t137 * T::fused(k(4.0), t127 * t101, t135);
+        let t139 = t137 * T::fused(-t133, t136 * t115, t134 * (t136 * t125));
+        let t140 = T::fused(-(t136 * t126), t133, t136 * t124 * t134) * t137;
         let t141 = T::fused(
-            -chart2_3,
-            t102,
-            T::fused(chart2_2, t103, T::fused(-chart2_1, t100, chart2_0 * t101)),
+            k(0.5),
+            T::fused(t100, t140, T::fused(t97, t138, t99 * t139)),
+            t96,
         );
-        let t142 = k(0.5) * t141;
+        let t142 = T::fused(
+            -k(0.5),
+            T::fused(t99, t140, -T::fused(-t96, t138, t100 * t139)),
+            t97,
+        );
         let t143 = T::fused(
-            -chart2_3,
-            t103,
-            T::fused(-chart2_2, t102, T::fused(chart2_1, t101, chart2_0 * t100)),
+            k(0.5),
+            T::fused(t97, t140, -T::fused(t100, t138, t96 * t139)),
+            t99,
         );
-        let t144 = k(0.5) * t143;
-        let t145 = T::fused(
-            t128,
-            T::fused(-t119, t142, t134 * t144),
-            t130 * T::fused(-t135, t144, t129 * t142),
-        );
-        let t146 = t137
-            * T::fused(T::fused(chart2_3, rotor_e3 + t101, t140), t136, t145);
-        let t147 = T::fused(
+        let t144 = T::fused(
             -k(0.5),
-            T::fused(-t101, t138, T::fused(t100, t139, t103 * t146)),
-            t102,
-        );
-        let t148 = T::fused(
-            k(0.5),
-            T::fused(-t100, t138, T::fused(-t101, t139, t102 * t146)),
-            t103,
-        );
-        let t149 = T::fused(
-            k(0.5),
-            T::fused(t103, t138, T::fused(t102, t139, t101 * t146)),
+            T::fused(t96, t140, T::fused(-t99, t138, t97 * t139)),
             t100,
-        );
-        let t150 = T::fused(
-            -k(0.5),
-            T::fused(t102, t138, T::fused(-t103, t139, t100 * t146)),
-            t101,
         );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t35;
-        y[4] = -t36;
-        y[5] = -t37;
-        y[6] = -t38;
+        y[3] = k(0.5) * t33;
+        y[4] = k(0.5) * t34;
+        y[5] = k(0.5) * t35;
+        y[6] = k(0.5) * t36;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t89;
-        y[11] = -t90;
-        y[12] = -t91;
-        y[13] = -t92;
-        y[14] = -(k(0.00025) * (k(0.5) - T::fused(t90, t90, t93)));
-        y[15] = k(0.00025) * (t95 + t94);
-        y[16] = -(k(0.00025) * (t97 - t96));
-        y[17] = -t147;
-        y[18] = -t148;
-        y[19] = -t149;
-        y[20] = -t150;
+        y[10] = k(0.5) * t85;
+        y[11] = k(0.5) * t86;
+        y[12] = k(0.5) * t87;
+        y[13] = k(0.5) * t88;
+        y[14] = -(k(6.25e-5) * (k(2.0) - T::fused(t86, t86, t89)));
+        y[15] = k(6.25e-5) * (t91 + t90);
+        y[16] = k(6.25e-5) * (t93 - t92);
+        y[17] = k(0.5) * t141;
+        y[18] = k(0.5) * t142;
+        y[19] = k(0.5) * t143;
+        y[20] = k(0.5) * t144;
     }
-    /// Solves eq. (19) for the dependent velocities: 278 operations (102 ±, 173 ×, 3 ÷) and 4 functions.
+    /// Solves eq. (19) for the dependent velocities: 252 operations (102 ±, 147 ×, 3 ÷) and 4 functions.
     fn solve_velocities_on(&self, t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1692,129 +1604,128 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRollingBase<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(125.66370614359172) * t;
-        let t3 = k(0.5) * t2.sin();
-        let t4 = t3.cos();
-        let t5 = outer_ring_e0 * outer_ring_e1;
-        let t6 = outer_ring_e2 * outer_ring_e3;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = t3.sin();
-        let t9 = T::fused(t4, t1, t8 * t7);
-        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t11 = outer_ring_e0 * outer_ring_e2;
-        let t12 = outer_ring_e1 * outer_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(-t4, t13, t8 * t16);
-        let t18 = k(2.0) * (t12 + t11);
-        let t19 = k(1.0) / T::fused(t10, t9, t18 * t17);
-        let t20 = T::fused(t10, outer_ring_wz, t18 * outer_ring_wx);
-        let t21 = k(62.83185307179586) * t2.cos();
-        let t22 = k(2.0) * (t6 + t5);
-        let t23 = T::fused(
-            t22,
-            t21 * t8,
-            t4 * T::fused(t13, outer_ring_wz, t1 * outer_ring_wx),
+        let t0 = k(125.66370614359172) * t;
+        let t1 = k(0.5) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = outer_ring_e0 * outer_ring_e0;
+        let t5 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t4);
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = t7 - t6;
+        let t9 = outer_ring_e0 * outer_ring_e3;
+        let t10 = outer_ring_e1 * outer_ring_e2;
+        let t11 = t10 + t9;
+        let t12 = t1.sin();
+        let t13 = T::fused(
+            k(62.83185307179586),
+            t5 * (t3 * t2),
+            t12 * T::fused(-t8, outer_ring_wx, t11 * outer_ring_wz),
         );
-        let t24 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t25 = T::fused(
-            -t24,
-            t21 * t4,
-            t8 * T::fused(-t16, outer_ring_wz, t7 * outer_ring_wx),
+        let t14 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t4);
+        let t15 = outer_ring_e0 * outer_ring_e2;
+        let t16 = outer_ring_e1 * outer_ring_e3;
+        let t17 = t16 - t15;
+        let t18 = t7 + t6;
+        let t19 = T::fused(
+            k(62.83185307179586),
+            t18 * (t3 * t12),
+            T::fused(t2, T::fused(t14, outer_ring_wx, t17 * outer_ring_wz), -t13),
         );
-        let t26 = t25 + t23;
-        let t27 = T::fused(-t20, t17 * t19, T::fused(-t26, t10 * t19, outer_ring_wx));
-        let t28 = T::fused(-t20, t9 * t19, T::fused(t26, t18 * t19, outer_ring_wz));
-        let t29 = inner_ring_e0 * inner_ring_e0;
-        let t30 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t29));
-        let t31 = k(2.0) * (t15 - t14);
-        let t32 = inner_ring_e0 * inner_ring_e3;
-        let t33 = inner_ring_e1 * inner_ring_e2;
-        let t34 = k(2.0) * (t33 + t32);
-        let t35 = inner_ring_e0 * inner_ring_e2;
-        let t36 = inner_ring_e1 * inner_ring_e3;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = T::fused(t22, t37, -T::fused(t31, t30, t24 * t34));
-        let t39 = k(2.0) * (t33 - t32);
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t29));
-        let t41 = inner_ring_e0 * inner_ring_e1;
-        let t42 = inner_ring_e2 * inner_ring_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = T::fused(t13, t43, -T::fused(t10, t39, t16 * t40));
-        let t45 = T::fused(t22, t43, T::fused(t24, t40, t31 * t39));
-        let t46 = T::fused(t13, t37, T::fused(t10, t30, t16 * t34));
-        let t47 = k(1.0) / T::fused(-t44, t38, t46 * t45);
-        let t48 = k(2.0) * (t36 + t35);
-        let t49 = k(2.0) * (t42 - t41);
-        let t50 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t29));
-        let t51 = T::fused(t1, t50, T::fused(t7, t49, t18 * t48));
-        let t52 = T::fused(
-            t28,
-            T::fused(t13, t50, -T::fused(-t10, t48, t16 * t49)),
-            t27 * t51,
+        let t20 = T::fused(-t12, t11, t2 * t17);
+        let t21 = t16 + t15;
+        let t22 = T::fused(t12, t8, t2 * t14);
+        let t23 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t4);
+        let t24 = k(1.0) / T::fused(-t21, t20, t23 * t22);
+        let t25 = T::fused(t21, outer_ring_wx, t23 * outer_ring_wz);
+        let t26 = T::fused(t20 * t24, t25, T::fused(-(t23 * t24), t19, outer_ring_wx));
+        let t27 = T::fused(t22 * t24, t25, -T::fused(t21 * t24, t19, outer_ring_wz));
+        let t28 = inner_ring_e0 * inner_ring_e0;
+        let t29 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t28);
+        let t30 = inner_ring_e0 * inner_ring_e2;
+        let t31 = inner_ring_e1 * inner_ring_e3;
+        let t32 = t31 + t30;
+        let t33 = t10 - t9;
+        let t34 = inner_ring_e0 * inner_ring_e1;
+        let t35 = inner_ring_e2 * inner_ring_e3;
+        let t36 = t35 - t34;
+        let t37 = T::fused(t14, t29, T::fused(t21, t32, t8 * t36));
+        let t38 = T::fused(
+            -T::fused(t5, t36, -T::fused(-t18, t29, t33 * t32)),
+            t27,
+            outer_ring_wy * t37,
         );
-        let t53 = t52 - T::fused(-inner_ring_wy, t38, inner_ring_wx * t45);
-        let t54 = T::fused(
-            t28,
-            T::fused(t22, t50, -T::fused(-t24, t49, t31 * t48)),
-            outer_ring_wy * t51,
+        let t39 = t35 + t34;
+        let t40 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t28);
+        let t41 = inner_ring_e0 * inner_ring_e3;
+        let t42 = inner_ring_e1 * inner_ring_e2;
+        let t43 = t42 - t41;
+        let t44 = T::fused(t23, t43, T::fused(-t17, t39, t11 * t40));
+        let t45 = t31 - t30;
+        let t46 = t42 + t41;
+        let t47 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t28);
+        let t48 = T::fused(t23, t47, T::fused(t17, t45, t11 * t46));
+        let t49 = T::fused(inner_ring_wy, t48, T::fused(inner_ring_wx, t44, -t38));
+        let t50 = T::fused(t5, t40, T::fused(t18, t39, t33 * t43));
+        let t51 = T::fused(t33, t47, T::fused(-t18, t45, t5 * t46));
+        let t52 = k(1.0) / T::fused(-t50, t48, t51 * t44);
+        let t53 = T::fused(
+            -t37,
+            t26,
+            T::fused(t23, t32, -T::fused(-t17, t29, t11 * t36)) * t27,
         );
-        let t55 = t54 + T::fused(-inner_ring_wy, t46, inner_ring_wx * t44);
-        let t56 = T::fused(t53, t46 * t47, T::fused(t55, t38 * t47, inner_ring_wx));
-        let t57 = T::fused(t53, t44 * t47, T::fused(t55, t45 * t47, inner_ring_wy));
-        let t58 = rotor_e0 * rotor_e0;
-        let t59 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t58));
+        let t54 = T::fused(inner_ring_wy, t51, T::fused(inner_ring_wx, t50, t53));
+        let t55 = T::fused(t48 * t52, t54, T::fused(-(t51 * t52), t49, inner_ring_wx));
+        let t56 = T::fused(t44 * t52, t54, -T::fused(t50 * t52, t49, inner_ring_wy));
+        let t57 = rotor_e0 * rotor_e2;
+        let t58 = rotor_e1 * rotor_e3;
+        let t59 = t58 - t57;
         let t60 = rotor_e0 * rotor_e3;
         let t61 = rotor_e1 * rotor_e2;
-        let t62 = k(2.0) * (t61 - t60);
-        let t63 = rotor_e0 * rotor_e1;
-        let t64 = rotor_e2 * rotor_e3;
-        let t65 = k(2.0) * (t64 + t63);
-        let t66 = T::fused(t50, t65, -T::fused(-t49, t59, t48 * t62));
-        let t67 = k(2.0) * (t64 - t63);
-        let t68 = rotor_e0 * rotor_e2;
-        let t69 = rotor_e1 * rotor_e3;
-        let t70 = k(2.0) * (t69 + t68);
-        let t71 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t58));
-        let t72 = T::fused(t43, t71, -T::fused(-t40, t67, t39 * t70));
-        let t73 = T::fused(t50, t71, T::fused(t49, t67, t48 * t70));
-        let t74 = T::fused(t43, t65, T::fused(t40, t59, t39 * t62));
-        let t75 = k(1.0) / T::fused(-t72, t66, t74 * t73);
-        let t76 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t58));
-        let t77 = k(2.0) * (t61 + t60);
-        let t78 = k(2.0) * (t69 - t68);
-        let t79 = T::fused(t37, t78, T::fused(t30, t76, t34 * t77));
-        let t80 = T::fused(
-            -t57,
-            t79,
-            t56 * T::fused(t43, t78, -T::fused(t39, t76, t40 * t77)),
+        let t62 = t61 + t60;
+        let t63 = rotor_e0 * rotor_e0;
+        let t64 = k(0.5) - T::fused(rotor_e1, rotor_e1, t63);
+        let t65 = T::fused(t47, t64, T::fused(t45, t59, t46 * t62));
+        let t66 = T::fused(
+            T::fused(t32, t64, -T::fused(-t29, t59, t36 * t62)),
+            t55,
+            inner_ring_wz * t65,
         );
-        let t81 = t80 + T::fused(rotor_wz, t66, rotor_wy * t73);
-        let t82 = T::fused(
-            inner_ring_wz,
-            t79,
-            t56 * T::fused(t50, t78, -T::fused(-t48, t76, t49 * t77)),
+        let t67 = k(0.5) - T::fused(rotor_e3, rotor_e3, t63);
+        let t68 = t58 + t57;
+        let t69 = rotor_e0 * rotor_e1;
+        let t70 = rotor_e2 * rotor_e3;
+        let t71 = t70 - t69;
+        let t72 = T::fused(t40, t71, -T::fused(-t39, t67, t43 * t68));
+        let t73 = t70 + t69;
+        let t74 = t61 - t60;
+        let t75 = k(0.5) - T::fused(rotor_e2, rotor_e2, t63);
+        let t76 = T::fused(t40, t75, T::fused(t39, t73, t43 * t74));
+        let t77 = T::fused(rotor_wz, t76, T::fused(rotor_wy, t72, -t66));
+        let t78 = T::fused(t29, t67, T::fused(t32, t68, t36 * t71));
+        let t79 = T::fused(t36, t75, -T::fused(-t29, t73, t32 * t74));
+        let t80 = k(1.0) / T::fused(-t78, t76, t79 * t72);
+        let t81 = T::fused(
+            -T::fused(t43, t64, T::fused(-t39, t59, t40 * t62)),
+            t55,
+            t65 * t56,
         );
-        let t83 = t82 - T::fused(rotor_wz, t74, rotor_wy * t72);
+        let t82 = T::fused(rotor_wz, t79, T::fused(rotor_wy, t78, t81));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t27;
-        y[26] = t28;
+        y[24] = t26;
+        y[26] = -t27;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t56;
-        y[31] = t57;
-        y[33] = -(k(0.000125) * T::fused(-t39, inner_ring_wz, t48 * t57));
-        y[34] = -(k(0.000125) * T::fused(t40, inner_ring_wz, t49 * t57));
-        y[35] = k(0.000125) * T::fused(t43, inner_ring_wz, t50 * t57);
-        y[37] = T::fused(-t81, t74 * t75, T::fused(-t83, t66 * t75, rotor_wy));
-        y[38] = T::fused(t81, t72 * t75, T::fused(t83, t73 * t75, rotor_wz));
+        y[30] = t55;
+        y[31] = -t56;
+        y[33] = k(0.00025) * T::fused(t32, t56, t43 * inner_ring_wz);
+        y[34] = -(k(0.00025) * T::fused(-t36, t56, t40 * inner_ring_wz));
+        y[35] = k(0.00025) * T::fused(-t29, t56, t39 * inner_ring_wz);
+        y[37] = T::fused(t76 * t80, t82, T::fused(-(t79 * t80), t77, rotor_wy));
+        y[38] = T::fused(-(t72 * t80), t82, T::fused(t78 * t80, t77, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRollingBase<T> {
@@ -2268,7 +2179,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
             -T::fused(t29, t61, T::fused(-t23, t59, t27 * t60)),
         ];
     }
-    /// Writes ν: 17 operations (4 ±, 13 ×, 0 ÷) and 4 functions.
+    /// Writes ν: 15 operations (4 ±, 11 ×, 0 ÷) and 4 functions.
     fn nu(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2277,24 +2188,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
         let outer_ring_e3 = y[6];
         let t0 = k(125.66370614359172) * t;
         let t1 = k(0.5) * t0.sin();
-        let t2 = k(62.83185307179586) * t0.cos();
+        let t2 = t0.cos();
         let t3 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
-            t2 * t1.sin(),
-            k(2.0)
-                * (k(0.5)
-                    - T::fused(
-                        outer_ring_e2,
-                        outer_ring_e2,
-                        outer_ring_e0 * outer_ring_e0,
-                    )) * (t2 * t1.cos()),
+            -(k(0.5)
+                - T::fused(outer_ring_e2, outer_ring_e2, outer_ring_e0 * outer_ring_e0)),
+            t2 * t1.cos(),
+            T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)
+                * (t2 * t1.sin()),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t3,
+            k(125.66370614359172) * t3,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2308,7 +2214,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 330 operations (129 ±, 201 ×, 0 ÷) and 4 functions.
+    /// Writes γ: 327 operations (129 ±, 198 ×, 0 ÷) and 4 functions.
     fn gamma(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2332,175 +2238,184 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e3 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = outer_ring_wx * outer_ring_wy;
-        let t6 = k(2.0) * outer_ring_e2;
-        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t8 = T::fused(-outer_ring_e2, t6, t7);
-        let t9 = outer_ring_wz * outer_ring_wz;
-        let t10 = T::fused(outer_ring_wx, outer_ring_wx, t9);
-        let t11 = outer_ring_e1 * t0;
-        let t12 = outer_ring_e3 * t6;
+        let t0 = k(125.66370614359172) * t;
+        let t1 = t0.cos();
+        let t2 = k(0.5) * t1;
+        let t3 = t0.sin();
+        let t4 = k(0.5) * t3;
+        let t5 = t4.sin();
+        let t6 = t1 * t5;
+        let t7 = t4.cos();
+        let t8 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t9 = T::fused(outer_ring_e2, outer_ring_e2, -t8);
+        let t10 = T::fused(outer_ring_e3, outer_ring_e3, -t8);
+        let t11 = outer_ring_e0 * outer_ring_e2;
+        let t12 = outer_ring_e1 * outer_ring_e3;
         let t13 = t12 - t11;
-        let t14 = outer_ring_wy * outer_ring_wz;
-        let t15 = k(125.66370614359172) * t;
-        let t16 = t15.sin();
-        let t17 = k(0.5) * t16;
-        let t18 = t17.sin();
-        let t19 = t17.cos();
-        let t20 = k(62.83185307179586) * t15.cos();
-        let t21 = t20 * t19;
-        let t22 = t21 * T::fused(-outer_ring_wz, t4, outer_ring_wx * t13);
-        let t23 = T::fused(t18, T::fused(t14, t13, T::fused(t5, t4, t10 * t8)), t22);
-        let t24 = t20 * t18;
-        let t25 = k(7895.6835208714865) * t16;
-        let t26 = outer_ring_e2 * t0;
-        let t27 = outer_ring_e3 * t2;
-        let t28 = t27 - t26;
-        let t29 = t12 + t11;
-        let t30 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
-        let t31 = t24 * T::fused(outer_ring_wz, t28, outer_ring_wx * t30);
-        let t32 = T::fused(-t19, T::fused(t14, t30, T::fused(-t5, t28, t10 * t29)), t31);
-        let t33 = T::fused(T::fused(-t20, t21, t18 * t25), t29, t31) + t32
-            - (T::fused(T::fused(t20, t24, t19 * t25), t8, t22) + t23);
-        let t34 = T::fused(-outer_ring_e1, t2, t7);
-        let t35 = t3 - t1;
-        let t36 = t27 + t26;
-        let t37 = k(2.0) * inner_ring_e0;
-        let t38 = inner_ring_e2 * t37;
-        let t39 = k(2.0) * inner_ring_e1;
-        let t40 = inner_ring_e3 * t39;
-        let t41 = t40 + t38;
-        let t42 = inner_ring_e1 * t37;
-        let t43 = k(2.0) * inner_ring_e2;
-        let t44 = inner_ring_e3 * t43;
-        let t45 = t44 - t42;
-        let t46 = T::fused(-inner_ring_e0, t37, k(1.0));
-        let t47 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t46);
-        let t48 = T::fused(t28, t47, -T::fused(-t34, t41, t4 * t45));
-        let t49 = T::fused(t29, t47, T::fused(-t35, t41, t8 * t45));
-        let t50 = T::fused(t30, t47, T::fused(t36, t41, t13 * t45));
-        let t51 = T::fused(
-            outer_ring_wx * outer_ring_wz,
-            t50,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t9), t48, t5 * t49),
+        let t14 = t6 * T::fused(-outer_ring_wx, t10, t13 * outer_ring_wz);
+        let t15 = t1 * t7;
+        let t16 = outer_ring_e0 * outer_ring_e1;
+        let t17 = outer_ring_e2 * outer_ring_e3;
+        let t18 = t17 + t16;
+        let t19 = t14
+            + T::fused(k(125.66370614359172), t18 * T::fused(-t15, t2, t3 * t5), t14);
+        let t20 = outer_ring_wy * outer_ring_wz;
+        let t21 = outer_ring_wz * outer_ring_wz;
+        let t22 = T::fused(outer_ring_wx, outer_ring_wx, t21);
+        let t23 = outer_ring_wx * outer_ring_wy;
+        let t24 = T::fused(
+            k(0.015915494309189534),
+            t7 * T::fused(t13, t23, -T::fused(-t20, t10, t18 * t22)),
+            t19,
         );
-        let t52 = T::fused(-inner_ring_e1, t39, t46);
-        let t53 = inner_ring_e3 * t37;
-        let t54 = inner_ring_e2 * t39;
-        let t55 = t54 + t53;
-        let t56 = t40 - t38;
-        let t57 = T::fused(t29, t56, -T::fused(t35, t52, t8 * t55));
-        let t58 = t54 - t53;
-        let t59 = T::fused(-inner_ring_e2, t43, t46);
-        let t60 = t44 + t42;
-        let t61 = T::fused(t29, t60, T::fused(t35, t58, t8 * t59));
+        let t25 = t17 - t16;
+        let t26 = outer_ring_e0 * outer_ring_e3;
+        let t27 = outer_ring_e1 * outer_ring_e2;
+        let t28 = t27 + t26;
+        let t29 = t15 * T::fused(-t25, outer_ring_wx, t28 * outer_ring_wz);
+        let t30 = t29
+            + T::fused(k(125.66370614359172), t9 * T::fused(t6, t2, t3 * t7), t24);
+        let t31 = T::fused(
+            k(0.015915494309189534),
+            t5 * T::fused(t28, t23, T::fused(-t22, t9, t25 * t20)),
+            -(t29 + t30),
+        );
+        let t32 = T::fused(outer_ring_e1, outer_ring_e1, -t8);
+        let t33 = t12 + t11;
+        let t34 = t27 - t26;
+        let t35 = inner_ring_e0 * inner_ring_e1;
+        let t36 = inner_ring_e2 * inner_ring_e3;
+        let t37 = t36 + t35;
+        let t38 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t39 = T::fused(inner_ring_e2, inner_ring_e2, -t38);
+        let t40 = inner_ring_e0 * inner_ring_e3;
+        let t41 = inner_ring_e1 * inner_ring_e2;
+        let t42 = t41 - t40;
+        let t43 = inner_ring_e0 * inner_ring_e2;
+        let t44 = inner_ring_e1 * inner_ring_e3;
+        let t45 = t44 - t43;
+        let t46 = t41 + t40;
+        let t47 = T::fused(inner_ring_e1, inner_ring_e1, -t38);
+        let t48 = T::fused(
+            -inner_ring_wx,
+            T::fused(t33, t42, T::fused(t37, t10, t25 * t39)),
+            inner_ring_wy * T::fused(t33, t47, T::fused(t45, t10, t25 * t46)),
+        );
+        let t49 = T::fused(t34, t42, T::fused(t9, t39, t18 * t37));
+        let t50 = T::fused(t34, t47, T::fused(t46, t9, t18 * t45));
+        let t51 = T::fused(inner_ring_e3, inner_ring_e3, -t38);
+        let t52 = t36 - t35;
+        let t53 = t44 + t43;
+        let t54 = T::fused(t53, t32, T::fused(t13, t51, t28 * t52));
+        let t55 = inner_ring_wx * inner_ring_wx;
+        let t56 = inner_ring_wy * inner_ring_wy;
+        let t57 = t56 + t55;
+        let t58 = T::fused(t42, t32, T::fused(t28, t39, t13 * t37));
+        let t59 = inner_ring_wy * inner_ring_wz;
+        let t60 = T::fused(t32, t47, T::fused(t13, t45, t28 * t46));
+        let t61 = inner_ring_wx * inner_ring_wz;
         let t62 = T::fused(
-            -inner_ring_wy,
-            T::fused(t30, t56, -T::fused(-t36, t52, t13 * t55)),
-            inner_ring_wx * T::fused(t30, t60, T::fused(-t36, t58, t13 * t59)),
-        );
-        let t63 = T::fused(t28, t56, T::fused(t34, t52, t4 * t55));
-        let t64 = inner_ring_wx * inner_ring_wz;
-        let t65 = T::fused(t28, t60, -T::fused(t34, t58, t4 * t59));
-        let t66 = inner_ring_wy * inner_ring_wz;
-        let t67 = inner_ring_wx * inner_ring_wx;
-        let t68 = inner_ring_wy * inner_ring_wy;
-        let t69 = t68 + t67;
-        let t70 = T::fused(
-            -k(2.0),
-            T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t57, inner_ring_wx * t61),
-                outer_ring_wy * t62,
-            ),
-            T::fused(t69, t48, T::fused(t64, t63, t66 * t65)),
-        );
-        let t71 = T::fused(
             k(2.0),
             T::fused(
-                outer_ring_wz,
-                T::fused(-inner_ring_wy, t63, inner_ring_wx * t65),
-                outer_ring_wx * t62,
+                -outer_ring_wy,
+                t48,
+                outer_ring_wz * T::fused(-inner_ring_wx, t49, inner_ring_wy * t50),
             ),
-            T::fused(t69, t49, T::fused(t64, t57, t66 * t61)),
+            T::fused(t61, t60, T::fused(-t57, t54, t59 * t58)),
         );
-        let t72 = inner_ring_wz * inner_ring_wz;
-        let t73 = t72 + t68;
-        let t74 = inner_ring_wx * inner_ring_wy;
-        let t75 = k(2.0) * rotor_e1;
-        let t76 = k(2.0) * rotor_e0;
-        let t77 = T::fused(-rotor_e0, t76, k(1.0));
-        let t78 = T::fused(-rotor_e1, t75, t77);
-        let t79 = rotor_e3 * t76;
-        let t80 = rotor_e2 * t75;
-        let t81 = t80 + t79;
-        let t82 = rotor_e2 * t76;
-        let t83 = rotor_e3 * t75;
+        let t63 = T::fused(t33, t53, T::fused(t10, t51, t25 * t52));
+        let t64 = T::fused(t34, t53, T::fused(t18, t51, t52 * t9));
+        let t65 = T::fused(
+            T::fused(outer_ring_wy, outer_ring_wy, t21),
+            t54,
+            -T::fused(t23, t64, T::fused(outer_ring_wx * outer_ring_wz, t63, t62)),
+        );
+        let t66 = T::fused(
+            -k(2.0),
+            T::fused(
+                -outer_ring_wx,
+                t48,
+                outer_ring_wz * T::fused(-inner_ring_wx, t58, inner_ring_wy * t60),
+            ),
+            T::fused(t61, t50, T::fused(-t57, t64, t59 * t49)),
+        );
+        let t67 = k(4.0)
+            * T::fused(t23, t54, -T::fused(t22, t64, -T::fused(t20, t63, t66)));
+        let t68 = inner_ring_wz * inner_ring_wz;
+        let t69 = t68 + t56;
+        let t70 = inner_ring_wx * inner_ring_wy;
+        let t71 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t72 = T::fused(rotor_e3, rotor_e3, -t71);
+        let t73 = rotor_e0 * rotor_e1;
+        let t74 = rotor_e2 * rotor_e3;
+        let t75 = t74 - t73;
+        let t76 = rotor_e0 * rotor_e2;
+        let t77 = rotor_e1 * rotor_e3;
+        let t78 = t77 + t76;
+        let t79 = T::fused(t53, t78, T::fused(t72, t51, t52 * t75));
+        let t80 = t74 + t73;
+        let t81 = T::fused(rotor_e2, rotor_e2, -t71);
+        let t82 = rotor_e0 * rotor_e3;
+        let t83 = rotor_e1 * rotor_e2;
         let t84 = t83 - t82;
-        let t85 = T::fused(t56, t84, T::fused(t52, t78, t55 * t81));
-        let t86 = T::fused(t60, t84, -T::fused(t58, t78, t59 * t81));
-        let t87 = T::fused(t47, t84, -T::fused(-t41, t78, t45 * t81));
-        let t88 = t80 - t79;
-        let t89 = k(2.0) * rotor_e2;
-        let t90 = T::fused(-rotor_e2, t89, t77);
-        let t91 = rotor_e1 * t76;
-        let t92 = rotor_e3 * t89;
-        let t93 = t92 + t91;
-        let t94 = t83 + t82;
-        let t95 = t92 - t91;
-        let t96 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t77);
-        let t97 = T::fused(
-            rotor_wz,
-            T::fused(t56, t93, -T::fused(t52, t88, t55 * t90)),
-            rotor_wy * T::fused(t56, t96, -T::fused(-t52, t94, t55 * t95)),
+        let t85 = T::fused(t53, t84, T::fused(t80, t51, t52 * t81));
+        let t86 = T::fused(
+            -rotor_wy,
+            T::fused(t78, t47, T::fused(t45, t72, t46 * t75)),
+            rotor_wz * T::fused(t84, t47, T::fused(t46, t81, t45 * t80)),
         );
-        let t98 = T::fused(t47, t93, T::fused(-t41, t88, t45 * t90));
-        let t99 = T::fused(t47, t96, T::fused(t41, t94, t45 * t95));
-        let t100 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t101 = T::fused(t60, t93, T::fused(t58, t88, t59 * t90));
-        let t102 = rotor_wx * rotor_wy;
-        let t103 = T::fused(t60, t96, T::fused(-t58, t94, t59 * t95));
-        let t104 = rotor_wx * rotor_wz;
-        let t105 = T::fused(
+        let t87 = T::fused(t42, t78, T::fused(t37, t72, t75 * t39));
+        let t88 = rotor_wx * rotor_wz;
+        let t89 = T::fused(t42, t84, T::fused(t81, t39, t37 * t80));
+        let t90 = rotor_wx * rotor_wy;
+        let t91 = t83 + t82;
+        let t92 = t77 - t76;
+        let t93 = T::fused(rotor_e1, rotor_e1, -t71);
+        let t94 = T::fused(t42, t93, T::fused(t91, t39, t37 * t92));
+        let t95 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t96 = T::fused(
             k(2.0),
             T::fused(
-                inner_ring_wz,
-                t97,
-                inner_ring_wx * T::fused(rotor_wz, t98, rotor_wy * t99),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t79, rotor_wz * t85),
+                inner_ring_wz * t86,
             ),
-            T::fused(t104, t103, -T::fused(-t100, t86, t102 * t101)),
+            T::fused(t95, t94, -T::fused(t88, t87, t90 * t89)),
         );
-        let t106 = t105 + T::fused(t66, t87, T::fused(-t74, t85, (t72 + t67) * t86));
-        let t107 = T::fused(
+        let t97 = T::fused(t53, t93, T::fused(t92, t51, t52 * t91));
+        let t98 = T::fused(t47, t93, T::fused(t45, t92, t46 * t91));
+        let t99 = T::fused(
+            t70,
+            t98,
+            -T::fused(t68 + t55, t94, -T::fused(t59, t97, -t96)),
+        );
+        let t100 = T::fused(
             -k(2.0),
             T::fused(
-                -inner_ring_wy,
-                t97,
-                inner_ring_wx * T::fused(rotor_wz, t101, rotor_wy * t103),
+                -inner_ring_wx,
+                T::fused(-rotor_wy, t87, rotor_wz * t89),
+                inner_ring_wy * t86,
             ),
-            T::fused(t104, t99, -T::fused(-t100, t87, t102 * t98)),
+            T::fused(t95, t97, -T::fused(t88, t79, t90 * t85)),
         );
+        let t101 = k(4.0)
+            * T::fused(t61, t98, T::fused(t59, t94, -T::fused(t57, t97, t100)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t33,
-            T::fused(-t14, t36, T::fused(t5, t34, t10 * t35)),
+            k(125.66370614359172) * t31,
+            k(2.0) * T::fused(-t23, t32, T::fused(-t33, t20, t34 * t22)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t70 + t51),
-            -(t71 + T::fused(t14, t50, T::fused(-t5, t48, t10 * t49))),
-            k(0.000125) * T::fused(t64, t41, T::fused(t73, t52, t74 * t58)),
-            k(0.000125) * T::fused(t64, t45, -T::fused(t73, t55, t74 * t59)),
-            -(k(0.000125) * T::fused(t64, t47, -T::fused(-t73, t56, t74 * t60))),
-            t106,
-            -(t107 + T::fused(t69, t87, T::fused(t64, t85, t66 * t86))),
+            k(4.0) * t65,
+            -t67,
+            k(0.00025) * T::fused(-t69, t47, T::fused(t53, t61, t42 * t70)),
+            -(k(0.00025) * T::fused(t46, t69, -T::fused(t70, t39, t52 * t61))),
+            -(k(0.00025) * T::fused(t45, t69, -T::fused(t61, t51, t37 * t70))),
+            -(k(4.0) * t99),
+            -t101,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
@@ -2860,7 +2775,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
             T::fused(t47, t148, -T::fused(-t40, t146, t63 * t147)) - t84,
         ];
     }
-    /// Writes λ: 291 operations (110 ±, 178 ×, 3 ÷) and 3 functions.
+    /// Writes λ: 280 operations (110 ±, 167 ×, 3 ÷) and 3 functions.
     fn multipliers(
         &self,
         t: T,
@@ -2906,167 +2821,142 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = k(2.0) * rotor_e1;
-        let t7 = k(2.0) * rotor_e0;
-        let t8 = T::fused(-rotor_e0, t7, k(1.0));
-        let t9 = T::fused(-rotor_e1, t6, t8);
-        let t10 = k(2.0) * inner_ring_e1;
-        let t11 = k(2.0) * inner_ring_e0;
-        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
-        let t13 = T::fused(-inner_ring_e1, t10, t12);
-        let t14 = rotor_e3 * t7;
-        let t15 = rotor_e2 * t6;
-        let t16 = t15 + t14;
-        let t17 = inner_ring_e3 * t11;
-        let t18 = inner_ring_e2 * t10;
-        let t19 = t18 + t17;
-        let t20 = rotor_e2 * t7;
-        let t21 = rotor_e3 * t6;
-        let t22 = t21 - t20;
-        let t23 = inner_ring_e2 * t11;
-        let t24 = inner_ring_e3 * t10;
-        let t25 = t24 - t23;
-        let t26 = k(1e-5) * rotor_dwx;
-        let t27 = t15 - t14;
-        let t28 = k(2.0) * rotor_e2;
-        let t29 = T::fused(-rotor_e2, t28, t8);
-        let t30 = rotor_e1 * t7;
-        let t31 = rotor_e3 * t28;
-        let t32 = t31 + t30;
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t34 = T::fused(
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = rotor_dsy + k(10.0);
+        let t2 = k(10.0) + T::fused(k(8.0), t1, inner_ring_dsy);
+        let t3 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t4 = k(2.0) * rotor_dwx;
+        let t5 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t6 = T::fused(rotor_e1, rotor_e1, -t5);
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t9 = rotor_e0 * rotor_e2;
+        let t10 = rotor_e1 * rotor_e3;
+        let t11 = t10 - t9;
+        let t12 = inner_ring_e0 * inner_ring_e2;
+        let t13 = inner_ring_e1 * inner_ring_e3;
+        let t14 = t13 - t12;
+        let t15 = rotor_e0 * rotor_e3;
+        let t16 = rotor_e1 * rotor_e2;
+        let t17 = t16 + t15;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = T::fused(rotor_e3, rotor_e3, -t5);
+        let t22 = rotor_e0 * rotor_e1;
+        let t23 = rotor_e2 * rotor_e3;
+        let t24 = t23 - t22;
+        let t25 = t10 + t9;
+        let t26 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t27 = T::fused(
             t26,
-            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
-            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
+            T::fused(t25, t8, T::fused(t14, t21, t20 * t24)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t35 = t21 + t20;
-        let t36 = t31 - t30;
-        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
-        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t39 = T::fused(
-            t38,
-            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
-            t34,
+        let t28 = T::fused(rotor_e2, rotor_e2, -t5);
+        let t29 = t23 + t22;
+        let t30 = t16 - t15;
+        let t31 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t32 = T::fused(t31, T::fused(t30, t8, T::fused(t20, t28, t14 * t29)), -t27);
+        let t33 = T::fused(T::fused(t8, t6, T::fused(t14, t11, t20 * t17)), t4, t32);
+        let t34 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t35 = T::fused(outer_ring_e1, outer_ring_e1, -t34);
+        let t36 = outer_ring_e0 * outer_ring_e2;
+        let t37 = outer_ring_e1 * outer_ring_e3;
+        let t38 = t37 - t36;
+        let t39 = outer_ring_e0 * outer_ring_e3;
+        let t40 = outer_ring_e1 * outer_ring_e2;
+        let t41 = t40 + t39;
+        let t42 = T::fused(t35, t8, T::fused(t38, t14, t41 * t20));
+        let t43 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t44 = inner_ring_e0 * inner_ring_e1;
+        let t45 = inner_ring_e2 * inner_ring_e3;
+        let t46 = t45 + t44;
+        let t47 = t19 - t18;
+        let t48 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t49 = t45 - t44;
+        let t50 = t13 + t12;
+        let t51 = T::fused(
+            t50,
+            rotor_dsx,
+            T::fused(t49, t1, -T::fused(-rotor_dsz, t48, k(0.1) * inner_ring_dwy)),
         );
-        let t40 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t39,
+        let t52 = T::fused(t47, t25, T::fused(t46, t21, t24 * t43));
+        let t53 = T::fused(t47, t30, T::fused(t28, t43, t46 * t29));
+        let t54 = T::fused(
+            T::fused(t47, t6, T::fused(t17, t43, t46 * t11)),
+            t4,
+            T::fused(t31, t53, -T::fused(t26, t52, t51)),
         );
-        let t41 = k(2.0) * outer_ring_e1;
-        let t42 = k(2.0) * outer_ring_e0;
-        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
-        let t44 = T::fused(-outer_ring_e1, t41, t43);
-        let t45 = outer_ring_e3 * t42;
-        let t46 = outer_ring_e2 * t41;
-        let t47 = t46 + t45;
-        let t48 = outer_ring_e2 * t42;
-        let t49 = outer_ring_e3 * t41;
-        let t50 = t49 - t48;
-        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
-        let t52 = t18 - t17;
-        let t53 = k(2.0) * inner_ring_e2;
-        let t54 = T::fused(-inner_ring_e2, t53, t12);
-        let t55 = inner_ring_e1 * t11;
-        let t56 = inner_ring_e3 * t53;
-        let t57 = t56 + t55;
-        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
+        let t55 = T::fused(t47, t35, T::fused(t41, t43, t38 * t46));
+        let t56 = T::fused(
+            t43,
+            t1,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t46 * rotor_dsz,
+            ),
+        );
+        let t57 = T::fused(t50, t25, T::fused(t21, t48, t49 * t24));
+        let t58 = T::fused(t50, t30, T::fused(t29, t48, t49 * t28));
         let t59 = T::fused(
-            t26,
-            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
-            t33 * t58,
-        );
-        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
-        let t61 = t24 + t23;
-        let t62 = t56 - t55;
-        let t63 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
-        let t64 = T::fused(
+            T::fused(t50, t6, T::fused(t11, t48, t49 * t17)),
             t4,
-            k(0.000125) * t63,
-            -T::fused(t0, k(0.000125) * t61, t2 * (k(0.000125) * t62)),
+            T::fused(t31, t58, -T::fused(t26, t57, -T::fused(t47, rotor_dsx, t56))),
         );
-        let t65 = T::fused(k(2e-6), inner_ring_dwy, t64 + T::fused(t38, t60, t59));
-        let t66 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
-        let t67 = T::fused(t63, t32, T::fused(-t61, t27, t62 * t29));
-        let t68 = T::fused(
-            t26,
-            T::fused(t63, t22, -T::fused(-t61, t9, t62 * t16)),
-            t33 * t67,
+        let t60 = T::fused(
+            T::fused(t50, t35, T::fused(t38, t48, t41 * t49)),
+            t59,
+            k(0.025) * outer_ring_dwx,
         );
-        let t69 = T::fused(t63, t37, T::fused(t61, t35, t62 * t36));
-        let t70 = T::fused(
-            t4,
-            k(0.000125) * t57,
-            -T::fused(-t0, k(0.000125) * t52, t2 * (k(0.000125) * t54)),
+        let t61 = T::fused(t42, t33, T::fused(t55, t54, t60));
+        let t62 = T::fused(outer_ring_e3, outer_ring_e3, -t34);
+        let t63 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t64 = t63.cos();
+        let t65 = outer_ring_e0 * outer_ring_e1;
+        let t66 = outer_ring_e2 * outer_ring_e3;
+        let t67 = t66 - t65;
+        let t68 = t63.sin();
+        let t69 = T::fused(-t64, t62, t68 * t67);
+        let t70 = T::fused(-t68, t41, t64 * t38);
+        let t71 = t37 + t36;
+        let t72 = k(1.0) / T::fused(t35, t69, t71 * t70);
+        let t73 = T::fused(
+            -T::fused(t71, t50, T::fused(t62, t48, t67 * t49)),
+            t59,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t71 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t70 - T::fused(t38, t69, t68),
-        );
-        let t72 = T::fused(
-            T::fused(t50, t63, -T::fused(-t44, t61, t47 * t62)),
-            t71,
-            -T::fused(-t51, t40, t66 * t65),
-        );
-        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
-        let t74 = outer_ring_e1 * t42;
-        let t75 = k(2.0) * outer_ring_e2;
-        let t76 = outer_ring_e3 * t75;
-        let t77 = t76 - t74;
-        let t78 = k(0.5) * (k(125.66370614359172) * t).sin();
-        let t79 = t78.sin();
-        let t80 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
-        let t81 = t78.cos();
-        let t82 = T::fused(t79, t77, t81 * t80);
-        let t83 = T::fused(-t79, t47, t81 * t50);
-        let t84 = t49 + t48;
-        let t85 = k(1.0) / T::fused(-t44, t82, t84 * t83);
-        let t86 = T::fused(
-            -T::fused(t80, t25, -T::fused(-t84, t13, t77 * t19)),
-            t40,
-            T::fused(t80, t57, T::fused(-t84, t52, t77 * t54)) * t65,
-        );
-        let t87 = T::fused(T::fused(t80, t63, T::fused(t84, t61, t77 * t62)), t71, -t86);
-        let t88 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t87,
-        );
-        let t89 = t46 - t45;
-        let t90 = T::fused(-outer_ring_e2, t75, t43);
-        let t91 = t76 + t74;
-        let t92 = T::fused(t91, t25, -T::fused(t89, t13, t90 * t19));
-        let t93 = T::fused(t91, t57, T::fused(t89, t52, t90 * t54));
-        let t94 = k(1.0) / T::fused(-t92, t66, t93 * t51);
-        let t95 = k(1.0) / T::fused(-t67, t60, t69 * t58);
+        let t74 = T::fused(-T::fused(t71, t47, T::fused(t46, t62, t67 * t43)), t54, t73);
+        let t75 = T::fused(-T::fused(t71, t8, T::fused(t14, t62, t67 * t20)), t33, t74);
+        let t76 = T::fused(outer_ring_e2, outer_ring_e2, -t34);
+        let t77 = t66 + t65;
+        let t78 = t40 - t39;
+        let t79 = T::fused(t78, t47, T::fused(t76, t43, t77 * t46));
+        let t80 = T::fused(t78, t8, T::fused(t20, t76, t77 * t14));
+        let t81 = k(1.0) / T::fused(-t79, t42, t80 * t55);
+        let t82 = k(1.0) / T::fused(-t57, t53, t58 * t52);
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t44 * t85, t73, t84 * t85 * t88),
-            -T::fused(t83 * t85, t73, t82 * t85 * t88),
-            -t1,
-            -t3,
-            -t5,
-            T::fused(-(t93 * t94), t65, t92 * t94 * t40),
-            T::fused(-(t51 * t94), t40, t66 * t94 * t65),
-            -t0,
-            -t2,
-            -t4,
-            T::fused(t33, t67 * t95, t38 * (t69 * t95)),
-            T::fused(t33, t58 * t95, t38 * (t60 * t95)),
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (k(10.0) + (outer_ring_dsy + t2))),
+            -(k(0.01) * (outer_ring_dsz + t3)),
+            -(k(4e-5) * T::fused(-(t35 * t72), t61, t71 * t72 * t75)),
+            -(k(4e-5) * T::fused(t70 * t72, t61, t69 * t72 * t75)),
+            -(k(0.01) * t0),
+            -(k(0.01) * t2),
+            -(k(0.01) * t3),
+            k(5e-6) * T::fused(t80 * t81, t33, t79 * t81 * t54),
+            -(k(5e-6) * T::fused(t42 * t81, t33, t55 * t81 * t54)),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t1),
+            -(k(0.08) * rotor_dsz),
+            k(1.25e-6) * T::fused(-t26, t57 * t82, t31 * (t58 * t82)),
+            -(k(1.25e-6) * T::fused(-t26, t52 * t82, t31 * (t53 * t82))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRollingBase<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 389 operations (146 ±, 238 ×, 5 ÷) and 3 functions.
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 365 operations (144 ±, 216 ×, 5 ÷) and 3 functions.
     fn project(
         &self,
         t: T,
@@ -3102,178 +2992,175 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRollingBase<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e1 * t0;
-        let t2 = k(2.0) * outer_ring_e2;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = k(0.5) * (k(125.66370614359172) * t).sin();
-        let t6 = t5.sin();
-        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t8 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
-        let t9 = t5.cos();
-        let t10 = T::fused(t6, t4, t9 * t8);
-        let t11 = k(2.0) * outer_ring_e1;
-        let t12 = T::fused(-outer_ring_e1, t11, t7);
-        let t13 = outer_ring_e3 * t0;
-        let t14 = outer_ring_e2 * t11;
-        let t15 = t14 + t13;
-        let t16 = outer_ring_e2 * t0;
-        let t17 = outer_ring_e3 * t11;
-        let t18 = t17 - t16;
-        let t19 = T::fused(-t6, t15, t9 * t18);
-        let t20 = t17 + t16;
-        let t21 = k(1.0) / T::fused(-t12, t10, t20 * t19);
-        let t22 = T::fused(row3, t12 * t21, row4 * (t19 * t21));
-        let t23 = k(2.0) * rotor_e0;
-        let t24 = k(2.0) * rotor_e1;
-        let t25 = T::fused(rotor_e2, t23, rotor_e3 * t24);
-        let t26 = k(2.0) * inner_ring_e0;
-        let t27 = inner_ring_e3 * t26;
-        let t28 = k(2.0) * inner_ring_e1;
-        let t29 = inner_ring_e2 * t28;
-        let t30 = t29 - t27;
-        let t31 = rotor_e1 * t23;
-        let t32 = k(2.0) * rotor_e2;
-        let t33 = rotor_e3 * t32;
-        let t34 = t33 - t31;
-        let t35 = k(2.0) * inner_ring_e2;
-        let t36 = T::fused(-inner_ring_e0, t26, k(1.0));
-        let t37 = T::fused(-inner_ring_e2, t35, t36);
-        let t38 = T::fused(-rotor_e0, t23, k(1.0));
-        let t39 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t38);
-        let t40 = inner_ring_e1 * t26;
-        let t41 = inner_ring_e3 * t35;
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t3 = t2.cos();
+        let t4 = outer_ring_e0 * outer_ring_e1;
+        let t5 = outer_ring_e2 * outer_ring_e3;
+        let t6 = t5 - t4;
+        let t7 = t2.sin();
+        let t8 = T::fused(-t3, t1, t7 * t6);
+        let t9 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t10 = outer_ring_e0 * outer_ring_e3;
+        let t11 = outer_ring_e1 * outer_ring_e2;
+        let t12 = t11 + t10;
+        let t13 = outer_ring_e0 * outer_ring_e2;
+        let t14 = outer_ring_e1 * outer_ring_e3;
+        let t15 = t14 - t13;
+        let t16 = T::fused(-t7, t12, t3 * t15);
+        let t17 = t14 + t13;
+        let t18 = k(1.0) / T::fused(t9, t8, t17 * t16);
+        let t19 = T::fused(-row4, t16 * t18, row3 * (t9 * t18));
+        let t20 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t21 = T::fused(inner_ring_e2, inner_ring_e2, -t20);
+        let t22 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t23 = T::fused(rotor_e2, rotor_e2, -t22);
+        let t24 = rotor_e0 * rotor_e1;
+        let t25 = rotor_e2 * rotor_e3;
+        let t26 = t25 + t24;
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = t28 + t27;
+        let t30 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t31 = inner_ring_e0 * inner_ring_e3;
+        let t32 = inner_ring_e1 * inner_ring_e2;
+        let t33 = t32 - t31;
+        let t34 = T::fused(t33, t30, T::fused(t23, t21, t29 * t26));
+        let t35 = T::fused(inner_ring_e3, inner_ring_e3, -t20);
+        let t36 = T::fused(rotor_e3, rotor_e3, -t22);
+        let t37 = t25 - t24;
+        let t38 = t28 - t27;
+        let t39 = T::fused(rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t40 = inner_ring_e0 * inner_ring_e2;
+        let t41 = inner_ring_e1 * inner_ring_e3;
         let t42 = t41 + t40;
-        let t43 = T::fused(t42, t39, T::fused(-t30, t25, t37 * t34));
-        let t44 = T::fused(-rotor_e3, t23, rotor_e2 * t24);
-        let t45 = inner_ring_e2 * t26;
-        let t46 = inner_ring_e3 * t28;
-        let t47 = t46 + t45;
-        let t48 = T::fused(-rotor_e2, t32, t38);
-        let t49 = t41 - t40;
-        let t50 = t33 + t31;
-        let t51 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t36);
-        let t52 = T::fused(t51, t50, T::fused(-t47, t44, t49 * t48));
-        let t53 = T::fused(t42, t50, T::fused(t30, t44, t37 * t48));
-        let t54 = T::fused(t51, t39, T::fused(t47, t25, t49 * t34));
-        let t55 = k(1.0) / T::fused(-t52, t43, t54 * t53);
-        let t56 = T::fused(row13, t52 * t55, row14 * (t53 * t55));
-        let t57 = k(5e-6) * t56;
-        let t58 = T::fused(-inner_ring_e1, t28, t36);
-        let t59 = t29 + t27;
-        let t60 = t46 - t45;
-        let t61 = T::fused(t60, t50, -T::fused(t58, t44, t59 * t48));
-        let t62 = T::fused(row13, t54 * t55, row14 * (t43 * t55));
-        let t63 = k(5e-6) * t62;
-        let t64 = T::fused(t60, t39, -T::fused(-t58, t25, t59 * t34));
-        let t65 = k(0.08) * row10;
-        let t66 = k(0.000125) * t30;
-        let t67 = k(0.08) * row11;
-        let t68 = k(0.000125) * t37;
-        let t69 = k(0.08) * row12;
-        let t70 = k(0.000125) * t42;
-        let t71 = T::fused(t70, t69, -T::fused(-t66, t65, t68 * t67))
-            + T::fused(t52, t57, t54 * t63);
-        let t72 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t52, k(5e-6) * t52, t54 * (k(5e-6) * t54)));
-        let t73 = k(1.0) / t72;
-        let t74 = t73 * t71;
-        let t75 = k(5e-6) * t61;
-        let t76 = k(5e-6) * t64;
-        let t77 = T::fused(t52, t75, t54 * t76);
-        let t78 = k(1e-5) * t30;
-        let t79 = t73 * t78;
-        let t80 = t77 * t79;
-        let t81 = k(1e-5) * t37;
-        let t82 = t73 * t81;
-        let t83 = t77 * t82;
-        let t84 = k(1e-5) * t42;
-        let t85 = t73 * t84;
-        let t86 = t77 * t85;
-        let t87 = T::fused(t18, t42, -T::fused(t12, t30, t15 * t37));
-        let t88 = t14 - t13;
-        let t89 = T::fused(-outer_ring_e2, t2, t7);
-        let t90 = t3 + t1;
-        let t91 = T::fused(t90, t60, -T::fused(t88, t58, t89 * t59));
-        let t92 = T::fused(t18, t60, T::fused(t12, t58, t15 * t59));
-        let t93 = T::fused(t90, t42, T::fused(t88, t30, t89 * t37));
-        let t94 = k(1.0) / T::fused(-t91, t87, t93 * t92);
-        let t95 = T::fused(-row8, t91 * t94, row9 * (t92 * t94));
-        let t96 = t73 * t77;
-        let t97 = T::fused(t77, t96, -(k(1e-6) + T::fused(t61, t75, t64 * t76)));
-        let t98 = T::fused(-row8, t93 * t94, row9 * (t87 * t94));
-        let t99 = k(5e-6) * t53;
-        let t100 = k(5e-6) * t43;
-        let t101 = T::fused(t52, t99, t54 * t100);
-        let t102 = T::fused(t101, t96, -T::fused(t53, t75, t43 * t76));
-        let t103 = T::fused(t97, t95, t102 * t98)
-            + T::fused(row7, t86, -T::fused(-row5, t80, row6 * t83));
-        let t104 = k(0.000125) * t47;
-        let t105 = k(0.000125) * t49;
-        let t106 = k(0.000125) * t51;
-        let t107 = T::fused(t106, t69, -T::fused(t104, t65, t105 * t67))
-            - T::fused(t53, t57, t43 * t63);
-        let t108 = T::fused(-k(1e-5), t47, t101 * t79);
-        let t109 = T::fused(k(1e-5), t49, t101 * t82);
-        let t110 = T::fused(k(1e-5), t51, t101 * t85);
-        let t111 = T::fused(
-            t101,
-            t73 * t101,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t53, t99, t43 * t100))),
+        let t43 = T::fused(t42, t39, T::fused(t36, t35, t38 * t37));
+        let t44 = T::fused(t33, t39, T::fused(t29, t36, t37 * t21));
+        let t45 = T::fused(t42, t30, T::fused(t26, t35, t38 * t23));
+        let t46 = k(1.0) / T::fused(-t43, t34, t45 * t44);
+        let t47 = k(0.25) * T::fused(-row14, t44 * t46, row13 * (t43 * t46));
+        let t48 = T::fused(
+            -t43,
+            t47,
+            T::fused(t33, row10, T::fused(t21, row11, t29 * row12)),
         );
-        let t112 = T::fused(t102, t95, t111 * t98)
-            + T::fused(row7, t110, -T::fused(-row5, t108, row6 * t109));
-        let t113 = T::fused(
-            t91,
-            t103 + T::fused(t77, t74, -T::fused(t61, t57, t64 * t63)),
-            t93 * (t112 + T::fused(t101, t74, t107)),
+        let t49 = k(0.25) * T::fused(-row14, t34 * t46, row13 * (t45 * t46));
+        let t50 = T::fused(t45, t49, -t48);
+        let t51 = k(1.0) / (k(0.012515625) + T::fused(t43, t43, t45 * t45));
+        let t52 = t51 * t50;
+        let t53 = t41 - t40;
+        let t54 = t32 + t31;
+        let t55 = T::fused(inner_ring_e1, inner_ring_e1, -t20);
+        let t56 = T::fused(t39, t55, T::fused(t53, t36, t54 * t37));
+        let t57 = T::fused(t30, t55, T::fused(t54, t23, t53 * t26));
+        let t58 = T::fused(t56, t43, t57 * t45);
+        let t59 = T::fused(t9, t55, T::fused(t15, t53, t12 * t54));
+        let t60 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t61 = t5 + t4;
+        let t62 = t11 - t10;
+        let t63 = T::fused(t62, t33, T::fused(t60, t21, t61 * t29));
+        let t64 = T::fused(t33, t9, T::fused(t12, t21, t15 * t29));
+        let t65 = T::fused(t62, t55, T::fused(t54, t60, t61 * t53));
+        let t66 = k(1.0) / T::fused(-t63, t59, t65 * t64);
+        let t67 = T::fused(-row9, t64 * t66, row8 * (t63 * t66));
+        let t68 = T::fused(t43, t44, t45 * t34);
+        let t69 = t58 * t51;
+        let t70 = T::fused(t57, t34, T::fused(-t69, t68, t56 * t44));
+        let t71 = T::fused(-row9, t59 * t66, row8 * (t65 * t66));
+        let t72 = k(0.0125) + T::fused(t57, t57, T::fused(-t58, t69, t56 * t56));
+        let t73 = t29 * t51;
+        let t74 = t58 * t73;
+        let t75 = t51 * t21;
+        let t76 = t58 * t75;
+        let t77 = T::fused(
+            row6,
+            t76,
+            T::fused(row7, t74, T::fused(t70, t67, t72 * t71)),
         );
-        let t114 = T::fused(
-            -row0,
-            T::fused(t91, t80, t93 * t108),
-            row1 * T::fused(t91, t83, t93 * t109),
+        let t78 = t33 * t51;
+        let t79 = t58 * t78;
+        let t80 = T::fused(
+            t57,
+            t49,
+            T::fused(t56, t47, T::fused(-t58, t52, T::fused(row5, t79, t77))),
         );
-        let t115 = T::fused(
-            t91,
-            T::fused(t97, t92, t102 * t87),
-            t93 * T::fused(t102, t92, t111 * t87),
+        let t81 = k(0.025015625)
+            + T::fused(t34, t34, T::fused(-t68, t51 * t68, t44 * t44));
+        let t82 = T::fused(t68, t73, t35);
+        let t83 = T::fused(t68, t75, t38);
+        let t84 = T::fused(
+            row6,
+            t83,
+            T::fused(row7, t82, T::fused(t81, t67, t70 * t71)),
         );
-        let t116 = T::fused(row3, t20 * t21, row4 * (t10 * t21));
-        let t117 = T::fused(t8, t60, -T::fused(-t20, t58, t4 * t59));
-        let t118 = T::fused(t91, t97, t93 * t102);
-        let t119 = T::fused(t8, t42, T::fused(-t20, t30, t4 * t37));
-        let t120 = T::fused(t102, t91, t111 * t93);
-        let t121 = T::fused(t115, t22, T::fused(t118, t117, t120 * t119) * t116)
-            - T::fused(row2, T::fused(t91, t86, t93 * t110), -t114);
-        let t122 = (t121 - t113) / (k(1e-6) - T::fused(t91, t118, t93 * t120));
-        let t123 = row0 + row5;
-        let t124 = row1 + row6;
-        let t125 = row2 + row7;
-        let t126 = t95 - T::fused(t117, t116, T::fused(t92, t22, t91 * t122));
-        let t127 = t98 - T::fused(t119, t116, T::fused(t87, t22, t93 * t122));
-        let t128 = T::fused(t77, t126, t101 * t127)
-            + T::fused(t125, t84, -T::fused(-t123, t78, t124 * t81));
-        let t129 = t73 * (t71 + t128);
+        let t85 = T::fused(t68, t78, t42);
+        let t86 = T::fused(
+            t38,
+            row11,
+            T::fused(t35, row12, T::fused(-t68, t52, T::fused(row5, t85, t84))),
+        );
+        let t87 = T::fused(row4, t8 * t18, row3 * (t17 * t18));
+        let t88 = T::fused(t17, t33, T::fused(t29, t1, t6 * t21));
+        let t89 = T::fused(t63, t81, t65 * t70);
+        let t90 = T::fused(t17, t55, T::fused(t53, t1, t6 * t54));
+        let t91 = T::fused(t70, t63, t72 * t65);
+        let t92 = T::fused(
+            t63,
+            T::fused(t81, t64, t70 * t59),
+            t65 * T::fused(t70, t64, t72 * t59),
+        );
+        let t93 = T::fused(
+            k(8.0),
+            T::fused(T::fused(t89, t88, t91 * t90), t87, t92 * t19),
+            row2 * T::fused(t63, t82, t65 * t74),
+        );
+        let t94 = T::fused(
+            row0,
+            T::fused(t63, t85, t65 * t79),
+            T::fused(row1, T::fused(t63, t83, t65 * t76), t93),
+        );
+        let t95 = T::fused(
+            t63,
+            T::fused(t34, t49, T::fused(t44, t47, T::fused(t42, row10, t86))),
+            t94,
+        );
+        let t96 = T::fused(t65, t80, t95)
+            / (k(0.00078125) + T::fused(t63, t89, t65 * t91));
+        let t97 = row0 + row5;
+        let t98 = row1 + row6;
+        let t99 = row2 + row7;
+        let t100 = k(8.0) * t19;
+        let t101 = k(8.0) * t87;
+        let t102 = T::fused(t59, t100, T::fused(-t65, t96, T::fused(t90, t101, t71)));
+        let t103 = T::fused(t64, t100, T::fused(-t63, t96, T::fused(t88, t101, t67)));
+        let t104 = T::fused(
+            t21,
+            t98,
+            T::fused(t29, t99, -T::fused(t58, t102, T::fused(t68, t103, t50))),
+        );
+        let t105 = t51 * T::fused(t33, t97, t104);
+        let t106 = k(6.25e-5) * t105;
+        let t107 = k(6.25e-5) * t103;
         *out = [
             row0,
             row1,
             row2,
-            t22,
-            t122,
-            -t116,
-            t123,
-            t124,
-            t125,
-            -t126,
-            -t127,
-            -t129,
-            row10 + (t123 - T::fused(-t104, t127, t66 * t129)),
-            row11 + (t124 + T::fused(t105, t127, t68 * t129)),
-            row12 + (t125 - T::fused(t106, t127, t70 * t129)),
+            -(k(0.5) * t19),
+            k(0.0625) * t96,
+            -(k(0.5) * t87),
+            t97,
+            t98,
+            t99,
+            -(k(0.25) * t102),
+            -(k(0.25) * t103),
+            -(k(0.25) * t105),
+            T::fused(t42, t107, T::fused(-t33, t106, row10 + t97)),
+            T::fused(t38, t107, T::fused(-t21, t106, row11 + t98)),
+            T::fused(t35, t107, T::fused(-t29, t106, row12 + t99)),
             k(0.0),
-            T::fused(t52, t129, -T::fused(t61, t126, t53 * t127)) - t56,
-            t62 - T::fused(t54, t129, -T::fused(t64, t126, t43 * t127)),
+            -T::fused(t57, t102, T::fused(t34, t103, T::fused(t45, t105, t49))),
+            -T::fused(t56, t102, T::fused(t44, t103, T::fused(t43, t105, t47))),
         ];
     }
 }
@@ -3291,7 +3178,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 68 operations (20 ±, 47 ×, 1 ÷) and 8 functions.
+    /// Writes u̇: 66 operations (20 ±, 45 ×, 1 ÷) and 8 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -3299,79 +3186,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x0.cos();
-        let t1 = k(125.66370614359172) * t;
-        let t2 = t1.sin();
-        let t3 = k(0.5) * t2;
+        let t0 = x1.cos();
+        let t1 = t0 * t0;
+        let t2 = x0.cos();
+        let t3 = k(125.66370614359172) * t;
         let t4 = t3.sin();
-        let t5 = t1.cos();
-        let t6 = t5 * t0;
-        let t7 = x1.cos();
-        let t8 = t7 * t6;
-        let t9 = x1.sin();
-        let t10 = u0 * t9;
-        let t11 = T::fused(
-            -t4,
-            t0,
+        let t5 = k(0.5) * t4;
+        let t6 = t5.sin();
+        let t7 = t3.cos();
+        let t8 = t7 * t2;
+        let t9 = t0 * t8;
+        let t10 = x1.sin();
+        let t11 = u0 * t10;
+        let t12 = T::fused(
+            -t6,
+            t2,
             k(0.020025)
                 * (u1
                     * T::fused(
                         -k(62.83185307179586),
-                        T::fused(k(0.07947812389108382), u2, -t8),
-                        t10,
+                        T::fused(k(0.07947812389108382), u2, -t9),
+                        t11,
                     )),
         );
-        let t12 = t2 * t0;
-        let t13 = x0.sin();
-        let t14 = t5 * t13;
-        let t15 = T::fused(k(0.01578643223954243), t8, k(0.0006283185307179586) * u2);
-        let t16 = T::fused(
-            k(0.047383970729630014),
-            t7 * T::fused(-k(0.00211041832206494), t11, t9 * t12),
-            T::fused(
-                t7,
-                T::fused(k(0.0006283185307179586), t10, t15),
-                k(0.007895683520871487) * t6,
-            ) * t14,
+        let t13 = t4 * t2;
+        let t14 = T::fused(k(25.12488724708437), t9, u2);
+        let t15 = x0.sin();
+        let t16 = t7 * t15;
+        let t17 = T::fused(
+            k(6.00125),
+            t0 * T::fused(-k(0.00211041832206494), t12, t10 * t13),
+            t16 * T::fused(k(0.07957747154594767), t0 * (t11 + t14), t8),
         );
-        let t17 = t7 * t7;
-        let t18 = t16 / T::fused(k(6.00125e-6), t17, k(2e-6));
+        let t18 = t17 / (t1 + k(0.333263903353468));
         let t19 = T::fused(
-            -t7,
+            -t0,
             T::fused(
                 -k(0.0399875),
-                u0 * T::fused(k(2.500781494216943), u2, t10),
-                t3.cos(),
+                u0 * T::fused(k(2.500781494216943), u2, t11),
+                t5.cos(),
             ),
-            t13 * T::fused(t4, t9, k(473.8397072963001) * t2),
+            t15 * T::fused(t6, t10, k(473.8397072963001) * t4),
         );
         let t20 = T::fused(
-            -k(0.0001),
+            -k(0.15915494309189535),
             t19,
-            t6
-                * T::fused(
-                    k(0.0005024977449416874),
-                    u0 * (k(1.2503907471084714) - t17),
-                    t9 * t15,
-                ),
+            t8 * T::fused(k(0.79975), u0 * (k(1.2503907471084714) - t1), t10 * t14),
         );
         let t21 = T::fused(
-            k(0.07895683520871487),
-            t7
+            k(125.66370614359172),
+            t0
                 * T::fused(
                     -k(0.00012665147955292222),
-                    u0 * T::fused(-k(62.83185307179586), t14, u1),
-                    t12,
+                    u0 * T::fused(-k(62.83185307179586), t16, u1),
+                    t13,
                 ),
-            k(0.0006283185307179586) * (t6 * (u1 * t9)),
+            t8 * (u1 * t10),
         );
         *out = [
-            -t18,
-            -(k(166631.95167673402) * t20),
-            T::fused(k(100000.0), t21, t9 * t18),
+            -(k(1315.6731549046426) * t18),
+            -(k(104.6979430481914) * t20),
+            k(1315.6731549046426) * T::fused(k(0.047756430111511844), t21, t10 * t18),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 447 operations (159 ±, 286 ×, 2 ÷) and 18 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 427 operations (162 ±, 263 ×, 2 ÷) and 18 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -3384,279 +3262,297 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let u2 = x[5];
         let t0 = k(0.5) * x0;
         let t1 = t0.cos();
-        let t2 = k(125.66370614359172) * t;
-        let t3 = t2.sin();
-        let t4 = k(0.25) * t3;
-        let t5 = t4.sin();
-        let t6 = t5 * t1;
-        let t7 = t4.cos();
-        let t8 = t7 * t1;
-        let t9 = t8 * t6;
-        let t10 = t0.sin();
-        let t11 = t5 * t10;
-        let t12 = t7 * t10;
-        let t13 = t12 * t11;
-        let t14 = k(0.5) * t3;
-        let t15 = t14.sin();
-        let t16 = t2.cos();
-        let t17 = k(62.83185307179586) * t16;
-        let t18 = t8 * t8;
-        let t19 = t14.cos();
-        let t20 = T::fused(
-            -(t17 * t15),
-            k(2.0) * (t13 + t9),
-            t17 * t19 * (k(2.0) * (k(0.5) - T::fused(t12, t12, t18))),
+        let t2 = t0.sin();
+        let t3 = k(125.66370614359172) * t;
+        let t4 = t3.cos();
+        let t5 = t4 * (t2 * t1);
+        let t6 = T::fused(k(0.007957747154594767), u1, t5);
+        let t7 = k(0.5) * x1;
+        let t8 = t7.cos();
+        let t9 = t7.sin();
+        let t10 = (t9 - t8) * (t9 + t8);
+        let t11 = t9 * t8;
+        let t12 = t4 * ((t2 - t1) * (t2 + t1));
+        let t13 = T::fused(-k(0.007957747154594767), u0 * t10, t12 * t11);
+        let t14 = k(2.0) * T::fused(t6, t6, t13 * t13);
+        let t15 = t3.sin();
+        let t16 = k(0.25) * t15;
+        let t17 = t16.cos();
+        let t18 = t17 * t2;
+        let t19 = t16.sin();
+        let t20 = t19 * t1;
+        let t21 = T::fused(t18, t9, t20 * t8);
+        let t22 = t19 * t2;
+        let t23 = t17 * t1;
+        let t24 = T::fused(-t22, t9, t23 * t8);
+        let t25 = t24 * t24;
+        let t26 = k(0.5) - T::fused(t21, t21, t25);
+        let t27 = x0.cos();
+        let t28 = t4 * t27;
+        let t29 = x1.cos();
+        let t30 = t29 * t28;
+        let t31 = T::fused(k(0.03980117363973625), u2, t30);
+        let t32 = x1.sin();
+        let t33 = t29 * t29;
+        let t34 = k(0.5) * t15;
+        let t35 = t34.sin();
+        let t36 = x0.sin();
+        let t37 = t34.cos();
+        let t38 = u0 * t32;
+        let t39 = T::fused(
+            k(25.00781494216943),
+            t36 * T::fused(t35, t32, k(473.8397072963001) * t15),
+            t29
+                * T::fused(
+                    -k(25.00781494216943),
+                    t37,
+                    u0 * T::fused(k(2.500781494216943), u2, t38),
+                ),
         );
-        let t21 = k(2.0) * (t13 - t9);
-        let t22 = k(2.0) * (k(0.5) - T::fused(t11, t11, t18));
-        let t23 = k(2.0) * (k(0.5) - T::fused(t6, t6, t18));
-        let t24 = k(2.0) * T::fused(t8, t11, t6 * t12);
-        let t25 = t8 * t12;
-        let t26 = t6 * t11;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = k(2.0) * (t26 + t25);
-        let t29 = T::fused(
-            -t23,
-            T::fused(t15, t21, t19 * t22),
-            t28 * T::fused(-t15, t24, t19 * t27),
+        let t40 = T::fused(
+            -k(125.66370614359172),
+            t28
+                * T::fused(
+                    k(31.41592653589793),
+                    t32 * t31,
+                    u0 * (k(1.2503907471084714) - t33),
+                ),
+            t39,
         );
-        let t30 = k(1.0) / t29;
-        let t31 = k(2.0) * t10;
-        let t32 = t17 * (t1 * t31);
-        let t33 = x0.cos();
-        let t34 = k(7895.6835208714865) * t3;
-        let t35 = T::fused(u0, t32, t34 * t33);
-        let t36 = k(0.5) * x1;
-        let t37 = t36.sin();
-        let t38 = t36.cos();
-        let t39 = T::fused(t12, t37, t6 * t38);
-        let t40 = T::fused(-t11, t37, t8 * t38);
-        let t41 = t40 * t40;
-        let t42 = k(2.0) * (k(0.5) - T::fused(t39, t39, t41));
-        let t43 = T::fused(t8, t37, t11 * t38);
-        let t44 = t40 * t43;
-        let t45 = T::fused(-t6, t37, t12 * t38);
-        let t46 = t39 * t45;
-        let t47 = k(2.0) * (t46 + t44);
-        let t48 = t40 * t45;
-        let t49 = t39 * t43;
-        let t50 = k(2.0) * (t49 - t48);
-        let t51 = u1 + t32;
-        let t52 = t17 * T::fused(-t10, t31, k(1.0));
-        let t53 = k(2.0) * t37;
-        let t54 = t38 * t53;
-        let t55 = T::fused(-t37, t53, k(1.0));
-        let t56 = T::fused(-t54, t52, u0 * t55);
-        let t57 = x1.cos();
-        let t58 = t16 * t33;
-        let t59 = t57 * t58;
-        let t60 = x1.sin();
-        let t61 = u0 * t60;
+        let t41 = u0 * t12;
+        let t42 = T::fused(k(125.66370614359172), t15 * t36, t41);
+        let t43 = T::fused(-k(0.010604804477212522), t40, t42);
+        let t44 = T::fused(t23, t9, t22 * t8);
+        let t45 = t24 * t44;
+        let t46 = T::fused(-t20, t9, t18 * t8);
+        let t47 = t21 * t46;
+        let t48 = t47 - t45;
+        let t49 = t15 * t27;
+        let t50 = T::fused(k(62.83185307179586), t49, u0 * t5);
+        let t51 = t4 * t36;
+        let t52 = T::fused(
+            k(1.2582078577627123),
+            u1
+                * T::fused(
+                    -k(0.015915494309189534),
+                    t38,
+                    T::fused(k(0.07947812389108382), u2, -t30),
+                ),
+            t35 * t27,
+        );
+        let t53 = T::fused(
+            k(157.8643223954243),
+            t51
+                * T::fused(
+                    k(0.5001562988433885),
+                    t28,
+                    t29 * T::fused(k(0.03980117363973625), t38, t31),
+                ),
+            t29 * T::fused(k(473.8397072963001), t32 * t49, t52),
+        );
+        let t54 = t53 / (t33 + k(0.333263903353468));
+        let t55 = T::fused(k(0.03183098861837907), u0 * t11, t10 * t12);
+        let t56 = T::fused(
+            u1,
+            t55,
+            T::fused(-k(2.0), t32 * t50, k(0.2652029878640206) * (t29 * t54)),
+        );
+        let t57 = t24 * t46;
+        let t58 = t21 * t44;
+        let t59 = t58 + t57;
+        let t60 = t6 * t55;
+        let t61 = t13 * t55;
         let t62 = T::fused(
-            -t15,
-            t33,
-            k(0.020025)
-                * (u1
-                    * T::fused(
-                        -k(62.83185307179586),
-                        T::fused(k(0.07947812389108382), u2, -t59),
-                        t61,
-                    )),
+            t48,
+            t61,
+            T::fused(k(0.007957747154594767), T::fused(-t48, t43, t59 * t56), t59 * t60),
         );
-        let t63 = t3 * t33;
-        let t64 = x0.sin();
-        let t65 = t16 * t64;
-        let t66 = T::fused(k(0.01578643223954243), t59, k(0.0006283185307179586) * u2);
-        let t67 = T::fused(
-            k(0.047383970729630014),
-            t57 * T::fused(-k(0.00211041832206494), t62, t60 * t63),
-            T::fused(
-                t57,
-                T::fused(k(0.0006283185307179586), t61, t66),
-                k(0.007895683520871487) * t58,
-            ) * t65,
+        let t63 = T::fused(t26, t14, t62);
+        let t64 = t47 + t45;
+        let t65 = k(0.5) - T::fused(t46, t46, t25);
+        let t66 = t24 * t21;
+        let t67 = t46 * t44;
+        let t68 = t67 - t66;
+        let t69 = T::fused(
+            t65,
+            t61,
+            -T::fused(k(0.007957747154594767), T::fused(t65, t43, t68 * t56), t68 * t60),
         );
-        let t68 = t57 * t57;
-        let t69 = t67 / T::fused(k(6.00125e-6), t68, k(2e-6));
-        let t70 = t60 * t69;
-        let t71 = T::fused(-u1, t56, T::fused(t57, t35, t70));
-        let t72 = k(0.5) * x2;
-        let t73 = t72.sin();
-        let t74 = t72.cos();
-        let t75 = T::fused(t40, t73, t39 * t74);
-        let t76 = T::fused(-t39, t73, t40 * t74);
-        let t77 = t76 * t76;
-        let t78 = k(2.0) * (k(0.5) - T::fused(t75, t75, t77));
-        let t79 = T::fused(-t45, t73, t43 * t74);
-        let t80 = t76 * t79;
-        let t81 = T::fused(t43, t73, t45 * t74);
-        let t82 = t75 * t81;
-        let t83 = k(2.0) * (t82 + t80);
-        let t84 = t76 * t81;
-        let t85 = t75 * t79;
-        let t86 = k(2.0) * (t85 - t84);
-        let t87 = T::fused(
-            k(0.07895683520871487),
-            t57
-                * T::fused(
-                    -k(0.00012665147955292222),
-                    u0 * T::fused(-k(62.83185307179586), t65, u1),
-                    t63,
-                ),
-            k(0.0006283185307179586) * (t58 * (u1 * t60)),
+        let t70 = k(5.066059182116889) - T::fused(t64, t14, t69);
+        let t71 = t58 - t57;
+        let t72 = t67 + t66;
+        let t73 = k(0.5) - T::fused(t44, t44, t25);
+        let t74 = T::fused(
+            t72,
+            t61,
+            -T::fused(k(0.007957747154594767), T::fused(t72, t43, t73 * t56), t73 * t60),
         );
-        let t88 = k(1e-5) * (T::fused(k(100000.0), t87, t70) - t71);
-        let t89 = k(2.0) * (t82 - t80);
-        let t90 = k(2.0) * (k(0.5) - T::fused(t81, t81, t77));
-        let t91 = t76 * t75;
-        let t92 = t81 * t79;
-        let t93 = k(2.0) * (t92 + t91);
-        let t94 = k(2.0) * t73;
-        let t95 = t74 * t94;
-        let t96 = T::fused(-t73, t94, k(1.0));
-        let t97 = T::fused(-t95, t56, t96 * t51);
-        let t98 = T::fused(t55, t52, u0 * t54);
-        let t99 = u2 + t98;
-        let t100 = T::fused(u1, t98, T::fused(-t60, t35, t57 * t69));
-        let t101 = x2.cos();
-        let t102 = u0 * t52;
-        let t103 = T::fused(t34, t64, -t102);
-        let t104 = T::fused(
-            -t57,
-            T::fused(-k(0.0399875), u0 * T::fused(k(2.500781494216943), u2, t61), t19),
-            t64 * T::fused(t15, t60, k(473.8397072963001) * t3),
+        let t75 = T::fused(-t71, t14, t74);
+        let t76 = k(0.5) * x2;
+        let t77 = t76.cos();
+        let t78 = t76.sin();
+        let t79 = t78 * t77;
+        let t80 = (t78 - t77) * (t78 + t77);
+        let t81 = T::fused(-k(2.0), t79 * t6, t80 * t13);
+        let t82 = T::fused(k(0.015915494309189534), u2, t55);
+        let t83 = x2.cos();
+        let t84 = x2.sin();
+        let t85 = T::fused(
+            k(125.66370614359172),
+            t82 * t81,
+            T::fused(k(2.0), u2 * t81, T::fused(-t83, t43, t84 * t56)),
         );
-        let t105 = T::fused(
-            -k(0.0001),
-            t104,
-            t58
-                * T::fused(
-                    k(0.0005024977449416874),
-                    u0 * (k(1.2503907471084714) - t68),
-                    t60 * t66,
-                ),
+        let t86 = k(31.830988618379067) * t85;
+        let t87 = T::fused(-t46, t78, t44 * t77);
+        let t88 = T::fused(-t21, t78, t24 * t77);
+        let t89 = t88 * t88;
+        let t90 = k(0.5) - T::fused(t87, t87, t89);
+        let t91 = T::fused(t24, t78, t21 * t77);
+        let t92 = t88 * t91;
+        let t93 = T::fused(t44, t78, t46 * t77);
+        let t94 = t93 * t87;
+        let t95 = t94 - t92;
+        let t96 = t88 * t93;
+        let t97 = t91 * t87;
+        let t98 = t97 + t96;
+        let t99 = T::fused(
+            T::fused(t48, t98, -T::fused(t72, t90, t65 * t95)),
+            t86,
+            T::fused(-t59, t63, T::fused(-t68, t70, t73 * t75)),
         );
-        let t106 = T::fused(k(166631.95167673402), t105, t103);
-        let t107 = x2.sin();
+        let t100 = T::fused(k(0.5), t80 * t6, t79 * t13);
+        let t101 = T::fused(
+            k(251.32741228718345),
+            t100 * t82,
+            T::fused(k(4.0), u2 * t100, T::fused(t84, t43, t83 * t56)),
+        );
+        let t102 = k(31.830988618379067) * t101;
+        let t103 = t94 + t92;
+        let t104 = k(0.5) - T::fused(t93, t93, t89);
+        let t105 = t88 * t87;
+        let t106 = t91 * t93;
+        let t107 = t106 - t105;
         let t108 = T::fused(
+            T::fused(t48, t107, T::fused(t72, t103, t65 * t104)),
+            t102,
             -t99,
-            t97,
-            T::fused(-u2, t97, T::fused(t101, t100, t107 * t106)),
         );
-        let t109 = k(5e-6) * t108;
-        let t110 = T::fused(
-            -t88,
-            T::fused(t50, t86, T::fused(t42, t78, t47 * t83)),
-            t109 * T::fused(t50, t93, -T::fused(t42, t89, t47 * t90)),
+        let t109 = T::fused(
+            t29,
+            T::fused(
+                u0,
+                T::fused(-k(0.015915494309189534), u1, t51),
+                k(125.66370614359172) * t49,
+            ),
+            t28 * (u1 * t32),
         );
-        let t111 = k(2.0) * (t85 + t84);
-        let t112 = k(2.0) * (t92 - t91);
-        let t113 = k(2.0) * (k(0.5) - T::fused(t79, t79, t77));
-        let t114 = T::fused(t96, t56, t95 * t51);
-        let t115 = T::fused(
-            t99,
-            t114,
-            T::fused(u2, t114, T::fused(-t107, t100, t101 * t106)),
-        );
-        let t116 = k(5e-6) * t115;
+        let t110 = k(0.1326014939320103) * (t32 * t54);
+        let t111 = T::fused(u1, t13, -T::fused(t29, t50, t110));
+        let t112 = t111 + T::fused(k(0.5), t109, t110);
+        let t113 = k(127.32395447351627) * t112;
+        let t114 = t97 - t96;
+        let t115 = t106 + t105;
+        let t116 = k(0.5) - T::fused(t91, t91, t89);
         let t117 = T::fused(
-            t116,
-            T::fused(t50, t113, -T::fused(-t42, t111, t47 * t112)),
-            -t110,
+            T::fused(t48, t116, T::fused(-t72, t114, t65 * t115)),
+            t113,
+            t108,
         );
-        let t118 = T::fused(-k(1e-6), T::fused(t56, t51, t71), t117);
-        let t119 = t46 - t44;
-        let t120 = k(2.0) * t119;
-        let t121 = k(0.5) - T::fused(t45, t45, t41);
-        let t122 = k(2.0) * t121;
-        let t123 = t40 * t39;
-        let t124 = t45 * t43;
-        let t125 = t124 + t123;
-        let t126 = k(2.0) * t125;
+        let t118 = T::fused(k(3.1830988618379066), t56, t117);
+        let t119 = t23 * t18;
+        let t120 = t20 * t22;
+        let t121 = t120 - t119;
+        let t122 = T::fused(t23, t22, t20 * t18);
+        let t123 = t23 * t23;
+        let t124 = k(0.5) - T::fused(t20, t20, t123);
+        let t125 = T::fused(
+            T::fused(t59, t98, T::fused(t73, t90, t68 * t95)),
+            t86,
+            T::fused(t48, t63, T::fused(-t65, t70, t72 * t75)),
+        );
+        let t126 = T::fused(
+            T::fused(t59, t107, -T::fused(t73, t103, t68 * t104)),
+            t102,
+            -t125,
+        );
         let t127 = T::fused(
-            -t88,
-            T::fused(t126, t86, -T::fused(t120, t78, t122 * t83)),
-            t109 * T::fused(t126, t93, T::fused(t120, t89, t122 * t90)),
+            T::fused(t59, t116, -T::fused(-t73, t114, t68 * t115)),
+            t113,
+            t126,
         );
         let t128 = T::fused(
-            t116,
-            T::fused(t126, t113, T::fused(-t120, t111, t122 * t112)),
+            k(200.0),
+            T::fused(-k(0.007957747154594767), t43, t61),
             -t127,
         );
-        let t129 = k(0.000125) * t56;
-        let t130 = k(0.000125) * t51;
-        let t131 = T::fused(t56, t129, t51 * t130);
-        let t132 = t129 * t98;
-        let t133 = t130 * t98;
-        let t134 = t49 + t48;
-        let t135 = k(2.0) * t134;
-        let t136 = k(0.00025) * t134;
-        let t137 = k(0.00025) * t119;
-        let t138 = T::fused(-t100, t136, t106 * t137)
-            - T::fused(t135, t133, T::fused(t42, t131, t120 * t132));
-        let t139 = k(0.08) * t138;
-        let t140 = t124 - t123;
-        let t141 = k(2.0) * t140;
-        let t142 = k(0.00025) * t140;
-        let t143 = k(0.00025) * t121;
-        let t144 = T::fused(t100, t142, t106 * t143)
-            + T::fused(t141, t133, -T::fused(t47, t131, t122 * t132));
-        let t145 = T::fused(k(0.08), t144, k(0.8));
-        let t146 = k(0.5) - T::fused(t43, t43, t41);
-        let t147 = k(2.0) * t146;
-        let t148 = k(0.00025) * t146;
-        let t149 = k(0.00025) * t125;
-        let t150 = T::fused(t100, t148, t106 * t149)
-            + T::fused(t147, t133, -T::fused(-t50, t131, t126 * t132));
-        let t151 = k(0.08) * t150;
-        let t152 = T::fused(
-            k(2e-6),
-            t100,
-            T::fused(t148, t151, T::fused(-t136, t139, t142 * t145)) - t128,
+        let t129 = T::fused(
+            -T::fused(t124, t48, T::fused(-t121, t72, t122 * t65)),
+            t118,
+            T::fused(t124, t59, -T::fused(-t121, t73, t122 * t68)) * t128,
         );
-        let t153 = T::fused(
-            -t118,
-            T::fused(t27, t50, T::fused(t23, t42, t24 * t47)),
-            t152 * T::fused(t27, t126, -T::fused(t23, t120, t24 * t122)),
+        let t130 = T::fused(
+            -T::fused(t26, t98, -T::fused(-t71, t90, t64 * t95)),
+            t85,
+            T::fused(t26, t107, T::fused(-t71, t103, t64 * t104)) * t101,
         );
-        let t154 = T::fused(
-            -t88,
-            T::fused(t147, t86, -T::fused(-t135, t78, t141 * t83)),
-            t109 * T::fused(t147, t93, T::fused(-t135, t89, t141 * t90)),
+        let t131 = T::fused(
+            k(4.0),
+            T::fused(t26, t116, T::fused(t71, t114, t64 * t115)) * t112,
+            t130,
         );
-        let t155 = T::fused(
-            t116,
-            T::fused(t147, t113, T::fused(t135, t111, t141 * t112)),
-            -t154,
+        let t132 = k(31.830988618379067)
+            * T::fused(
+                -k(12.566370614359172),
+                T::fused(-k(0.007957747154594767), t111, t6 * t13),
+                t131,
+            );
+        let t133 = T::fused(
+            T::fused(t124, t26, T::fused(t121, t71, t122 * t64)),
+            t132,
+            -t129,
         );
-        let t156 = T::fused(
-            k(1e-6),
-            T::fused(-t56, t98, t106),
-            T::fused(t149, t151, T::fused(t137, t139, t143 * t145)) + t155,
+        let t134 = t120 + t119;
+        let t135 = k(0.5) - T::fused(t22, t22, t123);
+        let t136 = t23 * t20;
+        let t137 = t18 * t22;
+        let t138 = t137 - t136;
+        let t139 = T::fused(
+            t134,
+            T::fused(-t37, t121, t35 * t122),
+            t124 * T::fused(t37, t135, t35 * t138),
         );
-        let t157 = T::fused(
-            t156,
-            T::fused(t27, t147, -T::fused(-t23, t135, t24 * t141)),
-            -t153,
+        let t140 = k(1.0) / t139;
+        let t141 = T::fused(
+            -T::fused(t134, t48, -T::fused(t135, t72, t138 * t65)),
+            t118,
+            T::fused(t134, t59, T::fused(t135, t73, t138 * t68)) * t128,
         );
-        let t158 = T::fused(
-            -t118,
-            T::fused(t22, t50, -T::fused(-t28, t42, t21 * t47)),
-            t152 * T::fused(t22, t126, T::fused(-t28, t120, t21 * t122)),
+        let t142 = T::fused(
+            T::fused(t134, t26, -T::fused(-t135, t71, t138 * t64)),
+            t132,
+            -t141,
         );
-        let t159 = T::fused(
-            t156,
-            T::fused(t22, t147, T::fused(t28, t135, t21 * t141)),
-            -t158,
+        let t143 = T::fused(
+            t124 * t140,
+            T::fused(k(1.5915494309189533), t50, -t133),
+            t134 * t140 * T::fused(k(0.3978873577297383), t41 - t42, -t142),
         );
-        let t160 = T::fused(
-            T::fused(-k(2e-6), t35, t157),
-            t23 * t30,
-            T::fused(k(1e-6), t102 + t103, t159) * (t28 * t30),
+        let t144 = T::fused(
+            -(k(0.5) - T::fused(t18, t18, t123)),
+            t4 * t37,
+            (t137 + t136) * (t4 * t35),
         );
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -(t160 * t20)];
+        *dx = [
+            u0,
+            u1,
+            u2,
+            rates[0],
+            rates[1],
+            rates[2],
+            k(0.009922008537695943) * (t144 * t143),
+        ];
     }
-    /// Writes the maximal state of a joint state: 104 operations (32 ±, 72 ×, 0 ÷) and 10 functions.
+    /// Writes the maximal state of a joint state: 104 operations (35 ±, 69 ×, 0 ÷) and 10 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -3691,34 +3587,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let t23 = k(0.5) * x2;
         let t24 = t23.sin();
         let t25 = t23.cos();
-        let t26 = k(2.0) * t8;
-        let t27 = k(62.83185307179586) * t2.cos();
-        let t28 = t27 * T::fused(-t8, t26, k(1.0));
-        let t29 = t27 * (t1 * t26);
-        let t30 = k(2.0) * t12;
-        let t31 = T::fused(-t12, t30, k(1.0));
-        let t32 = t13 * t30;
-        let t33 = T::fused(t31, t28, u0 * t32);
-        let t34 = T::fused(-t32, t28, u0 * t31);
-        let t35 = u1 + t29;
-        let t36 = k(0.000125) * t35;
-        let t37 = k(0.000125) * t34;
-        let t38 = T::fused(-(k(2.0) * (t20 - t19)), t36, k(2.0) * (t22 + t21) * t37);
-        let t39 = t14 * t15;
-        let t40 = t16 * t17;
-        let t41 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t16, t16, t18)),
-            t36,
-            k(2.0) * (t40 - t39) * t37,
-        );
-        let t42 = T::fused(
-            k(2.0) * (t40 + t39),
-            t36,
-            k(2.0) * (k(0.5) - T::fused(t17, t17, t18)) * t37,
-        );
-        let t43 = k(2.0) * t24;
-        let t44 = T::fused(-t24, t43, k(1.0));
-        let t45 = t25 * t43;
+        let t26 = t2.cos();
+        let t27 = t26 * ((t8 - t1) * (t8 + t1));
+        let t28 = k(125.66370614359172) * (t26 * (t8 * t1));
+        let t29 = (t12 - t13) * (t12 + t13);
+        let t30 = t12 * t13;
+        let t31 = k(2.0) * T::fused(k(31.41592653589793), t29 * t27, u0 * t30);
+        let t32 = T::fused(-k(125.66370614359172), t27 * t30, u0 * t29);
+        let t33 = u1 + t28;
+        let t34 = t14 * t15;
+        let t35 = t16 * t17;
+        let t36 = T::fused(-(t35 - t34), t32, (k(0.5) - T::fused(t16, t16, t18)) * t33);
+        let t37 = T::fused(-(k(0.5) - T::fused(t17, t17, t18)), t32, (t35 + t34) * t33);
+        let t38 = k(2.0) * (t24 * t25);
+        let t39 = (t24 - t25) * (t24 + t25);
         *y = [
             k(0.0),
             k(0.0),
@@ -3744,25 +3626,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t28,
+            -(k(62.83185307179586) * t27),
             u0,
-            t29,
+            t28,
             k(0.0),
             k(0.0),
             k(0.0),
+            t31,
+            -t32,
             t33,
-            t34,
-            t35,
-            -t38,
-            -t41,
-            t42,
-            u2 + t33,
-            T::fused(t44, t34, t45 * t35),
-            T::fused(-t45, t34, t44 * t35),
+            k(0.00025) * T::fused(t22 + t21, t32, (t20 - t19) * t33),
+            -(k(0.00025) * t36),
+            k(0.00025) * t37,
+            u2 + t31,
+            T::fused(t33, t38, t39 * t32),
+            T::fused(-t39, t33, t32 * t38),
             x[6],
         ];
     }
-    /// Writes the joint state of a maximal state: 142 operations (65 ±, 77 ×, 0 ÷) and 12 functions.
+    /// Writes the joint state of a maximal state: 131 operations (65 ±, 66 ×, 0 ÷) and 12 functions.
     fn to_joints(&self, t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3785,86 +3667,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = x0.cos();
-        let t5 = outer_ring_e2 * outer_ring_e2;
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
-        let t8 = outer_ring_e3 * outer_ring_e3;
-        let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = k(0.5) * (k(125.66370614359172) * t).sin();
-        let t11 = outer_ring_e0 * outer_ring_e1;
-        let t12 = outer_ring_e2 * outer_ring_e3;
-        let t13 = T::fused(
-            t10.cos(),
-            T::fused(k(2.0), k(0.5) - (t6 + t8), -t9),
-            t10.sin() * (k(2.0) * (t12 - t11)),
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = T::fused(t5.cos(), k(0.5) - (t1 + t0) - t4, t5.sin() * (t7 - t6));
+        let t9 = x0.cos();
+        let t10 = x0.sin();
+        let t11 = outer_ring_e0 * outer_ring_e2;
+        let t12 = outer_ring_e1 * outer_ring_e3;
+        let t13 = t12 + t11;
+        let t14 = (k(2.0) * T::fused(t10, t8, t13 * t9))
+            .atan2(k(2.0) * T::fused(-t9, t8, t13 * t10));
+        let t15 = inner_ring_e3 * inner_ring_e3;
+        let t16 = inner_ring_e0 * inner_ring_e0;
+        let t17 = T::fused(inner_ring_e1, inner_ring_e1, t16);
+        let t18 = inner_ring_e2 * inner_ring_e2;
+        let t19 = k(0.5) * (k(1.0) - (t18 + (t17 + t15)));
+        let t20 = k(0.5) - t17 - t19;
+        let t21 = inner_ring_e0 * inner_ring_e3;
+        let t22 = inner_ring_e1 * inner_ring_e2;
+        let t23 = t22 + t21;
+        let t24 = outer_ring_e0 * outer_ring_e3;
+        let t25 = outer_ring_e1 * outer_ring_e2;
+        let t26 = inner_ring_e0 * inner_ring_e2;
+        let t27 = inner_ring_e1 * inner_ring_e3;
+        let t28 = t27 - t26;
+        let t29 = T::fused(
+            t12 - t11,
+            t28,
+            T::fused(t20, k(0.5) - t2 - t4, (t25 + t24) * t23),
         );
-        let t14 = T::fused(t3, t4, t13 * t0).atan2(T::fused(-t13, t4, t3 * t0));
-        let t15 = x1.sin();
-        let t16 = inner_ring_e0 * inner_ring_e2;
-        let t17 = inner_ring_e1 * inner_ring_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = inner_ring_e0 * inner_ring_e3;
-        let t20 = inner_ring_e1 * inner_ring_e2;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = inner_ring_e2 * inner_ring_e2;
-        let t23 = inner_ring_e0 * inner_ring_e0;
-        let t24 = T::fused(inner_ring_e1, inner_ring_e1, t23);
-        let t25 = inner_ring_e3 * inner_ring_e3;
-        let t26 = k(1.0) - (t25 + (t24 + t22));
-        let t27 = T::fused(k(2.0), k(0.5) - t24, -t26);
-        let t28 = outer_ring_e0 * outer_ring_e3;
-        let t29 = outer_ring_e1 * outer_ring_e2;
-        let t30 = T::fused(
-            t21,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t29 - t28) * t27,
+        let t30 = x1.cos();
+        let t31 = T::fused(t25 - t24, t20, t23 * (k(0.5) - (t1 + t3) - t4));
+        let t32 = T::fused(t7 + t6, t28, -t31);
+        let t33 = x1.sin();
+        let t34 = (k(4.0) * T::fused(-t33, t29, t30 * t32))
+            .atan2(k(4.0) * T::fused(t30, t29, t33 * t32));
+        let t35 = rotor_e2 * rotor_e2;
+        let t36 = rotor_e0 * rotor_e0;
+        let t37 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t36 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t36 + t35))),
         );
-        let t31 = T::fused(-(k(2.0) * (t12 + t11)), t18, t30);
-        let t32 = x1.cos();
-        let t33 = T::fused(
-            k(2.0) * (t29 + t28),
-            t21,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t27,
+        let t38 = k(0.5) * (k(1.0) - (t35 + t37));
+        let t39 = inner_ring_e0 * inner_ring_e1;
+        let t40 = inner_ring_e2 * inner_ring_e3;
+        let t41 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t42 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t43 = T::fused(
+            t42,
+            k(0.5) - (t16 + t15) - t19,
+            -T::fused(t40 - t39, t38, (t27 + t26) * t41),
         );
-        let t34 = T::fused(k(2.0) * (t2 - t1), t18, t33);
-        let t35 = -T::fused(t31, t32, t34 * t15).atan2(T::fused(-t31, t15, t34 * t32));
-        let t36 = x2.sin();
-        let t37 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t38 = rotor_e2 * rotor_e2;
-        let t39 = rotor_e0 * rotor_e0;
-        let t40 = T::fused(
-            k(2.0),
-            k(0.5) - (t39 + t38),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t39) + t38)),
-        );
-        let t41 = inner_ring_e0 * inner_ring_e1;
-        let t42 = inner_ring_e2 * inner_ring_e3;
-        let t43 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t44 = T::fused(-(k(2.0) * (t42 - t41)), t40, k(2.0) * (t17 + t16) * t43);
-        let t45 = T::fused(-t37, T::fused(k(2.0), k(0.5) - (t23 + t25), -t26), t44);
-        let t46 = x2.cos();
-        let t47 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t23 + t22), -t26),
-            t40,
-            k(2.0) * (t20 - t19) * t43,
-        );
-        let t48 = T::fused(k(2.0) * (t42 + t41), t37, t47);
-        let t49 = T::fused(-t48, t36, t45 * t46).atan2(T::fused(t45, t36, t48 * t46));
+        let t44 = x2.sin();
+        let t45 = T::fused(-(k(0.5) - (t16 + t18) - t19), t38, (t22 - t21) * t41);
+        let t46 = T::fused(t40 + t39, t42, t45);
+        let t47 = x2.cos();
+        let t48 = -(k(4.0) * T::fused(t47, t43, t44 * t46))
+            .atan2(k(4.0) * T::fused(-t44, t43, t47 * t46));
         x[0] = x0 + t14;
-        x[1] = x1 + t35;
-        x[2] = x2 + t49;
+        x[1] = x1 + t34;
+        x[2] = x2 + t48;
         x[3] = outer_ring_wy;
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 104 operations (34 ±, 69 ×, 1 ÷) and 5 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 98 operations (35 ±, 62 ×, 1 ÷) and 5 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3882,16 +3757,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = k(1e-5) * inner_ring_wx;
-        let t1 = inner_ring_wx - rotor_wx;
-        let t2 = inner_ring_wx - t1;
-        let t3 = T::fused(
-            -(k(0.000125) * inner_ring_wz),
-            t0,
-            k(5e-6) * T::fused(-inner_ring_wz, t1, inner_ring_wz * t2),
-        );
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = T::fused(
+        let t0 = outer_ring_wz - inner_ring_wz;
+        let t1 = inner_ring_wy * t0;
+        let t2 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -3900,10 +3768,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t6 = k(2.0) * t5;
-        let t7 = T::fused(-t5, t6, k(1.0));
-        let t8 = inner_ring_wy * t4;
-        let t9 = T::fused(
+        let t3 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3912,49 +3777,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t10 = t9 * t6;
-        let t11 = T::fused(
-            t7,
-            T::fused(k(7.00125e-6), inner_ring_wx * t4, t3),
-            t10 * (k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t8)),
+        let t4 = t3 * t2;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = inner_ring_wx - t5;
+        let t7 = T::fused(
+            k(0.7141581860382075),
+            T::fused(-inner_ring_wz, t5, inner_ring_wz * t6),
+            T::fused(
+                -k(0.00017853954650955185),
+                inner_ring_wx * inner_ring_wz,
+                inner_ring_wx * t0,
+            ),
         );
-        let t12 = (k(125.66370614359172) * t).sin();
-        let t13 = k(0.25) * t12;
-        let t14 = t13.sin();
-        let t15 = t13.cos();
-        let t16 = T::fused(t14, outer_ring_e3, t15 * outer_ring_e2);
-        let t17 = k(2.0) * t16;
-        let t18 = T::fused(-t16, t17, k(1.0));
-        let t19 = k(7895.6835208714865) * t12;
-        let t20 = T::fused(t19, t18, outer_ring_wy * outer_ring_wz);
-        let t21 = k(0.5) * t12;
-        let t22 = k(10.0) * t21.sin();
-        let t23 = T::fused(
-            -T::fused(-t10, k(1e-6) * t7, t7 * (k(7.00125e-6) * t10)),
-            t20,
-            k(1e-5) * t7 * (t18 * t22),
+        let t8 = (t3 + t2) * (t3 - t2);
+        let t9 = (k(125.66370614359172) * t).sin();
+        let t10 = k(0.25) * t9;
+        let t11 = t10.sin();
+        let t12 = t10.cos();
+        let t13 = T::fused(t11, outer_ring_e3, t12 * outer_ring_e2);
+        let t14 = T::fused(t11, outer_ring_e1, t12 * outer_ring_e0);
+        let t15 = (t14 - t13) * (t14 + t13);
+        let t16 = T::fused(
+            k(7895.6835208714865),
+            t9 * t15,
+            outer_ring_wy * outer_ring_wz,
         );
-        let t24 = (t23 + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t11))
-            / (k(1e-6) + T::fused(t10, k(1e-6) * t10, t7 * (k(7.00125e-6) * t7)));
+        let t17 = k(0.5) * t9;
+        let t18 = t17.sin();
+        let t19 = T::fused(
+            k(0.01),
+            outer_ring_wx * outer_ring_wz,
+            T::fused(-k(0.120025), t4 * t8 * t16, t8 * (t18 * t15)),
+        );
+        let t20 = T::fused(
+            k(0.02),
+            t4 * T::fused(inner_ring_wy, inner_ring_wz, t1),
+            T::fused(k(0.0700125), t8 * t7, t19),
+        );
+        let t21 = t20
+            / (k(0.1428316372076415) + T::fused(k(0.571326548830566), t4 * t4, t8 * t8));
+        let t22 = inner_ring_wx * inner_ring_wy;
+        let t23 = t14 * t13;
+        let t24 = T::fused(
+            k(0.01),
+            t22,
+            T::fused(k(4.0), t4 * (t18 * t23), t17.cos() * t8),
+        );
         let t25 = T::fused(
-            -(k(0.000125) * inner_ring_wy),
-            t0,
-            k(5e-6) * T::fused(-inner_ring_wy, t1, inner_ring_wy * t2),
-        );
-        let t26 = T::fused(t14, outer_ring_e1, t15 * outer_ring_e0) * t17;
-        let t27 = T::fused(
-            k(1e-5),
-            T::fused(t10, t26 * t22, t7 * (k(10.0) * t21.cos())),
-            T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, -t25),
+            -k(0.05),
+            T::fused(-inner_ring_wy, t5, inner_ring_wy * t6),
+            T::fused(k(1.25e-5), t22, t24),
         );
         *out = [
-            -t24,
-            -T::fused(
-                k(166631.95167673402),
-                t27,
-                T::fused(-t19, t26, outer_ring_wx * outer_ring_wy),
+            -(k(14.283163720764149) * t21),
+            T::fused(
+                k(15791.367041742973),
+                t9 * t23,
+                -T::fused(k(16.6631951676734), t25, outer_ring_wx * outer_ring_wy),
             ),
-            t8 + T::fused(-t10, t24, t7 * t20),
+            T::fused(t8, t16, T::fused(-k(28.566327441528298), t4 * t21, t1)),
         ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 455 operations (184 ±, 266 ×, 5 ÷) and 4 functions.
@@ -4283,7 +4164,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
             T::fused(t47, t148, -T::fused(-t40, t146, t63 * t147)) - t84,
         ];
     }
-    /// Writes λ: 142 operations (56 ±, 86 ×, 0 ÷) and 3 functions.
+    /// Writes λ: 145 operations (59 ±, 86 ×, 0 ÷) and 3 functions.
     fn corrected_multipliers(
         &self,
         t: T,
@@ -4349,8 +4230,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = (t8 + t7) * (t8 - t7);
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
         let t12 = T::fused(
@@ -4369,10 +4258,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t15 = k(2.0) * t14;
-        let t16 = T::fused(-t14, t15, k(1.0));
-        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t18 = T::fused(
+        let t15 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4381,71 +4267,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t19 = t18 * t15;
-        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t21 = T::fused(-t17, t16, t20 * t19);
-        let t22 = t21
+        let t16 = (t15 + t14) * (t15 - t14);
+        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t18 = t15 * (k(2.0) * t14);
+        let t19 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t20 = T::fused(-t17, t16, t19 * t18);
+        let t21 = t20
             - T::fused(
                 t4,
                 k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t13)),
                 -t12,
             );
-        let t23 = T::fused(k(2e-6), inner_ring_dwy, -t22);
-        let t24 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t25 = t24 * t8;
-        let t26 = T::fused(-t9, t6, t25 * t23);
-        let t27 = T::fused(k(2e-6), outer_ring_dwx, t26);
-        let t28 = k(0.25) * (k(125.66370614359172) * t).sin();
-        let t29 = t28.sin();
-        let t30 = t28.cos();
-        let t31 = T::fused(t29, outer_ring_e3, t30 * outer_ring_e2);
-        let t32 = k(2.0) * t31;
-        let t33 = T::fused(-t31, t32, k(1.0));
-        let t34 = T::fused(
+        let t22 = T::fused(k(2e-6), inner_ring_dwy, -t21);
+        let t23 = t8 * (k(2.0) * t7);
+        let t24 = T::fused(-t9, t6, t23 * t22);
+        let t25 = T::fused(k(2e-6), outer_ring_dwx, t24);
+        let t26 = k(0.25) * (k(125.66370614359172) * t).sin();
+        let t27 = t26.sin();
+        let t28 = t26.cos();
+        let t29 = T::fused(t27, outer_ring_e3, t28 * outer_ring_e2);
+        let t30 = T::fused(t27, outer_ring_e1, t28 * outer_ring_e0);
+        let t31 = (t30 - t29) * (t30 + t29);
+        let t32 = T::fused(
             -t0,
             k(0.00025)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
             t2 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13))),
         );
-        let t35 = T::fused(t17, t19, t20 * t16);
-        let t36 = T::fused(
+        let t33 = T::fused(t17, t18, t19 * t16);
+        let t34 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t35 - T::fused(t4, k(0.00025) * (t11 + t10), -t34)),
+            -(t33 - T::fused(t4, k(0.00025) * (t11 + t10), -t32)),
         );
-        let t37 = T::fused(
+        let t35 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t36,
+            -t34,
         );
-        let t38 = T::fused(t29, outer_ring_e1, t30 * outer_ring_e0) * t32;
+        let t36 = t30 * (k(2.0) * t29);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t33, t27, t38 * t37),
-            -T::fused(t38, t27, t33 * t37),
+            T::fused(-t31, t25, t36 * t35),
+            -T::fused(t36, t25, t31 * t35),
             -t1,
             -t3,
             -t5,
-            -T::fused(t25, t6, t9 * t23),
-            t26,
+            -T::fused(t23, t6, t9 * t22),
+            t24,
             -t0,
             -t2,
             -t4,
-            t35,
-            -t21,
+            t33,
+            -t20,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 546 operations (221 ±, 320 ×, 5 ÷) and 6 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 542 operations (218 ±, 319 ×, 5 ÷) and 6 functions.
     fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4469,41 +4348,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e3 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e2 * t2;
-        let t4 = k(125.66370614359172) * t;
-        let t5 = k(62.83185307179586) * t4.cos();
-        let t6 = t5 * (t3 - t1);
-        let t7 = outer_ring_wy - t6;
-        let t8 = outer_ring_e2 * t0;
-        let t9 = outer_ring_e3 * t2;
-        let t10 = t9 + t8;
-        let t11 = t5 * t10;
-        let t12 = outer_ring_wz - t11;
-        let t13 = outer_ring_e1 * t0;
-        let t14 = k(2.0) * outer_ring_e2;
-        let t15 = outer_ring_e3 * t14;
-        let t16 = t4.sin();
-        let t17 = k(0.5) * t16;
-        let t18 = t17.cos();
-        let t19 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t20 = t17.sin();
-        let t21 = T::fused(
-            -t18,
-            t15 - t13,
-            t20 * T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t19),
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t2 = k(125.66370614359172) * t;
+        let t3 = t2.sin();
+        let t4 = k(15791.367041742973) * t3;
+        let t5 = outer_ring_e0 * outer_ring_e2;
+        let t6 = outer_ring_e1 * outer_ring_e3;
+        let t7 = t6 + t5;
+        let t8 = t2.cos();
+        let t9 = t8 * t7;
+        let t10 = outer_ring_e0 * outer_ring_e3;
+        let t11 = outer_ring_e1 * outer_ring_e2;
+        let t12 = t8 * (t11 - t10);
+        let t13 = k(0.5) * t3;
+        let t14 = t13.cos();
+        let t15 = outer_ring_e0 * outer_ring_e1;
+        let t16 = outer_ring_e2 * outer_ring_e3;
+        let t17 = t13.sin();
+        let t18 = t8 * t1;
+        let t19 = T::fused(-k(125.66370614359172), t18, outer_ring_wx);
+        let t20 = T::fused(-k(125.66370614359172), t9, outer_ring_wz);
+        let t21 = T::fused(t19, t19, t20 * t20)
+            / T::fused(
+                t14,
+                T::fused(outer_ring_e2, outer_ring_e2, -t0),
+                t17 * (t16 + t15),
+            );
+        let t22 = T::fused(
+            T::fused(
+                t17,
+                T::fused(outer_ring_e3, outer_ring_e3, -t0),
+                t14 * (t16 - t15),
+            ),
+            t21,
+            -T::fused(
+                -t4,
+                t1,
+                k(125.66370614359172) * T::fused(-outer_ring_wy, t9, outer_ring_wz * t12),
+            ),
         );
-        let t22 = T::fused(-outer_ring_e1, t2, t19);
-        let t23 = t5 * t22;
-        let t24 = outer_ring_wx + t23;
-        let t25 = T::fused(t12, t12, t24 * t24)
-            / T::fused(-t18, T::fused(-outer_ring_e2, t14, t19), t20 * (t15 + t13));
-        let t26 = k(7895.6835208714865) * t16;
-        let t27 = T::fused(-t26, t22, T::fused(-outer_ring_wz, t6, outer_ring_wy * t11))
-            - T::fused(-t12, t7, t25 * t21);
-        let t28 = T::fused(
+        let t23 = T::fused(-k(125.66370614359172), t12, outer_ring_wy);
+        let t24 = T::fused(t23, t20, t22);
+        let t25 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4512,8 +4399,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t29 = k(2.0) * t28;
-        let t30 = T::fused(
+        let t26 = T::fused(-t25, t25, k(0.5));
+        let t27 = T::fused(
             -inner_ring_e0,
             rotor_e3,
             T::fused(
@@ -4522,8 +4409,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t31 = t30 * t29;
-        let t32 = T::fused(
+        let t28 = T::fused(t27, t27, -t26);
+        let t29 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4532,8 +4419,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t33 = k(2.0) * t32;
-        let t34 = T::fused(
+        let t30 = t25 * t29;
+        let t31 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -4542,36 +4429,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t35 = t34 * t33;
-        let t36 = t35 + t31;
-        let t37 = k(5e-6) * t36;
-        let t38 = t34 * t29;
-        let t39 = t30 * t33;
-        let t40 = t39 - t38;
-        let t41 = k(5e-6) * t40;
-        let t42 = t32 * t29;
-        let t43 = k(2.0) * t34;
-        let t44 = t30 * t43;
-        let t45 = t44 - t42;
-        let t46 = T::fused(-t28, t29, k(1.0));
-        let t47 = T::fused(-t30, k(2.0) * t30, t46);
-        let t48 = T::fused(-t45, t37, t47 * t41);
-        let t49 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t45, k(5e-6) * t45, t47 * (k(5e-6) * t47)));
-        let t50 = k(1.0) / t49;
-        let t51 = t50 * t48;
-        let t52 = T::fused(t48, t51, -(k(1e-6) + T::fused(t36, t37, t40 * t41)));
-        let t53 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t54 = k(2.0) * t53;
-        let t55 = T::fused(
+        let t32 = t31 * t27;
+        let t33 = t32 + t30;
+        let t34 = T::fused(t31, t31, -t26);
+        let t35 = t32 - t30;
+        let t36 = T::fused(t33, t28, t35 * t34);
+        let t37 = k(1.0) / (k(0.0500625) + T::fused(t28, t28, t35 * t35));
+        let t38 = k(0.1000625)
+            + T::fused(t34, t34, T::fused(-t36, t37 * t36, t33 * t33));
+        let t39 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4580,18 +4446,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t56 = t55 * t54;
-        let t57 = T::fused(
-            outer_ring_e2,
+        let t40 = T::fused(
+            outer_ring_e3,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e3,
+                outer_ring_e2,
                 inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t58 = k(2.0) * t57;
-        let t59 = T::fused(
+        let t41 = t40 * t39;
+        let t42 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -4600,247 +4465,284 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t60 = t59 * t58;
-        let t61 = t60 - t56;
-        let t62 = T::fused(-t34, t43, t46);
-        let t63 = t44 + t42;
-        let t64 = k(5e-6) * t62;
-        let t65 = k(5e-6) * t63;
-        let t66 = T::fused(t45, t64, t47 * t65);
-        let t67 = T::fused(t66, t51, -T::fused(-t62, t37, t63 * t41));
-        let t68 = k(2.0) * t59;
-        let t69 = T::fused(-t53, t54, k(1.0));
-        let t70 = T::fused(-t59, t68, t69);
-        let t71 = T::fused(-t61, t52, t70 * t67);
-        let t72 = T::fused(
-            t66,
-            t50 * t66,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t62, t64, t63 * t65))),
+        let t43 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
         );
-        let t73 = T::fused(-t61, t67, t70 * t72);
-        let t74 = t32 * t33;
-        let t75 = t46 - t74;
-        let t76 = T::fused(
-            inner_ring_wz,
-            t39 + t38,
-            T::fused(-inner_ring_wx, t75, inner_ring_wy * (t35 - t31)),
+        let t44 = t43 * t42;
+        let t45 = t44 + t41;
+        let t46 = T::fused(-t40, t40, k(0.5));
+        let t47 = T::fused(t43, t43, -t46);
+        let t48 = t25 * t31;
+        let t49 = t29 * t27;
+        let t50 = t49 - t48;
+        let t51 = t25 * t27;
+        let t52 = t29 * t31;
+        let t53 = t52 + t51;
+        let t54 = T::fused(t50, t28, t53 * t35);
+        let t55 = t54 * t37;
+        let t56 = T::fused(t53, t34, T::fused(-t55, t36, t50 * t33));
+        let t57 = T::fused(t42, t42, -t46);
+        let t58 = k(0.05) + T::fused(t53, t53, T::fused(-t54, t55, t50 * t50));
+        let t59 = t44 - t41;
+        let t60 = T::fused(
+            t57,
+            T::fused(t45, t38, t56 * t47),
+            t59 * T::fused(t45, t56, t58 * t47),
         );
-        let t77 = rotor_wx - t76;
-        let t78 = T::fused(
-            inner_ring_wz,
-            t47,
-            -T::fused(inner_ring_wx, t40, inner_ring_wy * t63),
+        let t61 = T::fused(
+            T::fused(t14, t11 + t10, t17 * (t6 - t5)),
+            t21,
+            -T::fused(
+                k(125.66370614359172),
+                T::fused(-outer_ring_wy, t18, outer_ring_wx * t12),
+                t7 * t4,
+            ),
         );
-        let t79 = rotor_wz + t78;
+        let t62 = T::fused(t23, t19, t61);
+        let t63 = T::fused(t57, t38, t59 * t56);
+        let t64 = t40 * t43;
+        let t65 = t42 * t39;
+        let t66 = t65 - t64;
+        let t67 = T::fused(t56, t57, t59 * t58);
+        let t68 = t40 * t42;
+        let t69 = t43 * t39;
+        let t70 = t69 + t68;
+        let t71 = T::fused(
+            k(0.0125),
+            outer_ring_wx * outer_ring_wz,
+            T::fused(-t60, t24, T::fused(t66, t63, t70 * t67) * t62),
+        );
+        let t72 = T::fused(t29, t29, -t26);
+        let t73 = T::fused(
+            inner_ring_wx,
+            t72,
+            T::fused(inner_ring_wz, t49 + t48, inner_ring_wy * (t52 - t51)),
+        );
+        let t74 = T::fused(
+            inner_ring_wx,
+            t50,
+            T::fused(inner_ring_wz, t28, inner_ring_wy * t33),
+        );
+        let t75 = T::fused(
+            inner_ring_wx,
+            t53,
+            T::fused(inner_ring_wy, t34, inner_ring_wz * t35),
+        );
+        let t76 = T::fused(-k(2.0), t75, rotor_wy);
+        let t77 = T::fused(-k(2.0), t74, rotor_wz);
+        let t78 = T::fused(t76, t76, t77 * t77) / t72;
+        let t79 = T::fused(-k(2.0), t73, rotor_wx);
         let t80 = T::fused(
-            inner_ring_wz,
-            t45,
-            -T::fused(-inner_ring_wx, t36, inner_ring_wy * t62),
+            t79,
+            t77,
+            T::fused(k(2.0), T::fused(-rotor_wz, t73, rotor_wx * t74), t50 * t78),
         );
-        let t81 = rotor_wy - t80;
-        let t82 = T::fused(t79, t79, t81 * t81) / t75;
-        let t83 = T::fused(rotor_wx, t78, rotor_wz * t76)
-            + T::fused(-t79, t77, t40 * t82);
-        let t84 = rotor_wx * rotor_wz;
-        let t85 = k(5e-6) * (t84 - t83);
-        let t86 = T::fused(-rotor_wy, t76, rotor_wx * t80)
-            - T::fused(-t81, t77, t36 * t82);
-        let t87 = rotor_wx * rotor_wy;
-        let t88 = k(5e-6) * (t87 + t86);
-        let t89 = inner_ring_wy * inner_ring_wz;
-        let t90 = k(2.0) * inner_ring_e0;
-        let t91 = inner_ring_e3 * t90;
-        let t92 = k(2.0) * inner_ring_e1;
-        let t93 = inner_ring_e2 * t92;
-        let t94 = t93 - t91;
-        let t95 = k(0.000125) * t94;
-        let t96 = T::fused(-inner_ring_e0, t90, k(1.0));
+        let t81 = rotor_wx * rotor_wz;
+        let t82 = t81 + t80;
+        let t83 = k(2000.0) * t82;
+        let t84 = T::fused(
+            t79,
+            t76,
+            T::fused(-k(2.0), T::fused(-rotor_wx, t75, rotor_wy * t73), t53 * t78),
+        );
+        let t85 = rotor_wx * rotor_wy;
+        let t86 = t85 + t84;
+        let t87 = k(2000.0) * t86;
+        let t88 = inner_ring_e0 * inner_ring_e0;
+        let t89 = k(0.5) - t88;
+        let t90 = inner_ring_e3 * inner_ring_e3;
+        let t91 = t90 - t89;
+        let t92 = inner_ring_wx * inner_ring_wz;
+        let t93 = inner_ring_wx * inner_ring_wy;
+        let t94 = inner_ring_e0 * inner_ring_e1;
+        let t95 = inner_ring_e2 * inner_ring_e3;
+        let t96 = t95 + t94;
         let t97 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t98 = inner_ring_wx * inner_ring_wy;
-        let t99 = inner_ring_e2 * t90;
-        let t100 = inner_ring_e3 * t92;
-        let t101 = t100 + t99;
-        let t102 = inner_ring_wx * inner_ring_wz;
-        let t103 = T::fused(
-            t102,
-            t101,
-            T::fused(t97, T::fused(-inner_ring_e1, t92, t96), t98 * t94),
+        let t98 = inner_ring_e0 * inner_ring_e2;
+        let t99 = inner_ring_e1 * inner_ring_e3;
+        let t100 = T::fused(t99 - t98, t97, -T::fused(t92, t91, t96 * t93));
+        let t101 = inner_ring_e2 * inner_ring_e2;
+        let t102 = t101 - t89;
+        let t103 = t95 - t94;
+        let t104 = inner_ring_e0 * inner_ring_e3;
+        let t105 = inner_ring_e1 * inner_ring_e2;
+        let t106 = T::fused(t105 + t104, t97, -T::fused(t93, t102, t103 * t92));
+        let t107 = k(40000.0) - t106;
+        let t108 = t99 + t98;
+        let t109 = t105 - t104;
+        let t110 = T::fused(
+            -t97,
+            T::fused(inner_ring_e1, inner_ring_e1, -t89),
+            T::fused(t108, t92, t109 * t93),
         );
-        let t104 = k(1e-5) * t103;
-        let t105 = k(2.0) * inner_ring_e2;
-        let t106 = T::fused(-inner_ring_e2, t105, t96);
-        let t107 = k(0.000125) * t106;
-        let t108 = inner_ring_e1 * t90;
-        let t109 = inner_ring_e3 * t105;
-        let t110 = t109 - t108;
-        let t111 = T::fused(t102, t110, -T::fused(t97, t93 + t91, t98 * t106));
-        let t112 = T::fused(k(1e-5), t111, k(0.8));
-        let t113 = t109 + t108;
-        let t114 = k(0.000125) * t113;
-        let t115 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t96);
-        let t116 = T::fused(t102, t115, -T::fused(-t97, t100 - t99, t98 * t113));
-        let t117 = k(1e-5) * t116;
-        let t118 = T::fused(t117, t114, T::fused(-t104, t95, t112 * t107))
-            - T::fused(t45, t85, t47 * t88);
-        let t119 = T::fused(k(1e-6), t98, -t118);
-        let t120 = t50 * t119;
-        let t121 = T::fused(
-            t48,
-            t120,
-            -T::fused(k(1e-6), t89, T::fused(-t36, t85, t40 * t88)),
+        let t111 = T::fused(
+            t109,
+            t110,
+            T::fused(t102, t107, T::fused(-t96, t100, k(200.0) * t93)),
         );
-        let t122 = t59 * t54;
-        let t123 = t55 * t58;
-        let t124 = t57 * t54;
-        let t125 = t55 * t68;
-        let t126 = k(2.0) * t55;
-        let t127 = t55 * t126;
-        let t128 = t69 - t127;
-        let t129 = T::fused(
-            outer_ring_wz,
-            t128,
-            -T::fused(outer_ring_wx, t123 - t122, outer_ring_wy * (t125 + t124)),
+        let t112 = T::fused(t35, t83, T::fused(-t28, t87, t111));
+        let t113 = t37 * t112;
+        let t114 = T::fused(
+            outer_ring_wx,
+            t47,
+            T::fused(outer_ring_wz, t70, outer_ring_wy * t59),
         );
-        let t130 = inner_ring_wz + t129;
-        let t131 = t60 + t56;
-        let t132 = t125 - t124;
-        let t133 = T::fused(
-            outer_ring_wz,
-            t132,
-            -T::fused(-outer_ring_wx, t131, outer_ring_wy * t70),
+        let t115 = T::fused(t39, t39, -t46);
+        let t116 = T::fused(
+            outer_ring_wx,
+            t69 - t68,
+            T::fused(outer_ring_wz, t115, outer_ring_wy * (t65 + t64)),
         );
-        let t134 = inner_ring_wy - t133;
-        let t135 = T::fused(-t57, t58, t69);
-        let t136 = t123 + t122;
-        let t137 = T::fused(
-            outer_ring_wz,
-            t136,
-            T::fused(-outer_ring_wx, t135, outer_ring_wy * t61),
+        let t117 = T::fused(-k(2.0), t114, inner_ring_wx);
+        let t118 = T::fused(
+            outer_ring_wx,
+            t45,
+            T::fused(outer_ring_wy, t57, outer_ring_wz * t66),
         );
-        let t138 = inner_ring_wx - t137;
-        let t139 = T::fused(t134, t134, t138 * t138) / t128;
-        let t140 = T::fused(inner_ring_wz, t133, inner_ring_wy * t129)
-            - T::fused(-t134, t130, t132 * t139);
-        let t141 = T::fused(inner_ring_wx, t129, inner_ring_wz * t137)
-            - T::fused(-t138, t130, t136 * t139);
-        let t142 = k(0.000125) * t101;
-        let t143 = k(0.000125) * t110;
-        let t144 = k(0.000125) * t115;
-        let t145 = T::fused(t117, t144, T::fused(t104, t142, t112 * t143))
-            + T::fused(t62, t85, t63 * t88);
-        let t146 = T::fused(
-            -t61,
-            T::fused(-t52, t140, t67 * t141) + t121,
-            t70 * (T::fused(-t67, t140, t72 * t141) + T::fused(t66, t120, -t145)),
+        let t119 = T::fused(-k(2.0), t118, inner_ring_wy);
+        let t120 = T::fused(t117, t117, t119 * t119) / t115;
+        let t121 = T::fused(-k(2.0), t116, inner_ring_wz);
+        let t122 = T::fused(
+            t121,
+            t117,
+            T::fused(
+                -k(2.0),
+                T::fused(-inner_ring_wz, t114, inner_ring_wx * t116),
+                t70 * t120,
+            ),
         );
-        let t147 = T::fused(
-            -t61,
-            T::fused(-t135, t52, t131 * t67),
-            t70 * T::fused(-t135, t67, t131 * t72),
+        let t123 = T::fused(
+            t121,
+            t119,
+            T::fused(
+                k(2.0),
+                T::fused(-inner_ring_wy, t116, inner_ring_wz * t118),
+                t66 * t120,
+            ),
         );
-        let t148 = T::fused(t24, t7, t25 * T::fused(t18, t3 + t1, t20 * (t9 - t8)));
-        let t149 = T::fused(t26, t10, T::fused(outer_ring_wy, t23, outer_ring_wx * t6))
-            - t148;
-        let t150 = T::fused(t27, t147, t149 * T::fused(t136, t71, t132 * t73))
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t146);
-        let t151 = t150 / (k(1e-6) - T::fused(-t61, t71, t70 * t73));
-        let t152 = t140 - T::fused(t136, t149, -T::fused(t135, t27, t61 * t151));
-        let t153 = t141 + T::fused(t132, t149, T::fused(t131, t27, t70 * t151));
-        let t154 = t50 * (t119 + T::fused(-t48, t152, t66 * t153));
-        let t155 = T::fused(k(0.000125), t103, -T::fused(-t142, t153, t95 * t154));
-        let t156 = T::fused(k(0.000125), t111, T::fused(t143, t153, t107 * t154));
-        let t157 = T::fused(k(0.000125), t116, T::fused(t144, t153, t114 * t154));
-        let t158 = t83 + T::fused(t45, t154, -T::fused(t36, t152, t62 * t153));
-        let t159 = t86 - T::fused(t47, t154, -T::fused(-t40, t152, t63 * t153));
-        let t160 = k(0.08) * t155;
-        let t161 = T::fused(k(0.08), t156, k(0.8));
-        let t162 = k(0.1) + t161;
-        let t163 = k(0.08) * t157;
-        let t164 = k(5e-6) * (t87 + t159);
-        let t165 = k(1.0) - t74;
-        let t166 = k(5e-6) * (t84 - t158);
-        let t167 = t28 * t33;
-        let t168 = T::fused(t165, t164, t167 * t166);
-        let t169 = inner_ring_e0 * inner_ring_e1;
-        let t170 = inner_ring_e2 * inner_ring_e3;
-        let t171 = inner_ring_e0 * inner_ring_e0;
-        let t172 = T::fused(
-            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t171))),
-            t161,
-            k(0.00025)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t160,
+        let t124 = T::fused(
+            t91,
+            t100,
+            T::fused(-t36, t113, k(4000.0) * T::fused(-t38, t122, t56 * t123)),
         );
-        let t173 = T::fused(
-            k(1e-6),
-            t98 - t154,
-            T::fused(-(k(0.00025) * (t170 + t169)), t163, t172) - t168,
+        let t125 = T::fused(
+            -t34,
+            t83,
+            T::fused(t33, t87, T::fused(t108, t110, T::fused(t103, t107, -t124))),
         );
-        let t174 = T::fused(
-            -k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, t149),
-            t173,
+        let t126 = inner_ring_wy * inner_ring_wz;
+        let t127 = T::fused(
+            k(0.05),
+            t126,
+            -T::fused(-k(0.00025), t54 * t113, T::fused(-t56, t122, t58 * t123)),
         );
-        let t175 = k(0.25) * t16;
-        let t176 = t175.sin();
-        let t177 = t175.cos();
-        let t178 = T::fused(t176, outer_ring_e3, t177 * outer_ring_e2);
-        let t179 = k(2.0) * t178;
-        let t180 = T::fused(t176, outer_ring_e1, t177 * outer_ring_e0) * t179;
-        let t181 = T::fused(-t167, t164, t165 * t166);
-        let t182 = T::fused(
-            k(0.00025) * (t170 - t169),
-            t161,
-            k(0.00025)
-                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t160,
+        let t128 = t59 * T::fused(k(0.5), t53 * t82, -T::fused(k(0.5), t50 * t86, t127));
+        let t129 = T::fused(k(0.5), t128, -T::fused(k(0.000125), t57 * t125, -t71))
+            / (k(0.0125) + T::fused(t57, t63, t59 * t67));
+        let t130 = T::fused(
+            -t47,
+            t24,
+            T::fused(-t59, t129, T::fused(t70, t62, k(0.5) * t123)),
         );
-        let t183 = T::fused(
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t171)),
-            t163,
-            t182,
-        ) - t181;
-        let t184 = T::fused(k(2e-6), t153, t183);
-        let t185 = t53 * t126;
-        let t186 = k(1e-6) * (t89 - t152);
-        let t187 = k(1.0) - t127;
-        let t188 = T::fused(t185, t184, t187 * t186);
-        let t189 = T::fused(k(2e-6), t27, t188);
-        let t190 = T::fused(-t178, t179, k(1.0));
+        let t131 = k(2.0) * t130;
+        let t132 = T::fused(
+            t45,
+            t24,
+            T::fused(t57, t129, T::fused(-t66, t62, k(0.5) * t122)),
+        );
+        let t133 = t37 * T::fused(t54, t130, T::fused(-t36, t132, k(0.000125) * t112));
+        let t134 = k(2.0) * t133;
+        let t135 = T::fused(t108, t132, T::fused(-t109, t133, k(0.5) * t110));
+        let t136 = T::fused(-t103, t132, T::fused(t102, t133, k(0.5) * t106));
+        let t137 = T::fused(-t91, t132, T::fused(t96, t133, k(0.5) * t100));
+        let t138 = T::fused(
+            t53,
+            t130,
+            T::fused(-t34, t132, T::fused(-t35, t133, k(0.25) * t80)),
+        );
+        let t139 = k(4.0) * t138;
+        let t140 = T::fused(
+            -t50,
+            t130,
+            T::fused(t33, t132, T::fused(t28, t133, k(0.25) * t84)),
+        );
+        let t141 = k(4.0) * t140;
+        let t142 = k(4e-5) * t135;
+        let t143 = k(20000.0) - t136;
+        let t144 = k(2500.0) + t143;
+        let t145 = k(4e-5) * t137;
+        let t146 = t126 - t131;
+        let t147 = (t40 + t39) * (t40 - t39);
+        let t148 = T::fused(
+            k(0.5) - (t88 + t90),
+            t137,
+            T::fused(t103, t143, t108 * t135),
+        );
+        let t149 = t81 + t139;
+        let t150 = (t25 + t29) * (t25 - t29);
+        let t151 = t85 + t141;
+        let t152 = T::fused(-t150, t149, k(2.0) * (t30 * t151));
+        let t153 = T::fused(k(400.0), t132, T::fused(k(500.0), t152, t148));
+        let t154 = T::fused(t147, t146, k(0.02) * (t41 * t153));
+        let t155 = T::fused(k(2.0), t24, t154);
+        let t156 = k(0.25) * t3;
+        let t157 = t156.sin();
+        let t158 = t156.cos();
+        let t159 = T::fused(t157, outer_ring_e3, t158 * outer_ring_e2);
+        let t160 = T::fused(t157, outer_ring_e1, t158 * outer_ring_e0);
+        let t161 = (t160 - t159) * (t160 + t159);
+        let t162 = T::fused(
+            -t96,
+            t137,
+            T::fused(-(k(0.5) - (t88 + t101)), t143, t109 * t135),
+        );
+        let t163 = T::fused(t30, t149, k(0.5) * (t150 * t151));
+        let t164 = T::fused(
+            k(100.0),
+            T::fused(outer_ring_wx, outer_ring_wy, -t62),
+            -T::fused(k(100.0), t93 - t134, -T::fused(k(1000.0), t163, -t162)),
+        );
+        let t165 = t160 * t159;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t27,
-            t151,
-            -t149,
+            -t24,
+            -t129,
+            t62,
             k(0.0),
             k(0.0),
             k(0.0),
-            t152,
-            -t153,
-            -t154,
-            t155,
-            t156,
-            -t157,
+            t131,
+            -(k(2.0) * t132),
+            -t134,
+            k(0.0005) * t135,
+            -(k(0.0005) * t136),
+            -(k(0.0005) * t137),
             k(0.0),
-            -t158,
-            -t159,
-            -t160,
-            -(k(0.1) + t162),
-            t163,
-            T::fused(-t180, t174, t190 * t189),
-            T::fused(t190, t174, t180 * t189),
-            -t160,
-            -t162,
-            t163,
-            T::fused(-t185, t186, t187 * t184),
-            -t188,
-            -t160,
-            -t161,
-            t163,
-            t168,
-            t181,
+            t139,
+            -t141,
+            -t142,
+            -(k(4e-5) * (k(2500.0) + t144)),
+            t145,
+            k(1e-6) * T::fused(t161, t155, k(0.02) * (t165 * t164)),
+            -(k(2e-6) * T::fused(-t165, t155, k(0.005) * (t161 * t164))),
+            -t142,
+            -(k(4e-5) * t144),
+            t145,
+            k(2e-6) * T::fused(-t41, t146, k(0.005) * (t147 * t153)),
+            -(k(1e-6) * t154),
+            -t142,
+            -(k(4e-5) * t143),
+            t145,
+            k(1e-5) * t163,
+            -(k(5e-6) * t152),
         ];
     }
 }
@@ -4853,7 +4755,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1403 operations (528 ±, 873 ×, 2 ÷) and 18 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1403 operations (529 ±, 872 ×, 2 ÷) and 18 functions.
     fn joint_jacobian(
         &self,
         t: T,
@@ -4870,104 +4772,113 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
         let u2 = x[5];
         let (
             t0,
+            t1,
+            t2,
+            t3,
             t5,
-            t7,
-            t9,
+            t6,
+            t8,
+            t10,
             t12,
-            t13,
-            t18,
-            t19,
+            t14,
+            t15,
             t20,
-            t21,
-            t22,
-            t28,
-            t29,
+            t24,
+            t25,
+            t36,
             t39,
             t40,
             t41,
-            t42,
-            t43,
-            t48,
-            t49,
+            t44,
+            t45,
+            t47,
             t50,
-            t53,
-            t55,
+            t51,
+            t54,
             t56,
+            t57,
+            t58,
             t59,
             t60,
             t61,
+            t63,
             t64,
+            t65,
+            t66,
             t67,
             t68,
+            t69,
+            t71,
+            t73,
             t74,
             t75,
             t76,
+            t78,
             t79,
+            t80,
+            t82,
             t83,
             t84,
-            t85,
             t86,
             t87,
+            t88,
             t89,
+            t90,
             t91,
             t92,
             t93,
-            t94,
             t96,
             t97,
             t98,
+            t99,
             t100,
             t101,
-            t102,
+            t103,
             t104,
             t105,
             t106,
-            t107,
             t108,
             t109,
-            t110,
             t111,
-            t114,
-            t115,
+            t113,
             t116,
             t117,
             t118,
             t119,
+            t120,
             t121,
-            t122,
             t123,
             t124,
+            t125,
             t126,
-            t127,
+            t128,
             t129,
             t131,
-            t134,
-            t135,
+            t133,
             t136,
             t137,
-            t138,
             t139,
-            t140,
-            t142,
-            t143,
-            t144,
+            t141,
             t145,
+            t146,
             t147,
             t148,
-            t150,
-            t152,
+            t149,
+            t151,
+            t153,
             t155,
             t156,
             t157,
             t158,
             t159,
             t160,
-            t163,
-            t164,
+            t161,
+            t162,
             t165,
             t166,
             t167,
             t168,
+            t169,
             t170,
             t171,
             t172,
@@ -4981,15 +4892,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             t180,
             t181,
             t182,
+            t183,
+            t184,
             t185,
             t186,
             t187,
             t188,
-            t189,
             t190,
             t191,
             t192,
-            t193,
             t194,
             t195,
             t196,
@@ -4998,345 +4909,404 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             t199,
         ) = {
             let t0 = x1.cos();
-            let t1 = t0 * t0;
-            let t2 = k(1.0) / T::fused(k(6.00125e-6), t1, k(2e-6));
-            let t3 = k(0.047383970729630014) * t2;
-            let t4 = t0 * t3;
-            let t5 = k(0.00211041832206494) * t4;
-            let t6 = k(125.66370614359172) * t;
-            let t7 = t6.sin();
-            let t8 = k(0.5) * t7;
-            let t9 = t8.sin();
-            let t10 = k(4.2261126899350424e-5) * t4;
-            let t11 = u1 * t10;
-            let t12 = x0.sin();
-            let t13 = t6.cos();
-            let t14 = t13 * t12;
-            let t15 = t2 * t14;
+            let t1 = k(0.047383970729630014) * t0;
+            let t2 = k(0.020025) * u1;
+            let t3 = x0.sin();
+            let t4 = k(125.66370614359172) * t;
+            let t5 = t4.cos();
+            let t6 = t5 * t3;
+            let t7 = t0 * t6;
+            let t8 = t4.sin();
+            let t9 = k(0.5) * t8;
+            let t10 = t9.sin();
+            let t11 = t8 * t3;
+            let t12 = x1.sin();
+            let t13 = T::fused(
+                k(0.00211041832206494),
+                T::fused(-(k(62.83185307179586) * t7), t2, t10 * t3),
+                t12 * t11,
+            );
+            let t14 = x0.cos();
+            let t15 = t5 * t14;
             let t16 = t0 * t15;
-            let t17 = T::fused(-k(62.83185307179586), t11, k(0.01578643223954243) * t16);
-            let t18 = T::fused(t0, t17, k(0.007895683520871487) * t15);
-            let t19 = x1.sin();
-            let t20 = t19 * t4;
-            let t21 = x0.cos();
-            let t22 = t13 * t21;
-            let t23 = t0 * t22;
-            let t24 = T::fused(
+            let t17 = T::fused(
                 k(0.01578643223954243),
-                t23,
+                t16,
                 k(0.0006283185307179586) * u2,
             );
-            let t25 = u0 * t19;
-            let t26 = T::fused(k(0.0006283185307179586), t25, t24);
-            let t27 = T::fused(t0, t26, k(0.007895683520871487) * t22);
-            let t28 = t2 * t27;
-            let t29 = T::fused(
-                -t12,
-                T::fused(t9, t5, T::fused(t13, t18, t7 * t20)),
-                t21 * (t13 * t28),
+            let t18 = u0 * t12;
+            let t19 = T::fused(k(0.0006283185307179586), t18, t17);
+            let t20 = T::fused(t0, t19, k(0.007895683520871487) * t15);
+            let t21 = k(0.01578643223954243) * t7;
+            let t22 = T::fused(
+                t13,
+                t1,
+                T::fused(-t15, t20, t6 * T::fused(k(0.007895683520871487), t6, t0 * t21)),
             );
-            let t30 = k(2.0) * t0;
-            let t31 = k(6.00125e-6) * (t2 * t2);
-            let t32 = T::fused(
+            let t23 = t0 * t0;
+            let t24 = k(1.0) / T::fused(k(6.00125e-6), t23, k(2e-6));
+            let t25 = t24 * t22;
+            let t26 = T::fused(
                 -k(62.83185307179586),
-                T::fused(k(0.07947812389108382), u2, -t23),
-                t25,
+                T::fused(k(0.07947812389108382), u2, -t16),
+                t18,
             );
-            let t33 = t7 * t21;
-            let t34 = T::fused(
-                -k(0.00211041832206494),
-                T::fused(-t9, t21, k(0.020025) * (u1 * t32)),
-                t19 * t33,
+            let t27 = t8 * t14;
+            let t28 = T::fused(
+                k(0.00211041832206494),
+                T::fused(-t26, t2, t10 * t14),
+                t12 * t27,
             );
-            let t35 = T::fused(k(0.047383970729630014), t0 * t34, t27 * t14);
-            let t36 = T::fused(
-                t22,
-                t17,
-                T::fused(t34, t3, T::fused(-(t35 * t31), t30, t26 * t15)),
+            let t29 = T::fused(t1, t28, t20 * t6);
+            let t30 = t12 * t0;
+            let t31 = t12 * t15;
+            let t32 = u0 * t0;
+            let t33 = T::fused(
+                t12,
+                t28,
+                t0
+                    * T::fused(
+                        -t0,
+                        t27,
+                        k(4.2261126899350424e-5)
+                            * (u1 * T::fused(-k(62.83185307179586), t31, t32)),
+                    ),
             );
-            let t37 = k(0.0006283185307179586) * t16;
-            let t38 = t37 - t11;
-            let t39 = T::fused(-t19, t36, t0 * T::fused(u0, t38, t33 * t4));
-            let t40 = t19 * t38;
-            let t41 = t32 * t10;
-            let t42 = T::fused(k(4.9937578027465666), t11, t37);
-            let t43 = T::fused(t9, t19, k(473.8397072963001) * t7);
-            let t44 = k(166631.95167673402) * t22;
-            let t45 = t19 * t44;
-            let t46 = k(0.01578643223954243) * t45;
-            let t47 = k(1.2503907471084714) - t1;
-            let t48 = T::fused(k(0.0005024977449416874), u0 * t47, t19 * t24);
-            let t49 = T::fused(t0, t46, k(166631.95167673402) * t48);
-            let t50 = T::fused(t21, k(16.6631951676734) * t43, t12 * (t13 * t49));
-            let t51 = k(0.6663195167673401) * t0;
-            let t52 = u0 * t51;
-            let t53 = k(16.6631951676734) * t12;
-            let t54 = T::fused(k(2.500781494216943), u2, t25);
-            let t55 = t8.cos();
-            let t56 = T::fused(-k(0.0399875), u0 * t54, t55);
-            let t57 = k(83.73217995279107) * t22;
-            let t58 = t0 * (u0 * t57);
-            let t59 = T::fused(
-                t0,
-                T::fused(-u0, t52, T::fused(-t9, t53, t24 * t44)),
-                t19 * T::fused(-k(16.6631951676734), t56, t58 - T::fused(t22, t46, -t58)),
+            let t34 = k(0.01578643223954243) * t31;
+            let t35 = T::fused(
+                k(0.047383970729630014),
+                t33,
+                t6
+                    * T::fused(
+                        t0,
+                        T::fused(-k(0.0006283185307179586), t32, t34),
+                        t12 * t19,
+                    ),
             );
-            let t60 = T::fused(-t19, t52, T::fused(-t54, t51, t47 * t57));
-            let t61 = T::fused(
-                -k(2.500781494216943),
+            let t36 = T::fused(-(t24 * t24 * (k(1.20025e-5) * t30)), t29, t24 * t35);
+            let t37 = u1 * t12;
+            let t38 = k(0.0006283185307179586) * t12;
+            let t39 = t24
+                * T::fused(-(k(4.2261126899350424e-5) * t37), t1, t6 * (t0 * t38));
+            let t40 = t24 * (k(4.2261126899350424e-5) * t26 * t1);
+            let t41 = t24
+                * T::fused(
+                    k(0.000211041832206494) * u1,
+                    t1,
+                    t6 * (k(0.0006283185307179586) * t0),
+                );
+            let t42 = k(0.0005024977449416874) * u0;
+            let t43 = k(1.2503907471084714) - t23;
+            let t44 = T::fused(t43, t42, t12 * t17);
+            let t45 = T::fused(t10, t12, k(473.8397072963001) * t8);
+            let t46 = T::fused(
+                k(0.0001),
+                t14 * t45,
+                T::fused(t6, t44, t15 * (t12 * t21)),
+            );
+            let t47 = k(166631.95167673402) * t46;
+            let t48 = k(0.0399875) * u0;
+            let t49 = T::fused(k(2.500781494216943), u2, t18);
+            let t50 = t9.cos();
+            let t51 = T::fused(-t49, t48, t50);
+            let t52 = T::fused(t3, t10 * t0, T::fused(t12, t51, t0 * (t32 * t48)));
+            let t53 = T::fused(
+                -k(0.0001),
                 t52,
-                k(0.0006283185307179586) * t45,
+                t15 * T::fused(k(2.0) * t30, t42, T::fused(-t12, t34, t0 * t17)),
             );
-            let t62 = u0 * t0;
-            let t63 = t19 * t2;
-            let t64 = T::fused(k(62.83185307179586), t62, t27 * t63);
-            let t65 = k(0.047383970729630014) * t63;
-            let t66 = t0 * t65;
-            let t67 = T::fused(k(7895.6835208714865), t0, t19 * t66);
-            let t68 = u1 * t19;
-            let t69 = k(4.2261126899350424e-5) * t66;
-            let t70 = u1 * t69;
-            let t71 = t14 * t63;
-            let t72 = t0 * t71;
-            let t73 = T::fused(-k(62.83185307179586), t70, k(0.01578643223954243) * t72);
-            let t74 = T::fused(
-                k(62.83185307179586),
-                t68,
-                T::fused(t0, t73, k(0.007895683520871487) * t71),
+            let t54 = k(166631.95167673402) * t53;
+            let t55 = k(0.0001) * t0;
+            let t56 = k(166631.95167673402)
+                * T::fused(
+                    -(k(0.0399875) * (t18 + t49)),
+                    t55,
+                    t15 * (k(0.0005024977449416874) * t43),
+                );
+            let t57 = k(166631.95167673402) * T::fused(-(k(0.1) * u0), t55, t15 * t38);
+            let t58 = k(0.07895683520871487) * t0;
+            let t59 = k(0.00012665147955292222) * u0;
+            let t60 = k(0.0006283185307179586) * t37;
+            let t61 = T::fused(
+                k(100000.0),
+                T::fused(
+                    T::fused(-(k(62.83185307179586) * t15), t59, t11),
+                    t58,
+                    t6 * t60,
+                ),
+                t12 * t25,
             );
-            let t75 = k(0.00211041832206494) * t66;
-            let t76 = T::fused(
-                -t21,
-                t13 * t64,
-                t12 * T::fused(t7, t67, T::fused(t13, t74, t9 * t75)),
+            let t62 = T::fused(-k(62.83185307179586), t6, u1);
+            let t63 = T::fused(-t62, t59, t27);
+            let t64 = t24 * t29;
+            let t65 = t0 * t64;
+            let t66 = T::fused(
+                -k(100000.0),
+                T::fused(
+                    -k(0.07895683520871487),
+                    t12 * t63,
+                    k(0.0006283185307179586) * (t15 * (u1 * t0)),
+                ),
+                T::fused(t12, t36, -t65),
             );
-            let t77 = T::fused(t34, t65, T::fused(-t30, t19 * t35 * t31, t26 * t71));
-            let t78 = T::fused(-k(62.83185307179586), t14, u1);
-            let t79 = T::fused(-k(0.00012665147955292222), u0 * t78, t33);
-            let t80 = k(62.83185307179586) * t22;
-            let t81 = k(0.0006283185307179586) * t72;
-            let t82 = t81 - t70;
-            let t83 = t2 * t35;
-            let t84 = T::fused(
-                -t19,
-                T::fused(k(7895.6835208714865), t79, T::fused(t22, t73, t77)),
-                t0 * T::fused(u1, t80, T::fused(u0, t82, T::fused(t33, t66, t83))),
+            let t67 = T::fused(
+                -t12,
+                t39,
+                k(7895.6835208714865) * (t0 * (k(0.00012665147955292222) * t62)),
             );
-            let t85 = T::fused(-t0, t78, t19 * t82);
-            let t86 = t62 + T::fused(-t19, t80, t32 * t69);
-            let t87 = T::fused(k(4.9937578027465666), t70, t81);
-            let t88 = k(0.5) * x0;
-            let t89 = t88.cos();
-            let t90 = k(0.25) * t7;
-            let t91 = t90.sin();
-            let t92 = t91 * t89;
-            let t93 = t90.cos();
-            let t94 = t93 * t89;
-            let t95 = t94 * t92;
-            let t96 = t88.sin();
-            let t97 = t91 * t96;
-            let t98 = t93 * t96;
-            let t99 = t98 * t97;
-            let t100 = k(2.0) * (t99 + t95);
-            let t101 = k(62.83185307179586) * t13;
-            let t102 = t101 * t9;
-            let t103 = t94 * t94;
-            let t104 = k(2.0) * (k(0.5) - T::fused(t98, t98, t103));
-            let t105 = t101 * t55;
-            let t106 = T::fused(-t102, t100, t105 * t104);
-            let t107 = k(2.0) * (t99 - t95);
-            let t108 = k(2.0) * (k(0.5) - T::fused(t97, t97, t103));
-            let t109 = T::fused(t9, t107, t55 * t108);
-            let t110 = k(2.0) * (k(0.5) - T::fused(t92, t92, t103));
-            let t111 = k(2.0) * T::fused(t94, t97, t92 * t98);
-            let t112 = t94 * t98;
-            let t113 = t92 * t97;
-            let t114 = k(2.0) * (t113 - t112);
-            let t115 = T::fused(-t9, t111, t55 * t114);
-            let t116 = k(2.0) * (t113 + t112);
-            let t117 = k(1.0) / T::fused(-t110, t109, t116 * t115);
-            let t118 = t110 * t117;
-            let t119 = t118 * t106;
-            let t120 = k(0.5) * x1;
-            let t121 = t120.sin();
-            let t122 = t120.cos();
-            let t123 = T::fused(t98, t121, t92 * t122);
-            let t124 = T::fused(-t97, t121, t94 * t122);
-            let t125 = t124 * t124;
-            let t126 = k(2.0) * (k(0.5) - T::fused(t123, t123, t125));
-            let t127 = T::fused(t94, t121, t97 * t122);
-            let t128 = t124 * t127;
-            let t129 = T::fused(-t92, t121, t98 * t122);
-            let t130 = t123 * t129;
-            let t131 = k(2.0) * (t130 + t128);
-            let t132 = t124 * t129;
-            let t133 = t123 * t127;
-            let t134 = k(2.0) * (t133 - t132);
-            let t135 = T::fused(t114, t134, T::fused(t110, t126, t111 * t131));
-            let t136 = t116 * t117;
-            let t137 = t136 * t106;
-            let t138 = T::fused(t108, t134, -T::fused(-t116, t126, t107 * t131));
-            let t139 = T::fused(t135, t119, t138 * t137);
-            let t140 = k(1e-6) * t139;
-            let t141 = k(0.5) * x2;
-            let t142 = t141.sin();
-            let t143 = t141.cos();
-            let t144 = T::fused(t124, t142, t123 * t143);
-            let t145 = T::fused(-t123, t142, t124 * t143);
-            let t146 = t145 * t145;
-            let t147 = k(2.0) * (k(0.5) - T::fused(t144, t144, t146));
-            let t148 = T::fused(-t129, t142, t127 * t143);
-            let t149 = t145 * t148;
-            let t150 = T::fused(t127, t142, t129 * t143);
-            let t151 = t144 * t150;
-            let t152 = k(2.0) * (t151 + t149);
-            let t153 = t145 * t150;
-            let t154 = t144 * t148;
-            let t155 = k(2.0) * (t154 - t153);
-            let t156 = T::fused(t134, t155, T::fused(t126, t147, t131 * t152));
-            let t157 = t130 - t128;
-            let t158 = k(2.0) * t157;
-            let t159 = k(0.5) - T::fused(t129, t129, t125);
-            let t160 = k(2.0) * t159;
-            let t161 = t124 * t123;
-            let t162 = t129 * t127;
-            let t163 = t162 + t161;
-            let t164 = k(2.0) * t163;
-            let t165 = T::fused(t114, t164, -T::fused(t110, t158, t111 * t160));
-            let t166 = T::fused(t108, t164, T::fused(-t116, t158, t107 * t160));
-            let t167 = T::fused(t165, t119, t166 * t137);
-            let t168 = T::fused(t164, t155, -T::fused(t158, t147, t160 * t152));
-            let t169 = t133 + t132;
-            let t170 = k(2.0) * t169;
-            let t171 = t162 - t161;
-            let t172 = k(2.0) * t171;
-            let t173 = k(0.5) - T::fused(t127, t127, t125);
-            let t174 = k(2.0) * t173;
-            let t175 = T::fused(t114, t174, -T::fused(-t110, t170, t111 * t172));
-            let t176 = T::fused(t108, t174, T::fused(t116, t170, t107 * t172));
-            let t177 = T::fused(t175, t119, t176 * t137);
-            let t178 = T::fused(t174, t155, -T::fused(-t170, t147, t172 * t152));
-            let t179 = k(1e-5) * T::fused(t156, t139, T::fused(t168, t167, t178 * t177));
-            let t180 = t179 + t140;
-            let t181 = k(2.0) * (t151 - t149);
-            let t182 = k(2.0) * (k(0.5) - T::fused(t150, t150, t146));
-            let t183 = t145 * t144;
-            let t184 = t150 * t148;
-            let t185 = k(2.0) * (t184 + t183);
-            let t186 = T::fused(t134, t185, -T::fused(t126, t181, t131 * t182));
-            let t187 = T::fused(t164, t185, T::fused(t158, t181, t160 * t182));
-            let t188 = T::fused(t174, t185, T::fused(-t170, t181, t172 * t182));
-            let t189 = k(5e-6) * T::fused(t186, t139, T::fused(t187, t167, t188 * t177));
-            let t190 = x2.cos();
-            let t191 = k(2.0) * (t154 + t153);
-            let t192 = k(2.0) * (t184 - t183);
-            let t193 = k(2.0) * (k(0.5) - T::fused(t148, t148, t146));
-            let t194 = T::fused(t134, t193, -T::fused(-t126, t191, t131 * t192));
-            let t195 = T::fused(t164, t193, T::fused(-t158, t191, t160 * t192));
-            let t196 = T::fused(t174, t193, T::fused(t170, t191, t172 * t192));
-            let t197 = k(5e-6) * T::fused(t194, t139, T::fused(t195, t167, t196 * t177));
-            let t198 = x2.sin();
-            let t199 = k(0.00025) * t169;
+            let t68 = T::fused(
+                -k(100000.0),
+                T::fused(-t59, t58, k(0.0006283185307179586) * t31),
+                t12 * t40,
+            );
+            let t69 = t12 * t41;
+            let t70 = k(0.5) * x0;
+            let t71 = t70.cos();
+            let t72 = k(0.25) * t8;
+            let t73 = t72.sin();
+            let t74 = t73 * t71;
+            let t75 = t72.cos();
+            let t76 = t75 * t71;
+            let t77 = t76 * t74;
+            let t78 = t70.sin();
+            let t79 = t73 * t78;
+            let t80 = t75 * t78;
+            let t81 = t80 * t79;
+            let t82 = k(2.0) * (t81 + t77);
+            let t83 = k(62.83185307179586) * t5;
+            let t84 = t83 * t10;
+            let t85 = t76 * t76;
+            let t86 = k(2.0) * (k(0.5) - T::fused(t80, t80, t85));
+            let t87 = t83 * t50;
+            let t88 = T::fused(-t84, t82, t87 * t86);
+            let t89 = k(2.0) * (t81 - t77);
+            let t90 = k(2.0) * (k(0.5) - T::fused(t79, t79, t85));
+            let t91 = T::fused(t10, t89, t50 * t90);
+            let t92 = k(2.0) * (k(0.5) - T::fused(t74, t74, t85));
+            let t93 = k(2.0) * T::fused(t76, t79, t74 * t80);
+            let t94 = t76 * t80;
+            let t95 = t74 * t79;
+            let t96 = k(2.0) * (t95 - t94);
+            let t97 = T::fused(-t10, t93, t50 * t96);
+            let t98 = k(2.0) * (t95 + t94);
+            let t99 = k(1.0) / T::fused(-t92, t91, t98 * t97);
+            let t100 = t92 * t99;
+            let t101 = t100 * t88;
+            let t102 = k(0.5) * x1;
+            let t103 = t102.sin();
+            let t104 = t102.cos();
+            let t105 = T::fused(t80, t103, t74 * t104);
+            let t106 = T::fused(-t79, t103, t76 * t104);
+            let t107 = t106 * t106;
+            let t108 = k(2.0) * (k(0.5) - T::fused(t105, t105, t107));
+            let t109 = T::fused(t76, t103, t79 * t104);
+            let t110 = t106 * t109;
+            let t111 = T::fused(-t74, t103, t80 * t104);
+            let t112 = t105 * t111;
+            let t113 = k(2.0) * (t112 + t110);
+            let t114 = t106 * t111;
+            let t115 = t105 * t109;
+            let t116 = k(2.0) * (t115 - t114);
+            let t117 = T::fused(t96, t116, T::fused(t92, t108, t93 * t113));
+            let t118 = t98 * t99;
+            let t119 = t118 * t88;
+            let t120 = T::fused(t90, t116, -T::fused(-t98, t108, t89 * t113));
+            let t121 = T::fused(t117, t101, t120 * t119);
+            let t122 = k(0.5) * x2;
+            let t123 = t122.sin();
+            let t124 = t122.cos();
+            let t125 = T::fused(t106, t123, t105 * t124);
+            let t126 = T::fused(-t105, t123, t106 * t124);
+            let t127 = t126 * t126;
+            let t128 = k(2.0) * (k(0.5) - T::fused(t125, t125, t127));
+            let t129 = T::fused(-t111, t123, t109 * t124);
+            let t130 = t126 * t129;
+            let t131 = T::fused(t109, t123, t111 * t124);
+            let t132 = t125 * t131;
+            let t133 = k(2.0) * (t132 + t130);
+            let t134 = t126 * t131;
+            let t135 = t125 * t129;
+            let t136 = k(2.0) * (t135 - t134);
+            let t137 = T::fused(t116, t136, T::fused(t108, t128, t113 * t133));
+            let t138 = t112 - t110;
+            let t139 = k(2.0) * t138;
+            let t140 = k(0.5) - T::fused(t111, t111, t107);
+            let t141 = k(2.0) * t140;
+            let t142 = t106 * t105;
+            let t143 = t111 * t109;
+            let t144 = t143 + t142;
+            let t145 = k(2.0) * t144;
+            let t146 = T::fused(t96, t145, -T::fused(t92, t139, t93 * t141));
+            let t147 = T::fused(t90, t145, T::fused(-t98, t139, t89 * t141));
+            let t148 = T::fused(t146, t101, t147 * t119);
+            let t149 = T::fused(t145, t136, -T::fused(t139, t128, t141 * t133));
+            let t150 = t115 + t114;
+            let t151 = k(2.0) * t150;
+            let t152 = t143 - t142;
+            let t153 = k(2.0) * t152;
+            let t154 = k(0.5) - T::fused(t109, t109, t107);
+            let t155 = k(2.0) * t154;
+            let t156 = T::fused(t96, t155, -T::fused(-t92, t151, t93 * t153));
+            let t157 = T::fused(t90, t155, T::fused(t98, t151, t89 * t153));
+            let t158 = T::fused(t156, t101, t157 * t119);
+            let t159 = T::fused(t155, t136, -T::fused(-t151, t128, t153 * t133));
+            let t160 = k(1e-5) * T::fused(t137, t121, T::fused(t149, t148, t159 * t158));
+            let t161 = k(2.0) * (t132 - t130);
+            let t162 = k(2.0) * (k(0.5) - T::fused(t131, t131, t127));
+            let t163 = t126 * t125;
+            let t164 = t131 * t129;
+            let t165 = k(2.0) * (t164 + t163);
+            let t166 = T::fused(t116, t165, -T::fused(t108, t161, t113 * t162));
+            let t167 = T::fused(t145, t165, T::fused(t139, t161, t141 * t162));
+            let t168 = T::fused(t155, t165, T::fused(-t151, t161, t153 * t162));
+            let t169 = k(5e-6) * T::fused(t166, t121, T::fused(t167, t148, t168 * t158));
+            let t170 = x2.sin();
+            let t171 = k(2.0) * (t135 + t134);
+            let t172 = k(2.0) * (t164 - t163);
+            let t173 = k(2.0) * (k(0.5) - T::fused(t129, t129, t127));
+            let t174 = T::fused(t116, t173, -T::fused(-t108, t171, t113 * t172));
+            let t175 = T::fused(t145, t173, T::fused(-t139, t171, t141 * t172));
+            let t176 = T::fused(t155, t173, T::fused(t151, t171, t153 * t172));
+            let t177 = k(5e-6) * T::fused(t174, t121, T::fused(t175, t148, t176 * t158));
+            let t178 = x2.cos();
+            let t179 = k(0.00025) * t150;
+            let t180 = k(0.00025) * t138;
+            let t181 = k(0.08) * T::fused(t179, t148, t180 * t158);
+            let t182 = k(0.00025) * t152;
+            let t183 = k(0.00025) * t140;
+            let t184 = k(0.08) * T::fused(-t182, t148, t183 * t158);
+            let t185 = k(0.00025) * t154;
+            let t186 = k(0.00025) * t144;
+            let t187 = k(0.08) * T::fused(-t185, t148, t186 * t158);
+            let t188 = k(1e-6) * t158;
+            let t189 = T::fused(
+                t178,
+                t177,
+                T::fused(t180, t181, T::fused(t183, t184, T::fused(t186, t187, t188))),
+            );
+            let t190 = T::fused(-t170, t169, t189);
+            let t191 = k(1e-6) * t121;
+            let t192 = t160 + t191;
+            let t193 = T::fused(
+                -k(2e-6),
+                t148,
+                T::fused(-t179, t181, T::fused(t182, t184, t185 * t187)),
+            );
+            let t194 = T::fused(-t178, t169, T::fused(-t170, t177, t193));
+            let t195 = T::fused(-t12, t192, t0 * t194);
+            let t196 = t12 * t64;
+            let t197 = k(2.0) * t78;
+            let t198 = t71 * t197;
+            let t199 = t83 * t198;
             (
                 t0,
+                t1,
+                t2,
+                t3,
                 t5,
-                t7,
-                t9,
+                t6,
+                t8,
+                t10,
                 t12,
-                t13,
-                t18,
-                t19,
+                t14,
+                t15,
                 t20,
-                t21,
-                t22,
-                t28,
-                t29,
+                t24,
+                t25,
+                t36,
                 t39,
                 t40,
                 t41,
-                t42,
-                t43,
-                t48,
-                t49,
+                t44,
+                t45,
+                t47,
                 t50,
-                t53,
-                t55,
+                t51,
+                t54,
                 t56,
+                t57,
+                t58,
                 t59,
                 t60,
                 t61,
+                t63,
                 t64,
+                t65,
+                t66,
                 t67,
                 t68,
+                t69,
+                t71,
+                t73,
                 t74,
                 t75,
                 t76,
+                t78,
                 t79,
+                t80,
+                t82,
                 t83,
                 t84,
-                t85,
                 t86,
                 t87,
+                t88,
                 t89,
+                t90,
                 t91,
                 t92,
                 t93,
-                t94,
                 t96,
                 t97,
                 t98,
+                t99,
                 t100,
                 t101,
-                t102,
+                t103,
                 t104,
                 t105,
                 t106,
-                t107,
                 t108,
                 t109,
-                t110,
                 t111,
-                t114,
-                t115,
+                t113,
                 t116,
                 t117,
                 t118,
                 t119,
+                t120,
                 t121,
-                t122,
                 t123,
                 t124,
+                t125,
                 t126,
-                t127,
+                t128,
                 t129,
                 t131,
-                t134,
-                t135,
+                t133,
                 t136,
                 t137,
-                t138,
                 t139,
-                t140,
-                t142,
-                t143,
-                t144,
+                t141,
                 t145,
+                t146,
                 t147,
                 t148,
-                t150,
-                t152,
+                t149,
+                t151,
+                t153,
                 t155,
                 t156,
                 t157,
                 t158,
                 t159,
                 t160,
-                t163,
-                t164,
+                t161,
+                t162,
                 t165,
                 t166,
                 t167,
                 t168,
+                t169,
                 t170,
                 t171,
                 t172,
@@ -5350,15 +5320,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
                 t180,
                 t181,
                 t182,
+                t183,
+                t184,
                 t185,
                 t186,
                 t187,
                 t188,
-                t189,
                 t190,
                 t191,
                 t192,
-                t193,
                 t194,
                 t195,
                 t196,
@@ -5368,596 +5338,539 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             )
         };
         let (
-            t209,
-            t210,
-            t212,
-            t213,
-            t216,
-            t217,
-            t218,
-            t220,
-            t221,
-            t222,
-            t227,
-            t231,
-            t260,
-            t268,
-            t273,
-            t324,
-            t329,
-            t340,
-            t342,
+            t204,
+            t319,
+            t326,
+            t328,
+            t333,
             t344,
-            t358,
+            t357,
             t359,
-            t360,
-            t361,
-            t365,
+            t363,
             t366,
-            t370,
-            t372,
-            t376,
+            t374,
             t377,
-            t378,
             t379,
-            t380,
-            t382,
-            t384,
-            t385,
-            t386,
-            t390,
+            t387,
+            t394,
+            t395,
+            t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = k(0.00025) * t157;
-            let t201 = k(0.08) * T::fused(t199, t167, t200 * t177);
-            let t202 = k(0.00025) * t171;
-            let t203 = k(0.00025) * t159;
-            let t204 = k(0.08) * T::fused(-t202, t167, t203 * t177);
-            let t205 = k(0.00025) * t173;
-            let t206 = k(0.00025) * t163;
-            let t207 = k(0.08) * T::fused(-t205, t167, t206 * t177);
-            let t208 = T::fused(
-                -k(2e-6),
-                t167,
-                T::fused(-t199, t201, T::fused(t202, t204, t205 * t207)),
+            let t200 = k(7895.6835208714865) * t8;
+            let t201 = T::fused(u0, t199, t200 * t14);
+            let t202 = t78 + t71;
+            let t203 = t78 - t71;
+            let t204 = t203 * t202;
+            let t205 = t83 * t204;
+            let t206 = k(2.0) * t103;
+            let t207 = t104 * t206;
+            let t208 = t103 + t104;
+            let t209 = t103 - t104;
+            let t210 = t209 * t208;
+            let t211 = T::fused(-t207, t205, u0 * t210);
+            let t212 = T::fused(u1, t211, T::fused(t0, t201, t196));
+            let t213 = k(1e-5)
+                * (t212 - T::fused(k(100000.0), T::fused(t15, t60, t58 * t63), t196));
+            let t214 = t121 * t213;
+            let t215 = t148 * t213;
+            let t216 = t158 * t213;
+            let t217 = T::fused(t108, t214, T::fused(-t139, t215, t151 * t216));
+            let t218 = t125 * (k(2.0) * t217);
+            let t219 = T::fused(-t113, t214, T::fused(t141, t215, t153 * t216));
+            let t220 = u0 * t205;
+            let t221 = T::fused(t200, t3, t220);
+            let t222 = T::fused(
+                -k(166631.95167673402),
+                T::fused(-t15, t44, k(0.0001) * T::fused(-t0, t51, t3 * t45)),
+                t221,
             );
-            let t209 = T::fused(-t190, t189, T::fused(-t198, t197, t208));
-            let t210 = T::fused(-t19, t180, t0 * t209);
-            let t211 = k(2.0) * t96;
-            let t212 = t89 * t211;
-            let t213 = t101 * t212;
-            let t214 = k(7895.6835208714865) * t7;
-            let t215 = T::fused(u0, t213, t214 * t21);
-            let t216 = u1 + t213;
-            let t217 = T::fused(-t96, t211, k(1.0));
-            let t218 = t101 * t217;
-            let t219 = k(2.0) * t121;
-            let t220 = t122 * t219;
-            let t221 = T::fused(-t121, t219, k(1.0));
-            let t222 = T::fused(-t220, t218, u0 * t221);
-            let t223 = t19 * t83;
-            let t224 = T::fused(-u1, t222, T::fused(t0, t215, t223));
-            let t225 = T::fused(
-                k(100000.0),
-                T::fused(
-                    k(0.07895683520871487),
-                    t0 * t79,
-                    k(0.0006283185307179586) * (t22 * t68),
-                ),
-                t223,
-            );
-            let t226 = k(1e-5) * (t225 - t224);
-            let t227 = k(2.0) * t142;
-            let t228 = t143 * t227;
-            let t229 = T::fused(-t142, t227, k(1.0));
-            let t230 = T::fused(-t228, t222, t229 * t216);
-            let t231 = T::fused(t221, t218, u0 * t220);
-            let t232 = u2 + t231;
-            let t233 = T::fused(u1, t231, T::fused(-t19, t215, t0 * t83));
-            let t234 = u0 * t218;
-            let t235 = T::fused(t214, t12, -t234);
-            let t236 = T::fused(
-                k(166631.95167673402),
-                T::fused(-k(0.0001), T::fused(-t0, t56, t12 * t43), t22 * t48),
-                t235,
-            );
-            let t237 = T::fused(
-                -t232,
-                t230,
-                T::fused(-u2, t230, T::fused(t190, t233, t198 * t236)),
-            );
-            let t238 = k(5e-6) * t237;
-            let t239 = T::fused(t229, t222, t228 * t216);
-            let t240 = T::fused(
+            let t223 = T::fused(t210, t205, u0 * t207);
+            let t224 = T::fused(u1, t223, -T::fused(t12, t201, -t65));
+            let t225 = k(2.0) * t123;
+            let t226 = t124 * t225;
+            let t227 = u1 + t199;
+            let t228 = t123 + t124;
+            let t229 = t123 - t124;
+            let t230 = t229 * t228;
+            let t231 = T::fused(-t226, t211, t230 * t227);
+            let t232 = u2 + t223;
+            let t233 = T::fused(
                 t232,
-                t239,
-                T::fused(u2, t239, T::fused(-t198, t233, t190 * t236)),
+                t231,
+                T::fused(u2, t231, T::fused(t170, t222, t178 * t224)),
             );
-            let t241 = k(5e-6) * t240;
+            let t234 = k(5e-6) * t233;
+            let t235 = t121 * t234;
+            let t236 = t148 * t234;
+            let t237 = t158 * t234;
+            let t238 = T::fused(t108, t235, T::fused(-t139, t236, t151 * t237));
+            let t239 = k(2.0) * (t238 + t219);
+            let t240 = T::fused(t116, t214, T::fused(t145, t215, t155 * t216));
+            let t241 = T::fused(t230, t211, t226 * t227);
             let t242 = T::fused(
-                -k(1e-6),
-                T::fused(t222, t216, t224),
-                T::fused(t241, t194, -T::fused(-t226, t156, t238 * t186)),
+                t232,
+                t241,
+                T::fused(u2, t241, -T::fused(-t178, t222, t170 * t224)),
             );
-            let t243 = k(0.000125) * t222;
-            let t244 = k(0.000125) * t216;
-            let t245 = T::fused(t222, t243, t216 * t244);
-            let t246 = t243 * t231;
-            let t247 = t244 * t231;
-            let t248 = T::fused(-t233, t199, t236 * t200)
-                - T::fused(t170, t247, T::fused(t126, t245, t158 * t246));
-            let t249 = k(0.08) * t248;
-            let t250 = T::fused(t233, t202, t236 * t203)
-                + T::fused(t172, t247, -T::fused(t131, t245, t160 * t246));
-            let t251 = T::fused(k(0.08), t250, k(0.8));
-            let t252 = T::fused(t233, t205, t236 * t206)
-                + T::fused(t174, t247, -T::fused(-t134, t245, t164 * t246));
-            let t253 = k(0.08) * t252;
-            let t254 = T::fused(t205, t253, T::fused(-t199, t249, t202 * t251))
-                - T::fused(t241, t195, -T::fused(-t226, t168, t238 * t187));
-            let t255 = T::fused(k(2e-6), t233, t254);
-            let t256 = T::fused(t206, t253, T::fused(t200, t249, t203 * t251))
-                + T::fused(t241, t196, -T::fused(-t226, t178, t238 * t188));
-            let t257 = T::fused(k(1e-6), T::fused(-t222, t231, t236), t256);
-            let t258 = T::fused(
-                -k(2e-6),
-                t215,
-                T::fused(t257, t175, -T::fused(-t242, t135, t255 * t165)),
+            let t243 = k(5e-6) * t242;
+            let t244 = t121 * t243;
+            let t245 = t148 * t243;
+            let t246 = t158 * t243;
+            let t247 = T::fused(t108, t244, T::fused(-t139, t245, t151 * t246));
+            let t248 = k(2.0) * (t247 - t240);
+            let t249 = T::fused(t116, t235, T::fused(t145, t236, t155 * t237));
+            let t250 = T::fused(-t113, t244, T::fused(t141, t245, t153 * t246));
+            let t251 = k(2.0) * (t250 + t249);
+            let t252 = t218
+                - (T::fused(-t131, t239, T::fused(-t129, t248, t126 * t251)) - t218);
+            let t253 = T::fused(t116, t244, T::fused(t145, t245, t155 * t246));
+            let t254 = T::fused(-t113, t235, T::fused(t141, t236, t153 * t237));
+            let t255 = t126 * (k(2.0) * (t254 - t253 + t217));
+            let t256 = k(2.0) * (t238 - t219);
+            let t257 = k(2.0) * (t247 + t240);
+            let t258 = t255
+                - (T::fused(t129, t256, T::fused(-t131, t257, t125 * t251)) - t255);
+            let t259 = k(0.000125) * t211;
+            let t260 = k(0.000125) * t227;
+            let t261 = T::fused(t211, t259, t227 * t260);
+            let t262 = t259 * t223;
+            let t263 = t260 * t223;
+            let t264 = T::fused(t155, t263, T::fused(t116, t261, t145 * t262))
+                + T::fused(t186, t222, t185 * t224);
+            let t265 = k(0.08) * t264;
+            let t266 = T::fused(t153, t263, T::fused(-t113, t261, t141 * t262))
+                + T::fused(t183, t222, t182 * t224);
+            let t267 = T::fused(k(0.08), t266, k(0.8));
+            let t268 = T::fused(t151, t263, -T::fused(-t108, t261, t139 * t262))
+                + T::fused(-t180, t222, t179 * t224);
+            let t269 = k(0.08) * t268;
+            let t270 = T::fused(-t176, t243, T::fused(t168, t234, t159 * t213))
+                + T::fused(-t186, t265, T::fused(-t183, t267, t180 * t269));
+            let t271 = T::fused(k(1e-6), T::fused(t211, t223, t222), -t270);
+            let t272 = t101 * t271;
+            let t273 = t119 * t271;
+            let t274 = T::fused(
+                -t165,
+                t237,
+                T::fused(t173, t246, T::fused(t96, t272, t90 * t273)),
             );
-            let t259 = T::fused(
-                k(1e-6),
-                t234 + t235,
-                T::fused(t257, t176, -T::fused(-t242, t138, t255 * t166)),
-            );
-            let t260 = T::fused(t258, t118, t259 * t136);
-            let t261 = t102 * t260;
-            let t262 = t257 * t137;
-            let t263 = t255 * t137;
-            let t264 = t242 * t137;
-            let t265 = t259 * t106;
-            let t266 = t258 * t106;
-            let t267 = t117 * t117 * T::fused(t116, t265, t110 * t266);
-            let t268 = t110 * t267;
-            let t269 = T::fused(
-                t9,
-                t268,
-                -T::fused(t131, t264, T::fused(-t172, t262, t160 * t263)),
-            );
-            let t270 = k(2.0) * (t269 + t261);
-            let t271 = T::fused(
-                t126,
-                t264,
-                T::fused(t158, t263, T::fused(t117, t265, t170 * t262)),
-            );
-            let t272 = T::fused(t115, t267, -t271);
-            let t273 = t116 * t267;
-            let t274 = t257 * t119;
-            let t275 = t255 * t119;
-            let t276 = t242 * t119;
-            let t277 = T::fused(
-                t134,
-                t276,
-                -T::fused(t164, t275, -T::fused(-t55, t273, t174 * t274)),
-            );
-            let t278 = k(2.0) * (t277 - t272);
-            let t279 = T::fused(
-                t131,
-                t276,
-                T::fused(t160, t275, -T::fused(-t9, t273, t172 * t274)),
-            );
-            let t280 = k(2.0) * t279;
-            let t281 = T::fused(
-                t158,
-                t275,
-                T::fused(t170, t274, T::fused(t117, t266, t109 * t267)),
-            );
-            let t282 = T::fused(t126, t276, t281);
-            let t283 = t92 * (k(2.0) * t282);
-            let t284 = t283
-                + (t283 - T::fused(t98, t280, T::fused(-t94, t270, t97 * t278)));
-            let t285 = t241 * t177;
-            let t286 = t238 * t177;
-            let t287 = T::fused(
-                t182,
-                t286,
-                -T::fused(t192, t285, -T::fused(-t107, t262, t111 * t274)),
-            );
-            let t288 = t226 * t177;
-            let t289 = T::fused(
-                k(2.0),
-                T::fused(t247, t204, -T::fused(t152, t288, t287)),
-                k(0.00025) * T::fused(-t251, t167, t233 * t204),
-            );
-            let t290 = t241 * t167;
-            let t291 = T::fused(
-                t193,
-                t290,
-                -T::fused(t246, t207, T::fused(t108, t263, t114 * t275)),
-            );
-            let t292 = t238 * t167;
-            let t293 = t226 * t167;
-            let t294 = T::fused(
-                k(0.00025),
-                T::fused(t253, t177, t236 * t207),
-                k(2.0) * T::fused(t155, t293, -T::fused(t185, t292, -t291)),
-            );
-            let t295 = t294 + t289;
-            let t296 = T::fused(
-                t192,
-                t290,
-                -T::fused(t246, t204, -T::fused(-t107, t263, t111 * t275)),
-            );
-            let t297 = T::fused(
+            let t275 = T::fused(
                 -k(0.00025),
-                T::fused(t251, t177, t236 * t204),
-                k(2.0) * T::fused(t152, t293, T::fused(t182, t292, -t296)),
+                T::fused(-t187, t224, t148 * t265),
+                k(2.0) * T::fused(t263, t187, T::fused(-t136, t216, t274)),
             );
-            let t298 = t129 * t297;
+            let t276 = T::fused(-t175, t243, T::fused(t167, t234, t149 * t213))
+                + T::fused(t185, t265, T::fused(t182, t267, t179 * t269));
+            let t277 = T::fused(k(2e-6), t224, t276);
+            let t278 = t101 * t277;
+            let t279 = t119 * t277;
+            let t280 = T::fused(
+                t172,
+                t245,
+                T::fused(t262, t184, -T::fused(-t93, t278, t89 * t279)),
+            );
+            let t281 = T::fused(
+                k(2.0),
+                T::fused(t133, t215, T::fused(-t162, t236, t280)),
+                k(0.00025) * T::fused(t184, t222, t158 * t267),
+            );
+            let t282 = T::fused(
+                k(1e-6),
+                T::fused(t211, t227, -t212),
+                -T::fused(-t174, t243, T::fused(t166, t234, t137 * t213)),
+            );
+            let t283 = t101 * t282;
+            let t284 = t119 * t282;
+            let t285 = T::fused(
+                -t171,
+                t244,
+                T::fused(-t92, t283, T::fused(-t98, t284, t261 * t181)),
+            );
+            let t286 = k(2.0) * T::fused(t128, t214, T::fused(-t161, t235, t285));
+            let t287 = t106 * (t286 - (t281 + t275));
+            let t288 = T::fused(
+                t172,
+                t244,
+                T::fused(-t93, t283, T::fused(t89, t284, t261 * t184)),
+            );
+            let t289 = k(2.0) * T::fused(t133, t214, T::fused(-t162, t235, t288));
+            let t290 = T::fused(
+                -t171,
+                t245,
+                T::fused(t262, t181, T::fused(t92, t278, t98 * t279)),
+            );
+            let t291 = T::fused(
+                -k(2.0),
+                T::fused(t128, t215, T::fused(-t161, t236, t290)),
+                k(0.00025) * T::fused(-t181, t222, t158 * t269),
+            );
+            let t292 = t291 - t289;
+            let t293 = T::fused(
+                t173,
+                t244,
+                T::fused(t96, t283, T::fused(t90, t284, t261 * t187)),
+            );
+            let t294 = k(2.0) * T::fused(-t136, t214, T::fused(-t165, t235, t293));
+            let t295 = T::fused(
+                t161,
+                t237,
+                T::fused(t171, t246, T::fused(t92, t272, t98 * t273)),
+            );
+            let t296 = T::fused(
+                k(0.00025),
+                T::fused(t181, t224, t148 * t269),
+                k(2.0) * T::fused(t263, t181, -T::fused(-t128, t216, t295)),
+            );
+            let t297 = t296 + t294;
+            let t298 = T::fused(
+                t173,
+                t245,
+                T::fused(t262, t187, -T::fused(t96, t278, t90 * t279)),
+            );
             let t299 = T::fused(
-                t181,
-                t286,
-                T::fused(t191, t285, T::fused(t116, t262, t110 * t274)),
+                k(2.0),
+                T::fused(-t136, t215, T::fused(-t165, t236, t298)),
+                k(0.00025) * T::fused(t187, t222, t158 * t265),
             );
             let t300 = T::fused(
-                k(2.0),
-                T::fused(t247, t201, -T::fused(t147, t288, t299)),
-                k(0.00025) * T::fused(-t249, t167, t233 * t201),
+                -t162,
+                t237,
+                T::fused(t172, t246, T::fused(-t93, t272, t89 * t273)),
             );
-            let t301 = t241 * t139;
-            let t302 = T::fused(
-                t193,
-                t301,
-                T::fused(t114, t276, T::fused(t108, t264, t245 * t207)),
-            );
-            let t303 = t238 * t139;
-            let t304 = t226 * t139;
-            let t305 = k(2.0) * T::fused(t155, t304, -T::fused(t185, t303, -t302));
-            let t306 = t305 + t300;
-            let t307 = T::fused(
-                t191,
-                t290,
-                T::fused(t246, t201, -T::fused(t116, t263, t110 * t275)),
-            );
-            let t308 = T::fused(
+            let t301 = T::fused(
                 -k(0.00025),
-                T::fused(t249, t177, t236 * t201),
-                k(2.0) * T::fused(t147, t293, T::fused(t181, t292, t307)),
+                T::fused(-t184, t224, t148 * t267),
+                k(2.0) * T::fused(t263, t184, T::fused(t133, t216, t300)),
             );
+            let t302 = t301 - t299;
+            let t303 = t287
+                - (T::fused(-t109, t292, T::fused(t111, t297, t105 * t302)) - t287);
+            let t304 = T::fused(t123, t252, T::fused(t124, t258, t303));
+            let t305 = k(2.0) * (t250 - t249);
+            let t306 = T::fused(
+                -t125,
+                t248,
+                T::fused(-t131, t305, k(2.0) * (t129 * (k(2.0) * t253))),
+            );
+            let t307 = T::fused(t126, t256, t306);
+            let t308 = t131 * (k(2.0) * t254);
             let t309 = T::fused(
-                t192,
-                t301,
-                -T::fused(t111, t276, -T::fused(t107, t264, t245 * t204)),
+                t125,
+                t239,
+                T::fused(t126, t257, t308 + T::fused(t129, t305, t308)),
             );
-            let t310 = k(2.0) * T::fused(t152, t304, T::fused(t182, t303, -t309));
-            let t311 = t310 - t308;
+            let t310 = t296 - t294;
+            let t311 = t301 + t299;
             let t312 = T::fused(
-                t123,
-                t311,
-                -T::fused(t124, t306, -(t298 + T::fused(t127, t295, t298))),
+                -t106,
+                t292,
+                T::fused(t105, t310, T::fused(-t111, t311, k(2.0) * (t109 * t275))),
             );
-            let t313 = T::fused(t131, t301, -T::fused(t172, t285, t160 * t290));
-            let t314 = T::fused(t134, t303, T::fused(t174, t286, t164 * t292));
-            let t315 = k(2.0) * (t314 + t313);
-            let t316 = T::fused(t131, t303, -T::fused(t172, t286, t160 * t292));
-            let t317 = t150 * (k(2.0) * t316);
-            let t318 = T::fused(t126, t301, -T::fused(-t170, t285, t158 * t290));
-            let t319 = T::fused(t134, t304, T::fused(t174, t288, t164 * t293));
-            let t320 = k(2.0) * (t319 - t318);
-            let t321 = T::fused(t126, t303, -T::fused(-t170, t286, t158 * t292));
-            let t322 = T::fused(t131, t304, -T::fused(t172, t288, t160 * t293));
-            let t323 = k(2.0) * (t322 + t321);
-            let t324 = T::fused(
-                t144,
-                t323,
-                -T::fused(t145, t320, t317 + T::fused(t148, t315, t317)),
+            let t313 = T::fused(t124, t307, T::fused(-t123, t309, t312));
+            let t314 = T::fused(
+                k(2e-6),
+                t201,
+                -T::fused(t156, t271, T::fused(-t146, t277, t117 * t282)),
             );
-            let t325 = T::fused(t134, t301, T::fused(t174, t285, t164 * t290));
-            let t326 = k(2.0) * (t319 + t318);
+            let t315 = t88 * t314;
+            let t316 = T::fused(
+                k(1e-6),
+                t220 - t221,
+                -T::fused(t157, t271, T::fused(-t147, t277, t120 * t282)),
+            );
+            let t317 = t88 * t316;
+            let t318 = t99 * t99 * T::fused(t92, t315, t98 * t317);
+            let t319 = t98 * t318;
+            let t320 = T::fused(
+                -t113,
+                t283,
+                T::fused(-t141, t278, T::fused(t153, t272, t10 * t319)),
+            );
+            let t321 = k(2.0) * t320;
+            let t322 = T::fused(
+                t116,
+                t283,
+                T::fused(-t145, t278, T::fused(t155, t272, t50 * t319)),
+            );
+            let t323 = T::fused(
+                -t108,
+                t284,
+                T::fused(-t139, t279, T::fused(-t151, t273, t99 * t317)),
+            );
+            let t324 = T::fused(-t97, t318, t323);
+            let t325 = k(2.0) * (t324 - t322);
+            let t326 = t92 * t318;
             let t327 = T::fused(
-                t144,
+                -t10,
                 t326,
-                -T::fused(k(2.0), t148 * (k(2.0) * t325), t150 * t315),
+                T::fused(-t113, t284, T::fused(-t141, t279, t153 * t273)),
             );
-            let t328 = k(2.0) * (t322 - t321);
-            let t329 = T::fused(t145, t328, t327);
-            let t330 = T::fused(t142, t329, -T::fused(t143, t324, t312));
-            let t331 = t294 - t289;
-            let t332 = t305 - t300;
+            let t328 = T::fused(t118, t316, t100 * t314);
+            let t329 = t84 * t328;
+            let t330 = k(2.0) * (t329 + t327);
+            let t331 = T::fused(
+                -t50,
+                t326,
+                T::fused(t116, t284, T::fused(-t145, t279, t155 * t273)),
+            );
+            let t332 = T::fused(
+                t74,
+                t325,
+                T::fused(-t80, t330, k(2.0) * (t79 * (k(2.0) * t331))),
+            );
             let t333 = T::fused(
-                t191,
-                t301,
-                T::fused(t110, t276, -T::fused(-t116, t264, t245 * t201)),
+                t103,
+                t304,
+                T::fused(t104, t313, T::fused(t76, t321, t332)),
             );
-            let t334 = k(2.0) * T::fused(t147, t304, T::fused(t181, t303, t333));
-            let t335 = t123 * t334;
-            let t336 = t335
-                + (t335 - T::fused(t129, t311, T::fused(t124, t331, t127 * t332)));
-            let t337 = k(2.0) * (t314 - t313);
-            let t338 = T::fused(t126, t304, -T::fused(-t170, t288, t158 * t293));
-            let t339 = t145 * (k(2.0) * (t338 + (t316 + t325)));
-            let t340 = t339
-                + (t339 - T::fused(t148, t328, -T::fused(t144, t337, t150 * t320)));
-            let t341 = t144 * (k(2.0) * t338);
-            let t342 = t341
-                + (t341 - T::fused(t150, t323, T::fused(-t145, t337, t148 * t326)));
-            let t343 = T::fused(t143, t342, -T::fused(t142, t340, -t336));
-            let t344 = T::fused(t122, t343, -T::fused(t121, t330, -t284));
-            let t345 = k(2.0) * (t277 + t272);
-            let t346 = t105 * t260;
-            let t347 = T::fused(
-                t55,
-                t268,
-                T::fused(t134, t264, -T::fused(-t174, t262, t164 * t263)),
+            let t334 = t105 * t286;
+            let t335 = t291 + t289;
+            let t336 = t334
+                - (T::fused(t111, t335, T::fused(t109, t310, t106 * t302)) - t334);
+            let t337 = T::fused(t124, t252, T::fused(-t123, t258, t336));
+            let t338 = t111 * t281;
+            let t339 = T::fused(
+                t105,
+                t335,
+                T::fused(t106, t297, t338 - T::fused(t109, t311, -t338)),
             );
-            let t348 = t94 * (k(2.0) * (t282 + (t347 + t346)));
-            let t349 = t348
-                + (t348 - T::fused(t97, t280, -T::fused(t92, t270, t98 * t345)));
-            let t350 = T::fused(
-                t185,
-                t286,
-                -T::fused(t193, t285, T::fused(t108, t262, t114 * t274)),
+            let t340 = T::fused(-t123, t307, T::fused(-t124, t309, t339));
+            let t341 = k(2.0) * (t324 + t322);
+            let t342 = t87 * t328;
+            let t343 = T::fused(
+                -t76,
+                t341,
+                T::fused(t79, t330, k(2.0) * (t80 * (k(2.0) * t342))),
             );
-            let t351 = T::fused(
-                k(2.0),
-                T::fused(t247, t207, T::fused(t155, t288, -t350)),
-                k(0.00025) * T::fused(-t253, t167, t233 * t207),
+            let t344 = T::fused(
+                t103,
+                t337,
+                T::fused(-t104, t340, T::fused(-t74, t321, t343)),
             );
-            let t352 = t310 + t308;
-            let t353 = T::fused(
-                t124,
-                t352,
-                T::fused(t123, t332, T::fused(-k(2.0), t127 * t351, t129 * t295)),
-            );
-            let t354 = T::fused(t143, t329, T::fused(t142, t324, t353));
-            let t355 = t124 * (t334 - (t297 - t351));
-            let t356 = t355
-                + (t355 - T::fused(t127, t352, -T::fused(-t123, t331, t129 * t306)));
-            let t357 = T::fused(t142, t342, T::fused(t143, t340, t356));
-            let t358 = T::fused(t122, t357, -T::fused(t121, t354, -t349));
-            let t359 = T::fused(t0, t180, T::fused(t19, t209, k(2e-6) * t119));
-            let t360 = T::fused(u2, t189, t232 * t189);
-            let t361 = T::fused(u2, t197, t232 * t197);
-            let t362 = T::fused(-t126, t201, T::fused(-t131, t204, t134 * t207));
-            let t363 = T::fused(-t170, t201, T::fused(t172, t204, t174 * t207));
-            let t364 = T::fused(
-                t228,
-                t361,
-                T::fused(k(0.000125), T::fused(t216, t362, t231 * t363), t244 * t362),
-            );
-            let t365 = T::fused(-t222, t140, T::fused(t229, t360, t364));
-            let t366 = T::fused(-u0, t359, t365);
-            let t367 = t101 * t366;
-            let t368 = k(2.0) * (t269 - t261);
-            let t369 = T::fused(
-                t94,
-                t345,
-                -T::fused(-k(2.0), t98 * (k(2.0) * t346), t97 * t368),
-            );
-            let t370 = T::fused(
-                t121,
-                t343,
-                T::fused(t122, t330, -T::fused(t92, t280, -t369)),
-            );
-            let t371 = T::fused(
-                t92,
-                t278,
-                T::fused(-k(2.0), t97 * (k(2.0) * t347), t98 * t368),
-            );
-            let t372 = T::fused(
-                t121,
-                t357,
-                T::fused(t122, t354, T::fused(t94, t280, t371)),
-            );
-            let t373 = T::fused(t158, t201, T::fused(t160, t204, t164 * t207));
-            let t374 = k(1e-6) * t177;
-            let t375 = T::fused(
+            let t345 = T::fused(u2, t169, t232 * t169);
+            let t346 = T::fused(u2, t177, t232 * t177);
+            let t347 = T::fused(-t108, t181, T::fused(-t113, t184, t116 * t187));
+            let t348 = T::fused(t139, t181, T::fused(t141, t184, t145 * t187));
+            let t349 = T::fused(
                 k(0.000125),
-                T::fused(-t222, t362, t231 * t373),
-                T::fused(-t243, t362, t231 * t374),
+                T::fused(t211, t347, t223 * t348),
+                T::fused(t259, t347, t223 * t188),
             );
-            let t376 = T::fused(
+            let t350 = T::fused(
                 -u1,
-                t180,
-                T::fused(t216, t140, T::fused(t228, t360, T::fused(-t229, t361, t375))),
+                t192,
+                T::fused(t227, t191, T::fused(t226, t345, T::fused(t230, t346, t349))),
             );
-            let t377 = t230 * t189;
-            let t378 = t239 * t197;
-            let t379 = t378 + t377;
-            let t380 = T::fused(
-                -u1,
-                t209,
-                T::fused(t243, t373, T::fused(-t244, t363, t222 * t374)) - t379,
+            let t351 = t231 * t169;
+            let t352 = t241 * t177;
+            let t353 = t352 - t351;
+            let t354 = T::fused(-t151, t181, T::fused(t153, t184, t155 * t187));
+            let t355 = T::fused(
+                u1,
+                t194,
+                T::fused(t259, t348, T::fused(t260, t354, t211 * t188)) + t353,
             );
-            let t381 = T::fused(
-                t190,
+            let t356 = k(1e-6) * t119;
+            let t357 = t356 + t190;
+            let t358 = t356 - t357;
+            let t359 = T::fused(t207, t350, T::fused(-t210, t355, u0 * t358));
+            let t360 = t83 * t359;
+            let t361 = t202 * t360;
+            let t362 = t203 * t360;
+            let t363 = T::fused(t0, t192, T::fused(t12, t194, k(2e-6) * t101));
+            let t364 = T::fused(
+                t226,
+                t346,
+                T::fused(k(0.000125), T::fused(t227, t347, t223 * t354), t260 * t347),
+            );
+            let t365 = T::fused(t211, t191, T::fused(-t230, t345, t364));
+            let t366 = T::fused(-u0, t363, t365);
+            let t367 = t83 * t366;
+            let t368 = T::fused(
+                k(2.0),
+                t71 * t367,
+                -(t362 + (t361 - T::fused(-t73, t333, t75 * t344))),
+            );
+            let t369 = T::fused(
+                -t139,
+                t278,
+                T::fused(-t151, t272, T::fused(t91, t318, t99 * t315)),
+            );
+            let t370 = T::fused(-t108, t283, t369);
+            let t371 = t76 * (k(2.0) * (t370 + (t342 - t331)));
+            let t372 = k(2.0) * (t329 - t327);
+            let t373 = t371
+                + (T::fused(-t79, t321, T::fused(-t80, t341, t74 * t372)) + t371);
+            let t374 = T::fused(t104, t304, T::fused(-t103, t313, t373));
+            let t375 = t74 * (k(2.0) * t370);
+            let t376 = t375
+                + (T::fused(-t80, t321, T::fused(-t79, t325, t76 * t372)) + t375);
+            let t377 = T::fused(t104, t337, T::fused(t103, t340, t376));
+            let t378 = T::fused(
                 t197,
-                T::fused(t200, t201, T::fused(t203, t204, T::fused(t206, t207, t374))),
+                t367,
+                -(t362 - (t361 + T::fused(t75, t374, t73 * t377))),
             );
-            let t382 = T::fused(-t198, t189, t381);
-            let t383 = k(1e-6) * t137;
-            let t384 = t383 + t382;
-            let t385 = t383 - t384;
-            let t386 = T::fused(t220, t376, T::fused(-t221, t380, u0 * t385));
-            let t387 = t101 * t386;
-            let t388 = T::fused(
-                k(2.0),
-                T::fused(-t89, t367, t96 * t387),
-                T::fused(t211, t387, -T::fused(-t93, t370, t91 * t372)),
-            );
-            let t389 = T::fused(
-                t96,
-                T::fused(t211, t367, -T::fused(t91, t344, t93 * t358)),
-                t89 * t388,
-            );
-            let t390 = T::fused(
+            let t379 = T::fused(
                 -k(0.5),
-                t389,
-                T::fused(t12, t214 * t359, t21 * (t214 * t384)),
+                T::fused(-t71, t368, t78 * t378),
+                T::fused(t3, t200 * t363, t14 * (t200 * t357)),
             );
-            let t391 = T::fused(
-                t94,
-                t357,
-                T::fused(t92, t343, T::fused(-t97, t354, t98 * t330)),
+            let t380 = T::fused(
+                t79,
+                t304,
+                T::fused(-t80, t337, T::fused(-t74, t340, t76 * t313)),
             );
-            let t392 = T::fused(-t218, t376, u0 * t380);
+            let t381 = T::fused(u0, t350, t205 * t355);
+            let t382 = t208 * t381;
+            let t383 = t209 * t381;
+            let t384 = T::fused(-t205, t350, u0 * t355);
+            let t385 = T::fused(
+                -t76,
+                t304,
+                T::fused(-t74, t337, T::fused(t80, t340, t79 * t313)),
+            );
+            let t386 = T::fused(
+                -t104,
+                T::fused(k(2.0), t104 * t384, t383 + (t382 - t380)),
+                t103 * T::fused(t206, t384, t383 - (t382 + t385)),
+            );
+            let t387 = T::fused(
+                t0,
+                T::fused(t192, t64, t201 * t194),
+                T::fused(-t12, T::fused(-t194, t64, t201 * t192), k(0.5) * t386),
+            );
+            let t388 = T::fused(t211, t345, t227 * t346);
+            let t389 = T::fused(-t227, t345, t211 * t346);
+            let t390 = t229 * t389;
+            let t391 = t228 * t389;
+            let t392 = T::fused(
+                t111,
+                t307,
+                T::fused(t109, t309, T::fused(k(2.0), t124 * t388, t391 + t390)),
+            );
             let t393 = T::fused(
-                t97,
-                t357,
-                -T::fused(t98, t343, -T::fused(t94, t354, t92 * t330)),
+                t109,
+                t307,
+                T::fused(-t111, t309, T::fused(-t225, t388, t391 - t390)),
             );
-            let t394 = T::fused(u0, t376, t218 * t380);
+            let t394 = T::fused(
+                t124,
+                T::fused(t106, t252, T::fused(-t105, t258, t392)),
+                t123 * T::fused(-t105, t252, T::fused(-t106, t258, t393)),
+            );
             let t395 = T::fused(
-                k(2.0),
-                T::fused(-t122, t392, t121 * t394),
-                T::fused(t219, t394, t393),
+                t170,
+                T::fused(-t169, t224, t177 * t222),
+                t178 * T::fused(t169, t222, t177 * t224),
             );
             let t396 = T::fused(
-                k(0.5),
-                T::fused(t121, T::fused(t219, t392, t391), t122 * t395),
-                t19 * T::fused(-t83, t209, t215 * t180),
+                t199,
+                t363,
+                T::fused(-t210, t350, T::fused(-t207, t355, t205 * t358)),
             );
             let t397 = T::fused(
-                -t210,
-                t39,
-                T::fused(t0, T::fused(t83, t180, t215 * t209), -t396),
+                t160,
+                t68,
+                -T::fused(-t195, t40, T::fused(-t211, t192, T::fused(t223, t194, t365))),
             );
             let t398 = T::fused(
-                -t190,
-                T::fused(t233, t197, t236 * t189),
-                t198 * T::fused(-t236, t197, t233 * t189),
+                t160,
+                t69,
+                T::fused(t190, t57, -T::fused(-t195, t41, t351 - (t352 + t353))),
             );
-            let t399 = T::fused(-t222, t360, t216 * t361);
+            let t399 = k(125.66370614359172) * t8;
             (
-                t209,
-                t210,
-                t212,
-                t213,
-                t216,
-                t217,
-                t218,
-                t220,
-                t221,
-                t222,
-                t227,
-                t231,
-                t260,
-                t268,
-                t273,
-                t324,
-                t329,
-                t340,
-                t342,
+                t204,
+                t319,
+                t326,
+                t328,
+                t333,
                 t344,
-                t358,
+                t357,
                 t359,
-                t360,
-                t361,
-                t365,
+                t363,
                 t366,
-                t370,
-                t372,
-                t376,
+                t374,
                 t377,
-                t378,
                 t379,
-                t380,
-                t382,
-                t384,
-                t385,
-                t386,
-                t390,
+                t387,
+                t394,
+                t395,
+                t396,
                 t397,
                 t398,
                 t399,
             )
         };
-        let (t403, t404, t405, t406, t409, t411, t413, t420) = {
-            let t400 = T::fused(
-                t124,
-                t340,
-                -T::fused(t127, t329, T::fused(t129, t324, t227 * t399)),
-            );
-            let t401 = T::fused(t216, t360, t222 * t361);
-            let t402 = T::fused(
-                -t127,
-                t324,
-                T::fused(k(2.0), T::fused(-t143, t399, t142 * t401), t227 * t401),
-            );
+        let (t407, t409, t410, t417) = {
+            let t400 = t399 * t14;
+            let t401 = t0 * t400;
+            let t402 = k(125.66370614359172) * t5 * t14;
             let t403 = T::fused(
-                -t142,
-                T::fused(t123, t342, t400),
-                t143
-                    * T::fused(
-                        t124,
-                        t342,
-                        -T::fused(t123, t340, -T::fused(t129, t329, t402)),
-                    ),
+                k(0.00211041832206494),
+                T::fused(k(62.83185307179586) * t401, t2, t87 * t14),
+                t12 * t402,
             );
-            let t404 = T::fused(
-                -t213,
-                t359,
-                T::fused(-t221, t376, T::fused(-t220, t380, t218 * t385)),
-            );
-            let t405 = T::fused(
-                -t86,
-                t179,
-                T::fused(-t41, t210, T::fused(t222, t180, T::fused(t231, t209, t365))),
-            );
+            let t404 = t399 * t3;
+            let t405 = k(0.01578643223954243) * t401;
             let t406 = T::fused(
-                t87,
-                t179,
-                T::fused(t61, t382, T::fused(t42, t210, t377 + (t378 + t379))),
+                -t1,
+                t403,
+                T::fused(
+                    t20,
+                    t404,
+                    t6 * T::fused(k(0.007895683520871487), t400, t0 * t405),
+                ),
             );
-            let t407 = k(0.5) * t55;
+            let t407 = t24 * t406;
             let t408 = T::fused(
-                -t13,
-                T::fused(t21 * t5, t407, t21 * t20),
-                t7 * T::fused(t21, t18, t12 * t28),
+                k(0.0001),
+                T::fused(t3, T::fused(k(59544.453736847776), t5, t87 * t12), t84 * t0),
+                T::fused(t400, t44, t15 * (t12 * t405)),
             );
-            let t409 = k(125.66370614359172) * t408;
+            let t409 = k(166631.95167673402) * t408;
             let t410 = T::fused(
-                k(0.5),
-                T::fused(t9, k(16.6631951676734) * t0, t55 * (t19 * t53)),
-                k(7895.6835208714865) * t12,
+                k(100000.0),
+                T::fused(
+                    -t58,
+                    T::fused(-t59, k(62.83185307179586) * t404, t402),
+                    t400 * t60,
+                ),
+                t12 * t407,
             );
-            let t411 = k(125.66370614359172) * T::fused(t13, t410, t7 * (t21 * t49));
-            let t412 = T::fused(
-                -t13,
-                T::fused(t21 * t75, t407, t21 * t67),
-                t7 * T::fused(t12, t64, t21 * t74),
+            let t411 = t82 * t328;
+            let t412 = t86 * t328;
+            let t413 = T::fused(
+                t198,
+                t366,
+                -T::fused(t204, t359, T::fused(-t10, t411, t50 * t412)),
             );
-            let t413 = k(125.66370614359172) * t412;
-            let t414 = t104 * t260;
-            let t415 = t100 * t260;
+            let t414 = T::fused(
+                -t75,
+                T::fused(-t78, t333, t71 * t377),
+                t73 * T::fused(t71, t374, t78 * t344),
+            );
+            let t415 = T::fused(
+                t50,
+                T::fused(-t89, t326, T::fused(-t93, t319, t83 * t411)),
+                t10 * T::fused(t90, t326, T::fused(-t96, t319, t83 * t412)),
+            );
             let t416 = T::fused(
-                -t9,
-                T::fused(t108, t268, -T::fused(-t101, t414, t114 * t273)),
-                t55 * T::fused(t107, t268, T::fused(-t101, t415, t111 * t273)),
+                k(7895.6835208714865),
+                T::fused(-t14, t363, t3 * t357),
+                T::fused(-k(0.25), t414, k(0.5) * t415),
             );
             let t417 = T::fused(
-                t91,
-                T::fused(t96, t370, t89 * t358),
-                t93 * T::fused(-t89, t344, t96 * t372),
-            );
-            let t418 = T::fused(
-                k(7895.6835208714865),
-                T::fused(-t21, t359, t12 * t384),
-                T::fused(k(0.5), t416, k(0.25) * t417),
-            );
-            let t419 = T::fused(
-                t212,
-                t366,
-                T::fused(t217, t386, -T::fused(-t55, t414, t9 * t415)),
-            );
-            let t420 = T::fused(
-                t210,
-                t409,
+                -t195,
+                t407,
                 k(125.66370614359172)
-                    * T::fused(-t13, t418, t7 * (k(62.83185307179586) * t419)),
+                    * T::fused(-t8, k(62.83185307179586) * t413, t5 * t416),
             );
-            (t403, t404, t405, t406, t409, t411, t413, t420)
+            (t407, t409, t410, t417)
         };
         *dfdx = [
             k(0.0),
@@ -5981,43 +5894,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t29,
+            t25,
+            t36,
+            k(0.0),
             -t39,
+            t40,
+            -t41,
             k(0.0),
-            -t40,
-            t41,
-            -t42,
+            t47,
+            -t54,
             k(0.0),
-            t50,
-            -t59,
+            -t56,
             k(0.0),
-            -t60,
+            -t57,
             k(0.0),
             -t61,
+            -t66,
             k(0.0),
-            -t76,
-            t84,
+            -t67,
+            -t68,
+            t69,
             k(0.0),
-            t85,
-            -t86,
-            t87,
-            k(0.0),
-            T::fused(t76, t179, T::fused(t50, t382, -T::fused(t29, t210, t390))),
-            -T::fused(t179, t84, T::fused(t59, t382, -t397)),
-            T::fused(k(0.5), t403, -t398),
-            -T::fused(t85, t179, T::fused(t60, t382, T::fused(t40, t210, t404))),
-            -t405,
-            -t406,
+            T::fused(t160, t61, -T::fused(-t190, t47, T::fused(-t195, t25, t379))),
+            T::fused(t160, t66, T::fused(-t190, t54, T::fused(t195, t36, t387))),
+            T::fused(-k(0.5), t394, t395),
+            T::fused(t160, t67, -T::fused(t190, t56, -T::fused(-t195, t39, t396))),
+            t397,
+            -t398,
             k(0.0),
         ];
         *dfdt = [
             k(0.0),
             k(0.0),
             k(0.0),
+            t407,
             t409,
-            t411,
-            -t413,
-            T::fused(t179, t413, T::fused(t411, t382, t420)),
+            -t410,
+            T::fused(t160, t410, -T::fused(-t190, t409, t417)),
         ];
     }
     fn joint_input_jacobian(

@@ -11,41 +11,41 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 91 operations by rotations of the bodies, doubled; 91 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 58 operations by rotations of the bodies, doubled; 58 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 13 operations by normal form; 24 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 13 operations by normal form; 24 operations by recursion; 3 more compared
-//! * corrected_accelerations: 64 operations by normal form in the bodies' frames; 71 operations by recursion in the bodies' frames; 9 more compared
+//! * accelerations: 78 operations by rotations of the bodies, doubled; 78 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 58 operations by rotations of the bodies; 58 operations by rotations of the bodies, doubled; 2 more compared
+//! * joint_accelerations: 13 operations by normal form; 18 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 13 operations by normal form; 18 operations by recursion; 3 more compared
+//! * corrected_accelerations: 53 operations by normal form in the bodies' frames; 57 operations by recursion in the bodies' frames; 9 more compared
 //! * joint_jacobian: 14 operations by derivatives of u̇, from its leaves; 14 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 11 | 11 | 0 | 22 | 0 of 4 | 24 | 22 |
+//! | phi | Φ | 10 | 11 | 0 | 21 | 0 of 4 | 24 | 21 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 10 | 0 | 10 | 0 of 17 | 14 | 10 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 8 | 15 | 0 | 23 | 0 of 9 | 26 | 23 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 7 | 15 | 0 | 22 | 0 of 9 | 26 | 22 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 17 | 30 | 0 | 47 | 0 of 3 | 81 | 47 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 21 | 0 | 34 | 0 of 3 | 47 | 34 |
+//! | gamma | γ | 17 | 26 | 0 | 43 | 0 of 3 | 63 | 43 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 18 | 0 | 31 | 0 of 3 | 35 | 31 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 60 | 0 | 91 | 1 of 6 | 1059 | 91 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 47 | 0 | 78 | 1 of 6 | 764 | 78 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 22 | 36 | 0 | 58 | 1 of 6 | 302 | 58 |
+//! | project | (δr, δπ') that changes the rows as given | 24 | 34 | 0 | 58 | 1 of 6 | 218 | 58 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 | 333 | 39 |
-//! | solve_velocities | dependent velocities, eq. (19) | 11 | 24 | 0 | 35 | 0 of 6 | 38 | 35 |
+//! | solve_velocities | dependent velocities, eq. (19) | 11 | 18 | 0 | 29 | 0 of 6 | 32 | 29 |
 //! | joint_accelerations | u̇ in joint coordinates | 4 | 9 | 0 | 13 | 1 of 3 | 14 | 13 |
 //! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 | 24 | 24 |
-//! | to_maximal | (q, v) of a joint state | 15 | 27 | 0 | 42 | 0 of 13 | 54 | 42 |
+//! | to_maximal | (q, v) of a joint state | 15 | 22 | 0 | 37 | 0 of 13 | 45 | 37 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 | 14 | 13 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 41 | 0 | 64 | 1 of 6 | 149 | 64 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 30 | 0 | 53 | 1 of 6 | 125 | 53 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | corrected_solution | both | 24 | 44 | 0 | 68 | 1 of 9 | 288 | 68 |
+//! | corrected_solution | both | 24 | 33 | 0 | 57 | 1 of 9 | 237 | 57 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 14 | 0 | 14 | 20 of 56 | 36 | 14 |
 //!
 //! # Proof
@@ -196,7 +196,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
             accelerations[5],
         ];
     }
-    /// Writes Φ: 22 operations (11 ±, 11 ×, 0 ÷).
+    /// Writes Φ: 21 operations (10 ±, 11 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let top_rx = y[0];
@@ -206,16 +206,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
-        let t0 = top_e3 * top_e3;
-        let t1 = top_e0 * top_e0;
+        let t0 = T::fused(top_e3, top_e3, top_e0 * top_e0);
         *out = [
             T::fused(-k(0.08), T::fused(top_e0, top_e2, top_e1 * top_e3), top_rx),
             T::fused(-k(0.08), T::fused(-top_e0, top_e1, top_e2 * top_e3), top_ry),
-            T::fused(k(0.08), k(0.5) - (t1 + t0), top_rz),
-            t0 + T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, t1)) - k(1.0),
+            T::fused(k(0.08), k(0.5) - t0, top_rz),
+            T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, t0)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 34 operations (13 ±, 21 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 31 operations (13 ±, 18 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -227,30 +226,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let top_sz = y[9];
         let top_wx = y[10];
         let top_wy = y[11];
-        let t0 = k(2.0) * top_e1;
-        let t1 = k(2.0) * top_e0;
-        let t2 = T::fused(-top_e0, t1, k(1.0));
-        let t3 = top_e3 * t1;
-        let t4 = top_e2 * t0;
-        let t5 = T::fused(
-            k(0.04),
-            T::fused(top_wy, T::fused(-top_e1, t0, t2), top_wx * (t4 - t3)),
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = top_e0 * top_e3;
+        let t2 = top_e1 * top_e2;
+        let t3 = T::fused(
+            k(0.08),
+            T::fused(-top_wy, T::fused(top_e1, top_e1, -t0), (t2 - t1) * top_wx),
             top_sx,
         );
-        let t6 = k(2.0) * top_e2;
-        let t7 = T::fused(
-            -k(0.04),
-            T::fused(top_wy, t4 + t3, top_wx * T::fused(-top_e2, t6, t2)),
+        let t4 = T::fused(
+            -k(0.08),
+            T::fused(-top_wx, T::fused(top_e2, top_e2, -t0), (t2 + t1) * top_wy),
             top_sy,
         );
-        let t8 = T::fused(
-            -top_wy,
-            T::fused(-top_e2, t1, top_e3 * t0),
-            top_wx * T::fused(top_e1, t1, top_e3 * t6),
+        let t5 = T::fused(
+            -T::fused(top_e0, top_e1, top_e2 * top_e3),
+            top_wx,
+            T::fused(-top_e0, top_e2, top_e1 * top_e3) * top_wy,
         );
-        *out = [t5, t7, T::fused(k(0.04), t8, top_sz)];
+        *out = [t3, t4, T::fused(-k(0.08), t5, top_sz)];
     }
-    /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
+    /// Kinetic and potential energy: 15 operations (5 ±, 10 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let top_rz = y[2];
@@ -261,17 +257,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = T::fused(
-            top_wz,
-            k(0.0005) * top_wz,
-            T::fused(top_wy, k(0.0003) * top_wy, top_wx * (k(0.0003) * top_wx)),
-        );
-        let t1 = T::fused(
-            k(0.5),
+            k(1666.6666666666667),
             T::fused(top_sz, top_sz, T::fused(top_sy, top_sy, top_sx * top_sx)),
-            t0,
+            T::fused(
+                k(1.6666666666666667),
+                top_wz * top_wz,
+                T::fused(top_wx, top_wx, top_wy * top_wy),
+            ),
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
+            kinetic: k(0.00015) * t0,
             potential: k(4.905) * top_rz,
         }
     }
@@ -392,7 +387,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
         y[5] = t5;
         y[6] = t3;
     }
-    /// Solves eq. (19) for the dependent velocities: 35 operations (11 ±, 24 ×, 0 ÷).
+    /// Solves eq. (19) for the dependent velocities: 29 operations (11 ±, 18 ×, 0 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -401,27 +396,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
         let top_e3 = y[6];
         let top_wx = y[10];
         let top_wy = y[11];
-        let t0 = top_e0 * top_e0;
-        let t1 = top_e0 * top_e3;
-        let t2 = top_e1 * top_e2;
+        let t0 = top_e0 * top_e3;
+        let t1 = top_e1 * top_e2;
+        let t2 = top_e0 * top_e0;
         let t3 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
-            top_wy,
-            k(2.0) * (t2 - t1) * top_wx,
+            t1 - t0,
+            top_wx,
+            (k(0.5) - T::fused(top_e1, top_e1, t2)) * top_wy,
         );
         let t4 = T::fused(
-            k(2.0) * (t2 + t1),
-            top_wy,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0)) * top_wx,
+            k(0.5) - T::fused(top_e2, top_e2, t2),
+            top_wx,
+            (t1 + t0) * top_wy,
         );
         let t5 = T::fused(
-            -(k(2.0) * T::fused(-top_e0, top_e2, top_e1 * top_e3)),
-            top_wy,
-            k(2.0) * T::fused(top_e0, top_e1, top_e2 * top_e3) * top_wx,
+            -T::fused(top_e0, top_e1, top_e2 * top_e3),
+            top_wx,
+            T::fused(-top_e0, top_e2, top_e1 * top_e3) * top_wy,
         );
-        y[7] = -(k(0.04) * t3);
-        y[8] = k(0.04) * t4;
-        y[9] = -(k(0.04) * t5);
+        y[7] = -(k(0.08) * t3);
+        y[8] = k(0.08) * t4;
+        y[9] = k(0.08) * t5;
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
@@ -534,7 +529,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
             k(2.0) * top_e3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 23 operations (8 ±, 15 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 22 operations (7 ±, 15 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -543,13 +538,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let top_e3 = y[6];
         let t0 = top_e0 * top_e3;
         let t1 = top_e1 * top_e2;
-        let t2 = top_e0 * top_e0;
+        let t2 = T::fused(-top_e0, top_e0, k(0.5));
         *out = [
             k(1.0),
             k(0.08) * (t1 - t0),
-            k(0.08) * (k(0.5) - T::fused(top_e1, top_e1, t2)),
+            -(k(0.08) * T::fused(top_e1, top_e1, -t2)),
             k(1.0),
-            -(k(0.08) * (k(0.5) - T::fused(top_e2, top_e2, t2))),
+            k(0.08) * T::fused(top_e2, top_e2, -t2),
             -(k(0.08) * (t1 + t0)),
             k(1.0),
             k(0.08) * T::fused(top_e0, top_e1, top_e2 * top_e3),
@@ -561,7 +556,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 47 operations (17 ±, 30 ×, 0 ÷).
+    /// Writes γ: 43 operations (17 ±, 26 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -571,35 +566,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e1;
-        let t1 = k(2.0) * top_e0;
-        let t2 = T::fused(-top_e0, t1, k(1.0));
-        let t3 = top_wx * top_wz;
-        let t4 = top_e3 * t1;
-        let t5 = top_e2 * t0;
-        let t6 = top_wy * top_wz;
-        let t7 = top_e2 * t1;
-        let t8 = top_e3 * t0;
-        let t9 = T::fused(top_wx, top_wx, top_wy * top_wy);
-        let t10 = T::fused(
-            t9,
-            t8 + t7,
-            -T::fused(-t3, T::fused(-top_e1, t0, t2), t6 * (t5 - t4)),
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = top_wx * top_wz;
+        let t2 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t3 = top_e0 * top_e2;
+        let t4 = top_e1 * top_e3;
+        let t5 = top_wy * top_wz;
+        let t6 = top_e0 * top_e3;
+        let t7 = top_e1 * top_e2;
+        let t8 = T::fused(
+            t1,
+            T::fused(top_e1, top_e1, -t0),
+            T::fused(-(t4 + t3), t2, (t7 - t6) * t5),
         );
-        let t11 = k(2.0) * top_e2;
-        let t12 = top_e1 * t1;
-        let t13 = top_e3 * t11;
-        let t14 = T::fused(
-            t9,
-            t13 - t12,
-            T::fused(-t3, t5 + t4, t6 * T::fused(-top_e2, t11, t2)),
+        let t9 = top_e0 * top_e1;
+        let t10 = top_e2 * top_e3;
+        let t11 = T::fused(
+            t7 + t6,
+            t1,
+            -T::fused(-t5, T::fused(top_e2, top_e2, -t0), (t10 - t9) * t2),
         );
-        let t15 = T::fused(
-            t9,
-            T::fused(-top_e3, k(2.0) * top_e3, t2),
-            T::fused(t3, t8 - t7, t6 * (t13 + t12)),
+        let t12 = T::fused(
+            t4 - t3,
+            t1,
+            T::fused(-t2, T::fused(top_e3, top_e3, -t0), (t10 + t9) * t5),
         );
-        *out = [-(k(0.04) * t10), -(k(0.04) * t14), k(0.04) * t15];
+        *out = [k(0.08) * t8, k(0.08) * t11, k(0.08) * t12];
     }
     /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -610,7 +602,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let t0 = k(0.0002) * top_wz;
         *out = [k(0.0), k(0.0), k(-4.905), -(top_wy * t0), top_wx * t0, k(0.0)];
     }
-    /// Solves eq. (17): 91 operations (31 ±, 60 ×, 0 ÷).
+    /// Solves eq. (17): 78 operations (31 ±, 47 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -620,53 +612,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e0;
-        let t1 = top_e3 * t0;
-        let t2 = k(2.0) * top_e1;
-        let t3 = top_e2 * t2;
-        let t4 = t3 - t1;
-        let t5 = top_e1 * t0;
-        let t6 = k(2.0) * top_e2;
-        let t7 = top_e3 * t6;
-        let t8 = t7 + t5;
-        let t9 = top_wy * top_wz;
-        let t10 = T::fused(-top_e0, t0, k(1.0));
-        let t11 = T::fused(-top_e1, t2, t10);
-        let t12 = top_wx * top_wz;
-        let t13 = top_e2 * t0;
-        let t14 = top_e3 * t2;
-        let t15 = T::fused(top_wx, top_wx, top_wy * top_wy);
-        let t16 = k(0.04) * T::fused(t15, t14 + t13, -T::fused(-t12, t11, t9 * t4));
-        let t17 = T::fused(-top_e2, t6, t10);
-        let t18 = t3 + t1;
-        let t19 = k(0.04) * T::fused(t15, t7 - t5, T::fused(-t12, t18, t9 * t17));
-        let t20 = t14 - t13;
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e1, top_e1, -t0);
+        let t2 = top_wx * top_wz;
+        let t3 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t4 = top_e0 * top_e2;
+        let t5 = top_e1 * top_e3;
+        let t6 = top_wy * top_wz;
+        let t7 = top_e0 * top_e3;
+        let t8 = top_e1 * top_e2;
+        let t9 = t8 - t7;
+        let t10 = T::fused(t2, t1, T::fused(-(t5 + t4), t3, t9 * t6));
+        let t11 = top_e0 * top_e1;
+        let t12 = top_e2 * top_e3;
+        let t13 = t12 + t11;
+        let t14 = t5 - t4;
+        let t15 = T::fused(
+            t14,
+            t2,
+            T::fused(-t3, T::fused(top_e3, top_e3, -t0), t13 * t6),
+        );
+        let t16 = T::fused(top_e2, top_e2, -t0);
+        let t17 = t8 + t7;
+        let t18 = T::fused(t17, t2, -T::fused(-t6, t16, (t12 - t11) * t3));
+        let t19 = T::fused(
+            k(0.0625),
+            t2,
+            -T::fused(t1, t10, T::fused(t14, t15, t17 * t18)),
+        );
+        let t20 = T::fused(k(122.625), t14, -t19);
         let t21 = T::fused(
-            t15,
-            T::fused(-top_e3, k(2.0) * top_e3, t10),
-            T::fused(t12, t20, t9 * t8),
+            k(0.0625),
+            t6,
+            -T::fused(t9, t10, T::fused(t13, t15, t16 * t18)),
         );
-        let t22 = k(0.04) * t21;
-        let t23 = T::fused(
-            t22,
-            k(0.02) * t8,
-            T::fused(-t16, k(0.02) * t4, t19 * (k(0.02) * t17)),
-        );
-        let t24 = k(909.0909090909091)
-            * (t23 - T::fused(-k(0.1962), t8, k(0.0002) * t9));
-        let t25 = T::fused(
-            k(0.02) * t20,
-            t22,
-            -T::fused(-(k(0.02) * t11), t16, k(0.02) * t18 * t19),
-        );
-        let t26 = k(909.0909090909091)
-            * (t25 - T::fused(-k(0.1962), t20, k(0.0002) * t12));
+        let t22 = T::fused(k(122.625), t13, -t21);
         *out = [
-            T::fused(-t24, k(0.04) * t4, t26 * (k(0.04) * t11)) - t16,
-            -(t19 + T::fused(-t24, k(0.04) * t17, t26 * (k(0.04) * t18))),
-            t22 - T::fused(t24, k(0.04) * t8, t26 * (k(0.04) * t20)),
-            t24,
-            -t26,
+            -(k(0.23272727272727273)
+                * T::fused(t9, t22, T::fused(-k(0.34375), t10, t1 * t20))),
+            -(k(0.23272727272727273)
+                * T::fused(t16, t22, T::fused(-k(0.34375), t18, t17 * t20))),
+            -(k(0.23272727272727273)
+                * T::fused(t13, t22, T::fused(-k(0.34375), t15, t14 * t20))),
+            k(2.909090909090909) * t22,
+            -(k(2.909090909090909) * t20),
             k(0.0),
         ];
     }
@@ -690,7 +679,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for HeavyTop<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 58 operations (22 ±, 36 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 58 operations (24 ±, 34 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -706,36 +695,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for HeavyTop<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = k(2.0) * top_e0;
-        let t1 = top_e2 * t0;
-        let t2 = k(2.0) * top_e1;
-        let t3 = top_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-top_e0, t0, k(1.0));
-        let t6 = T::fused(-top_e1, t2, t5);
-        let t7 = top_e3 * t0;
-        let t8 = top_e2 * t2;
-        let t9 = t8 + t7;
-        let t10 = T::fused(t4, row2, T::fused(-t6, row0, t9 * row1));
-        let t11 = k(0.2727272727272727) * t10;
-        let t12 = top_e1 * t0;
-        let t13 = k(2.0) * top_e2;
-        let t14 = top_e3 * t13;
-        let t15 = t14 + t12;
-        let t16 = t8 - t7;
-        let t17 = T::fused(-top_e2, t13, t5);
-        let t18 = T::fused(-t15, row2, T::fused(-t16, row0, t17 * row1));
-        let t19 = k(0.2727272727272727) * t18;
-        let t20 = T::fused(-top_e3, k(2.0) * top_e3, t5);
-        let t21 = t3 + t1;
-        let t22 = t14 - t12;
-        let t23 = T::fused(-t20, row2, T::fused(t21, row0, t22 * row1));
+        let t0 = top_e0 * top_e1;
+        let t1 = top_e2 * top_e3;
+        let t2 = t1 - t0;
+        let t3 = top_e0 * top_e2;
+        let t4 = top_e1 * top_e3;
+        let t5 = t4 + t3;
+        let t6 = top_e0 * top_e0;
+        let t7 = k(0.5) - T::fused(top_e3, top_e3, t6);
+        let t8 = k(3.6666666666666665)
+            * T::fused(t7, row2, -T::fused(t2, row1, t5 * row0));
+        let t9 = k(0.5) - T::fused(top_e2, top_e2, t6);
+        let t10 = top_e0 * top_e3;
+        let t11 = top_e1 * top_e2;
+        let t12 = t11 - t10;
+        let t13 = t1 + t0;
+        let t14 = T::fused(t13, row2, T::fused(-t9, row1, t12 * row0));
+        let t15 = t11 + t10;
+        let t16 = k(0.5) - T::fused(top_e1, top_e1, t6);
+        let t17 = t4 - t3;
+        let t18 = T::fused(t17, row2, -T::fused(-t15, row1, t16 * row0));
         *out = [
-            T::fused(t21, t23, -T::fused(t6, t11, t16 * t19)),
-            T::fused(t22, t23, T::fused(t9, t11, t17 * t19)),
-            -T::fused(t20, t23, T::fused(-t4, t11, t15 * t19)),
-            -(k(18.181818181818183) * t18),
-            -(k(18.181818181818183) * t10),
+            -(k(1.0909090909090908) * T::fused(t16, t18, -T::fused(-t5, t8, t12 * t14))),
+            k(1.0909090909090908) * T::fused(t15, t18, -T::fused(t2, t8, t9 * t14)),
+            k(1.0909090909090908) * T::fused(t17, t18, T::fused(t7, t8, t13 * t14)),
+            k(36.36363636363637) * t14,
+            -(k(36.36363636363637) * t18),
             k(0.0),
         ];
     }
@@ -801,7 +786,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             rates[2],
         ];
     }
-    /// Writes the maximal state of a joint state: 42 operations (15 ±, 27 ×, 0 ÷).
+    /// Writes the maximal state of a joint state: 37 operations (15 ±, 22 ×, 0 ÷).
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -816,21 +801,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let t2 = x0 * x1;
         let t3 = x2 * x3;
         let t4 = x0 * x0;
-        let t5 = k(0.04) * u0;
-        let t6 = x0 * x3;
-        let t7 = x1 * x2;
-        let t8 = k(0.04) * u1;
-        let t9 = T::fused(
-            k(2.0) * (t7 - t6),
-            t5,
-            k(2.0) * (k(0.5) - T::fused(x1, x1, t4)) * t8,
-        );
-        let t10 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(x2, x2, t4)),
-            t5,
-            k(2.0) * (t7 + t6) * t8,
-        );
-        let t11 = T::fused(-(k(2.0) * (t3 + t2)), t5, k(2.0) * (t1 - t0) * t8);
+        let t5 = x0 * x3;
+        let t6 = x1 * x2;
+        let t7 = T::fused(k(0.5) - T::fused(x1, x1, t4), u1, (t6 - t5) * u0);
+        let t8 = T::fused(t6 + t5, u1, (k(0.5) - T::fused(x2, x2, t4)) * u0);
         *y = [
             k(0.08) * (t1 + t0),
             k(0.08) * (t3 - t2),
@@ -839,9 +813,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             x1,
             x2,
             x3,
-            -t9,
-            t10,
-            t11,
+            -(k(0.08) * t7),
+            k(0.08) * t8,
+            -(k(0.08) * T::fused(-(t1 - t0), u1, (t3 + t2) * u0)),
             u0,
             u1,
             u2,
@@ -889,7 +863,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             k(0.0),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 64 operations (23 ±, 41 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 53 operations (23 ±, 30 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -904,44 +878,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = t1 - t0;
-        let t3 = k(0.5454545454545454) * top_wz;
-        let t4 = T::fused(k(356.72727272727275), t2, top_wx * t3);
-        let t5 = k(0.04) * top_wx;
-        let t6 = T::fused(-k(0.04), t4, top_wz * t5);
-        let t7 = top_e0 * top_e0;
-        let t8 = top_e0 * top_e1;
-        let t9 = top_e2 * top_e3;
-        let t10 = t9 + t8;
-        let t11 = T::fused(k(356.72727272727275), t10, top_wy * t3);
-        let t12 = k(0.04) * top_wy;
-        let t13 = T::fused(-k(0.04), t11, top_wz * t12);
-        let t14 = top_e0 * top_e3;
-        let t15 = top_e1 * top_e2;
+        let t0 = top_e0 * top_e1;
+        let t1 = top_e2 * top_e3;
+        let t2 = t1 + t0;
+        let t3 = top_wy * top_wz;
+        let t4 = k(0.5454545454545454) * T::fused(k(654.0), t2, t3);
+        let t5 = t3 - t4;
+        let t6 = top_e0 * top_e3;
+        let t7 = top_e1 * top_e2;
+        let t8 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t9 = top_e0 * top_e2;
+        let t10 = top_e1 * top_e3;
+        let t11 = t10 - t9;
+        let t12 = top_wx * top_wz;
+        let t13 = k(0.5454545454545454) * T::fused(k(654.0), t11, t12);
+        let t14 = t12 - t13;
+        let t15 = top_e0 * top_e0;
         let t16 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t7))),
-            t6,
-            k(2.0) * (t15 - t14) * t13,
+            k(0.5) - T::fused(top_e1, top_e1, t15),
+            t14,
+            T::fused(-(t7 - t6), t5, (t10 + t9) * t8),
         );
-        let t17 = T::fused(top_wy, t12, top_wx * t5);
+        let t17 = T::fused(k(0.5) - T::fused(top_e2, top_e2, t15), t5, (t1 - t0) * t8);
         let t18 = T::fused(
-            -(k(2.0) * (t15 + t14)),
-            t6,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t7)) * t13,
-        );
-        let t19 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
-            t17,
-            T::fused(k(2.0) * t2, t6, k(2.0) * t10 * t13),
+            t11,
+            t14,
+            T::fused(t2, t5, (k(0.5) - T::fused(top_e3, top_e3, t15)) * t8),
         );
         *out = [
-            T::fused(-(k(2.0) * (t1 + t0)), t17, t16),
-            -T::fused(k(2.0) * (t9 - t8), t17, t18),
-            t19,
-            t11,
-            -t4,
+            -(k(0.08) * t16),
+            k(0.08) * T::fused(t7 + t6, t14, -t17),
+            k(0.08) * t18,
+            t4,
+            -t13,
             k(0.0),
         ];
     }
@@ -963,7 +932,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             -T::fused(k(0.5), top_dsz, k(4.905)),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 68 operations (24 ±, 44 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 57 operations (24 ±, 33 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -973,50 +942,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = t1 - t0;
-        let t3 = k(0.5454545454545454) * top_wz;
-        let t4 = T::fused(k(356.72727272727275), t2, top_wx * t3);
-        let t5 = k(0.04) * top_wx;
-        let t6 = T::fused(-k(0.04), t4, top_wz * t5);
-        let t7 = top_e0 * top_e0;
-        let t8 = top_e0 * top_e1;
-        let t9 = top_e2 * top_e3;
-        let t10 = t9 + t8;
-        let t11 = T::fused(k(356.72727272727275), t10, top_wy * t3);
-        let t12 = k(0.04) * top_wy;
-        let t13 = T::fused(-k(0.04), t11, top_wz * t12);
-        let t14 = top_e0 * top_e3;
-        let t15 = top_e1 * top_e2;
+        let t0 = top_e0 * top_e1;
+        let t1 = top_e2 * top_e3;
+        let t2 = t1 + t0;
+        let t3 = top_wy * top_wz;
+        let t4 = k(0.5454545454545454) * T::fused(k(654.0), t2, t3);
+        let t5 = t3 - t4;
+        let t6 = top_e0 * top_e3;
+        let t7 = top_e1 * top_e2;
+        let t8 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t9 = top_e0 * top_e2;
+        let t10 = top_e1 * top_e3;
+        let t11 = t10 - t9;
+        let t12 = top_wx * top_wz;
+        let t13 = k(0.5454545454545454) * T::fused(k(654.0), t11, t12);
+        let t14 = t12 - t13;
+        let t15 = top_e0 * top_e0;
         let t16 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t7))),
-            t6,
-            k(2.0) * (t15 - t14) * t13,
+            k(0.5) - T::fused(top_e1, top_e1, t15),
+            t14,
+            T::fused(-(t7 - t6), t5, (t10 + t9) * t8),
         );
-        let t17 = T::fused(top_wy, t12, top_wx * t5);
-        let t18 = T::fused(k(2.0) * (t1 + t0), t17, -t16);
+        let t17 = T::fused(k(0.5) - T::fused(top_e2, top_e2, t15), t5, (t1 - t0) * t8);
+        let t18 = T::fused(t7 + t6, t14, -t17);
         let t19 = T::fused(
-            -(k(2.0) * (t15 + t14)),
-            t6,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t7)) * t13,
-        );
-        let t20 = T::fused(k(2.0) * (t9 - t8), t17, t19);
-        let t21 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
-            t17,
-            T::fused(k(2.0) * t2, t6, k(2.0) * t10 * t13),
+            t11,
+            t14,
+            T::fused(t2, t5, (k(0.5) - T::fused(top_e3, top_e3, t15)) * t8),
         );
         *out = [
-            -t18,
-            -t20,
-            t21,
-            t11,
-            -t4,
+            -(k(0.08) * t16),
+            k(0.08) * t18,
+            k(0.08) * t19,
+            t4,
+            -t13,
             k(0.0),
-            k(0.5) * t18,
-            k(0.5) * t20,
-            -T::fused(k(0.5), t21, k(4.905)),
+            k(0.04) * t16,
+            -(k(0.04) * t18),
+            -(k(0.04) * (k(122.625) + t19)),
         ];
     }
 }

@@ -11,11 +11,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 82 operations by rotations of the bodies, doubled; 82 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 50 operations by rotations of the bodies, doubled; 50 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 14 operations by normal form; 21 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 14 operations by normal form; 21 operations by recursion; 3 more compared
-//! * corrected_accelerations: 62 operations by normal form in the bodies' frames; 65 operations by recursion in the bodies' frames; 9 more compared
+//! * accelerations: 78 operations by rotations of the bodies, doubled; 78 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 46 operations by rotations of the bodies, doubled; 46 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 14 operations by normal form; 19 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 14 operations by normal form; 19 operations by recursion; 3 more compared
+//! * corrected_accelerations: 55 operations by normal form in the bodies' frames; 57 operations by recursion in the bodies' frames; 9 more compared
 //! * joint_jacobian: 16 operations by derivatives of u̇, from its leaves; 16 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -26,26 +26,26 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 6 | 0 | 6 | 0 of 17 | 14 | 6 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 7 | 13 | 0 | 20 | 0 of 9 | 32 | 20 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 17 | 27 | 0 | 44 | 0 of 3 | 78 | 44 |
+//! | gamma | γ | 17 | 26 | 0 | 43 | 0 of 3 | 63 | 43 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 19 | 0 | 32 | 0 of 3 | 44 | 32 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 51 | 0 | 82 | 1 of 6 | 1030 | 82 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 47 | 0 | 78 | 1 of 6 | 768 | 78 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 17 | 33 | 0 | 50 | 1 of 6 | 244 | 50 |
+//! | project | (δr, δπ') that changes the rows as given | 17 | 29 | 0 | 46 | 1 of 6 | 160 | 46 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 | 333 | 39 |
-//! | solve_velocities | dependent velocities, eq. (19) | 11 | 21 | 0 | 32 | 0 of 6 | 35 | 32 |
+//! | solve_velocities | dependent velocities, eq. (19) | 11 | 18 | 0 | 29 | 0 of 6 | 32 | 29 |
 //! | joint_accelerations | u̇ in joint coordinates | 5 | 9 | 0 | 14 | 1 of 3 | 15 | 14 |
 //! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 | 24 | 24 |
-//! | to_maximal | (q, v) of a joint state | 15 | 25 | 0 | 40 | 0 of 13 | 48 | 40 |
+//! | to_maximal | (q, v) of a joint state | 15 | 22 | 0 | 37 | 0 of 13 | 45 | 37 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 5 | 9 | 0 | 14 | 1 of 3 | 15 | 14 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 37 | 0 | 62 | 1 of 6 | 135 | 62 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 30 | 0 | 55 | 1 of 6 | 129 | 55 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | corrected_solution | both | 26 | 40 | 0 | 66 | 1 of 9 | 259 | 66 |
+//! | corrected_solution | both | 26 | 33 | 0 | 59 | 1 of 9 | 244 | 59 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 16 | 0 | 16 | 22 of 56 | 34 | 16 |
 //!
 //! # Proof
@@ -246,7 +246,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         );
         *out = [t5, top_sy - t6, top_sz + t7];
     }
-    /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
+    /// Kinetic and potential energy: 15 operations (5 ±, 10 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let top_rz = y[2];
@@ -257,17 +257,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = T::fused(
-            top_wz,
-            k(0.234375) * top_wz,
-            T::fused(top_wy, k(0.46875) * top_wy, top_wx * (k(0.234375) * top_wx)),
-        );
-        let t1 = T::fused(
-            k(15.0),
+            k(64.0),
             T::fused(top_sz, top_sz, T::fused(top_sy, top_sy, top_sx * top_sx)),
-            t0,
+            T::fused(top_wz, top_wz, T::fused(k(2.0), top_wy * top_wy, top_wx * top_wx)),
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
+            kinetic: k(0.1171875) * t0,
             potential: k(147.15) * top_rz,
         }
     }
@@ -388,7 +383,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for SpinningTop<T> {
         y[5] = t3;
         y[6] = t5;
     }
-    /// Solves eq. (19) for the dependent velocities: 32 operations (11 ±, 21 ×, 0 ÷).
+    /// Solves eq. (19) for the dependent velocities: 29 operations (11 ±, 18 ×, 0 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -397,27 +392,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for SpinningTop<T> {
         let top_e3 = y[6];
         let top_wx = y[10];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e0;
-        let t1 = top_e0 * top_e2;
-        let t2 = top_e1 * top_e3;
+        let t0 = top_e0 * top_e2;
+        let t1 = top_e1 * top_e3;
+        let t2 = top_e0 * top_e0;
         let t3 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
-            top_wz,
-            k(2.0) * (t2 + t1) * top_wx,
+            t1 + t0,
+            top_wx,
+            (k(0.5) - T::fused(top_e1, top_e1, t2)) * top_wz,
         );
         let t4 = T::fused(
-            -(k(2.0) * T::fused(top_e0, top_e3, top_e1 * top_e2)),
-            top_wz,
-            k(2.0) * T::fused(-top_e0, top_e1, top_e2 * top_e3) * top_wx,
+            -T::fused(-top_e0, top_e1, top_e2 * top_e3),
+            top_wx,
+            T::fused(top_e0, top_e3, top_e1 * top_e2) * top_wz,
         );
         let t5 = T::fused(
-            k(2.0) * (t2 - t1),
-            top_wz,
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0)) * top_wx,
+            k(0.5) - T::fused(top_e3, top_e3, t2),
+            top_wx,
+            (t1 - t0) * top_wz,
         );
-        y[7] = t3;
-        y[8] = t4;
-        y[9] = -t5;
+        y[7] = k(2.0) * t3;
+        y[8] = -(k(2.0) * t4);
+        y[9] = -(k(2.0) * t5);
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
@@ -559,7 +554,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 44 operations (17 ±, 27 ×, 0 ÷).
+    /// Writes γ: 43 operations (17 ±, 26 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -569,35 +564,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e1;
-        let t1 = k(2.0) * top_e0;
-        let t2 = T::fused(-top_e0, t1, k(1.0));
-        let t3 = top_wx * top_wy;
-        let t4 = top_e3 * t1;
-        let t5 = top_e2 * t0;
-        let t6 = T::fused(top_wx, top_wx, top_wz * top_wz);
-        let t7 = top_e2 * t1;
-        let t8 = top_e3 * t0;
-        let t9 = top_wy * top_wz;
-        let t10 = T::fused(
-            t9,
-            t8 + t7,
-            -T::fused(t3, T::fused(-top_e1, t0, t2), t6 * (t5 - t4)),
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = top_wx * top_wy;
+        let t2 = top_wy * top_wz;
+        let t3 = top_e0 * top_e2;
+        let t4 = top_e1 * top_e3;
+        let t5 = T::fused(top_wx, top_wx, top_wz * top_wz);
+        let t6 = top_e0 * top_e3;
+        let t7 = top_e1 * top_e2;
+        let t8 = T::fused(
+            -t1,
+            T::fused(top_e1, top_e1, -t0),
+            T::fused(-(t4 + t3), t2, (t7 - t6) * t5),
         );
-        let t11 = k(2.0) * top_e2;
-        let t12 = top_e1 * t1;
-        let t13 = top_e3 * t11;
-        let t14 = T::fused(
-            t9,
-            t13 - t12,
-            T::fused(t3, t5 + t4, t6 * T::fused(-top_e2, t11, t2)),
+        let t9 = top_e0 * top_e1;
+        let t10 = top_e2 * top_e3;
+        let t11 = T::fused(
+            t7 + t6,
+            t1,
+            T::fused(-t5, T::fused(top_e2, top_e2, -t0), (t10 - t9) * t2),
         );
-        let t15 = T::fused(
-            t9,
-            T::fused(-top_e3, k(2.0) * top_e3, t2),
-            T::fused(-t3, t8 - t7, t6 * (t13 + t12)),
+        let t12 = T::fused(
+            t4 - t3,
+            t1,
+            -T::fused(-t2, T::fused(top_e3, top_e3, -t0), (t10 + t9) * t5),
         );
-        *out = [t10, t14, -t15];
+        *out = [-(k(2.0) * t8), k(2.0) * t11, k(2.0) * t12];
     }
     /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -608,7 +600,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let t0 = k(0.234375) * top_wy;
         *out = [k(0.0), k(0.0), k(-147.15), top_wz * t0, k(0.0), -(top_wx * t0)];
     }
-    /// Solves eq. (17): 82 operations (31 ±, 51 ×, 0 ÷).
+    /// Solves eq. (17): 78 operations (31 ±, 47 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -618,49 +610,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e0;
-        let t1 = T::fused(-top_e0, t0, k(1.0));
-        let t2 = T::fused(-top_e3, k(2.0) * top_e3, t1);
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e1, top_e1, -t0);
+        let t2 = top_wx * top_wy;
         let t3 = top_wy * top_wz;
-        let t4 = top_e2 * t0;
-        let t5 = k(2.0) * top_e1;
-        let t6 = top_e3 * t5;
-        let t7 = t6 + t4;
-        let t8 = T::fused(-top_e1, t5, t1);
-        let t9 = top_wx * top_wy;
-        let t10 = top_e3 * t0;
-        let t11 = top_e2 * t5;
-        let t12 = T::fused(top_wx, top_wx, top_wz * top_wz);
-        let t13 = T::fused(t3, t7, -T::fused(t9, t8, t12 * (t11 - t10)));
-        let t14 = top_e1 * t0;
-        let t15 = k(2.0) * top_e2;
-        let t16 = top_e3 * t15;
-        let t17 = t16 - t14;
-        let t18 = t11 + t10;
-        let t19 = T::fused(t3, t17, T::fused(t9, t18, t12 * T::fused(-top_e2, t15, t1)));
-        let t20 = t6 - t4;
-        let t21 = T::fused(t3, t2, T::fused(-t9, t20, t12 * (t16 + t14)));
-        let t22 = T::fused(
-            t21,
-            k(15.0) * t2,
-            T::fused(t13, k(15.0) * t7, t19 * (k(15.0) * t17)),
+        let t4 = top_e0 * top_e2;
+        let t5 = top_e1 * top_e3;
+        let t6 = t5 + t4;
+        let t7 = T::fused(top_wx, top_wx, top_wz * top_wz);
+        let t8 = top_e0 * top_e3;
+        let t9 = top_e1 * top_e2;
+        let t10 = T::fused(-t2, t1, T::fused(-t6, t3, (t9 - t8) * t7));
+        let t11 = T::fused(top_e3, top_e3, -t0);
+        let t12 = top_e0 * top_e1;
+        let t13 = top_e2 * top_e3;
+        let t14 = t5 - t4;
+        let t15 = T::fused(t14, t2, -T::fused(-t3, t11, (t13 + t12) * t7));
+        let t16 = t13 - t12;
+        let t17 = t9 + t8;
+        let t18 = T::fused(
+            t17,
+            t2,
+            T::fused(-t7, T::fused(top_e2, top_e2, -t0), t16 * t3),
         );
-        let t23 = k(0.06564102564102564)
-            * (t22 - T::fused(k(147.15), t2, k(0.234375) * t3));
-        let t24 = T::fused(
-            k(15.0) * t20,
-            t21,
-            -T::fused(-(k(15.0) * t8), t13, k(15.0) * t18 * t19),
+        let t19 = T::fused(
+            k(0.00390625),
+            t2,
+            T::fused(t1, t10, -T::fused(t14, t15, t17 * t18)),
         );
-        let t25 = k(0.06564102564102564)
-            * (t24 + T::fused(-k(147.15), t20, k(0.234375) * t9));
+        let t20 = T::fused(k(4.905), t14, -t19);
+        let t21 = T::fused(
+            k(0.00390625),
+            t3,
+            T::fused(t6, t10, -T::fused(t11, t15, t16 * t18)),
+        );
+        let t22 = T::fused(-k(4.905), t11, t21);
         *out = [
-            t13 - T::fused(t7, t23, t8 * t25),
-            t19 + T::fused(-t17, t23, t18 * t25),
-            T::fused(t2, t23, t20 * t25) - t21,
-            -t23,
+            k(7.876923076923077)
+                * T::fused(t6, t22, -T::fused(k(0.25390625), t10, t1 * t20)),
+            k(7.876923076923077)
+                * T::fused(t16, t22, -T::fused(-k(0.25390625), t18, t17 * t20)),
+            k(7.876923076923077)
+                * T::fused(t11, t22, -T::fused(-k(0.25390625), t15, t14 * t20)),
+            k(3.9384615384615387) * t22,
             k(0.0),
-            -t25,
+            k(3.9384615384615387) * t20,
         ];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
@@ -683,7 +677,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for SpinningTop<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 50 operations (17 ±, 33 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 46 operations (17 ±, 29 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -699,36 +693,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for SpinningTop<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = k(2.0) * top_e0;
-        let t1 = top_e2 * t0;
-        let t2 = k(2.0) * top_e1;
-        let t3 = top_e3 * t2;
-        let t4 = t3 + t1;
-        let t5 = T::fused(-top_e1, t0, top_e3 * (k(2.0) * top_e2));
-        let t6 = T::fused(-top_e0, t0, k(1.0));
-        let t7 = T::fused(-top_e3, k(2.0) * top_e3, t6);
-        let t8 = T::fused(
-            k(15.0) * t7,
-            row2,
-            -T::fused(k(15.0) * t4, row0, k(15.0) * t5 * row1),
-        );
-        let t9 = k(0.06564102564102564) * t8;
-        let t10 = T::fused(-top_e1, t2, t6);
-        let t11 = T::fused(top_e3, t0, top_e2 * t2);
-        let t12 = t3 - t1;
-        let t13 = T::fused(
-            k(15.0) * t12,
-            row2,
-            T::fused(-(k(15.0) * t10), row0, k(15.0) * t11 * row1),
-        );
-        let t14 = k(0.06564102564102564) * t13;
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e1, top_e1, -t0);
+        let t2 = top_e0 * top_e2;
+        let t3 = top_e1 * top_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(top_e0, top_e3, top_e1 * top_e2);
+        let t6 = T::fused(t1, row0, T::fused(t4, row2, t5 * row1));
+        let t7 = T::fused(top_e3, top_e3, -t0);
+        let t8 = T::fused(-top_e0, top_e1, top_e2 * top_e3);
+        let t9 = t3 + t2;
+        let t10 = T::fused(t9, row0, T::fused(t7, row2, t8 * row1));
         *out = [
-            row0 + T::fused(t4, t9, t10 * t14),
-            row1 - T::fused(-t5, t9, t11 * t14),
-            row2 - T::fused(t7, t9, t12 * t14),
-            t9,
+            -(k(3.9384615384615387)
+                * T::fused(t9, t10, -T::fused(-t1, t6, k(0.25390625) * row0))),
+            -(k(3.9384615384615387)
+                * T::fused(t8, t10, -T::fused(-t5, t6, k(0.25390625) * row1))),
+            -(k(3.9384615384615387)
+                * T::fused(t7, t10, -T::fused(-t4, t6, k(0.25390625) * row2))),
+            -(k(1.9692307692307693) * t10),
             k(0.0),
-            t14,
+            k(1.9692307692307693) * t6,
         ];
     }
 }
@@ -794,7 +779,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
             rates[2],
         ];
     }
-    /// Writes the maximal state of a joint state: 40 operations (15 ±, 25 ×, 0 ÷).
+    /// Writes the maximal state of a joint state: 37 operations (15 ±, 22 ×, 0 ÷).
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -811,17 +796,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let t4 = x2 * x3;
         let t5 = x0 * x2;
         let t6 = x1 * x3;
-        let t7 = T::fused(
-            k(2.0) * (t6 + t5),
-            u0,
-            k(2.0) * (k(0.5) - T::fused(x1, x1, t2)) * u2,
-        );
-        let t8 = T::fused(-(k(2.0) * (t4 - t3)), u0, k(2.0) * (t1 + t0) * u2);
-        let t9 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(x3, x3, t2)),
-            u0,
-            k(2.0) * (t6 - t5) * u2,
-        );
+        let t7 = T::fused(k(0.5) - T::fused(x1, x1, t2), u2, (t6 + t5) * u0);
+        let t8 = T::fused(t6 - t5, u2, (k(0.5) - T::fused(x3, x3, t2)) * u0);
         *y = [
             k(2.0) * (t1 - t0),
             -(k(2.0) * (k(0.5) - T::fused(x2, x2, t2))),
@@ -830,9 +806,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
             x1,
             x2,
             x3,
-            t7,
-            -t8,
-            -t9,
+            k(2.0) * t7,
+            k(2.0) * T::fused(-(t1 + t0), u2, (t4 - t3) * u0),
+            -(k(2.0) * t8),
             u0,
             u1,
             u2,
@@ -885,7 +861,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
             ),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 62 operations (25 ±, 37 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 55 operations (25 ±, 30 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -900,40 +876,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = t1 - t0;
-        let t3 = k(0.9692307692307692) * top_wy;
-        let t4 = T::fused(k(19.318153846153844), t2, top_wx * t3);
-        let t5 = T::fused(top_wx, top_wy, -t4);
-        let t6 = top_e1 * top_e1;
-        let t7 = top_e0 * top_e0;
-        let t8 = T::fused(top_wx, top_wx, top_wz * top_wz);
-        let t9 = top_e0 * top_e3;
-        let t10 = top_e1 * top_e2;
-        let t11 = T::fused(k(2.0) * (k(0.5) - (t7 + t6)), t5, k(2.0) * (t10 - t9) * t8);
-        let t12 = top_e2 * top_e2;
-        let t13 = T::fused(
-            top_wz,
-            t3,
-            T::fused(-k(19.318153846153844), t6 + t12, k(9.659076923076922)),
+        let t0 = top_wy * top_wz;
+        let t1 = top_e2 * top_e2;
+        let t2 = top_e1 * top_e1;
+        let t3 = k(19.318153846153844)
+            * (k(0.5) - T::fused(-k(0.05017201834862385), t0, t2 + t1));
+        let t4 = t0 - t3;
+        let t5 = top_e0 * top_e2;
+        let t6 = top_e1 * top_e3;
+        let t7 = T::fused(top_wx, top_wx, top_wz * top_wz);
+        let t8 = top_e0 * top_e3;
+        let t9 = top_e1 * top_e2;
+        let t10 = t6 - t5;
+        let t11 = top_wx * top_wy;
+        let t12 = k(0.9692307692307692) * T::fused(k(19.931428571428572), t10, t11);
+        let t13 = t11 - t12;
+        let t14 = top_e0 * top_e0;
+        let t15 = T::fused(
+            k(0.5) - (t14 + t2),
+            t13,
+            T::fused(-(t6 + t5), t4, (t9 - t8) * t7),
         );
-        let t14 = T::fused(top_wy, top_wz, -t13);
-        let t15 = T::fused(k(2.0) * (t10 + t9), t5, k(2.0) * (k(0.5) - (t7 + t12)) * t8);
         let t16 = top_e0 * top_e1;
         let t17 = top_e2 * top_e3;
         let t18 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
-            t14,
-            T::fused(-(k(2.0) * t2), t5, k(2.0) * (t17 + t16) * t8),
+            t9 + t8,
+            t13,
+            T::fused(t17 - t16, t4, (k(0.5) - (t14 + t1)) * t7),
         );
+        let t19 = T::fused(k(0.5) - T::fused(top_e3, top_e3, t14), t4, (t17 + t16) * t7);
         *out = [
-            T::fused(k(2.0) * (t1 + t0), t14, -t11),
-            T::fused(k(2.0) * (t17 - t16), t14, t15),
-            -t18,
-            -t13,
+            -(k(2.0) * t15),
+            k(2.0) * t18,
+            k(2.0) * T::fused(t10, t13, -t19),
+            -t3,
             k(0.0),
-            t4,
+            t12,
         ];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
@@ -954,7 +932,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
             -T::fused(k(15.0), top_dsz, k(147.15)),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 66 operations (26 ±, 40 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 59 operations (26 ±, 33 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -964,45 +942,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = t1 - t0;
-        let t3 = k(0.9692307692307692) * top_wy;
-        let t4 = T::fused(k(19.318153846153844), t2, top_wx * t3);
-        let t5 = T::fused(top_wx, top_wy, -t4);
-        let t6 = top_e1 * top_e1;
-        let t7 = top_e0 * top_e0;
-        let t8 = T::fused(top_wx, top_wx, top_wz * top_wz);
-        let t9 = top_e0 * top_e3;
-        let t10 = top_e1 * top_e2;
-        let t11 = T::fused(k(2.0) * (k(0.5) - (t7 + t6)), t5, k(2.0) * (t10 - t9) * t8);
-        let t12 = top_e2 * top_e2;
-        let t13 = T::fused(
-            top_wz,
-            t3,
-            T::fused(-k(19.318153846153844), t6 + t12, k(9.659076923076922)),
+        let t0 = top_wy * top_wz;
+        let t1 = top_e2 * top_e2;
+        let t2 = top_e1 * top_e1;
+        let t3 = k(19.318153846153844)
+            * (k(0.5) - T::fused(-k(0.05017201834862385), t0, t2 + t1));
+        let t4 = t0 - t3;
+        let t5 = top_e0 * top_e2;
+        let t6 = top_e1 * top_e3;
+        let t7 = T::fused(top_wx, top_wx, top_wz * top_wz);
+        let t8 = top_e0 * top_e3;
+        let t9 = top_e1 * top_e2;
+        let t10 = t6 - t5;
+        let t11 = top_wx * top_wy;
+        let t12 = k(0.9692307692307692) * T::fused(k(19.931428571428572), t10, t11);
+        let t13 = t11 - t12;
+        let t14 = top_e0 * top_e0;
+        let t15 = T::fused(
+            k(0.5) - (t14 + t2),
+            t13,
+            T::fused(-(t6 + t5), t4, (t9 - t8) * t7),
         );
-        let t14 = T::fused(top_wy, top_wz, -t13);
-        let t15 = T::fused(k(2.0) * (t1 + t0), t14, -t11);
-        let t16 = T::fused(k(2.0) * (t10 + t9), t5, k(2.0) * (k(0.5) - (t7 + t12)) * t8);
-        let t17 = top_e0 * top_e1;
-        let t18 = top_e2 * top_e3;
-        let t19 = T::fused(k(2.0) * (t18 - t17), t14, t16);
-        let t20 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
-            t14,
-            T::fused(-(k(2.0) * t2), t5, k(2.0) * (t18 + t17) * t8),
+        let t16 = top_e0 * top_e1;
+        let t17 = top_e2 * top_e3;
+        let t18 = T::fused(
+            t9 + t8,
+            t13,
+            T::fused(t17 - t16, t4, (k(0.5) - (t14 + t1)) * t7),
         );
+        let t19 = T::fused(k(0.5) - T::fused(top_e3, top_e3, t14), t4, (t17 + t16) * t7);
+        let t20 = T::fused(t10, t13, -t19);
         *out = [
-            t15,
-            t19,
-            -t20,
-            -t13,
+            -(k(2.0) * t15),
+            k(2.0) * t18,
+            k(2.0) * t20,
+            -t3,
             k(0.0),
-            t4,
-            -(k(15.0) * t15),
-            -(k(15.0) * t19),
-            T::fused(k(15.0), t20, -k(147.15)),
+            t12,
+            k(30.0) * t15,
+            -(k(30.0) * t18),
+            -(k(30.0) * (k(4.905) + t20)),
         ];
     }
 }

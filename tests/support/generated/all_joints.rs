@@ -1624,8 +1624,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 - T::fused(k(0.8), t25, -T::fused(k(0.2), t16, k(0.4) * t13))
                 - T::fused(-k(0.2), t134, slide_rz);
             let t263 = T::fused(
-                -T::fused(t262, t262, T::fused(t260, t260, t261 * t261)),
-                self.derived[0],
+                -self.derived[0],
+                T::fused(t262, t262, T::fused(t260, t260, t261 * t261)),
                 self.derived[1],
             );
             let t264 = t92 - t97;

@@ -10,40 +10,40 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 1765 operations by rotations of the bodies, doubled; 1772 operations by relative Euler parameters, doubled; 2 more compared
+//! * accelerations: 1763 operations by rotations of the bodies, doubled; 1770 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 1002 operations by rotations of the bodies, doubled; 1009 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 217 operations by normal form; 651 operations by orthogonal motions; 1 more compared
-//! * joint_accelerations_at: 634 operations by normal form; 1068 operations by orthogonal motions; 3 more compared
-//! * corrected_accelerations: 914 operations by normal form in the bodies' frames; 1017 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 1657 operations by derivatives of u̇, from its leaves; 1657 operations by normal form of that; 7 more compared
+//! * joint_accelerations: 217 operations by normal form; 604 operations by orthogonal motions; 1 more compared
+//! * joint_accelerations_at: 589 operations by normal form; 965 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 895 operations by normal form in the bodies' frames; 1019 operations by normal form in the global frame; 9 more compared
+//! * joint_jacobian: 1653 operations by derivatives of u̇, from its leaves; 1653 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 102 | 118 | 0 | 220 | 0 of 10 | 1083 | 220 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 344 | 387 | 0 | 731 | 0 of 61 | 4662 | 731 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 161 | 206 | 0 | 367 | 0 of 42 | 4427 | 367 |
+//! | phi | Φ | 102 | 90 | 0 | 192 | 0 of 10 | 740 | 192 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 342 | 321 | 0 | 663 | 0 of 61 | 3125 | 663 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 158 | 177 | 0 | 335 | 0 of 42 | 3004 | 335 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 8 of 8 | 0 | 0 |
-//! | gamma | γ | 278 | 371 | 0 | 649 | 0 of 8 | 9680 | 649 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 167 | 212 | 0 | 379 | 0 of 8 | 3793 | 379 |
-//! | applied_force | (f, n' − w̃'J'w') | 243 | 301 | 0 | 544 | 0 of 12 | 24741 | 544 |
+//! | gamma | γ | 278 | 324 | 0 | 602 | 0 of 8 | 6898 | 602 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 167 | 180 | 0 | 347 | 0 of 8 | 2646 | 347 |
+//! | applied_force | (f, n' − w̃'J'w') | 243 | 275 | 0 | 518 | 0 of 12 | 17373 | 518 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 792 | 965 | 6 | 1763 | 0 of 12 | 1.7e10 | 1766 |
-//! | multipliers | λ, the accelerations being known | 395 | 494 | 2 | 891 | 0 of 8 | 263834 | 891 |
+//! | multipliers | λ, the accelerations being known | 394 | 451 | 2 | 847 | 0 of 8 | 185797 | 847 |
 //! | project | (δr, δπ') that changes the rows as given | 425 | 571 | 6 | 1002 | 0 of 12 | 8.3e8 | 1003 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 119 | 166 | 0 | 285 | 0 of 16 | 1350 | 285 |
-//! | energy | T and V | 120 | 158 | 0 | 278 | 0 of 2 | 3719 | 278 |
-//! | read_joints | joint coordinates and rates | 175 | 216 | 0 | 391 | 0 of 10 | 2367 | 391 |
-//! | outputs | outputs, the accelerations being known | 471 | 585 | 2 | 1058 | 0 of 12 | 6.7e6 | 1058 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 119 | 137 | 0 | 256 | 0 of 16 | 979 | 256 |
+//! | energy | T and V | 120 | 128 | 0 | 248 | 0 of 2 | 2551 | 248 |
+//! | read_joints | joint coordinates and rates | 175 | 172 | 0 | 347 | 0 of 10 | 2131 | 347 |
+//! | outputs | outputs, the accelerations being known | 460 | 558 | 2 | 1020 | 0 of 12 | 4.7e6 | 1020 |
 //! | joint_accelerations | u̇ in joint coordinates | 95 | 119 | 3 | 217 | 0 of 4 | 8880 | 218 |
-//! | joint_derivative | ẋ but for u̇ | 187 | 217 | 0 | 404 | 0 of 5 | 14485 | 404 |
-//! | to_maximal | (q, v) of a joint state | 112 | 137 | 0 | 249 | 0 of 27 | 3365 | 249 |
-//! | to_joints | (x, u) of a maximal state | 181 | 224 | 0 | 405 | 0 of 8 | 3395 | 405 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 273 | 358 | 3 | 634 | 0 of 4 | 370413 | 635 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 397 | 514 | 3 | 914 | 0 of 12 | 1.2e7 | 915 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 488 | 0 | 880 | 0 of 8 | 518437 | 880 |
-//! | corrected_solution | both | 610 | 763 | 3 | 1376 | 0 of 20 | 1.0e9 | 1377 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 732 | 915 | 3 | 1650 | 46 of 90 | 1.3e7 | 1650 |
+//! | joint_derivative | ẋ but for u̇ | 174 | 191 | 0 | 365 | 0 of 5 | 9859 | 365 |
+//! | to_maximal | (q, v) of a joint state | 113 | 137 | 0 | 250 | 0 of 27 | 3491 | 250 |
+//! | to_joints | (x, u) of a maximal state | 181 | 181 | 0 | 362 | 0 of 8 | 3071 | 362 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 275 | 311 | 3 | 589 | 0 of 4 | 353061 | 590 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 398 | 494 | 3 | 895 | 0 of 12 | 1.1e7 | 896 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 442 | 0 | 834 | 0 of 8 | 461089 | 834 |
+//! | corrected_solution | both | 612 | 763 | 3 | 1378 | 0 of 20 | 1.1e9 | 1379 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 735 | 915 | 3 | 1653 | 46 of 90 | 1.5e7 | 1653 |
 //!
 //! # Proof
 //!
@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
             k(0.4),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 285 operations (119 ±, 166 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 256 operations (119 ±, 137 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -153,141 +153,133 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = k(2.0) * block_e0;
-        let t1 = block_e2 * t0;
-        let t2 = k(2.0) * block_e1;
-        let t3 = block_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = block_e1 * t0;
-        let t6 = k(2.0) * block_e2;
-        let t7 = block_e3 * t6;
-        let t8 = t7 + t5;
-        let t9 = T::fused(-block_e0, t0, k(1.0));
-        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
-        let t11 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t4, block_wx * t10),
-            k(0.03) * T::fused(block_wz, t8, block_wy * t10),
+        let t0 = block_e0 * block_e2;
+        let t1 = block_e1 * block_e3;
+        let t2 = t1 + t0;
+        let t3 = block_e0 * block_e3;
+        let t4 = block_e1 * block_e2;
+        let t5 = t4 - t3;
+        let t6 = T::fused(-block_e0, block_e0, k(0.5));
+        let t7 = T::fused(block_e1, block_e1, -t6);
+        let t8 = T::fused(
+            k(5.0),
+            arm_rx,
+            -T::fused(k(0.3), t7, T::fused(k(0.5), t5, -T::fused(-k(5.0), block_rx, t2))),
         );
-        let t12 = k(2.0) * arm_e0;
-        let t13 = arm_e2 * t12;
-        let t14 = k(2.0) * arm_e1;
-        let t15 = arm_e3 * t14;
-        let t16 = t15 - t13;
-        let t17 = arm_e1 * t12;
-        let t18 = k(2.0) * arm_e2;
-        let t19 = arm_e3 * t18;
-        let t20 = t19 + t17;
-        let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
-        let t22 = T::fused(-arm_e0, t12, k(1.0));
-        let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
-        let t24 = T::fused(arm_wz, t16, arm_wx * t23);
-        let t25 = T::fused(arm_wz, t20, arm_wy * t23);
-        let t26 = arm_sz + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
-            - (block_sz + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
-        let t27 = block_rz + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8))
-            - (arm_rz - T::fused(k(0.1), t23, -T::fused(k(0.2), t16, k(0.1) * t20)));
+        let t9 = arm_e0 * arm_e2;
+        let t10 = arm_e1 * arm_e3;
+        let t11 = t10 + t9;
+        let t12 = arm_e0 * arm_e3;
+        let t13 = arm_e1 * arm_e2;
+        let t14 = t13 - t12;
+        let t15 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t16 = T::fused(arm_e1, arm_e1, -t15);
+        let t17 = T::fused(-arm_wy, t16, t14 * arm_wx);
+        let t18 = T::fused(-t11, arm_wy, t14 * arm_wz);
+        let t19 = T::fused(-arm_wz, t16, t11 * arm_wx);
+        let t20 = T::fused(
+            k(5.0),
+            block_sx,
+            t17 - (T::fused(k(5.0), arm_sx, k(2.0) * t18) + t19),
+        );
+        let t21 = T::fused(
+            k(0.5),
+            T::fused(-block_wz, t7, t2 * block_wx),
+            T::fused(k(0.3), T::fused(-t2, block_wy, t5 * block_wz), t20),
+        );
+        let t22 = T::fused(
+            T::fused(k(0.5), t19, t18 + t17),
+            T::fused(k(2.0), t16, t14 + (t11 + t8)),
+            (t11 - T::fused(k(0.5), t14, t16))
+                * (T::fused(-block_wy, t7, t5 * block_wx) + t21),
+        );
+        let t23 = block_e0 * block_e1;
+        let t24 = block_e2 * block_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(block_e2, block_e2, -t6);
+        let t27 = t4 + t3;
         let t28 = T::fused(
+            k(5.0),
+            arm_ry,
             -T::fused(
-                k(0.6666666666666666),
-                t23,
-                T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
+                k(0.3),
+                t27,
+                T::fused(k(0.5), t26, -T::fused(-k(5.0), block_ry, t25)),
             ),
-            t26,
-            t27
-                * T::fused(
-                    k(0.6666666666666666),
-                    t21,
-                    T::fused(-k(0.3333333333333333), t24, k(0.6666666666666666) * t25),
-                ),
         );
-        let t29 = block_e3 * t0;
-        let t30 = block_e2 * t2;
-        let t31 = t30 + t29;
-        let t32 = T::fused(-block_e2, t6, t9);
-        let t33 = t7 - t5;
-        let t34 = T::fused(
-            -k(0.05),
-            T::fused(-block_wz, t31, block_wx * t33),
-            k(0.03) * T::fused(block_wz, t32, block_wy * t33),
+        let t29 = arm_e0 * arm_e1;
+        let t30 = arm_e2 * arm_e3;
+        let t31 = t30 - t29;
+        let t32 = T::fused(arm_e2, arm_e2, -t15);
+        let t33 = t13 + t12;
+        let t34 = T::fused(-arm_wz, t32, t31 * arm_wy);
+        let t35 = T::fused(-arm_wx, t32, t33 * arm_wy);
+        let t36 = T::fused(-t31, arm_wx, t33 * arm_wz);
+        let t37 = T::fused(
+            T::fused(k(0.5), t36, t35 + t34),
+            T::fused(k(2.0), t33, t32 + (t31 + t28)),
+            -t22,
         );
-        let t35 = arm_e3 * t12;
-        let t36 = arm_e2 * t14;
-        let t37 = t36 + t35;
-        let t38 = T::fused(-arm_e2, t18, t22);
-        let t39 = T::fused(arm_wy, t37, arm_wx * t38);
-        let t40 = t19 - t17;
-        let t41 = T::fused(-arm_wz, t37, arm_wx * t40);
-        let t42 = T::fused(arm_wz, t38, arm_wy * t40);
-        let t43 = arm_sy - T::fused(-k(0.1), t39, T::fused(-k(0.1), t41, k(0.2) * t42))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(block_wy, t31, block_wx * t32), t34));
-        let t44 = block_ry
-            - T::fused(k(0.1), t33, T::fused(-k(0.03), t31, k(0.05) * t32))
-            - (arm_ry + T::fused(k(0.1), t40, -T::fused(-k(0.2), t37, k(0.1) * t38)));
-        let t45 = T::fused(
+        let t38 = T::fused(
+            k(5.0),
+            block_sy,
+            -(t35 - (t36 - T::fused(-k(2.0), t34, k(5.0) * arm_sy))),
+        );
+        let t39 = T::fused(
+            k(0.5),
+            T::fused(-t25, block_wx, t27 * block_wz),
+            -T::fused(-k(0.3), T::fused(-block_wz, t26, t25 * block_wy), t38),
+        );
+        let t40 = T::fused(
+            t31 - T::fused(k(0.5), t32, t33),
+            T::fused(-block_wx, t26, t27 * block_wy) + t39,
+            t37,
+        );
+        let t41 = T::fused(block_e3, block_e3, -t6);
+        let t42 = t24 + t23;
+        let t43 = t1 - t0;
+        let t44 = T::fused(
+            k(5.0),
+            arm_rz,
             -T::fused(
-                k(0.6666666666666666),
-                t40,
-                T::fused(-k(0.6666666666666666), t37, k(0.3333333333333333) * t38),
+                k(0.3),
+                t43,
+                T::fused(k(0.5), t42, -T::fused(-k(5.0), block_rz, t41)),
             ),
-            t43,
-            t44
-                * T::fused(
-                    k(0.6666666666666666),
-                    t39,
-                    T::fused(-k(0.3333333333333333), t41, k(0.6666666666666666) * t42),
-                ),
         );
-        let t46 = T::fused(-block_e1, t2, t9);
-        let t47 = t30 - t29;
-        let t48 = t3 + t1;
-        let t49 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t46, block_wx * t48),
-            k(0.03) * T::fused(-block_wz, t47, block_wy * t48),
+        let t45 = T::fused(arm_e3, arm_e3, -t15);
+        let t46 = t30 + t29;
+        let t47 = t10 - t9;
+        let t48 = T::fused(-arm_wy, t45, t46 * arm_wz);
+        let t49 = T::fused(-t46, arm_wx, t47 * arm_wy);
+        let t50 = T::fused(-arm_wx, t45, t47 * arm_wz);
+        let t51 = T::fused(
+            T::fused(k(0.5), t50, t49 - t48),
+            T::fused(k(2.0), t47, t46 + (t45 + t44)),
+            t40,
         );
-        let t50 = T::fused(-arm_e1, t14, t22);
-        let t51 = t36 - t35;
-        let t52 = T::fused(arm_wy, t50, arm_wx * t51);
-        let t53 = t15 + t13;
-        let t54 = T::fused(arm_wz, t50, arm_wx * t53);
-        let t55 = T::fused(-arm_wz, t51, arm_wy * t53);
-        let t56 = arm_sx - T::fused(k(0.1), t52, T::fused(-k(0.1), t54, k(0.2) * t55))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(block_wy, t46, block_wx * t47), t49));
-        let t57 = block_rx
-            - T::fused(k(0.1), t48, -T::fused(-k(0.03), t46, k(0.05) * t47))
-            - (arm_rx + T::fused(k(0.1), t53, T::fused(-k(0.2), t50, k(0.1) * t51)));
-        let t58 = T::fused(
-            -T::fused(
-                -k(0.6666666666666666),
-                t53,
-                T::fused(-k(0.6666666666666666), t50, k(0.3333333333333333) * t51),
-            ),
-            t56,
-            t57
-                * T::fused(
-                    k(0.6666666666666666),
-                    t52,
-                    -T::fused(-k(0.3333333333333333), t54, k(0.6666666666666666) * t55),
-                ),
+        let t52 = T::fused(
+            k(5.0),
+            block_sz,
+            -(t49 - (t50 - T::fused(k(2.0), t48, k(5.0) * arm_sz))),
         );
-        let t59 = t58 - t45 + t28;
-        let t60 = T::fused(
-            k(0.6666666666666666),
-            arm_wz,
-            T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
-        )
-            - T::fused(
-                k(0.6666666666666666),
-                block_wz,
-                T::fused(
-                    k(0.6666666666666666),
-                    block_wy,
-                    k(0.3333333333333333) * block_wx,
-                ),
-            );
+        let t53 = T::fused(
+            -k(0.5),
+            T::fused(-block_wx, t41, t43 * block_wz),
+            T::fused(k(0.3), T::fused(-block_wy, t41, t42 * block_wz), t52),
+        );
+        let t54 = T::fused(
+            T::fused(k(0.5), t46, t47) - t45,
+            T::fused(-t42, block_wx, t43 * block_wy) - t53,
+            -t51,
+        );
+        let t55 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
         *dy = [
             arm_sx,
             arm_sy,
@@ -339,8 +331,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            -T::fused(t59, k(0.8) * t59, t60 * (k(0.02) * t60)),
-            -t60,
+            -(k(0.008888888888888889) * T::fused(k(6.4), t54 * t54, t55 * t55)),
+            k(0.6666666666666666) * t55,
         ];
     }
 }
@@ -357,7 +349,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 10]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 285 operations (119 ±, 166 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 256 operations (119 ±, 137 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -388,141 +380,133 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = k(2.0) * block_e0;
-        let t1 = block_e2 * t0;
-        let t2 = k(2.0) * block_e1;
-        let t3 = block_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = block_e1 * t0;
-        let t6 = k(2.0) * block_e2;
-        let t7 = block_e3 * t6;
-        let t8 = t7 + t5;
-        let t9 = T::fused(-block_e0, t0, k(1.0));
-        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
-        let t11 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t4, block_wx * t10),
-            k(0.03) * T::fused(block_wz, t8, block_wy * t10),
+        let t0 = block_e0 * block_e2;
+        let t1 = block_e1 * block_e3;
+        let t2 = t1 + t0;
+        let t3 = block_e0 * block_e3;
+        let t4 = block_e1 * block_e2;
+        let t5 = t4 - t3;
+        let t6 = T::fused(-block_e0, block_e0, k(0.5));
+        let t7 = T::fused(block_e1, block_e1, -t6);
+        let t8 = T::fused(
+            k(5.0),
+            arm_rx,
+            -T::fused(k(0.3), t7, T::fused(k(0.5), t5, -T::fused(-k(5.0), block_rx, t2))),
         );
-        let t12 = k(2.0) * arm_e0;
-        let t13 = arm_e2 * t12;
-        let t14 = k(2.0) * arm_e1;
-        let t15 = arm_e3 * t14;
-        let t16 = t15 - t13;
-        let t17 = arm_e1 * t12;
-        let t18 = k(2.0) * arm_e2;
-        let t19 = arm_e3 * t18;
-        let t20 = t19 + t17;
-        let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
-        let t22 = T::fused(-arm_e0, t12, k(1.0));
-        let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
-        let t24 = T::fused(arm_wz, t16, arm_wx * t23);
-        let t25 = T::fused(arm_wz, t20, arm_wy * t23);
-        let t26 = arm_sz + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
-            - (block_sz + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
-        let t27 = block_rz + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8))
-            - (arm_rz - T::fused(k(0.1), t23, -T::fused(k(0.2), t16, k(0.1) * t20)));
+        let t9 = arm_e0 * arm_e2;
+        let t10 = arm_e1 * arm_e3;
+        let t11 = t10 + t9;
+        let t12 = arm_e0 * arm_e3;
+        let t13 = arm_e1 * arm_e2;
+        let t14 = t13 - t12;
+        let t15 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t16 = T::fused(arm_e1, arm_e1, -t15);
+        let t17 = T::fused(-arm_wy, t16, t14 * arm_wx);
+        let t18 = T::fused(-t11, arm_wy, t14 * arm_wz);
+        let t19 = T::fused(-arm_wz, t16, t11 * arm_wx);
+        let t20 = T::fused(
+            k(5.0),
+            block_sx,
+            t17 - (T::fused(k(5.0), arm_sx, k(2.0) * t18) + t19),
+        );
+        let t21 = T::fused(
+            k(0.5),
+            T::fused(-block_wz, t7, t2 * block_wx),
+            T::fused(k(0.3), T::fused(-t2, block_wy, t5 * block_wz), t20),
+        );
+        let t22 = T::fused(
+            T::fused(k(0.5), t19, t18 + t17),
+            T::fused(k(2.0), t16, t14 + (t11 + t8)),
+            (t11 - T::fused(k(0.5), t14, t16))
+                * (T::fused(-block_wy, t7, t5 * block_wx) + t21),
+        );
+        let t23 = block_e0 * block_e1;
+        let t24 = block_e2 * block_e3;
+        let t25 = t24 - t23;
+        let t26 = T::fused(block_e2, block_e2, -t6);
+        let t27 = t4 + t3;
         let t28 = T::fused(
+            k(5.0),
+            arm_ry,
             -T::fused(
-                k(0.6666666666666666),
-                t23,
-                T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
+                k(0.3),
+                t27,
+                T::fused(k(0.5), t26, -T::fused(-k(5.0), block_ry, t25)),
             ),
-            t26,
-            t27
-                * T::fused(
-                    k(0.6666666666666666),
-                    t21,
-                    T::fused(-k(0.3333333333333333), t24, k(0.6666666666666666) * t25),
-                ),
         );
-        let t29 = block_e3 * t0;
-        let t30 = block_e2 * t2;
-        let t31 = t30 + t29;
-        let t32 = T::fused(-block_e2, t6, t9);
-        let t33 = t7 - t5;
-        let t34 = T::fused(
-            -k(0.05),
-            T::fused(-block_wz, t31, block_wx * t33),
-            k(0.03) * T::fused(block_wz, t32, block_wy * t33),
+        let t29 = arm_e0 * arm_e1;
+        let t30 = arm_e2 * arm_e3;
+        let t31 = t30 - t29;
+        let t32 = T::fused(arm_e2, arm_e2, -t15);
+        let t33 = t13 + t12;
+        let t34 = T::fused(-arm_wz, t32, t31 * arm_wy);
+        let t35 = T::fused(-arm_wx, t32, t33 * arm_wy);
+        let t36 = T::fused(-t31, arm_wx, t33 * arm_wz);
+        let t37 = T::fused(
+            T::fused(k(0.5), t36, t35 + t34),
+            T::fused(k(2.0), t33, t32 + (t31 + t28)),
+            -t22,
         );
-        let t35 = arm_e3 * t12;
-        let t36 = arm_e2 * t14;
-        let t37 = t36 + t35;
-        let t38 = T::fused(-arm_e2, t18, t22);
-        let t39 = T::fused(arm_wy, t37, arm_wx * t38);
-        let t40 = t19 - t17;
-        let t41 = T::fused(-arm_wz, t37, arm_wx * t40);
-        let t42 = T::fused(arm_wz, t38, arm_wy * t40);
-        let t43 = arm_sy - T::fused(-k(0.1), t39, T::fused(-k(0.1), t41, k(0.2) * t42))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(block_wy, t31, block_wx * t32), t34));
-        let t44 = block_ry
-            - T::fused(k(0.1), t33, T::fused(-k(0.03), t31, k(0.05) * t32))
-            - (arm_ry + T::fused(k(0.1), t40, -T::fused(-k(0.2), t37, k(0.1) * t38)));
-        let t45 = T::fused(
+        let t38 = T::fused(
+            k(5.0),
+            block_sy,
+            -(t35 - (t36 - T::fused(-k(2.0), t34, k(5.0) * arm_sy))),
+        );
+        let t39 = T::fused(
+            k(0.5),
+            T::fused(-t25, block_wx, t27 * block_wz),
+            -T::fused(-k(0.3), T::fused(-block_wz, t26, t25 * block_wy), t38),
+        );
+        let t40 = T::fused(
+            t31 - T::fused(k(0.5), t32, t33),
+            T::fused(-block_wx, t26, t27 * block_wy) + t39,
+            t37,
+        );
+        let t41 = T::fused(block_e3, block_e3, -t6);
+        let t42 = t24 + t23;
+        let t43 = t1 - t0;
+        let t44 = T::fused(
+            k(5.0),
+            arm_rz,
             -T::fused(
-                k(0.6666666666666666),
-                t40,
-                T::fused(-k(0.6666666666666666), t37, k(0.3333333333333333) * t38),
+                k(0.3),
+                t43,
+                T::fused(k(0.5), t42, -T::fused(-k(5.0), block_rz, t41)),
             ),
-            t43,
-            t44
-                * T::fused(
-                    k(0.6666666666666666),
-                    t39,
-                    T::fused(-k(0.3333333333333333), t41, k(0.6666666666666666) * t42),
-                ),
         );
-        let t46 = T::fused(-block_e1, t2, t9);
-        let t47 = t30 - t29;
-        let t48 = t3 + t1;
-        let t49 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t46, block_wx * t48),
-            k(0.03) * T::fused(-block_wz, t47, block_wy * t48),
+        let t45 = T::fused(arm_e3, arm_e3, -t15);
+        let t46 = t30 + t29;
+        let t47 = t10 - t9;
+        let t48 = T::fused(-arm_wy, t45, t46 * arm_wz);
+        let t49 = T::fused(-t46, arm_wx, t47 * arm_wy);
+        let t50 = T::fused(-arm_wx, t45, t47 * arm_wz);
+        let t51 = T::fused(
+            T::fused(k(0.5), t50, t49 - t48),
+            T::fused(k(2.0), t47, t46 + (t45 + t44)),
+            t40,
         );
-        let t50 = T::fused(-arm_e1, t14, t22);
-        let t51 = t36 - t35;
-        let t52 = T::fused(arm_wy, t50, arm_wx * t51);
-        let t53 = t15 + t13;
-        let t54 = T::fused(arm_wz, t50, arm_wx * t53);
-        let t55 = T::fused(-arm_wz, t51, arm_wy * t53);
-        let t56 = arm_sx - T::fused(k(0.1), t52, T::fused(-k(0.1), t54, k(0.2) * t55))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(block_wy, t46, block_wx * t47), t49));
-        let t57 = block_rx
-            - T::fused(k(0.1), t48, -T::fused(-k(0.03), t46, k(0.05) * t47))
-            - (arm_rx + T::fused(k(0.1), t53, T::fused(-k(0.2), t50, k(0.1) * t51)));
-        let t58 = T::fused(
-            -T::fused(
-                -k(0.6666666666666666),
-                t53,
-                T::fused(-k(0.6666666666666666), t50, k(0.3333333333333333) * t51),
-            ),
-            t56,
-            t57
-                * T::fused(
-                    k(0.6666666666666666),
-                    t52,
-                    -T::fused(-k(0.3333333333333333), t54, k(0.6666666666666666) * t55),
-                ),
+        let t52 = T::fused(
+            k(5.0),
+            block_sz,
+            -(t49 - (t50 - T::fused(k(2.0), t48, k(5.0) * arm_sz))),
         );
-        let t59 = t58 - t45 + t28;
-        let t60 = T::fused(
-            k(0.6666666666666666),
-            arm_wz,
-            T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
-        )
-            - T::fused(
-                k(0.6666666666666666),
-                block_wz,
-                T::fused(
-                    k(0.6666666666666666),
-                    block_wy,
-                    k(0.3333333333333333) * block_wx,
-                ),
-            );
+        let t53 = T::fused(
+            -k(0.5),
+            T::fused(-block_wx, t41, t43 * block_wz),
+            T::fused(k(0.3), T::fused(-block_wy, t41, t42 * block_wz), t52),
+        );
+        let t54 = T::fused(
+            T::fused(k(0.5), t46, t47) - t45,
+            T::fused(-t42, block_wx, t43 * block_wy) - t53,
+            -t51,
+        );
+        let t55 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
         *dy = [
             arm_sx,
             arm_sy,
@@ -574,11 +558,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            -T::fused(t59, k(0.8) * t59, t60 * (k(0.02) * t60)),
-            -t60,
+            -(k(0.008888888888888889) * T::fused(k(6.4), t54 * t54, t55 * t55)),
+            k(0.6666666666666666) * t55,
         ];
     }
-    /// Writes Φ: 220 operations (102 ±, 118 ×, 0 ÷).
+    /// Writes Φ: 192 operations (102 ±, 90 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -595,141 +579,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_e1 = y[11];
         let block_e2 = y[12];
         let block_e3 = y[13];
-        let t0 = k(2.0) * arm_e1;
-        let t1 = k(2.0) * arm_e0;
-        let t2 = T::fused(-arm_e0, t1, k(1.0));
-        let t3 = T::fused(-arm_e1, t0, t2);
-        let t4 = k(0.2) * t3;
-        let t5 = arm_e3 * t1;
-        let t6 = arm_e2 * t0;
-        let t7 = t6 - t5;
-        let t8 = k(0.1) * t7;
-        let t9 = t6 + t5;
-        let t10 = k(0.2) * t9;
-        let t11 = k(2.0) * arm_e2;
-        let t12 = T::fused(-arm_e2, t11, t2);
-        let t13 = k(0.1) * t12;
-        let t14 = arm_e2 * t1;
-        let t15 = arm_e3 * t0;
-        let t16 = t15 - t14;
-        let t17 = k(0.2) * t16;
-        let t18 = arm_e1 * t1;
-        let t19 = arm_e3 * t11;
-        let t20 = t19 + t18;
-        let t21 = k(0.1) * t20;
-        let t22 = t15 + t14;
-        let t23 = k(0.6666666666666666) * t22;
-        let t24 = t23 - T::fused(k(0.6666666666666666), t3, k(0.3333333333333333) * t7);
-        let t25 = t19 - t18;
-        let t26 = k(0.6666666666666666) * t25;
-        let t27 = t26 + T::fused(k(0.6666666666666666), t9, k(0.3333333333333333) * t12);
-        let t28 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
-        let t29 = k(0.6666666666666666) * t28;
-        let t30 = T::fused(
-            k(0.7453559924999299),
-            t29 + T::fused(-k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
-            -T::fused(-k(0.5962847939999439), t24, k(0.29814239699997197) * t27),
+        let t0 = arm_e0 * arm_e3;
+        let t1 = arm_e1 * arm_e2;
+        let t2 = t1 - t0;
+        let t3 = arm_e0 * arm_e0;
+        let t4 = k(0.5) - t3;
+        let t5 = arm_e1 * arm_e1;
+        let t6 = t5 - t4;
+        let t7 = arm_e2 * arm_e2;
+        let t8 = t7 - t4;
+        let t9 = t1 + t0;
+        let t10 = arm_e0 * arm_e1;
+        let t11 = arm_e2 * arm_e3;
+        let t12 = t11 + t10;
+        let t13 = arm_e0 * arm_e2;
+        let t14 = arm_e1 * arm_e3;
+        let t15 = t14 - t13;
+        let t16 = t14 + t13;
+        let t17 = T::fused(-k(0.5), t2, t16) + t6;
+        let t18 = t11 - t10;
+        let t19 = t9 + T::fused(-k(0.5), t8, t18);
+        let t20 = arm_e3 * arm_e3;
+        let t21 = t20 - t4;
+        let t22 = T::fused(
+            -k(0.8),
+            t17,
+            T::fused(k(0.4), t19, t15 - T::fused(k(0.5), t12, -t21)),
         );
-        let t31 = k(2.0) * block_e1;
-        let t32 = k(2.0) * block_e0;
-        let t33 = T::fused(-block_e0, t32, k(1.0));
-        let t34 = T::fused(-block_e1, t31, t33);
-        let t35 = block_e3 * t32;
-        let t36 = block_e2 * t31;
-        let t37 = t36 - t35;
-        let t38 = block_e2 * t32;
-        let t39 = block_e3 * t31;
-        let t40 = t39 + t38;
-        let t41 = block_rx
-            - T::fused(k(0.1), t40, -T::fused(-k(0.03), t34, k(0.05) * t37))
-            - (arm_rx + T::fused(k(0.1), t22, t8 - t4));
-        let t42 = t36 + t35;
-        let t43 = k(2.0) * block_e2;
-        let t44 = T::fused(-block_e2, t43, t33);
-        let t45 = block_e1 * t32;
-        let t46 = block_e3 * t43;
-        let t47 = t46 - t45;
-        let t48 = block_ry
-            - T::fused(k(0.1), t47, T::fused(-k(0.03), t42, k(0.05) * t44))
-            - (arm_ry + T::fused(k(0.1), t25, -(t13 - t10)));
-        let t49 = T::fused(
-            t23 + T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t7),
-            t41,
-            (t26 - T::fused(-k(0.3333333333333333), t9, k(0.6666666666666666) * t12))
-                * t48,
-        );
-        let t50 = t39 - t38;
-        let t51 = t46 + t45;
-        let t52 = T::fused(-block_e3, k(2.0) * block_e3, t33);
-        let t53 = block_rz + T::fused(k(0.1), t52, T::fused(k(0.03), t50, k(0.05) * t51))
-            - (arm_rz - T::fused(k(0.1), t28, -(t21 + t17)));
-        let t54 = T::fused(
-            k(0.3333333333333333),
-            T::fused(t16, t50, T::fused(t3, t34, t9 * t42)),
-            k(0.6666666666666666) * T::fused(t16, t51, -T::fused(t3, t37, t9 * t44)),
-        );
-        let t55 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t16, t52, -T::fused(-t3, t40, t9 * t47)),
-            -t54,
-        );
-        let t56 = T::fused(
-            k(0.3333333333333333),
-            T::fused(t20, t50, -T::fused(t7, t34, t12 * t42)),
-            k(0.6666666666666666) * T::fused(t20, t51, T::fused(t7, t37, t12 * t44)),
-        );
-        let t57 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t20, t52, T::fused(-t7, t40, t12 * t47)),
-            -t56,
-        );
-        let t58 = T::fused(
-            k(0.3333333333333333),
-            T::fused(t28, t50, -T::fused(-t22, t34, t25 * t42)),
-            k(0.6666666666666666) * T::fused(t28, t51, T::fused(-t22, t37, t25 * t44)),
-        );
-        let t59 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t28, t52, T::fused(t22, t40, t25 * t47)),
-            -t58,
-        );
-        let t60 = T::fused(
-            arm_e3,
-            arm_e3,
-            T::fused(arm_e2, arm_e2, T::fused(arm_e1, arm_e1, arm_e0 * arm_e0)),
-        );
-        let t61 = T::fused(
-            block_e3,
-            block_e3,
-            T::fused(
-                block_e2,
-                block_e2,
-                T::fused(block_e1, block_e1, block_e0 * block_e0),
-            ),
-        );
-        *out = [
-            arm_rx + (t8 + t4) - k(0.1),
-            arm_ry - (t13 + t10),
-            arm_rz + (t21 - t17) - k(0.2),
-            T::fused(k(0.4472135954999579), t24, k(0.8944271909999159) * t27),
-            -t30,
-            T::fused(
-                -(t29
-                    - T::fused(k(0.3333333333333333), t16, k(0.6666666666666666) * t20)),
-                t53,
-                t49,
-            ),
+        let t23 = block_e0 * block_e0;
+        let t24 = k(0.5) - t23;
+        let t25 = block_e3 * block_e3;
+        let t26 = t25 - t24;
+        let t27 = block_e0 * block_e1;
+        let t28 = block_e2 * block_e3;
+        let t29 = t28 + t27;
+        let t30 = block_e0 * block_e2;
+        let t31 = block_e1 * block_e3;
+        let t32 = t31 - t30;
+        let t33 = T::fused(
+            k(5.0),
+            arm_rz,
             -T::fused(
-                k(0.6666666666666666),
-                t59,
-                T::fused(k(0.6666666666666666), t55, k(0.3333333333333333) * t57),
+                k(0.3),
+                t32,
+                T::fused(k(0.5), t29, -T::fused(-k(5.0), block_rz, t26)),
             ),
-            -T::fused(k(0.6666666666666666), t57 - t55, k(0.3333333333333333) * t59),
-            t60 - k(1.0),
-            t61 - k(1.0),
+        );
+        let t34 = t28 - t27;
+        let t35 = block_e2 * block_e2;
+        let t36 = t35 - t24;
+        let t37 = block_e0 * block_e3;
+        let t38 = block_e1 * block_e2;
+        let t39 = t38 + t37;
+        let t40 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t39,
+                T::fused(k(0.5), t36, -T::fused(-k(5.0), block_ry, t34)),
+            ),
+        );
+        let t41 = T::fused(
+            T::fused(k(0.5), t15, t12 + t21),
+            T::fused(k(2.0), t15, t12 + (t21 + t33)),
+            T::fused(k(0.5), t9, t18 + t8) * T::fused(k(2.0), t9, t8 + (t18 + t40)),
+        );
+        let t42 = t31 + t30;
+        let t43 = t38 - t37;
+        let t44 = block_e1 * block_e1;
+        let t45 = t44 - t24;
+        let t46 = T::fused(
+            k(5.0),
+            arm_rx,
+            -T::fused(
+                k(0.3),
+                t45,
+                T::fused(k(0.5), t43, -T::fused(-k(5.0), block_rx, t42)),
+            ),
+        );
+        let t47 = T::fused(
+            T::fused(k(0.5), t6, t2 + t16),
+            T::fused(k(2.0), t6, t2 + (t16 + t46)),
+            t41,
+        );
+        let t48 = T::fused(t2, t43, T::fused(t8, t36, t12 * t29))
+            + T::fused(t2, t42, T::fused(t12, t26, t34 * t8));
+        let t49 = T::fused(k(0.5), T::fused(t2, t45, T::fused(t39, t8, t12 * t32)), t48);
+        let t50 = T::fused(t16, t43, T::fused(t29, t21, t18 * t36))
+            + T::fused(t16, t42, T::fused(t21, t26, t18 * t34));
+        let t51 = T::fused(
+            k(0.5),
+            T::fused(t16, t45, T::fused(t32, t21, t18 * t39)),
+            t50,
+        );
+        let t52 = T::fused(t43, t6, T::fused(t9, t36, t15 * t29))
+            + T::fused(t42, t6, T::fused(t15, t26, t9 * t34));
+        let t53 = T::fused(k(0.5), T::fused(t6, t45, T::fused(t15, t32, t9 * t39)), t52);
+        *out = [
+            -(k(0.1) + T::fused(k(0.4), t6, -T::fused(k(0.2), t2, arm_rx))),
+            T::fused(-k(0.4), t9, T::fused(k(0.2), t8, arm_ry)),
+            -(k(0.2) + T::fused(k(0.4), t15, -T::fused(k(0.2), t12, arm_rz))),
+            k(1.1925695879998879) * T::fused(k(0.5), t17, t19),
+            k(0.9938079899999065) * t22,
+            -(k(0.26666666666666666) * t47),
+            k(1.7777777777777777) * (t53 - T::fused(-k(0.5), t49, t51)),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t49 - t53, t51)),
+            t7 + (t5 + (t3 + t20)) - k(1.0),
+            t35 + (t44 + (t23 + t25)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 379 operations (167 ±, 212 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 347 operations (167 ±, 180 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -758,190 +718,189 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = k(2.0) * arm_e1;
-        let t1 = k(2.0) * arm_e0;
-        let t2 = T::fused(-arm_e0, t1, k(1.0));
-        let t3 = T::fused(-arm_e1, t0, t2);
-        let t4 = arm_e2 * t1;
-        let t5 = arm_e3 * t0;
-        let t6 = t5 + t4;
-        let t7 = T::fused(arm_wz, t3, arm_wx * t6);
-        let t8 = k(0.1) * t7;
-        let t9 = arm_e3 * t1;
-        let t10 = arm_e2 * t0;
-        let t11 = t10 - t9;
-        let t12 = T::fused(-arm_wz, t11, arm_wy * t6);
-        let t13 = k(0.2) * t12;
-        let t14 = t10 + t9;
-        let t15 = arm_e1 * t1;
-        let t16 = k(2.0) * arm_e2;
-        let t17 = arm_e3 * t16;
-        let t18 = t17 - t15;
-        let t19 = T::fused(-arm_wz, t14, arm_wx * t18);
-        let t20 = k(0.1) * t19;
-        let t21 = T::fused(-arm_e2, t16, t2);
-        let t22 = T::fused(arm_wz, t21, arm_wy * t18);
-        let t23 = k(0.2) * t22;
-        let t24 = t5 - t4;
-        let t25 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
-        let t26 = T::fused(arm_wz, t24, arm_wx * t25);
-        let t27 = k(0.1) * t26;
-        let t28 = t17 + t15;
-        let t29 = T::fused(arm_wz, t28, arm_wy * t25);
-        let t30 = k(0.2) * t29;
-        let t31 = T::fused(arm_wy, t14, arm_wx * t21);
-        let t32 = k(0.6666666666666666) * t31;
-        let t33 = t32
-            - T::fused(k(0.3333333333333333), t19, k(0.6666666666666666) * t22);
-        let t34 = T::fused(arm_wy, t3, arm_wx * t11);
-        let t35 = k(0.6666666666666666) * t34;
-        let t36 = t35 + T::fused(k(0.3333333333333333), t7, k(0.6666666666666666) * t12);
-        let t37 = T::fused(-arm_wy, t24, arm_wx * t28);
-        let t38 = k(0.6666666666666666) * t37;
-        let t39 = T::fused(
-            -k(0.7453559924999299),
-            t38 - T::fused(k(0.3333333333333333), t26, k(0.6666666666666666) * t29),
-            T::fused(k(0.29814239699997197), t33, k(0.5962847939999439) * t36),
-        );
-        let t40 = k(2.0) * block_e0;
-        let t41 = block_e2 * t40;
-        let t42 = k(2.0) * block_e1;
-        let t43 = block_e3 * t42;
-        let t44 = t43 - t41;
-        let t45 = block_e1 * t40;
-        let t46 = k(2.0) * block_e2;
-        let t47 = block_e3 * t46;
-        let t48 = t47 + t45;
-        let t49 = T::fused(-block_e0, t40, k(1.0));
-        let t50 = T::fused(-block_e3, k(2.0) * block_e3, t49);
-        let t51 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t44, block_wx * t50),
-            k(0.03) * T::fused(block_wz, t48, block_wy * t50),
-        );
-        let t52 = arm_sz + T::fused(-k(0.1), t37, t30 - t27)
-            - (block_sz
-                + T::fused(k(0.1), T::fused(-block_wy, t44, block_wx * t48), t51));
-        let t53 = block_rz + T::fused(k(0.1), t50, T::fused(k(0.03), t44, k(0.05) * t48))
-            - (arm_rz - T::fused(k(0.1), t25, -T::fused(k(0.2), t24, k(0.1) * t28)));
-        let t54 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t25,
-                -T::fused(k(0.3333333333333333), t24, k(0.6666666666666666) * t28),
-            ),
-            t52,
-            (T::fused(-k(0.6666666666666666), t26, k(0.3333333333333333) * t29) - t38)
-                * t53,
-        );
-        let t55 = block_e3 * t40;
-        let t56 = block_e2 * t42;
-        let t57 = t56 + t55;
-        let t58 = T::fused(-block_e2, t46, t49);
-        let t59 = t47 - t45;
-        let t60 = T::fused(
-            -k(0.05),
-            T::fused(-block_wz, t57, block_wx * t59),
-            k(0.03) * T::fused(block_wz, t58, block_wy * t59),
-        );
-        let t61 = arm_sy - T::fused(-k(0.1), t31, t23 - t20)
-            - (block_sy
-                - T::fused(k(0.1), T::fused(block_wy, t57, block_wx * t58), t60));
-        let t62 = block_ry
-            - T::fused(k(0.1), t59, T::fused(-k(0.03), t57, k(0.05) * t58))
-            - (arm_ry + T::fused(k(0.1), t18, -T::fused(-k(0.2), t14, k(0.1) * t21)));
-        let t63 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t18,
-                -T::fused(-k(0.3333333333333333), t14, k(0.6666666666666666) * t21),
-            ),
-            t61,
-            (T::fused(-k(0.6666666666666666), t19, k(0.3333333333333333) * t22) - t32)
-                * t62,
-        );
-        let t64 = T::fused(-block_e1, t42, t49);
-        let t65 = t56 - t55;
-        let t66 = t43 + t41;
-        let t67 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t64, block_wx * t66),
-            k(0.03) * T::fused(-block_wz, t65, block_wy * t66),
-        );
-        let t68 = arm_sx - T::fused(k(0.1), t34, t13 - t8)
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(block_wy, t64, block_wx * t65), t67));
-        let t69 = block_rx
-            - T::fused(k(0.1), t66, -T::fused(-k(0.03), t64, k(0.05) * t65))
-            - (arm_rx + T::fused(k(0.1), t6, T::fused(-k(0.2), t3, k(0.1) * t11)));
-        let t70 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t6,
-                T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t11),
-            ),
-            t68,
-            (T::fused(-k(0.6666666666666666), t7, k(0.3333333333333333) * t12) + t35)
-                * t69,
-        );
-        let t71 = T::fused(t24, t48, -T::fused(t3, t65, t14 * t58));
-        let t72 = T::fused(t28, t48, T::fused(t11, t65, t21 * t58));
-        let t73 = T::fused(t25, t44, -T::fused(-t6, t64, t18 * t57));
-        let t74 = T::fused(t25, t50, T::fused(t6, t66, t18 * t59));
-        let t75 = T::fused(block_wz, t73, block_wx * t74)
-            - T::fused(-arm_wy, t71, arm_wx * t72);
-        let t76 = T::fused(t24, t44, T::fused(t3, t64, t14 * t57));
-        let t77 = T::fused(t28, t44, -T::fused(t11, t64, t21 * t57));
-        let t78 = T::fused(t25, t48, T::fused(-t6, t65, t18 * t58));
-        let t79 = T::fused(block_wz, t78, block_wy * t74)
-            + T::fused(-arm_wy, t76, arm_wx * t77);
-        let t80 = T::fused(t24, t50, -T::fused(-t3, t66, t14 * t59));
-        let t81 = T::fused(t28, t50, T::fused(-t11, t66, t21 * t59));
-        let t82 = T::fused(-block_wy, t73, block_wx * t78)
-            + T::fused(-arm_wy, t80, arm_wx * t81);
-        let t83 = T::fused(
-            k(0.6666666666666666),
-            t82,
-            -T::fused(-k(0.6666666666666666), t75, k(0.3333333333333333) * t79),
-        );
-        let t84 = T::fused(block_wz, t77, block_wx * t81)
-            + T::fused(arm_wz, t71, arm_wx * t78);
-        let t85 = T::fused(block_wz, t72, block_wy * t81)
-            - T::fused(arm_wz, t76, arm_wx * t73);
-        let t86 = T::fused(-block_wy, t77, block_wx * t72)
-            - T::fused(arm_wz, t80, arm_wx * t74);
-        let t87 = T::fused(
-            k(0.6666666666666666),
-            t86,
-            -T::fused(-k(0.6666666666666666), t84, k(0.3333333333333333) * t85),
-        );
-        let t88 = T::fused(block_wz, t76, block_wx * t80)
-            - T::fused(arm_wz, t72, arm_wy * t78);
-        let t89 = T::fused(block_wz, t71, block_wy * t80)
-            + T::fused(arm_wz, t77, arm_wy * t73);
-        let t90 = T::fused(-block_wy, t76, block_wx * t71)
-            + T::fused(arm_wz, t81, arm_wy * t74);
-        let t91 = T::fused(
-            k(0.6666666666666666),
-            t90,
-            -T::fused(-k(0.6666666666666666), t88, k(0.3333333333333333) * t89),
-        );
-        *out = [
-            arm_sx + (t13 + t8),
-            arm_sy + (t23 + t20),
-            arm_sz - (t30 + t27),
-            T::fused(-k(0.4472135954999579), t36, k(0.8944271909999159) * t33),
-            t39,
-            t54 - (t70 + t63),
+        let t0 = k(5.0) * arm_sx;
+        let t1 = arm_e0 * arm_e2;
+        let t2 = arm_e1 * arm_e3;
+        let t3 = t2 + t1;
+        let t4 = arm_e0 * arm_e3;
+        let t5 = arm_e1 * arm_e2;
+        let t6 = t5 - t4;
+        let t7 = T::fused(-t3, arm_wy, t6 * arm_wz);
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t10 = T::fused(arm_e1, arm_e1, -t9);
+        let t11 = T::fused(-arm_wz, t10, t3 * arm_wx);
+        let t12 = T::fused(arm_e2, arm_e2, -t9);
+        let t13 = arm_e0 * arm_e1;
+        let t14 = arm_e2 * arm_e3;
+        let t15 = t14 - t13;
+        let t16 = T::fused(-arm_wz, t12, t15 * arm_wy);
+        let t17 = k(2.0) * t16;
+        let t18 = k(5.0) * arm_sy;
+        let t19 = t5 + t4;
+        let t20 = T::fused(-t15, arm_wx, t19 * arm_wz);
+        let t21 = T::fused(arm_e3, arm_e3, -t9);
+        let t22 = t14 + t13;
+        let t23 = T::fused(-arm_wy, t21, t22 * arm_wz);
+        let t24 = k(2.0) * t23;
+        let t25 = k(5.0) * arm_sz;
+        let t26 = t2 - t1;
+        let t27 = T::fused(-arm_wx, t21, t26 * arm_wz);
+        let t28 = T::fused(-arm_wy, t10, t6 * arm_wx);
+        let t29 = T::fused(k(0.5), t11, -(t7 - t28));
+        let t30 = T::fused(-arm_wx, t12, t19 * arm_wy);
+        let t31 = T::fused(k(0.5), t20, t30 - t16);
+        let t32 = T::fused(-t22, arm_wx, t26 * arm_wy);
+        let t33 = T::fused(k(0.5), t27, t32 + t23) + T::fused(k(0.4), t31, k(0.8) * t29);
+        let t34 = block_e0 * block_e2;
+        let t35 = block_e1 * block_e3;
+        let t36 = t35 + t34;
+        let t37 = block_e0 * block_e3;
+        let t38 = block_e1 * block_e2;
+        let t39 = t38 - t37;
+        let t40 = T::fused(-block_e0, block_e0, k(0.5));
+        let t41 = T::fused(block_e1, block_e1, -t40);
+        let t42 = T::fused(
+            k(5.0),
+            arm_rx,
             -T::fused(
-                k(0.6666666666666666),
-                t83,
-                T::fused(k(0.3333333333333333), t87, k(0.6666666666666666) * t91),
+                k(0.3),
+                t41,
+                T::fused(k(0.5), t39, -T::fused(-k(5.0), block_rx, t36)),
             ),
-            T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * (t91 - t87)),
+        );
+        let t43 = T::fused(
+            k(0.3),
+            T::fused(-t36, block_wy, t39 * block_wz),
+            T::fused(k(5.0), block_sx, t28 - (t8 + t0 + t11)),
+        );
+        let t44 = T::fused(-block_wy, t41, t39 * block_wx)
+            + T::fused(k(0.5), T::fused(-block_wz, t41, t36 * block_wx), t43);
+        let t45 = T::fused(
+            t28 - T::fused(k(0.5), t7, t11),
+            T::fused(k(2.0), t10, t6 + (t3 + t42)),
+            t44 * T::fused(k(0.5), t10, t6 + t3),
+        );
+        let t46 = block_e0 * block_e1;
+        let t47 = block_e2 * block_e3;
+        let t48 = t47 - t46;
+        let t49 = T::fused(block_e2, block_e2, -t40);
+        let t50 = t38 + t37;
+        let t51 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t50,
+                T::fused(k(0.5), t49, -T::fused(-k(5.0), block_ry, t48)),
+            ),
+        );
+        let t52 = T::fused(
+            t30 - T::fused(k(0.5), t16, t20),
+            T::fused(k(2.0), t19, t12 + (t15 + t51)),
+            -t45,
+        );
+        let t53 = T::fused(
+            -k(0.3),
+            T::fused(-block_wz, t49, t48 * block_wy),
+            T::fused(k(5.0), block_sy, -(t30 - (t20 - (t18 - t17)))),
+        );
+        let t54 = T::fused(-block_wx, t49, t50 * block_wy)
+            + T::fused(k(0.5), T::fused(-t48, block_wx, t50 * block_wz), -t53);
+        let t55 = T::fused(block_e3, block_e3, -t40);
+        let t56 = t47 + t46;
+        let t57 = t35 - t34;
+        let t58 = T::fused(
+            k(5.0),
+            arm_rz,
+            -T::fused(
+                k(0.3),
+                t57,
+                T::fused(k(0.5), t56, -T::fused(-k(5.0), block_rz, t55)),
+            ),
+        );
+        let t59 = T::fused(
+            t32 - T::fused(-k(0.5), t23, t27),
+            T::fused(k(2.0), t26, t22 + (t21 + t58)),
+            T::fused(t54, T::fused(k(0.5), t19, t15 + t12), t52),
+        );
+        let t60 = T::fused(
+            k(0.3),
+            T::fused(-block_wy, t55, t56 * block_wz),
+            T::fused(k(5.0), block_sz, -(t32 - (t27 - (t25 + t24)))),
+        );
+        let t61 = T::fused(-t56, block_wx, t57 * block_wy)
+            - T::fused(-k(0.5), T::fused(-block_wx, t55, t57 * block_wz), t60);
+        let t62 = T::fused(t3, t41, T::fused(t57, t21, t15 * t50));
+        let t63 = T::fused(t6, t36, T::fused(t22, t55, t48 * t12));
+        let t64 = T::fused(t6, t39, T::fused(t12, t49, t22 * t56));
+        let t65 = T::fused(t10, t41, T::fused(t26, t57, t19 * t50));
+        let t66 = T::fused(
+            arm_wz,
+            t65,
+            -T::fused(arm_wx, t62, T::fused(-block_wy, t63, block_wz * t64)),
+        );
+        let t67 = T::fused(t3, t36, T::fused(t21, t55, t15 * t48));
+        let t68 = T::fused(t6, t41, T::fused(t50, t12, t22 * t57));
+        let t69 = T::fused(t36, t10, T::fused(t26, t55, t19 * t48));
+        let t70 = T::fused(
+            arm_wz,
+            t69,
+            -T::fused(arm_wx, t67, T::fused(-block_wx, t64, block_wy * t68)),
+        );
+        let t71 = T::fused(t3, t39, T::fused(t56, t21, t15 * t49));
+        let t72 = T::fused(t39, t10, T::fused(t19, t49, t26 * t56));
+        let t73 = T::fused(
+            arm_wz,
+            t72,
+            T::fused(-arm_wx, t71, T::fused(-block_wx, t63, block_wz * t68)),
+        );
+        let t74 = t73 + T::fused(k(0.5), t66, t70);
+        let t75 = T::fused(
+            arm_wz,
+            t68,
+            T::fused(-arm_wy, t62, T::fused(-block_wy, t69, block_wz * t72)),
+        );
+        let t76 = T::fused(
+            arm_wz,
+            t63,
+            T::fused(-arm_wy, t67, T::fused(-block_wx, t72, block_wy * t65)),
+        );
+        let t77 = T::fused(
+            arm_wz,
+            t64,
+            -T::fused(arm_wy, t71, T::fused(-block_wx, t69, block_wz * t65)),
+        );
+        let t78 = t77 + T::fused(k(0.5), t75, t76);
+        let t79 = T::fused(
+            arm_wy,
+            t65,
+            T::fused(-arm_wx, t68, T::fused(-block_wy, t67, block_wz * t71)),
+        );
+        let t80 = T::fused(
+            arm_wy,
+            t69,
+            T::fused(-arm_wx, t63, T::fused(-block_wx, t71, block_wy * t62)),
+        );
+        let t81 = T::fused(
+            arm_wy,
+            t72,
+            -T::fused(arm_wx, t64, T::fused(-block_wx, t67, block_wz * t62)),
+        );
+        let t82 = t81 + T::fused(k(0.5), t79, t80);
+        *out = [
+            k(0.2) * (t11 - (t8 - t0)),
+            -(k(0.2) * (t20 - (t18 + t17))),
+            -(k(0.2) * (t27 - (t25 - t24))),
+            k(1.1925695879998879) * T::fused(-k(0.5), t29, t31),
+            k(0.9938079899999065) * t33,
+            -(k(0.26666666666666666)
+                * T::fused(t61, T::fused(k(0.5), t26, t22 + t21), t59)),
+            -(k(1.7777777777777777) * (t82 - T::fused(-k(0.5), t74, t78))),
+            -(k(0.8888888888888888) * T::fused(k(2.0), t74 + t78, t82)),
         ];
     }
-    /// Kinetic and potential energy: 278 operations (120 ±, 158 ×, 0 ÷) and 3 functions.
+    /// Kinetic and potential energy: 248 operations (120 ±, 128 ×, 0 ÷) and 3 functions.
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let arm_rx = y[0];
@@ -972,201 +931,168 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_wz = y[25];
         let turn0 = y[27];
         let t0 = T::fused(
-            block_wy,
-            T::fused(
-                -k(0.003),
-                block_wz,
-                T::fused(k(0.03), block_wy, k(0.001) * block_wx),
-            ),
-            block_wx
-                * T::fused(
-                    k(0.002),
-                    block_wz,
-                    T::fused(k(0.001), block_wy, k(0.02) * block_wx),
-                ),
+            -k(0.016666666666666666),
+            arm_wy * (arm_wz + T::fused(k(25.0), arm_wy, k(2.0) * arm_wx)),
+            k(0.05)
+                * (arm_wx
+                    * (arm_wz
+                        - T::fused(k(10.0), arm_wx, k(0.6666666666666666) * arm_wy))),
         );
         let t1 = T::fused(
-            block_wz,
-            T::fused(
-                k(0.025),
-                block_wz,
-                T::fused(-k(0.003), block_wy, k(0.002) * block_wx),
-            ),
+            -k(0.3333333333333333),
+            arm_wz * (arm_wz + T::fused(-k(0.15), arm_wx, k(0.05) * arm_wy)),
             t0,
         );
         let t2 = T::fused(
-            k(0.6),
-            T::fused(
-                block_sz,
-                block_sz,
-                T::fused(block_sy, block_sy, block_sx * block_sx),
-            ),
+            -k(2.5),
+            T::fused(arm_sz, arm_sz, T::fused(arm_sy, arm_sy, arm_sx * arm_sx)),
             t1,
         );
         let t3 = T::fused(
-            arm_wy,
-            T::fused(k(0.01), arm_wz, T::fused(k(0.25), arm_wy, k(0.02) * arm_wx)),
-            arm_wx
-                * T::fused(-k(0.03), arm_wz, T::fused(k(0.02), arm_wy, k(0.3) * arm_wx)),
+            k(0.0033333333333333335),
+            block_wx * (block_wz + T::fused(k(0.5), block_wy, k(10.0) * block_wx)),
+            -t2,
         );
         let t4 = T::fused(
-            -arm_wz,
-            T::fused(-k(0.2), arm_wz, T::fused(-k(0.01), arm_wy, k(0.03) * arm_wx)),
-            t3,
+            k(0.005),
+            block_wy
+                * (block_wz
+                    - T::fused(k(10.0), block_wy, k(0.3333333333333333) * block_wx)),
+            -t3,
         );
         let t5 = T::fused(
-            k(1.5),
-            T::fused(arm_sz, arm_sz, T::fused(arm_sy, arm_sy, arm_sx * arm_sx)),
-            t4,
+            k(0.041666666666666664),
+            block_wz * (block_wz + T::fused(-k(0.12), block_wy, k(0.08) * block_wx)),
+            -t4,
         );
-        let t6 = k(2.0) * block_e1;
-        let t7 = k(2.0) * block_e0;
-        let t8 = T::fused(-block_e0, t7, k(1.0));
-        let t9 = T::fused(-block_e1, t6, t8);
-        let t10 = k(2.0) * arm_e1;
-        let t11 = k(2.0) * arm_e0;
-        let t12 = T::fused(-arm_e0, t11, k(1.0));
-        let t13 = T::fused(-arm_e1, t10, t12);
-        let t14 = block_e3 * t7;
-        let t15 = block_e2 * t6;
-        let t16 = t15 + t14;
-        let t17 = arm_e3 * t11;
-        let t18 = arm_e2 * t10;
-        let t19 = t18 + t17;
-        let t20 = block_e2 * t7;
-        let t21 = block_e3 * t6;
-        let t22 = t21 - t20;
-        let t23 = arm_e2 * t11;
-        let t24 = arm_e3 * t10;
-        let t25 = t24 - t23;
-        let t26 = t15 - t14;
-        let t27 = k(2.0) * block_e2;
-        let t28 = T::fused(-block_e2, t27, t8);
-        let t29 = block_e1 * t7;
-        let t30 = block_e3 * t27;
-        let t31 = t30 + t29;
-        let t32 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
-            k(0.3333333333333333) * T::fused(t25, t31, -T::fused(t13, t26, t19 * t28)),
-        );
-        let t33 = t21 + t20;
-        let t34 = t30 - t29;
-        let t35 = T::fused(-block_e3, k(2.0) * block_e3, t8);
-        let t36 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t25, t35, -T::fused(-t13, t33, t19 * t34)),
-            t32,
-        );
-        let t37 = t18 - t17;
-        let t38 = k(2.0) * arm_e2;
-        let t39 = T::fused(-arm_e2, t38, t12);
-        let t40 = arm_e1 * t11;
-        let t41 = arm_e3 * t38;
-        let t42 = t41 + t40;
-        let t43 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t42, t22, -T::fused(t37, t9, t39 * t16)),
-            k(0.3333333333333333) * T::fused(t42, t31, T::fused(t37, t26, t39 * t28)),
-        );
-        let t44 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t42, t35, T::fused(-t37, t33, t39 * t34)),
-            t43,
-        );
-        let t45 = t24 + t23;
-        let t46 = t41 - t40;
-        let t47 = T::fused(-arm_e3, k(2.0) * arm_e3, t12);
-        let t48 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t47, t22, -T::fused(-t45, t9, t46 * t16)),
-            k(0.3333333333333333) * T::fused(t47, t31, T::fused(-t45, t26, t46 * t28)),
-        );
-        let t49 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t47, t35, T::fused(t45, t33, t46 * t34)),
-            t48,
-        );
-        let t50 = T::fused(
-            k(0.6666666666666666),
-            t49,
-            T::fused(k(0.6666666666666666), t36, k(0.3333333333333333) * t44),
-        );
-        let t51 = turn0.cos();
-        let t52 = T::fused(
-            k(0.6666666666666666),
-            t44 - t36,
-            k(0.3333333333333333) * t49,
-        );
-        let t53 = turn0.sin();
-        let t54 = T::fused(-t53, t50, t51 * t52).atan2(T::fused(t51, t50, t53 * t52));
-        let t55 = turn0 + t54;
-        let t56 = block_rx
-            - T::fused(k(0.1), t33, -T::fused(-k(0.03), t9, k(0.05) * t26))
-            - (arm_rx + T::fused(k(0.1), t45, T::fused(-k(0.2), t13, k(0.1) * t37)));
-        let t57 = block_ry
-            - T::fused(k(0.1), t34, T::fused(-k(0.03), t16, k(0.05) * t28))
-            - (arm_ry + T::fused(k(0.1), t46, -T::fused(-k(0.2), t19, k(0.1) * t39)));
-        let t58 = T::fused(
-            -T::fused(-k(0.3333333333333333), t45, k(0.6666666666666666) * (t13 + t37)),
-            t56,
-            T::fused(k(0.3333333333333333), t46, k(0.6666666666666666) * (t19 + t39))
-                * t57,
-        );
-        let t59 = block_rz + T::fused(k(0.1), t35, T::fused(k(0.03), t22, k(0.05) * t31))
-            - (arm_rz - T::fused(k(0.1), t47, -T::fused(k(0.2), t25, k(0.1) * t42)));
-        let t60 = k(0.05)
-            + T::fused(
-                T::fused(
-                    -k(0.3333333333333333),
-                    t47,
-                    k(0.6666666666666666) * (t25 - t42),
-                ),
-                t59,
-                t58,
-            );
-        let t61 = T::fused(
+        let t6 = k(0.3)
+            * (T::fused(
+                block_sz,
+                block_sz,
+                T::fused(block_sy, block_sy, block_sx * block_sx),
+            ) + t5);
+        let t7 = T::fused(-block_e0, block_e0, k(0.5));
+        let t8 = T::fused(block_e3, block_e3, -t7);
+        let t9 = block_e0 * block_e1;
+        let t10 = block_e2 * block_e3;
+        let t11 = t10 + t9;
+        let t12 = block_e0 * block_e2;
+        let t13 = block_e1 * block_e3;
+        let t14 = t13 - t12;
+        let t15 = T::fused(
+            k(5.0),
+            arm_rz,
             -T::fused(
-                -k(0.6666666666666666),
-                t45,
-                T::fused(-k(0.6666666666666666), t13, k(0.3333333333333333) * t37),
+                k(0.3),
+                t14,
+                T::fused(k(0.5), t11, -T::fused(-k(5.0), block_rz, t8)),
             ),
-            t56,
-            T::fused(
-                k(0.6666666666666666),
-                t46,
-                T::fused(-k(0.6666666666666666), t19, k(0.3333333333333333) * t39),
-            ) * t57,
         );
-        let t62 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t47,
-                T::fused(k(0.6666666666666666), t25, k(0.3333333333333333) * t42),
+        let t16 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t17 = T::fused(arm_e3, arm_e3, -t16);
+        let t18 = arm_e0 * arm_e1;
+        let t19 = arm_e2 * arm_e3;
+        let t20 = t19 + t18;
+        let t21 = arm_e0 * arm_e2;
+        let t22 = arm_e1 * arm_e3;
+        let t23 = t22 - t21;
+        let t24 = T::fused(k(2.0), t23, t20 + (t17 + t15));
+        let t25 = t10 - t9;
+        let t26 = T::fused(block_e2, block_e2, -t7);
+        let t27 = block_e0 * block_e3;
+        let t28 = block_e1 * block_e2;
+        let t29 = t28 + t27;
+        let t30 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t29,
+                T::fused(k(0.5), t26, -T::fused(-k(5.0), block_ry, t25)),
             ),
-            t59,
-            -t61,
+        );
+        let t31 = t19 - t18;
+        let t32 = T::fused(arm_e2, arm_e2, -t16);
+        let t33 = arm_e0 * arm_e3;
+        let t34 = arm_e1 * arm_e2;
+        let t35 = t34 + t33;
+        let t36 = T::fused(k(2.0), t35, t32 + (t31 + t30));
+        let t37 = T::fused(
+            T::fused(k(2.0), t23 - t20, t17),
+            t24,
+            T::fused(k(2.0), t35 - t32, t31) * t36,
+        );
+        let t38 = t13 + t12;
+        let t39 = t28 - t27;
+        let t40 = T::fused(block_e1, block_e1, -t7);
+        let t41 = k(5.0) * arm_rx;
+        let t42 = t41
+            - T::fused(
+                k(0.3),
+                t40,
+                T::fused(k(0.5), t39, -T::fused(-k(5.0), block_rx, t38)),
+            );
+        let t43 = t22 + t21;
+        let t44 = t34 - t33;
+        let t45 = T::fused(arm_e1, arm_e1, -t16);
+        let t46 = T::fused(k(2.0), t45, t44 + (t43 + t42));
+        let t47 = k(0.375) - T::fused(T::fused(-k(2.0), t44 - t45, t43), t46, t37);
+        let t48 = T::fused(
+            -(T::fused(k(0.5), t20, t23) - t17),
+            t24,
+            (t31 - T::fused(k(0.5), t32, t35)) * t36,
+        );
+        let t49 = T::fused(t43 - T::fused(k(0.5), t44, t45), t46, t48);
+        let t50 = T::fused(
+            -k(0.5),
+            T::fused(t43, t39, T::fused(t11, t17, t31 * t26)),
+            T::fused(t43, t38, T::fused(t17, t8, t31 * t25)),
+        );
+        let t51 = T::fused(t43, t40, T::fused(t14, t17, t31 * t29)) - t50;
+        let t52 = T::fused(
+            -k(0.5),
+            T::fused(t44, t39, T::fused(t32, t26, t20 * t11)),
+            T::fused(t44, t38, T::fused(t20, t8, t25 * t32)),
+        );
+        let t53 = T::fused(t44, t40, T::fused(t29, t32, t20 * t14)) - t52;
+        let t54 = T::fused(
+            -k(0.5),
+            T::fused(t39, t45, T::fused(t35, t26, t23 * t11)),
+            T::fused(t38, t45, T::fused(t23, t8, t35 * t25)),
+        );
+        let t55 = T::fused(t45, t40, T::fused(t23, t14, t35 * t29)) - t54;
+        let t56 = T::fused(k(0.5), t51, t55 - t53);
+        let t57 = turn0.sin();
+        let t58 = t55 - T::fused(-k(0.5), t53, t51);
+        let t59 = turn0.cos();
+        let t60 = -(k(1.7777777777777777) * T::fused(t59, t56, t57 * t58))
+            .atan2(k(1.7777777777777777) * T::fused(-t57, t56, t59 * t58));
+        let t61 = turn0 + t60;
+        let t62 = T::fused(
+            t61,
+            t61,
+            T::fused(
+                k(1.1851851851851851),
+                t47 * t47,
+                k(2.962962962962963) * (t49 * t49),
+            ),
         );
         let t63 = T::fused(
-            t55,
-            k(0.6) * t55,
-            T::fused(t60, k(40.0) * t60, t62 * (k(25.0) * t62)),
-        );
-        let t64 = T::fused(
-            -k(0.5),
-            t63,
-            T::fused(k(4.5), arm_rz, T::fused(-k(13.5), arm_ry, k(1.5) * arm_rx)),
+            k(45.0),
+            arm_ry,
+            -(t41
+                + T::fused(
+                    k(6.0),
+                    block_rz,
+                    T::fused(-k(18.0), block_ry, k(2.0) * block_rx),
+                )),
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t2),
-            potential: -(T::fused(
-                k(1.8),
-                block_rz,
-                T::fused(-k(5.4), block_ry, k(0.6) * block_rx),
-            ) + t64),
+            kinetic: t6,
+            potential: -(k(0.3) * (T::fused(k(15.0), arm_rz, -t63) - t62)),
         }
     }
-    /// Writes the joint readings: 391 operations (175 ±, 216 ×, 0 ÷).
+    /// Writes the joint readings: 347 operations (175 ±, 172 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -1201,261 +1127,186 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let t3 = arm_e0 * arm_e2;
         let t4 = arm_e1 * arm_e3;
         let t5 = t4 - t3;
-        let t6 = arm_e2 * arm_e2;
+        let t6 = arm_e3 * arm_e3;
         let t7 = arm_e0 * arm_e0;
         let t8 = T::fused(arm_e1, arm_e1, t7);
-        let t9 = arm_e3 * arm_e3;
-        let t10 = k(1.0) - (t9 + (t8 + t6));
-        let t11 = k(0.5) - (t7 + t6);
-        let t12 = k(2.0) * t11;
-        let t13 = t12 - t10;
-        let t14 = arm_e0 * arm_e3;
-        let t15 = arm_e1 * arm_e2;
-        let t16 = t15 + t14;
-        let t17 = t16 - t13;
-        let t18 = t15 - t14;
-        let t19 = k(0.5) - t8;
-        let t20 = k(2.0) * t19;
-        let t21 = t20 - t10;
-        let t22 = T::fused(-k(1.7888543819998317), t18, k(0.4472135954999579) * t21);
-        let t23 = T::fused(
-            k(0.7453559924999299),
-            T::fused(k(1.7888543819998317), t2, k(0.8944271909999159) * t5),
-            T::fused(k(0.26666666666666666), t17, k(0.5962847939999439) * t22),
-        );
-        let t24 = k(0.6666666666666666) * arm_wz;
-        let t25 = t4 + t3;
-        let t26 = block_e0 * block_e0;
-        let t27 = T::fused(block_e1, block_e1, t26);
-        let t28 = k(0.5) - t27;
-        let t29 = block_e0 * block_e3;
-        let t30 = block_e1 * block_e2;
-        let t31 = t30 - t29;
-        let t32 = block_e0 * block_e2;
-        let t33 = block_e1 * block_e3;
-        let t34 = t33 + t32;
-        let t35 = block_rx
-            - T::fused(k(0.2), t34, -T::fused(-k(0.06), t28, k(0.1) * t31))
-            - (arm_rx + T::fused(k(0.2), t25, T::fused(-k(0.4), t19, k(0.2) * t18)));
-        let t36 = T::fused(
-            -k(1.3333333333333333),
-            t25,
-            T::fused(-k(1.3333333333333333), t19, k(0.6666666666666666) * t18),
-        );
-        let t37 = t1 - t0;
-        let t38 = t30 + t29;
-        let t39 = block_e2 * block_e2;
-        let t40 = k(0.5) - (t26 + t39);
-        let t41 = block_e0 * block_e1;
-        let t42 = block_e2 * block_e3;
-        let t43 = t42 - t41;
-        let t44 = block_ry - T::fused(k(0.2), t43, T::fused(-k(0.06), t38, k(0.1) * t40))
-            - (arm_ry + T::fused(k(0.2), t37, -T::fused(-k(0.4), t16, k(0.2) * t11)));
-        let t45 = T::fused(
-            k(1.3333333333333333),
-            t37,
-            T::fused(-k(1.3333333333333333), t16, k(0.6666666666666666) * t11),
-        );
-        let t46 = k(0.5) - (t7 + t9);
-        let t47 = t33 - t32;
-        let t48 = t42 + t41;
-        let t49 = block_e3 * block_e3;
-        let t50 = k(0.5) - (t26 + t49);
-        let t51 = block_rz + T::fused(k(0.2), t50, T::fused(k(0.06), t47, k(0.1) * t48))
-            - (arm_rz - T::fused(k(0.2), t46, -T::fused(k(0.4), t5, k(0.2) * t2)));
-        let t52 = T::fused(
-            k(1.3333333333333333),
-            t46,
-            T::fused(k(1.3333333333333333), t5, k(0.6666666666666666) * t2),
-        );
-        let t53 = k(2.0) * t47;
-        let t54 = k(2.0) * t48;
-        let t55 = k(2.0) * t50;
-        let t56 = T::fused(
-            -k(0.05),
-            T::fused(t53, block_wz, t55 * block_wx),
-            k(0.03) * T::fused(t54, block_wz, t55 * block_wy),
-        );
-        let t57 = k(2.0) * t5;
-        let t58 = k(2.0) * t2;
-        let t59 = T::fused(-t57, arm_wy, t58 * arm_wx);
-        let t60 = k(2.0) * t46;
-        let t61 = T::fused(t57, arm_wz, t60 * arm_wx);
-        let t62 = T::fused(t58, arm_wz, t60 * arm_wy);
-        let t63 = arm_sz + T::fused(-k(0.1), t59, T::fused(-k(0.1), t61, k(0.2) * t62))
-            - (block_sz
-                + T::fused(k(0.1), T::fused(-t53, block_wy, t54 * block_wx), t56));
-        let t64 = T::fused(
-            -t52,
-            t63,
-            t51
-                * T::fused(
-                    k(0.6666666666666666),
-                    t59,
-                    T::fused(-k(0.3333333333333333), t61, k(0.6666666666666666) * t62),
-                ),
-        );
-        let t65 = k(2.0) * t38;
-        let t66 = k(2.0) * t40;
-        let t67 = k(2.0) * t43;
-        let t68 = T::fused(
-            -k(0.05),
-            T::fused(-t65, block_wz, t67 * block_wx),
-            k(0.03) * T::fused(t66, block_wz, t67 * block_wy),
-        );
-        let t69 = k(2.0) * t16;
-        let t70 = T::fused(t69, arm_wy, t12 * arm_wx);
-        let t71 = k(2.0) * t37;
-        let t72 = T::fused(-t69, arm_wz, t71 * arm_wx);
-        let t73 = T::fused(t12, arm_wz, t71 * arm_wy);
-        let t74 = arm_sy - T::fused(-k(0.1), t70, T::fused(-k(0.1), t72, k(0.2) * t73))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(t65, block_wy, t66 * block_wx), t68));
-        let t75 = T::fused(
-            -t45,
-            t74,
-            t44
-                * T::fused(
-                    k(0.6666666666666666),
-                    t70,
-                    T::fused(-k(0.3333333333333333), t72, k(0.6666666666666666) * t73),
-                ),
-        );
-        let t76 = k(2.0) * t28;
-        let t77 = k(2.0) * t31;
-        let t78 = k(2.0) * t34;
-        let t79 = T::fused(
-            -k(0.05),
-            T::fused(t76, block_wz, t78 * block_wx),
-            k(0.03) * T::fused(-t77, block_wz, t78 * block_wy),
-        );
-        let t80 = k(2.0) * t18;
-        let t81 = T::fused(t20, arm_wy, t80 * arm_wx);
-        let t82 = k(2.0) * t25;
-        let t83 = T::fused(t20, arm_wz, t82 * arm_wx);
-        let t84 = T::fused(-t80, arm_wz, t82 * arm_wy);
-        let t85 = arm_sx - T::fused(k(0.1), t81, T::fused(-k(0.1), t83, k(0.2) * t84))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(t76, block_wy, t77 * block_wx), t79));
-        let t86 = T::fused(
-            -t36,
-            t85,
-            t35
-                * T::fused(
-                    k(0.6666666666666666),
-                    t81,
-                    -T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * t84),
-                ),
-        );
-        let t87 = T::fused(
-            -k(0.6666666666666666),
-            t25,
-            k(1.3333333333333333) * (t19 + t18),
-        );
-        let t88 = T::fused(
-            k(0.6666666666666666),
-            t37,
-            k(1.3333333333333333) * (t16 + t11),
-        );
-        let t89 = T::fused(
-            -k(0.6666666666666666),
-            t46,
-            k(1.3333333333333333) * (t5 - t2),
-        );
-        let t90 = T::fused(
-            t89,
-            t63,
-            t51
-                * T::fused(
-                    -k(0.6666666666666666),
-                    t62 + t61,
-                    k(0.3333333333333333) * t59,
-                ),
-        );
-        let t91 = T::fused(
-            -t88,
-            t74,
-            t44
-                * T::fused(
-                    -k(0.6666666666666666),
-                    t73 + t72,
-                    k(0.3333333333333333) * t70,
-                ),
-        );
-        let t92 = T::fused(
-            -t87,
-            t85,
-            t35 * T::fused(k(0.6666666666666666), t84 + t83, k(0.3333333333333333) * t81),
-        );
-        let t93 = k(1.0) - (t49 + (t27 + t39));
-        let t94 = t55 - t93;
-        let t95 = t60 - t10;
-        let t96 = t66 - t93;
-        let t97 = t76 - t93;
-        let t98 = T::fused(
-            -k(0.3333333333333333),
-            T::fused(-t54, t95, T::fused(-t71, t96, t82 * t77)),
-            k(0.6666666666666666) * T::fused(t53, t95, T::fused(-t71, t65, t82 * t97)),
-        );
-        let t99 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t95, t94, T::fused(t71, t67, t82 * t78)),
-            t98,
-        );
-        let t100 = T::fused(
-            -k(0.3333333333333333),
-            T::fused(t58, t54, T::fused(t13, t96, t80 * t77)),
-            k(0.6666666666666666) * T::fused(-t58, t53, T::fused(t65, t13, t80 * t97)),
-        );
-        let t101 = T::fused(
-            k(0.6666666666666666),
-            T::fused(-t58, t94, T::fused(-t67, t13, t80 * t78)),
-            t100,
-        );
-        let t102 = T::fused(
-            -k(0.3333333333333333),
-            T::fused(-t57, t54, T::fused(t69, t96, t77 * t21)),
-            k(0.6666666666666666) * T::fused(t57, t53, T::fused(t69, t65, t21 * t97)),
-        );
-        let t103 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t57, t94, T::fused(-t69, t67, t78 * t21)),
-            t102,
-        );
-        let t104 = T::fused(
-            k(0.6666666666666666),
-            arm_wy,
-            k(0.3333333333333333) * arm_wx,
-        ) + t24
-            - T::fused(
-                k(0.6666666666666666),
-                block_wz,
-                T::fused(
-                    k(0.6666666666666666),
-                    block_wy,
-                    k(0.3333333333333333) * block_wx,
-                ),
-            );
-        *out = [
-            t23,
-            T::fused(-k(0.4472135954999579), t22, k(0.8) * t17),
-            t24
-                + T::fused(
-                    -k(0.3333333333333333),
-                    arm_wy,
-                    k(0.6666666666666666) * arm_wx,
-                ),
-            T::fused(t52, t51, -T::fused(-t36, t35, t45 * t44)),
-            t86 - t75 + t64,
-            -T::fused(t89, t51, T::fused(-t87, t35, t88 * t44)),
-            t92 - t91 + t90,
-            T::fused(-k(0.6666666666666666), t103 + t101, k(0.3333333333333333) * t99),
-            T::fused(
-                k(0.6666666666666666),
-                t99,
-                T::fused(-k(0.3333333333333333), t101, k(0.6666666666666666) * t103),
+        let t9 = arm_e2 * arm_e2;
+        let t10 = k(0.5) * (k(1.0) - (t9 + (t8 + t6)));
+        let t11 = k(0.5) - (t7 + t9);
+        let t12 = t11 - t10;
+        let t13 = arm_e0 * arm_e3;
+        let t14 = arm_e1 * arm_e2;
+        let t15 = t14 + t13;
+        let t16 = T::fused(-k(2.0), t12, t15);
+        let t17 = k(0.5) - t8;
+        let t18 = t17 - t10;
+        let t19 = t14 - t13;
+        let t20 = T::fused(k(2.0), t19, -t18);
+        let t21 = k(0.5333333333333333)
+            * T::fused(-k(1.25), T::fused(k(2.0), t2, t5), T::fused(-k(0.5), t16, t20));
+        let t22 = block_e3 * block_e3;
+        let t23 = block_e0 * block_e0;
+        let t24 = k(0.5) - (t23 + t22);
+        let t25 = block_e0 * block_e1;
+        let t26 = block_e2 * block_e3;
+        let t27 = t26 + t25;
+        let t28 = block_e0 * block_e2;
+        let t29 = block_e1 * block_e3;
+        let t30 = t29 - t28;
+        let t31 = T::fused(
+            k(5.0),
+            arm_rz,
+            -T::fused(
+                k(0.3),
+                t30,
+                T::fused(k(0.5), t27, T::fused(k(5.0), block_rz, t24)),
             ),
-            -t104,
+        );
+        let t32 = k(0.5) - (t7 + t6);
+        let t33 = T::fused(k(2.0), t5, t2 - (t32 - t31));
+        let t34 = t32 + T::fused(k(0.5), t2, t5);
+        let t35 = t26 - t25;
+        let t36 = block_e2 * block_e2;
+        let t37 = k(0.5) - (t23 + t36);
+        let t38 = block_e0 * block_e3;
+        let t39 = block_e1 * block_e2;
+        let t40 = t39 + t38;
+        let t41 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t40,
+                -T::fused(k(0.5), t37, T::fused(-k(5.0), block_ry, t35)),
+            ),
+        );
+        let t42 = t1 - t0;
+        let t43 = T::fused(k(2.0), t15, -(t11 - (t42 + t41)));
+        let t44 = t42 - T::fused(-k(0.5), t11, t15);
+        let t45 = t29 + t28;
+        let t46 = t39 - t38;
+        let t47 = T::fused(block_e1, block_e1, t23);
+        let t48 = k(0.5) - t47;
+        let t49 = T::fused(
+            k(5.0),
+            arm_rx,
+            T::fused(
+                k(0.3),
+                t48,
+                -T::fused(k(0.5), t46, -T::fused(-k(5.0), block_rx, t45)),
+            ),
+        );
+        let t50 = t4 + t3;
+        let t51 = T::fused(k(2.0), t17, -(t19 + (t50 + t49)));
+        let t52 = t50 + T::fused(-k(0.5), t19, t17);
+        let t53 = T::fused(-t50, arm_wy, t19 * arm_wz);
+        let t54 = T::fused(t19, arm_wx, t17 * arm_wy);
+        let t55 = T::fused(t50, arm_wx, t17 * arm_wz);
+        let t56 = T::fused(
+            k(5.0),
+            block_sx,
+            t54 - (t55 + T::fused(k(5.0), arm_sx, k(2.0) * t53)),
+        );
+        let t57 = T::fused(
+            k(0.5),
+            T::fused(t45, block_wx, t48 * block_wz),
+            T::fused(k(0.3), T::fused(-t45, block_wy, t46 * block_wz), t56),
+        );
+        let t58 = T::fused(t46, block_wx, t48 * block_wy) + t57;
+        let t59 = T::fused(t42, arm_wy, t11 * arm_wz);
+        let t60 = T::fused(t11, arm_wx, t15 * arm_wy);
+        let t61 = T::fused(-t42, arm_wx, t15 * arm_wz);
+        let t62 = T::fused(
+            T::fused(k(0.5), t61, t60 + t59),
+            t43,
+            -T::fused(-T::fused(k(0.5), t55, t54 + t53), t51, t52 * t58),
+        );
+        let t63 = T::fused(
+            -k(5.0),
+            block_sy,
+            t60 - (t61 + T::fused(-k(5.0), arm_sy, k(2.0) * t59)),
+        );
+        let t64 = T::fused(
+            k(0.5),
+            T::fused(-t35, block_wx, t40 * block_wz),
+            T::fused(k(0.3), T::fused(t35, block_wy, t37 * block_wz), t63),
+        );
+        let t65 = T::fused(t37, block_wx, t40 * block_wy) + t64;
+        let t66 = T::fused(t32, arm_wy, t2 * arm_wz);
+        let t67 = T::fused(-t2, arm_wx, t5 * arm_wy);
+        let t68 = T::fused(t32, arm_wx, t5 * arm_wz);
+        let t69 = T::fused(
+            T::fused(k(0.5), t68, t67 - t66),
+            t33,
+            T::fused(t44, t65, t62),
+        );
+        let t70 = T::fused(
+            -k(5.0),
+            block_sz,
+            t67 - (t68 - T::fused(k(5.0), arm_sz, k(2.0) * t66)),
+        );
+        let t71 = T::fused(
+            k(0.5),
+            T::fused(t24, block_wx, t30 * block_wz),
+            T::fused(-k(0.3), T::fused(t24, block_wy, t27 * block_wz), t70),
+        );
+        let t72 = T::fused(-t27, block_wx, t30 * block_wy) + t71;
+        let t73 = T::fused(-k(0.5), t32, t5 - t2);
+        let t74 = T::fused(k(0.5), t42, t15 + t11);
+        let t75 = T::fused(-k(0.5), t50, t17 + t19);
+        let t76 = T::fused(k(2.0), t75 * t58, t51 * T::fused(k(2.0), t55 - t53, t54));
+        let t77 = T::fused(
+            k(2.0),
+            t74 * t65,
+            T::fused(t43, T::fused(k(2.0), t61 - t59, t60), t76),
+        );
+        let t78 = T::fused(
+            k(2.0),
+            t73 * t72,
+            T::fused(t33, T::fused(k(2.0), t68 + t66, t67), t77),
+        );
+        let t79 = k(0.5) * (k(1.0) - (t36 + (t47 + t22)));
+        let t80 = t37 - t79;
+        let t81 = t32 - t10;
+        let t82 = t48 - t79;
+        let t83 = T::fused(
+            k(0.5),
+            T::fused(t27, t81, -T::fused(-t42, t80, t50 * t46)),
+            T::fused(t30, t81, -T::fused(-t50, t82, t42 * t40)),
+        );
+        let t84 = t24 - t79;
+        let t85 = T::fused(t84, t81, T::fused(t50, t45, t42 * t35)) + t83;
+        let t86 = T::fused(
+            k(0.5),
+            T::fused(t5, t27, -T::fused(t46, t18, t15 * t80)),
+            T::fused(t5, t30, T::fused(t18, t82, t15 * t40)),
+        );
+        let t87 = T::fused(t5, t84, -T::fused(-t45, t18, t15 * t35)) + t86;
+        let t88 = T::fused(
+            k(0.5),
+            T::fused(t2, t27, T::fused(t12, t80, t19 * t46)),
+            T::fused(t2, t30, -T::fused(t19, t82, t40 * t12)),
+        );
+        let t89 = T::fused(t2, t84, -T::fused(-t35, t12, t19 * t45)) + t88;
+        let t90 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
+        *out = [
+            -t21,
+            k(0.4) * T::fused(k(2.0), t16, t20),
+            -(k(0.6666666666666666) * T::fused(k(0.5), arm_wy, -(arm_wx + arm_wz))),
+            -(k(0.26666666666666666)
+                * T::fused(t52, t51, -T::fused(-t34, t33, t44 * t43))),
+            -(k(0.26666666666666666) * T::fused(t34, t72, -t69)),
+            k(0.26666666666666666) * T::fused(t75, t51, T::fused(t73, t33, t74 * t43)),
+            k(0.13333333333333333) * t78,
+            k(1.7777777777777777) * T::fused(k(0.5), t85, t89 - t87),
+            k(1.7777777777777777) * (t85 + T::fused(k(0.5), t89, t87)),
+            k(0.6666666666666666) * t90,
         ];
     }
     fn n_bodies(&self) -> usize {
@@ -1702,7 +1553,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             (7, 11),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 731 operations (344 ±, 387 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 663 operations (342 ±, 321 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -1719,801 +1570,396 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_e1 = y[11];
         let block_e2 = y[12];
         let block_e3 = y[13];
-        let (
-            t0,
-            t1,
-            t2,
-            t3,
-            t4,
-            t5,
-            t6,
-            t7,
-            t8,
-            t9,
-            t10,
-            t11,
-            t12,
-            t16,
-            t17,
-            t20,
-            t21,
-            t24,
-            t25,
-            t28,
-            t29,
-            t30,
-            t31,
-            t32,
-            t33,
-            t34,
-            t35,
-            t36,
-            t38,
-            t41,
-            t44,
-            t45,
-            t46,
-            t47,
-            t48,
-            t51,
-            t52,
-            t53,
-            t54,
-            t55,
-            t56,
-            t57,
-            t58,
-            t60,
-            t64,
-            t67,
-            t83,
-            t86,
-            t89,
-            t92,
-            t93,
-            t94,
-            t95,
-            t100,
-            t101,
-            t104,
-            t107,
-            t108,
-            t117,
-            t125,
-            t133,
-            t137,
-            t141,
-            t150,
-            t154,
-            t160,
-            t161,
-            t164,
-            t165,
-            t166,
-            t167,
-            t170,
-            t171,
-            t173,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t181,
-            t182,
-            t183,
-            t184,
-            t185,
-            t186,
-            t187,
-            t189,
-            t190,
-            t191,
-            t192,
-            t193,
-            t194,
-            t195,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = k(0.8) * arm_e0;
-            let t1 = k(0.2) * arm_e3;
-            let t2 = k(0.8) * arm_e1;
-            let t3 = k(0.2) * arm_e2;
-            let t4 = k(0.2) * arm_e1;
-            let t5 = k(0.2) * arm_e0;
-            let t6 = arm_e0 - arm_e3;
-            let t7 = k(0.4) * arm_e2;
-            let t8 = arm_e1 - arm_e2;
-            let t9 = k(0.4) * arm_e0;
-            let t10 = k(0.4) * arm_e3;
-            let t11 = k(0.4) * arm_e1;
-            let t12 = k(2.6666666666666665) * arm_e0;
-            let t13 = k(0.6666666666666666) * arm_e3;
-            let t14 = t13 + t12;
-            let t15 = k(1.3333333333333333) * arm_e2;
-            let t16 = t15 + t14;
-            let t17 = arm_e1 + t6;
-            let t18 = k(0.6666666666666666) * arm_e2;
-            let t19 = k(1.3333333333333333) * arm_e3;
-            let t20 = t19 - T::fused(-k(2.6666666666666665), arm_e1, t18);
-            let t21 = arm_e0 - arm_e2;
-            let t22 = k(0.6666666666666666) * arm_e1;
-            let t23 = k(1.3333333333333333) * arm_e0;
-            let t24 = t23 - t22;
-            let t25 = arm_e3 + t8;
-            let t26 = k(0.6666666666666666) * arm_e0;
-            let t27 = k(1.3333333333333333) * arm_e1;
-            let t28 = t27 + t26;
-            let t29 = arm_e0 + arm_e2;
-            let t30 = t15 + t22;
-            let t31 = t19 - t26;
-            let t32 = t23 + t13;
-            let t33 = k(2.6666666666666665) * arm_e3;
-            let t34 = t27 - t18;
-            let t35 = k(2.0) * arm_e1;
-            let t36 = k(2.0) * arm_e0;
-            let t37 = T::fused(-arm_e0, t36, k(1.0));
-            let t38 = T::fused(-arm_e1, t35, t37);
-            let t39 = arm_e3 * t36;
-            let t40 = arm_e2 * t35;
-            let t41 = t40 - t39;
-            let t42 = arm_e2 * t36;
-            let t43 = arm_e3 * t35;
-            let t44 = t43 + t42;
-            let t45 = T::fused(
-                k(0.6666666666666666),
-                t44,
-                T::fused(-k(0.3333333333333333), t38, k(0.6666666666666666) * t41),
-            );
-            let t46 = t40 + t39;
-            let t47 = k(2.0) * arm_e2;
-            let t48 = T::fused(-arm_e2, t47, t37);
-            let t49 = arm_e1 * t36;
-            let t50 = arm_e3 * t47;
-            let t51 = t50 - t49;
-            let t52 = T::fused(
-                k(0.6666666666666666),
-                t51,
-                -T::fused(-k(0.3333333333333333), t46, k(0.6666666666666666) * t48),
-            );
-            let t53 = t43 - t42;
-            let t54 = t50 + t49;
-            let t55 = k(2.0) * arm_e3;
-            let t56 = T::fused(-arm_e3, t55, t37);
-            let t57 = T::fused(
-                k(0.6666666666666666),
-                t56,
-                -T::fused(k(0.3333333333333333), t53, k(0.6666666666666666) * t54),
-            );
-            let t58 = k(2.0) * block_e0;
-            let t59 = block_e2 * t58;
-            let t60 = k(2.0) * block_e1;
-            let t61 = block_e3 * t60;
-            let t62 = t61 - t59;
-            let t63 = block_e1 * t58;
-            let t64 = k(2.0) * block_e2;
-            let t65 = block_e3 * t64;
-            let t66 = t65 + t63;
-            let t67 = k(2.0) * block_e3;
-            let t68 = T::fused(-block_e0, t58, k(1.0));
-            let t69 = T::fused(-block_e3, t67, t68);
-            let t70 = block_rz
-                + T::fused(k(0.1), t69, T::fused(k(0.03), t62, k(0.05) * t66))
-                - (arm_rz - T::fused(k(0.1), t56, -T::fused(k(0.2), t53, k(0.1) * t54)));
-            let t71 = block_e3 * t58;
-            let t72 = block_e2 * t60;
-            let t73 = t72 + t71;
-            let t74 = T::fused(-block_e2, t64, t68);
-            let t75 = t65 - t63;
-            let t76 = block_ry
-                - T::fused(k(0.1), t75, T::fused(-k(0.03), t73, k(0.05) * t74))
-                - (arm_ry
-                    + T::fused(k(0.1), t51, -T::fused(-k(0.2), t46, k(0.1) * t48)));
-            let t77 = T::fused(
-                -T::fused(-k(0.4), arm_e0 + arm_e3, t4),
-                t52,
-                (t27 - t14) * t76,
-            );
-            let t78 = T::fused(-block_e1, t60, t68);
-            let t79 = t72 - t71;
-            let t80 = t61 + t59;
-            let t81 = block_rx
-                - T::fused(k(0.1), t80, -T::fused(-k(0.03), t78, k(0.05) * t79))
-                - (arm_rx + T::fused(k(0.1), t44, T::fused(-k(0.2), t38, k(0.1) * t41)));
-            let t82 = T::fused(
-                -(t3 - (t1 - t0)),
-                t45,
-                k(1.3333333333333333) * (arm_e2 + t6) * t81,
-            );
-            let t83 = t82 - t77 + T::fused(t9 + (t4 - t7), t57, (t12 + t34) * t70);
-            let t84 = arm_e1 + arm_e2;
-            let t85 = T::fused(
-                -(t1 + (t3 + t2)),
-                t45,
-                k(1.3333333333333333) * (arm_e3 + t84) * t81,
-            );
-            let t86 = t85 - T::fused(t7 - t5, t52, (t23 - t18) * t76)
-                + T::fused(t10 + t5, t57, t32 * t70);
-            let t87 = T::fused(
-                -T::fused(k(0.4), t84, t1),
-                t52,
-                (t19 + T::fused(k(2.6666666666666665), arm_e2, t22)) * t76,
-            );
-            let t88 = arm_e0 + arm_e1;
-            let t89 = T::fused(-(k(0.2) * t88), t45, k(1.3333333333333333) * t88 * t81)
-                + t87 + T::fused(t1 - t9, t57, t31 * t70);
-            let t90 = arm_e0 - arm_e1;
-            let t91 = T::fused(-(k(0.2) * t90), t45, k(1.3333333333333333) * t90 * t81)
-                - T::fused(-(t9 + t3), t52, (t15 + t26) * t76);
-            let t92 = t91 - T::fused(t10 + (t3 + t11), t57, (t30 + t33) * t70);
-            let t93 = k(0.06) * block_e2;
-            let t94 = k(0.1) * block_e1;
-            let t95 = k(0.06) * block_e3;
-            let t96 = k(0.2) * block_e0;
-            let t97 = k(0.2) * block_e1;
-            let t98 = k(0.1) * block_e3;
-            let t99 = k(0.2) * block_e2;
-            let t100 = T::fused(
-                -(t97 + (t96 + t95)),
-                t52,
-                (t99 + T::fused(-k(0.12), block_e0, t98)) * t45,
-            );
-            let t101 = k(0.1) * block_e0;
-            let t102 = k(0.1) * block_e2;
-            let t103 = k(0.2) * block_e3;
-            let t104 = T::fused(
-                -(t93 + t96),
-                t52,
-                (t103 - T::fused(k(0.12), block_e1, t102)) * t45,
-            );
-            let t105 = k(0.06) * block_e0;
-            let t106 = k(0.06) * block_e1;
-            let t107 = T::fused(
-                -(t98 - t105),
-                t57,
-                T::fused(-(t103 - (t99 + t106)), t52, (t94 - t96) * t45),
-            );
-            let t108 = T::fused(
-                -T::fused(k(0.4), block_e3, -(t102 + t106)),
-                t57,
-                T::fused(t99 - t105, t52, (t97 + t101) * t45),
-            );
-            let t109 = k(4.0) * arm_e0;
-            let t110 = t35 * t74;
-            let t111 = t47 * t79;
-            let t112 = t35 * t73;
-            let t113 = t47 * t78;
-            let t114 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t109, t66, t111 + t110),
-                k(0.3333333333333333) * T::fused(-t109, t62, t113 + t112),
-            );
-            let t115 = t35 * t75;
-            let t116 = t47 * t80;
-            let t117 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t109, t69, t116 - t115),
-                -t114,
-            );
-            let t118 = t35 * t66;
-            let t119 = t55 * t79;
-            let t120 = t35 * t62;
-            let t121 = t55 * t78;
-            let t122 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t109, t74, t119) - t118,
-                k(0.3333333333333333) * (T::fused(t109, t73, t121) + t120),
-            );
-            let t123 = t35 * t69;
-            let t124 = t55 * t80;
-            let t125 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t109, t75, t124) + t123,
-                -t122,
-            );
-            let t126 = t47 * t66;
-            let t127 = t55 * t74;
-            let t128 = t47 * t62;
-            let t129 = t55 * t73;
-            let t130 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t109, t79, -t127) - t126,
-                k(0.3333333333333333) * (T::fused(t109, t78, -t129) + t128),
-            );
-            let t131 = t47 * t69;
-            let t132 = t55 * t75;
-            let t133 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t109, t80, t132) + t131,
-                -t130,
-            );
-            let t134 = t36 * t74;
-            let t135 = t36 * t73;
-            let t136 = t36 * t75;
-            let t137 = T::fused(
-                k(0.6666666666666666),
-                t124 - t136,
-                -T::fused(
-                    -k(0.6666666666666666),
-                    t119 + t134,
-                    k(0.3333333333333333) * (t121 + t135),
-                ),
-            );
-            let t138 = t36 * t66;
-            let t139 = t36 * t62;
-            let t140 = t36 * t69;
-            let t141 = T::fused(
-                k(0.6666666666666666),
-                t116 - t140,
-                -T::fused(
-                    -k(0.6666666666666666),
-                    t111 + t138,
-                    k(0.3333333333333333) * (t113 - t139),
-                ),
-            );
-            let t142 = t55 * t66;
-            let t143 = t47 * t74;
-            let t144 = k(4.0) * arm_e1;
-            let t145 = t55 * t62;
-            let t146 = t47 * t73;
-            let t147 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t144, t79, -t143) + t142,
-                k(0.3333333333333333) * (T::fused(t144, t78, -t146) - t145),
-            );
-            let t148 = t55 * t69;
-            let t149 = t47 * t75;
-            let t150 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t144, t80, t149) - t148,
-                -t147,
-            );
-            let t151 = t36 * t79;
-            let t152 = t36 * t78;
-            let t153 = t36 * t80;
-            let t154 = T::fused(
-                k(0.6666666666666666),
-                t132 + t153,
-                T::fused(
-                    -k(0.6666666666666666),
-                    t127 - t151,
-                    k(0.3333333333333333) * (t129 - t152),
-                ),
-            );
-            let t155 = k(4.0) * arm_e2;
-            let t156 = t35 * t79;
-            let t157 = t35 * t78;
-            let t158 = T::fused(
-                k(0.6666666666666666),
-                t142 + T::fused(-t155, t74, t156),
-                k(0.3333333333333333) * (t145 - T::fused(-t155, t73, t157)),
-            );
-            let t159 = t35 * t80;
-            let t160 = T::fused(
-                k(0.6666666666666666),
-                t148 - T::fused(t155, t75, t159),
-                -t158,
-            );
-            let t161 = T::fused(
-                k(0.6666666666666666),
-                t115 + t140,
-                T::fused(
-                    -k(0.6666666666666666),
-                    t110 + t138,
-                    k(0.3333333333333333) * (t112 - t139),
-                ),
-            );
-            let t162 = k(4.0) * arm_e3;
-            let t163 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t162, t66, t143 - t156),
-                k(0.3333333333333333) * T::fused(t162, t62, t146 - t157),
-            );
-            let t164 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t162, t69, t149 + t159),
-                t163,
-            );
-            let t165 = T::fused(
-                k(0.6666666666666666),
-                t131 + t153,
-                -T::fused(
-                    k(0.6666666666666666),
-                    t126 - t151,
-                    k(0.3333333333333333) * (t128 + t152),
-                ),
-            );
-            let t166 = T::fused(
-                k(0.6666666666666666),
-                t123 - t136,
-                -T::fused(
-                    k(0.6666666666666666),
-                    t118 - t134,
-                    k(0.3333333333333333) * (t120 + t135),
-                ),
-            );
-            let t167 = t60 * t56;
-            let t168 = k(4.0) * block_e0;
-            let t169 = t67 * t44;
-            let t170 = t64 * t56;
-            let t171 = t67 * t51;
-            let t172 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t168, t51, t169) + t167,
-                k(0.3333333333333333) * (T::fused(t168, t44, t171) + t170),
-            );
-            let t173 = t60 * t51;
-            let t174 = t64 * t44;
-            let t175 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t168, t56, t174 - t173),
-                t172,
-            );
-            let t176 = t60 * t54;
-            let t177 = t67 * t41;
-            let t178 = t64 * t54;
-            let t179 = t67 * t48;
-            let t180 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t168, t48, t177) - t176,
-                k(0.3333333333333333) * (T::fused(t168, t41, -t179) - t178),
-            );
-            let t181 = t60 * t48;
-            let t182 = t64 * t41;
-            let t183 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t168, t54, t182 + t181),
-                t180,
-            );
-            let t184 = t60 * t53;
-            let t185 = t67 * t38;
-            let t186 = t64 * t53;
-            let t187 = t67 * t46;
-            let t188 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t168, t46, t185) + t184,
-                k(0.3333333333333333) * (T::fused(t168, t38, -t187) + t186),
-            );
-            let t189 = t60 * t46;
-            let t190 = t64 * t38;
-            let t191 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t168, t53, t190 + t189),
-                t188,
-            );
-            let t192 = t58 * t56;
-            let t193 = t67 * t56;
-            let t194 = t64 * t51;
-            let t195 = k(4.0) * block_e1;
-            let t196 = T::fused(
-                k(0.6666666666666666),
-                t174 - t192,
-                k(0.3333333333333333) * (T::fused(t195, t44, t194) - t193),
-            );
-            let t197 = t58 * t51;
-            let t198 = T::fused(k(0.6666666666666666), t169 - t197, t196);
-            let t199 = t58 * t54;
-            (
-                t0,
-                t1,
-                t2,
-                t3,
-                t4,
-                t5,
-                t6,
-                t7,
-                t8,
-                t9,
-                t10,
-                t11,
-                t12,
-                t16,
-                t17,
-                t20,
-                t21,
-                t24,
-                t25,
-                t28,
-                t29,
-                t30,
-                t31,
-                t32,
-                t33,
-                t34,
-                t35,
-                t36,
-                t38,
-                t41,
-                t44,
-                t45,
-                t46,
-                t47,
-                t48,
-                t51,
-                t52,
+        let t0 = T::fused(k(0.25), arm_e3, arm_e0);
+        let t1 = k(0.25) * arm_e2;
+        let t2 = arm_e0 - arm_e3;
+        let t3 = arm_e1 - arm_e2;
+        let t4 = k(0.5) * arm_e1;
+        let t5 = k(2.0) * arm_e3;
+        let t6 = arm_e0 - t5;
+        let t7 = k(0.5) * arm_e3;
+        let t8 = k(0.5) * arm_e2;
+        let t9 = t8 + t0;
+        let t10 = arm_e1 + t2;
+        let t11 = arm_e1 + (t7 - t1);
+        let t12 = arm_e0 - arm_e2;
+        let t13 = arm_e3 + t3;
+        let t14 = k(2.0) * arm_e0;
+        let t15 = arm_e1 - t14;
+        let t16 = arm_e0 + arm_e2;
+        let t17 = k(2.0) * arm_e1;
+        let t18 = arm_e0 + t17;
+        let t19 = k(2.0) * arm_e2;
+        let t20 = arm_e1 + t19;
+        let t21 = k(4.0) * arm_e0;
+        let t22 = arm_e3 + t14;
+        let t23 = arm_e2 - t17;
+        let t24 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t25 = T::fused(arm_e1, arm_e1, -t24);
+        let t26 = arm_e0 * arm_e2;
+        let t27 = arm_e1 * arm_e3;
+        let t28 = t27 + t26;
+        let t29 = arm_e0 * arm_e3;
+        let t30 = arm_e1 * arm_e2;
+        let t31 = t30 - t29;
+        let t32 = T::fused(k(0.5), t25, t31 + t28);
+        let t33 = k(1.3333333333333333) * t32;
+        let t34 = T::fused(arm_e2, arm_e2, -t24);
+        let t35 = arm_e0 * arm_e1;
+        let t36 = arm_e2 * arm_e3;
+        let t37 = t36 - t35;
+        let t38 = t30 + t29;
+        let t39 = T::fused(k(0.5), t38, t37 + t34);
+        let t40 = k(1.3333333333333333) * t39;
+        let t41 = T::fused(arm_e3, arm_e3, -t24);
+        let t42 = t36 + t35;
+        let t43 = t27 - t26;
+        let t44 = T::fused(k(0.5), t43, t42 + t41);
+        let t45 = k(1.3333333333333333) * t44;
+        let t46 = T::fused(-block_e0, block_e0, k(0.5));
+        let t47 = T::fused(block_e3, block_e3, -t46);
+        let t48 = block_e0 * block_e1;
+        let t49 = block_e2 * block_e3;
+        let t50 = t49 + t48;
+        let t51 = block_e0 * block_e2;
+        let t52 = block_e1 * block_e3;
+        let t53 = t52 - t51;
+        let t54 = T::fused(
+            k(5.0),
+            arm_rz,
+            -T::fused(
+                k(0.3),
                 t53,
-                t54,
-                t55,
-                t56,
-                t57,
-                t58,
-                t60,
-                t64,
-                t67,
-                t83,
-                t86,
-                t89,
-                t92,
-                t93,
-                t94,
-                t95,
-                t100,
-                t101,
-                t104,
-                t107,
-                t108,
-                t117,
-                t125,
-                t133,
-                t137,
-                t141,
-                t150,
-                t154,
-                t160,
-                t161,
-                t164,
-                t165,
-                t166,
-                t167,
-                t170,
-                t171,
-                t173,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t181,
-                t182,
-                t183,
-                t184,
-                t185,
-                t186,
-                t187,
-                t189,
-                t190,
-                t191,
-                t192,
-                t193,
-                t194,
-                t195,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t204, t210, t215, t219, t223, t225, t226, t227) = {
-            let t200 = t67 * t54;
-            let t201 = t64 * t48;
-            let t202 = T::fused(
-                k(0.6666666666666666),
-                t182 + t199,
-                k(0.3333333333333333) * (T::fused(t195, t41, -t201) + t200),
+                T::fused(k(0.5), t50, -T::fused(-k(5.0), block_rz, t47)),
+            ),
+        );
+        let t55 = T::fused(k(2.0), t43, t42 + (t41 + t54));
+        let t56 = k(0.25) * t55;
+        let t57 = t52 + t51;
+        let t58 = block_e0 * block_e3;
+        let t59 = block_e1 * block_e2;
+        let t60 = t59 - t58;
+        let t61 = T::fused(block_e1, block_e1, -t46);
+        let t62 = T::fused(
+            k(5.0),
+            arm_rx,
+            -T::fused(
+                k(0.3),
+                t61,
+                T::fused(k(0.5), t60, -T::fused(-k(5.0), block_rx, t57)),
+            ),
+        );
+        let t63 = T::fused(k(2.0), t25, t31 + (t28 + t62));
+        let t64 = t49 - t48;
+        let t65 = T::fused(block_e2, block_e2, -t46);
+        let t66 = t59 + t58;
+        let t67 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t66,
+                T::fused(k(0.5), t65, -T::fused(-k(5.0), block_ry, t64)),
+            ),
+        );
+        let t68 = T::fused(k(2.0), t38, t34 + (t37 + t67));
+        let t69 = T::fused(
+            -k(0.5),
+            T::fused(arm_e2 + t2, t63, t32 * (t21 + (arm_e2 - arm_e3))),
+            t68 * (t4 - t0),
+        );
+        let t70 = T::fused(t21 - t23, t56, T::fused(t39, arm_e0 + arm_e3 - t4, -t69));
+        let t71 = k(0.5) * t68;
+        let t72 = arm_e1 + arm_e2;
+        let t73 = T::fused(
+            arm_e3 + t72,
+            t63,
+            t32 * T::fused(k(4.0), arm_e1, arm_e2 + arm_e3),
+        );
+        let t74 = T::fused(
+            k(0.5),
+            t55 * t22,
+            -T::fused(t39, arm_e0 - t19, -T::fused(arm_e2 - t14, t71, t73)),
+        );
+        let t75 = arm_e0 + arm_e1;
+        let t76 = T::fused(
+            k(0.5),
+            T::fused(t75, t63, t75 * t32),
+            t68 * (arm_e2 + T::fused(k(0.25), arm_e1, t7)),
+        );
+        let t77 = T::fused(
+            t44,
+            arm_e0 - t7,
+            -T::fused(-t6, t56, T::fused(t39, t72 + t7, t76)),
+        );
+        let t78 = arm_e0 - arm_e1;
+        let t79 = T::fused(
+            t39,
+            arm_e2 + t14,
+            -T::fused(-(arm_e0 + t19), t71, T::fused(t78, t63, t78 * t32)),
+        );
+        let t80 = T::fused(
+            k(2.0),
+            t44 * (arm_e1 + (arm_e3 + t8)),
+            T::fused(k(2.0), t55 * T::fused(k(0.25), t20, arm_e3), t79),
+        );
+        let t81 = k(1.6666666666666667) * block_e2;
+        let t82 = T::fused(
+            k(3.3333333333333335),
+            t39 * T::fused(k(0.3), block_e3, block_e0 + block_e1),
+            k(2.0) * (t32 * (block_e0 - T::fused(k(0.8333333333333334), block_e3, t81))),
+        );
+        let t83 = k(0.08)
+            * T::fused(
+                t44,
+                block_e2
+                    - T::fused(
+                        -k(6.666666666666667),
+                        block_e0,
+                        k(1.6666666666666667) * block_e1,
+                    ),
+                -t82,
             );
-            let t203 = t58 * t48;
-            let t204 = T::fused(k(0.6666666666666666), t177 + t203, t202);
-            let t205 = t58 * t53;
-            let t206 = t67 * t53;
-            let t207 = t64 * t46;
-            let t208 = T::fused(
-                k(0.6666666666666666),
-                t190 - t205,
-                k(0.3333333333333333) * (T::fused(t195, t38, -t207) - t206),
-            );
-            let t209 = t58 * t46;
-            let t210 = T::fused(k(0.6666666666666666), t185 + t209, t208);
-            let t211 = k(4.0) * block_e2;
-            let t212 = t60 * t44;
-            let t213 = T::fused(
-                -k(0.6666666666666666),
-                t193 - T::fused(t211, t51, t212),
-                k(0.3333333333333333) * (t173 + t192),
-            );
-            let t214 = t58 * t44;
-            let t215 = T::fused(k(0.6666666666666666), t171 + t214, t213);
-            let t216 = t60 * t41;
-            let t217 = T::fused(
-                -k(0.6666666666666666),
-                t200 + T::fused(-t211, t48, t216),
-                k(0.3333333333333333) * (t181 + t199),
-            );
-            let t218 = t58 * t41;
-            let t219 = T::fused(k(0.6666666666666666), t179 - t218, t217);
-            let t220 = t60 * t38;
-            let t221 = T::fused(
-                k(0.6666666666666666),
-                t206 - T::fused(-t211, t46, t220),
-                k(0.3333333333333333) * (t189 - t205),
-            );
-            let t222 = t58 * t38;
-            let t223 = T::fused(k(0.6666666666666666), t187 - t222, t221);
-            let t224 = k(4.0) * block_e3;
-            let t225 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t224, t56, t194 + t212),
-                -T::fused(
-                    k(0.6666666666666666),
-                    t170 + t214,
-                    k(0.3333333333333333) * (t167 - t197),
-                ),
-            );
-            let t226 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t224, t54, t201 - t216),
-                -T::fused(
-                    k(0.6666666666666666),
-                    t178 - t218,
-                    k(0.3333333333333333) * (t176 - t203),
-                ),
-            );
-            let t227 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t224, t53, t207 - t220),
-                T::fused(
-                    k(0.6666666666666666),
-                    t186 + t222,
-                    k(0.3333333333333333) * (t184 + t209),
-                ),
-            );
-            (t204, t210, t215, t219, t223, t225, t226, t227)
-        };
+        let t84 = k(1.6666666666666667) * block_e3;
+        let t85 = T::fused(
+            k(2.0),
+            t39 * T::fused(k(0.3), block_e2, block_e0),
+            k(1.2) * (t32 * (block_e1 + T::fused(k(0.8333333333333334), block_e2, -t84))),
+        );
+        let t86 = T::fused(
+            -t32,
+            T::fused(-k(0.5), block_e1, block_e0),
+            t39 * T::fused(k(0.3), block_e1, block_e2 - block_e3),
+        );
+        let t87 = k(2.0) * block_e1;
+        let t88 = T::fused(
+            -k(1.6666666666666667),
+            t32 * (block_e0 + t87),
+            t39 * T::fused(-k(3.3333333333333335), block_e2, block_e0),
+        );
+        let t89 = arm_e3 * t61;
+        let t90 = arm_e0 * t66;
+        let t91 = arm_e1 * t53;
+        let t92 = arm_e1 * t47;
+        let t93 = arm_e0 * t64;
+        let t94 = arm_e3 * t57;
+        let t95 = T::fused(
+            -k(0.5),
+            t91 + T::fused(k(2.0), t90, -t89),
+            T::fused(-k(2.0), t93, t94) - t92,
+        );
+        let t96 = arm_e0 * t65;
+        let t97 = arm_e3 * t60;
+        let t98 = arm_e1 * t50;
+        let t99 = t98 - T::fused(-k(2.0), t96, t97) - t95;
+        let t100 = arm_e0 * t61;
+        let t101 = arm_e3 * t66;
+        let t102 = arm_e2 * t53;
+        let t103 = arm_e2 * t47;
+        let t104 = arm_e0 * t57;
+        let t105 = arm_e3 * t64;
+        let t106 = T::fused(
+            -k(0.5),
+            t102 - T::fused(k(2.0), t100, t101),
+            T::fused(k(2.0), t104, t105) - t103,
+        );
+        let t107 = arm_e3 * t65;
+        let t108 = arm_e0 * t60;
+        let t109 = arm_e2 * t50;
+        let t110 = t109 - T::fused(k(2.0), t108, t107) - t106;
+        let t111 = arm_e2 * t61;
+        let t112 = arm_e1 * t66;
+        let t113 = arm_e0 * t53;
+        let t114 = arm_e0 * t47;
+        let t115 = arm_e2 * t57;
+        let t116 = arm_e1 * t64;
+        let t117 = T::fused(
+            -k(0.5),
+            T::fused(k(2.0), t113, -(t112 - t111)),
+            T::fused(-k(2.0), t114, t116 - t115),
+        );
+        let t118 = arm_e1 * t65;
+        let t119 = arm_e2 * t60;
+        let t120 = arm_e0 * t50;
+        let t121 = T::fused(k(2.0), t120, t119 - t118) - t117;
+        let t122 = t120 + t119 + T::fused(k(0.5), t113 + t111, t115 + t114);
+        let t123 = arm_e1 * t61;
+        let t124 = arm_e2 * t66;
+        let t125 = arm_e3 * t53;
+        let t126 = arm_e3 * t47;
+        let t127 = arm_e1 * t57;
+        let t128 = arm_e2 * t64;
+        let t129 = T::fused(
+            k(0.5),
+            t125 + T::fused(k(2.0), t123, t124),
+            T::fused(k(2.0), t127, t128) + t126,
+        );
+        let t130 = arm_e2 * t65;
+        let t131 = arm_e1 * t60;
+        let t132 = arm_e3 * t50;
+        let t133 = t132 + T::fused(k(2.0), t131, t130) + t129;
+        let t134 = t97 - t96 - T::fused(k(0.5), t90 - t89, t93 - t94);
+        let t135 = T::fused(
+            k(0.5),
+            T::fused(k(2.0), t124, t125 + t123),
+            T::fused(k(2.0), t128, t127 + t126),
+        );
+        let t136 = T::fused(k(2.0), t130, t132 + t131) + t135;
+        let t137 = t120 - t118 + T::fused(k(0.5), t113 - t112, -(t116 - t114));
+        let t138 = t108 + t107 + T::fused(k(0.5), t101 + t100, t105 + t104);
+        let t139 = t109 - t108 - T::fused(-k(0.5), t102 - t100, t104 - t103);
+        let t140 = t98 + t96 + T::fused(k(0.5), t91 + t90, t93 + t92);
+        let t141 = T::fused(
+            k(0.5),
+            T::fused(k(2.0), t125, t124 + t123),
+            T::fused(k(2.0), t126, t128 + t127),
+        );
+        let t142 = T::fused(k(2.0), t132, t131 + t130) + t141;
+        let t143 = block_e3 * t34;
+        let t144 = t31 * block_e0;
+        let t145 = t42 * block_e2;
+        let t146 = block_e1 * t34;
+        let t147 = t31 * block_e2;
+        let t148 = t42 * block_e0;
+        let t149 = T::fused(
+            -k(0.5),
+            t145 - T::fused(k(2.0), t144, t143),
+            T::fused(k(2.0), t148, t147 - t146),
+        );
+        let t150 = block_e0 * t34;
+        let t151 = t31 * block_e3;
+        let t152 = t42 * block_e1;
+        let t153 = t152 - T::fused(-k(2.0), t150, t151) + t149;
+        let t154 = block_e0 * t25;
+        let t155 = t38 * block_e3;
+        let t156 = t43 * block_e2;
+        let t157 = block_e2 * t25;
+        let t158 = t38 * block_e1;
+        let t159 = t43 * block_e0;
+        let t160 = T::fused(
+            -k(0.5),
+            t156 - T::fused(k(2.0), t154, t155),
+            T::fused(k(2.0), t159, -(t158 - t157)),
+        );
+        let t161 = block_e3 * t25;
+        let t162 = t38 * block_e0;
+        let t163 = t43 * block_e1;
+        let t164 = t163 + T::fused(k(2.0), t162, -t161) + t160;
+        let t165 = block_e2 * t41;
+        let t166 = t28 * block_e0;
+        let t167 = t37 * block_e3;
+        let t168 = block_e0 * t41;
+        let t169 = t28 * block_e2;
+        let t170 = t37 * block_e1;
+        let t171 = T::fused(
+            -k(0.5),
+            T::fused(k(2.0), t166, t167) - t165,
+            T::fused(-k(2.0), t168, t170 - t169),
+        );
+        let t172 = block_e1 * t41;
+        let t173 = t37 * block_e0;
+        let t174 = t28 * block_e3;
+        let t175 = T::fused(-k(2.0), t173, t174) - t172 + t171;
+        let t176 = block_e2 * t34;
+        let t177 = t31 * block_e1;
+        let t178 = t42 * block_e3;
+        let t179 = t148 + t147
+            + T::fused(k(0.5), t178 + T::fused(k(2.0), t177, t176), t151 - t150);
+        let t180 = block_e1 * t25;
+        let t181 = t38 * block_e2;
+        let t182 = t43 * block_e3;
+        let t183 = t159 + t157
+            - T::fused(-k(0.5), t182 + T::fused(k(2.0), t180, t181), t162 - t161);
+        let t184 = block_e3 * t41;
+        let t185 = t28 * block_e1;
+        let t186 = t37 * block_e2;
+        let t187 = t169 + t168
+            - T::fused(-k(0.5), T::fused(k(2.0), t185, t186) + t184, t173 - t174);
+        let t188 = T::fused(k(2.0), t176, t178 + t177)
+            + T::fused(-k(0.5), t148 - t146, t144 + t143);
+        let t189 = T::fused(k(2.0), t181, t182 + t180)
+            - T::fused(k(0.5), t159 - t158, -(t155 + t154));
+        let t190 = T::fused(k(2.0), t186, t185 + t184)
+            + T::fused(k(0.5), t170 - t168, t167 + t166);
+        let t191 = t145 - t144
+            + T::fused(k(0.5), t152 + t150, T::fused(k(2.0), t178, t177 + t176));
+        let t192 = t156 - t154
+            + T::fused(k(0.5), t163 + t162, T::fused(k(2.0), t182, t181 + t180));
+        let t193 = t166 - t165
+            - T::fused(k(0.5), t173 + t172, T::fused(k(2.0), t184, t186 + t185));
         *out = [
             k(1.0),
-            -(t1 + t0),
-            t3 - t2,
-            t4,
-            -t5,
+            -(k(0.8) * t0),
+            -(k(0.8) * (arm_e1 - t1)),
+            k(0.2) * arm_e1,
+            -(k(0.2) * arm_e0),
             k(1.0),
-            k(0.4) * t6,
-            -t7,
-            -(k(0.4) * t8),
-            -t9,
+            k(0.4) * t2,
+            -(k(0.4) * arm_e2),
+            -(k(0.4) * t3),
+            -(k(0.4) * arm_e0),
             k(1.0),
-            t4 + t7,
-            t5 - t10,
-            t1 + t9,
-            t3 - t11,
-            T::fused(-k(1.1925695879998879), t17, k(0.4472135954999579) * t16),
-            T::fused(-k(1.1925695879998879), t21, k(0.4472135954999579) * t20),
-            T::fused(k(0.4472135954999579), t24, k(1.1925695879998879) * t25),
-            T::fused(k(0.4472135954999579), t28, k(1.1925695879998879) * t29),
-            T::fused(
-                k(0.7453559924999299),
-                t12 - t30,
-                -T::fused(k(0.5962847939999439), t16, k(0.3975231959999626) * t17),
-            ),
-            T::fused(
-                k(0.7453559924999299),
-                t31,
-                -T::fused(k(0.5962847939999439), t20, k(0.3975231959999626) * t21),
-            ),
-            T::fused(
-                -k(0.7453559924999299),
-                t32,
-                T::fused(-k(0.5962847939999439), t24, k(0.3975231959999626) * t25),
-            ),
-            T::fused(
-                k(0.7453559924999299),
-                t34 + t33,
-                T::fused(-k(0.5962847939999439), t28, k(0.3975231959999626) * t29),
-            ),
+            k(0.4) * (arm_e2 + t4),
+            k(0.2) * t6,
+            k(0.4) * (arm_e0 + t7),
+            -(k(0.4) * (arm_e1 - t8)),
+            -(k(1.1925695879998879) * (t10 - t9)),
+            -(k(1.1925695879998879) * (t12 - t11)),
+            -(k(0.29814239699997197) * T::fused(-k(4.0), t13, t15)),
+            k(0.29814239699997197) * T::fused(k(4.0), t16, t18),
+            -(k(1.5900927839998504)
+                * (t9 + T::fused(-k(0.3125), t21 - t20, k(0.25) * t10))),
+            -(k(1.5900927839998504) * (t11 + T::fused(k(0.3125), t6, k(0.25) * t12))),
+            k(0.3975231959999626) * (t15 + T::fused(-k(1.25), t22, t13)),
+            -(k(0.3975231959999626)
+                * (t18 - T::fused(k(5.0), T::fused(-k(0.25), t23, arm_e3), t16))),
+            -t33,
+            -t40,
             -t45,
-            -t52,
-            t57,
-            t83,
-            t86,
-            t89,
-            -t92,
+            k(0.5333333333333333) * T::fused(t44, arm_e2 - (arm_e0 + t4), -t70),
+            -(k(0.26666666666666666) * T::fused(t44, arm_e0 + t5, t74)),
+            k(0.5333333333333333) * t77,
+            -(k(0.26666666666666666) * t80),
+            t33,
+            t40,
             t45,
-            t52,
-            -t57,
-            T::fused(T::fused(k(0.4), block_e0, -(t94 - t93)), t57, -t100),
-            -T::fused(t95 + t101, t57, t104),
-            t107,
-            -t108,
-            T::fused(
-                -k(0.6666666666666666),
-                t117,
-                T::fused(-k(0.3333333333333333), t125, k(0.6666666666666666) * t133),
-            ),
-            T::fused(
-                -k(0.6666666666666666),
-                t137,
-                T::fused(k(0.3333333333333333), t141, k(0.6666666666666666) * t150),
-            ),
-            T::fused(
-                -k(0.6666666666666666),
-                t154,
-                T::fused(-k(0.3333333333333333), t160, k(0.6666666666666666) * t161),
-            ),
-            -T::fused(
-                k(0.6666666666666666),
-                t164,
-                T::fused(k(0.3333333333333333), t165, k(0.6666666666666666) * t166),
-            ),
-            -T::fused(
-                k(0.6666666666666666),
-                t175,
-                T::fused(-k(0.3333333333333333), t183, k(0.6666666666666666) * t191),
-            ),
-            -T::fused(
-                k(0.6666666666666666),
-                t198,
-                T::fused(-k(0.3333333333333333), t204, k(0.6666666666666666) * t210),
-            ),
-            T::fused(
-                -k(0.6666666666666666),
-                t215,
-                T::fused(-k(0.3333333333333333), t219, k(0.6666666666666666) * t223),
-            ),
-            T::fused(
-                -k(0.6666666666666666),
-                t225,
-                T::fused(-k(0.3333333333333333), t226, k(0.6666666666666666) * t227),
-            ),
-            -T::fused(
-                k(0.3333333333333333),
-                t117,
-                k(0.6666666666666666) * (t133 + t125),
-            ),
-            -T::fused(
-                k(0.3333333333333333),
-                t137,
-                k(0.6666666666666666) * (t150 - t141),
-            ),
-            -T::fused(
-                k(0.3333333333333333),
-                t154,
-                k(0.6666666666666666) * (t161 + t160),
-            ),
-            T::fused(
-                -k(0.3333333333333333),
-                t164,
-                k(0.6666666666666666) * (t166 - t165),
-            ),
-            T::fused(
-                -k(0.3333333333333333),
-                t175,
-                k(0.6666666666666666) * (t191 + t183),
-            ),
-            T::fused(
-                -k(0.3333333333333333),
-                t198,
-                k(0.6666666666666666) * (t210 + t204),
-            ),
-            -T::fused(
-                k(0.3333333333333333),
-                t215,
-                k(0.6666666666666666) * (t223 + t219),
-            ),
-            -T::fused(
-                k(0.3333333333333333),
-                t225,
-                k(0.6666666666666666) * (t227 + t226),
-            ),
-            t36,
-            t35,
-            t47,
-            t55,
-            t58,
-            t60,
-            t64,
-            t67,
+            -t83,
+            k(0.13333333333333333)
+                * T::fused(t44, T::fused(k(0.6), block_e3, block_e0), t85),
+            k(0.26666666666666666) * T::fused(-k(0.3), t44 * (block_e0 - t84), t86),
+            k(0.08)
+                * T::fused(
+                    t44,
+                    block_e1 + T::fused(-k(6.666666666666667), block_e3, t81),
+                    t88,
+                ),
+            -(k(1.7777777777777777) * (t121 + T::fused(-k(0.5), t99, t110))),
+            -(k(1.7777777777777777) * (t134 - T::fused(k(0.5), t122, t133))),
+            -(k(1.7777777777777777) * (t138 + T::fused(-k(0.5), t136, t137))),
+            -(k(1.7777777777777777) * (t142 - T::fused(k(0.5), t139, t140))),
+            k(1.7777777777777777) * (t175 + T::fused(k(0.5), t153, t164)),
+            -(k(1.7777777777777777) * (t187 - T::fused(k(0.5), t179, t183))),
+            -(k(1.7777777777777777) * (t190 - T::fused(k(0.5), t188, t189))),
+            k(1.7777777777777777) * (t193 + T::fused(k(0.5), t191, t192)),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t99 + t110, t121)),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t122 - t133, t134)),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t136 + t137, t138)),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t139 - t140, t142)),
+            k(0.8888888888888888) * T::fused(k(2.0), t153 - t164, t175),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t179 - t183, t187)),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t188 - t189, t190)),
+            k(0.8888888888888888) * T::fused(k(2.0), t191 - t192, t193),
+            t14,
+            t17,
+            t19,
+            t5,
+            k(2.0) * block_e0,
+            t87,
+            k(2.0) * block_e2,
+            k(2.0) * block_e3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 367 operations (161 ±, 206 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 335 operations (158 ±, 177 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -2530,218 +1976,194 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_e1 = y[11];
         let block_e2 = y[12];
         let block_e3 = y[13];
-        let t0 = k(2.0) * arm_e0;
-        let t1 = arm_e2 * t0;
-        let t2 = k(2.0) * arm_e1;
-        let t3 = arm_e3 * t2;
-        let t4 = t3 + t1;
-        let t5 = k(0.1) * t4;
-        let t6 = k(0.2) * t4;
-        let t7 = T::fused(-arm_e0, t0, k(1.0));
-        let t8 = T::fused(-arm_e1, t2, t7);
-        let t9 = k(0.1) * t8;
-        let t10 = arm_e3 * t0;
-        let t11 = arm_e2 * t2;
+        let t0 = arm_e0 * arm_e2;
+        let t1 = arm_e1 * arm_e3;
+        let t2 = t1 + t0;
+        let t3 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t4 = T::fused(arm_e1, arm_e1, -t3);
+        let t5 = k(0.5) * t4;
+        let t6 = arm_e0 * arm_e3;
+        let t7 = arm_e1 * arm_e2;
+        let t8 = t7 - t6;
+        let t9 = t8 + t5;
+        let t10 = arm_e0 * arm_e1;
+        let t11 = arm_e2 * arm_e3;
         let t12 = t11 - t10;
-        let t13 = k(0.2) * t12;
-        let t14 = arm_e1 * t0;
-        let t15 = k(2.0) * arm_e2;
-        let t16 = arm_e3 * t15;
-        let t17 = t16 - t14;
-        let t18 = k(0.1) * t17;
-        let t19 = k(0.2) * t17;
+        let t13 = T::fused(arm_e2, arm_e2, -t3);
+        let t14 = t7 + t6;
+        let t15 = k(0.5) * t14;
+        let t16 = t15 + t13;
+        let t17 = T::fused(arm_e3, arm_e3, -t3);
+        let t18 = t1 - t0;
+        let t19 = k(0.5) * t18;
         let t20 = t11 + t10;
-        let t21 = k(0.1) * t20;
-        let t22 = T::fused(-arm_e2, t15, t7);
-        let t23 = k(0.2) * t22;
-        let t24 = T::fused(-arm_e3, k(2.0) * arm_e3, t7);
-        let t25 = k(0.1) * t24;
-        let t26 = k(0.2) * t24;
-        let t27 = t3 - t1;
-        let t28 = k(0.1) * t27;
-        let t29 = t16 + t14;
-        let t30 = k(0.2) * t29;
-        let t31 = k(0.6666666666666666) * t22;
-        let t32 = k(0.3333333333333333) * t17;
-        let t33 = t32 - t31;
-        let t34 = k(0.6666666666666666) * t12;
-        let t35 = k(0.3333333333333333) * t4;
-        let t36 = t35 + t34;
-        let t37 = t20 - t17;
-        let t38 = t8 + t4;
-        let t39 = T::fused(-k(0.3333333333333333), t20, t31);
-        let t40 = T::fused(-k(0.3333333333333333), t8, t34);
-        let t41 = k(0.6666666666666666) * t29;
-        let t42 = k(0.3333333333333333) * t24;
-        let t43 = T::fused(k(0.3333333333333333), t27, t41);
-        let t44 = T::fused(k(0.6666666666666666), t4, t40);
-        let t45 = T::fused(k(0.6666666666666666), t17, -t39);
-        let t46 = T::fused(k(0.6666666666666666), t24, -t43);
-        let t47 = t29 + t24;
-        let t48 = k(2.0) * block_e0;
-        let t49 = block_e2 * t48;
-        let t50 = k(2.0) * block_e1;
-        let t51 = block_e3 * t50;
-        let t52 = t51 - t49;
-        let t53 = block_e1 * t48;
-        let t54 = k(2.0) * block_e2;
-        let t55 = block_e3 * t54;
-        let t56 = t55 + t53;
-        let t57 = T::fused(-block_e0, t48, k(1.0));
-        let t58 = T::fused(-block_e3, k(2.0) * block_e3, t57);
-        let t59 = block_rz + T::fused(k(0.1), t58, T::fused(k(0.03), t52, k(0.05) * t56))
-            - (arm_rz - (t25 - T::fused(k(0.2), t27, k(0.1) * t29)));
-        let t60 = t22 + t17;
-        let t61 = block_e3 * t48;
-        let t62 = block_e2 * t50;
-        let t63 = t62 + t61;
-        let t64 = T::fused(-block_e2, t54, t57);
-        let t65 = t55 - t53;
-        let t66 = block_ry
-            - T::fused(k(0.1), t65, T::fused(-k(0.03), t63, k(0.05) * t64))
-            - (arm_ry + (t18 - T::fused(-k(0.2), t20, k(0.1) * t22)));
-        let t67 = t12 - t4;
-        let t68 = T::fused(-block_e1, t50, t57);
-        let t69 = t62 - t61;
-        let t70 = t51 + t49;
-        let t71 = block_rx
-            - T::fused(k(0.1), t70, -T::fused(-k(0.03), t68, k(0.05) * t69))
-            - (arm_rx + (t5 + T::fused(-k(0.2), t8, k(0.1) * t12)));
-        let t72 = T::fused(-t44, k(0.1) * t67, t71 * (k(0.6666666666666666) * t67))
-            - T::fused(-t45, k(0.1) * t60, t66 * (k(0.6666666666666666) * t60));
-        let t73 = k(0.6666666666666666) * t27;
-        let t74 = k(0.6666666666666666) * t20;
-        let t75 = k(0.6666666666666666) * t8;
-        let t76 = T::fused(-t44, t6 + t9, t71 * (t75 + t35))
-            - T::fused(t45, t19 - t21, t66 * (t74 - t32));
-        let t77 = T::fused(
-            -t44,
-            t13 + t9,
-            T::fused(k(0.3333333333333333), t12, t75) * t71,
-        ) - T::fused(-t45, t23 + t21, T::fused(k(0.3333333333333333), t22, t74) * t66);
-        let t78 = t77
-            + T::fused(t46, t30 - t28, T::fused(k(0.3333333333333333), t29, -t73) * t59);
-        let t79 = T::fused(
-            t45,
-            T::fused(-k(0.1), t64, k(0.05) * t65),
-            t44 * T::fused(k(0.1), t69, k(0.05) * t70),
+        let t21 = t20 + t19;
+        let t22 = T::fused(k(2.0), t13, t12);
+        let t23 = T::fused(k(2.0), t8, t2);
+        let t24 = t2 - t4;
+        let t25 = t14 - t12;
+        let t26 = k(0.3975231959999626)
+            * T::fused(
+                -k(1.25),
+                T::fused(k(2.0), t20, t17),
+                T::fused(-k(0.5), t22, t23),
+            );
+        let t27 = t2 + t9;
+        let t28 = k(1.3333333333333333) * t27;
+        let t29 = t12 + t16;
+        let t30 = k(1.3333333333333333) * t29;
+        let t31 = t21 + t17;
+        let t32 = k(1.3333333333333333) * t31;
+        let t33 = block_e0 * block_e2;
+        let t34 = block_e1 * block_e3;
+        let t35 = t34 + t33;
+        let t36 = block_e0 * block_e3;
+        let t37 = block_e1 * block_e2;
+        let t38 = t37 - t36;
+        let t39 = T::fused(-block_e0, block_e0, k(0.5));
+        let t40 = T::fused(block_e1, block_e1, -t39);
+        let t41 = T::fused(
+            k(5.0),
+            arm_rx,
+            -T::fused(
+                k(0.3),
+                t40,
+                T::fused(k(0.5), t38, -T::fused(-k(5.0), block_rx, t35)),
+            ),
         );
-        let t80 = T::fused(
-            t45,
-            T::fused(k(0.1), t63, k(0.03) * t65),
-            t44 * T::fused(-k(0.1), t68, k(0.03) * t70),
+        let t42 = k(2.0) * t4;
+        let t43 = t42 + (t8 + (t2 + t41));
+        let t44 = t8 - t2;
+        let t45 = block_e0 * block_e1;
+        let t46 = block_e2 * block_e3;
+        let t47 = t46 - t45;
+        let t48 = T::fused(block_e2, block_e2, -t39);
+        let t49 = t37 + t36;
+        let t50 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t49,
+                T::fused(k(0.5), t48, -T::fused(-k(5.0), block_ry, t47)),
+            ),
         );
-        let t81 = T::fused(
-            -t45,
-            T::fused(k(0.05), t63, k(0.03) * t64),
-            t44 * T::fused(k(0.05), t68, k(0.03) * t69),
+        let t51 = k(2.0) * t14;
+        let t52 = t51 + (t13 + (t12 + t50));
+        let t53 = t12 - t13;
+        let t54 = T::fused(t29, t53, T::fused(t53, t52, -T::fused(t44, t43, t44 * t27)));
+        let t55 = T::fused(block_e3, block_e3, -t39);
+        let t56 = t46 + t45;
+        let t57 = t34 - t33;
+        let t58 = T::fused(
+            k(5.0),
+            arm_rz,
+            -T::fused(
+                k(0.3),
+                t57,
+                T::fused(k(0.5), t56, -T::fused(-k(5.0), block_rz, t55)),
+            ),
         );
-        let t82 = T::fused(t29, t52, -T::fused(t12, t68, t22 * t63));
-        let t83 = T::fused(t29, t56, T::fused(t12, t69, t22 * t64));
-        let t84 = T::fused(t29, t58, T::fused(-t12, t70, t22 * t65));
-        let t85 = T::fused(
-            k(0.6666666666666666),
-            t84,
-            -T::fused(k(0.3333333333333333), t82, k(0.6666666666666666) * t83),
+        let t59 = k(2.0) * t18;
+        let t60 = t59 + (t20 + (t17 + t58));
+        let t61 = t20 - t17;
+        let t62 = T::fused(k(2.0), t27 * (t2 - t5), t43 * T::fused(k(0.5), t2, -t4));
+        let t63 = T::fused(
+            k(2.0),
+            (t12 - t15) * t29,
+            -T::fused(T::fused(-k(0.5), t12, t14), t52, -t62),
         );
-        let t86 = k(0.6666666666666666) * t85;
-        let t87 = T::fused(t24, t52, -T::fused(-t4, t68, t17 * t63));
-        let t88 = T::fused(t24, t56, T::fused(-t4, t69, t17 * t64));
-        let t89 = T::fused(t24, t58, T::fused(t4, t70, t17 * t65));
-        let t90 = T::fused(
-            k(0.6666666666666666),
-            t89,
-            -T::fused(k(0.3333333333333333), t87, k(0.6666666666666666) * t88),
+        let t64 = T::fused(
+            k(2.0),
+            t31 * (t19 - t17),
+            T::fused(t60, T::fused(-k(0.5), t17, t18), -t63),
         );
-        let t91 = T::fused(t27, t52, T::fused(t8, t68, t20 * t63));
-        let t92 = T::fused(t27, t56, -T::fused(t8, t69, t20 * t64));
-        let t93 = T::fused(t27, t58, -T::fused(-t8, t70, t20 * t65));
-        let t94 = T::fused(
-            k(0.6666666666666666),
-            t93,
-            -T::fused(k(0.3333333333333333), t91, k(0.6666666666666666) * t92),
+        let t65 = T::fused(
+            t51 - t13,
+            t52,
+            -T::fused(k(4.0), t27 * (t8 - t5), (t8 - t42) * t43),
         );
-        let t95 = k(0.3333333333333333) * t94;
-        let t96 = t89 + t88;
-        let t97 = t84 + t83;
-        let t98 = t93 + t92;
-        let t99 = k(0.6666666666666666) * t87;
-        let t100 = T::fused(k(0.3333333333333333), t89, t99);
-        let t101 = k(0.6666666666666666) * t82;
-        let t102 = T::fused(k(0.3333333333333333), t84, t101);
-        let t103 = k(0.6666666666666666) * t91;
-        let t104 = T::fused(k(0.3333333333333333), t93, t103);
-        let t105 = T::fused(k(0.3333333333333333), t88, -t99);
-        let t106 = T::fused(k(0.3333333333333333), t83, -t101);
-        let t107 = T::fused(k(0.3333333333333333), t92, -t103);
-        let t108 = k(0.6666666666666666) * t90;
+        let t66 = T::fused(t59 - t20, t60, T::fused(k(4.0), t29 * (t15 - t13), t65));
+        let t67 = T::fused(
+            T::fused(k(2.0), t38, t35),
+            t27,
+            t29 * T::fused(k(2.0), t48, t47),
+        );
+        let t68 = T::fused(
+            t27,
+            T::fused(k(3.3333333333333335), t40, t35),
+            T::fused(k(3.3333333333333335), t49, t47) * t29,
+        );
+        let t69 = T::fused(
+            t27,
+            T::fused(-k(1.6666666666666667), t40, t38),
+            t29 * T::fused(-k(1.6666666666666667), t49, t48),
+        );
+        let t70 = T::fused(t8, t35, T::fused(t20, t55, t47 * t13));
+        let t71 = T::fused(t8, t38, T::fused(t13, t48, t20 * t56));
+        let t72 = T::fused(t8, t40, T::fused(t49, t13, t20 * t57));
+        let t73 = T::fused(k(0.5), t72, t71 + t70);
+        let t74 = T::fused(t2, t35, T::fused(t17, t55, t12 * t47));
+        let t75 = T::fused(t2, t38, T::fused(t56, t17, t12 * t48));
+        let t76 = T::fused(t2, t40, T::fused(t57, t17, t12 * t49));
+        let t77 = T::fused(k(0.5), t76, t75 + t74);
+        let t78 = T::fused(t35, t4, T::fused(t18, t55, t14 * t47));
+        let t79 = T::fused(t38, t4, T::fused(t14, t48, t18 * t56));
+        let t80 = T::fused(t4, t40, T::fused(t18, t57, t14 * t49));
+        let t81 = T::fused(k(0.5), t80, t79 + t78);
+        let t82 = t71 - t70;
+        let t83 = t79 - t78;
+        let t84 = t75 - t74;
+        let t85 = T::fused(-k(0.5), t70, t72);
+        let t86 = T::fused(-k(0.5), t78, t80);
+        let t87 = T::fused(-k(0.5), t74, t76);
+        let t88 = T::fused(-k(2.0), t72, t71);
+        let t89 = T::fused(-k(2.0), t80, t79);
+        let t90 = T::fused(-k(2.0), t76, t75);
         *out = [
             k(1.0),
-            t5,
-            t6,
-            t9 - t13,
+            k(0.2) * t2,
+            k(0.4) * t2,
+            -(k(0.4) * t9),
             k(1.0),
-            t18,
-            t19,
-            t23 - t21,
+            k(0.2) * t12,
+            k(0.4) * t12,
+            -(k(0.4) * t16),
             k(1.0),
-            -t25,
-            -t26,
-            -(t30 + t28),
-            -T::fused(k(0.8944271909999159), t33, k(0.4472135954999579) * t36),
-            T::fused(-k(0.29814239699997197), t38, k(0.5962847939999439) * t37),
-            T::fused(-k(0.8944271909999159), t39, k(0.4472135954999579) * t40),
-            T::fused(
-                k(0.7453559924999299),
-                t42 - t41,
-                T::fused(-k(0.29814239699997197), t33, k(0.5962847939999439) * t36),
-            ),
-            T::fused(
-                k(0.49690399499995325),
-                t27 + t24,
-                T::fused(k(0.1987615979999813), t37, k(0.3975231959999626) * t38),
-            ),
-            T::fused(
-                k(0.7453559924999299),
-                t43,
-                -T::fused(k(0.29814239699997197), t39, k(0.5962847939999439) * t40),
-            ),
-            -t44,
-            -t45,
-            t46,
-            -(t72 + T::fused(t46, k(0.1) * t47, t59 * (k(0.6666666666666666) * t47))),
-            T::fused(t46, t26 + t28, t59 * (t73 + t42)) - t76,
-            t78,
-            t44,
-            t45,
-            -t46,
-            T::fused(t46, T::fused(-k(0.1), t56, k(0.05) * t58), t79),
-            -T::fused(t46, T::fused(-k(0.1), t52, k(0.03) * t58), t80),
-            T::fused(-t46, T::fused(-k(0.05), t52, k(0.03) * t56), t81),
-            T::fused(k(0.3333333333333333), t90, -t86),
-            -(k(0.6666666666666666) * (t90 - t94)),
-            t95 - t86,
-            -T::fused(
-                k(0.4444444444444444),
-                t96,
-                T::fused(k(0.2222222222222222), t97, k(0.4444444444444444) * t98),
-            ),
-            T::fused(
-                k(0.6666666666666666),
-                t100,
-                T::fused(k(0.3333333333333333), t102, k(0.6666666666666666) * t104),
-            ),
-            T::fused(
-                k(0.6666666666666666),
-                t105,
-                T::fused(k(0.3333333333333333), t106, k(0.6666666666666666) * t107),
-            ),
-            T::fused(-k(0.3333333333333333), t85, t108),
-            t95 + t108,
-            k(0.6666666666666666) * (t85 + t94),
-            T::fused(-k(0.2222222222222222), t96, k(0.4444444444444444) * (t98 - t97)),
-            T::fused(-k(0.6666666666666666), t104 - t102, k(0.3333333333333333) * t100),
-            T::fused(-k(0.6666666666666666), t107 - t106, k(0.3333333333333333) * t105),
+            k(0.2) * t17,
+            k(0.4) * t17,
+            -(k(0.4) * t21),
+            -(k(0.29814239699997197) * T::fused(k(2.0), t22, t23)),
+            k(0.5962847939999439) * T::fused(k(2.0), t25, -t24),
+            k(0.5962847939999439) * T::fused(k(2.0), t16, t9),
+            t26,
+            k(0.7950463919999252)
+                * T::fused(k(1.25), t18 - t17, T::fused(k(0.5), t25, t24)),
+            k(0.7950463919999252) * T::fused(k(1.25), t21, -T::fused(-k(0.5), t16, t9)),
+            -t28,
+            -t30,
+            -t32,
+            k(0.26666666666666666) * T::fused(t31, t61, T::fused(t61, t60, -t54)),
+            -(k(0.26666666666666666) * t64),
+            -(k(0.13333333333333333) * T::fused(k(4.0), (t20 - t19) * t31, -t66)),
+            t28,
+            t30,
+            t32,
+            k(0.13333333333333333) * T::fused(t31, T::fused(k(2.0), t56, t55), t67),
+            -(k(0.08) * T::fused(t31, T::fused(k(3.3333333333333335), t57, t55), t68)),
+            k(0.08) * T::fused(T::fused(-k(1.6666666666666667), t57, t56), t31, t69),
+            k(0.8888888888888888) * T::fused(k(2.0), t73, t77),
+            -(k(1.7777777777777777) * (t77 + t81)),
+            k(1.7777777777777777) * T::fused(-k(0.5), t81, t73),
+            k(1.7777777777777777) * (t84 - T::fused(k(0.5), t82, t83)),
+            -(k(1.7777777777777777) * (t87 - T::fused(k(0.5), t85, t86))),
+            -(k(0.8888888888888888) * (t90 - T::fused(k(0.5), t88, t89))),
+            k(1.7777777777777777) * T::fused(k(0.5), t73, t77),
+            -(k(0.8888888888888888) * T::fused(-k(2.0), t77, t81)),
+            -(k(1.7777777777777777) * (t73 + t81)),
+            -(k(1.7777777777777777) * T::fused(-k(0.5), t84, t82 - t83)),
+            k(1.7777777777777777) * T::fused(-k(0.5), t87, t85 - t86),
+            k(0.8888888888888888) * T::fused(-k(0.5), t90, t88 - t89),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2749,7 +2171,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 649 operations (278 ±, 371 ×, 0 ÷).
+    /// Writes γ: 602 operations (278 ±, 324 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -2778,336 +2200,303 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = k(2.0) * arm_e1;
-        let t1 = k(2.0) * arm_e0;
-        let t2 = T::fused(-arm_e0, t1, k(1.0));
-        let t3 = T::fused(-arm_e1, t0, t2);
-        let t4 = arm_wy * arm_wy;
-        let t5 = arm_wz * arm_wz;
-        let t6 = t5 + t4;
-        let t7 = arm_e3 * t1;
-        let t8 = arm_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = arm_wx * arm_wy;
-        let t11 = arm_e2 * t1;
-        let t12 = arm_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = arm_wx * arm_wz;
-        let t15 = T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
-        let t16 = k(0.2) * t15;
-        let t17 = arm_wx * arm_wx;
-        let t18 = t5 + t17;
-        let t19 = arm_wy * arm_wz;
-        let t20 = T::fused(t19, t13, -T::fused(t10, t3, t18 * t9));
-        let t21 = k(0.1) * t20;
-        let t22 = t8 + t7;
-        let t23 = k(2.0) * arm_e2;
-        let t24 = T::fused(-arm_e2, t23, t2);
-        let t25 = arm_e1 * t1;
-        let t26 = arm_e3 * t23;
-        let t27 = t26 - t25;
-        let t28 = T::fused(t14, t27, -T::fused(t6, t22, t10 * t24));
-        let t29 = k(0.2) * t28;
-        let t30 = T::fused(t19, t27, T::fused(t10, t22, t18 * t24));
-        let t31 = k(0.1) * t30;
-        let t32 = t12 - t11;
-        let t33 = t26 + t25;
-        let t34 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
-        let t35 = T::fused(t14, t34, -T::fused(-t6, t32, t10 * t33));
-        let t36 = k(0.2) * t35;
-        let t37 = T::fused(t19, t34, T::fused(-t10, t32, t18 * t33));
-        let t38 = k(0.1) * t37;
-        let t39 = t4 + t17;
-        let t40 = T::fused(t39, t13, -T::fused(-t14, t3, t19 * t9));
-        let t41 = k(0.6666666666666666) * t40;
-        let t42 = t41
-            + T::fused(-k(0.6666666666666666), t15, k(0.3333333333333333) * t20);
-        let t43 = T::fused(t39, t27, T::fused(-t14, t22, t19 * t24));
-        let t44 = k(0.6666666666666666) * t43;
-        let t45 = t44
-            + T::fused(-k(0.6666666666666666), t28, k(0.3333333333333333) * t30);
-        let t46 = T::fused(t39, t34, T::fused(t14, t32, t19 * t33));
-        let t47 = k(0.6666666666666666) * t46;
+        let t0 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t1 = T::fused(arm_e1, arm_e1, -t0);
+        let t2 = arm_wy * arm_wy;
+        let t3 = arm_wz * arm_wz;
+        let t4 = t3 + t2;
+        let t5 = arm_wx * arm_wz;
+        let t6 = arm_e0 * arm_e2;
+        let t7 = arm_e1 * arm_e3;
+        let t8 = t7 + t6;
+        let t9 = arm_wx * arm_wy;
+        let t10 = arm_e0 * arm_e3;
+        let t11 = arm_e1 * arm_e2;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t4, t1, T::fused(t8, t5, t12 * t9));
+        let t14 = k(2.0) * t13;
+        let t15 = arm_wy * arm_wz;
+        let t16 = arm_wx * arm_wx;
+        let t17 = t3 + t16;
+        let t18 = T::fused(-t9, t1, T::fused(-t8, t15, t12 * t17));
+        let t19 = T::fused(arm_e2, arm_e2, -t0);
+        let t20 = arm_e0 * arm_e1;
+        let t21 = arm_e2 * arm_e3;
+        let t22 = t21 - t20;
+        let t23 = t11 + t10;
+        let t24 = T::fused(t23, t4, -T::fused(t9, t19, t22 * t5));
+        let t25 = k(2.0) * t24;
+        let t26 = T::fused(t23, t9, T::fused(-t17, t19, t22 * t15));
+        let t27 = T::fused(arm_e3, arm_e3, -t0);
+        let t28 = t21 + t20;
+        let t29 = t7 - t6;
+        let t30 = T::fused(t29, t4, -T::fused(t5, t27, t28 * t9));
+        let t31 = k(2.0) * t30;
+        let t32 = T::fused(t29, t9, -T::fused(-t15, t27, t28 * t17));
+        let t33 = t2 + t16;
+        let t34 = T::fused(t5, t1, T::fused(-t8, t33, t12 * t15));
+        let t35 = t13 + T::fused(k(0.5), t18, t34);
+        let t36 = T::fused(t23, t5, -T::fused(-t15, t19, t22 * t33));
+        let t37 = t24 - T::fused(-k(0.5), t26, t36);
+        let t38 = T::fused(t29, t5, T::fused(-t33, t27, t28 * t15));
+        let t39 = T::fused(
+            k(0.8),
+            t35,
+            T::fused(k(0.4), t37, t30 - T::fused(-k(0.5), t32, t38)),
+        );
+        let t40 = T::fused(-block_e0, block_e0, k(0.5));
+        let t41 = T::fused(block_e3, block_e3, -t40);
+        let t42 = block_e0 * block_e1;
+        let t43 = block_e2 * block_e3;
+        let t44 = t43 + t42;
+        let t45 = block_e0 * block_e2;
+        let t46 = block_e1 * block_e3;
+        let t47 = t46 - t45;
         let t48 = T::fused(
-            k(0.7453559924999299),
-            t47 + T::fused(-k(0.6666666666666666), t35, k(0.3333333333333333) * t37),
-            -T::fused(-k(0.5962847939999439), t42, k(0.29814239699997197) * t45),
-        );
-        let t49 = k(2.0) * block_e1;
-        let t50 = k(2.0) * block_e0;
-        let t51 = T::fused(-block_e0, t50, k(1.0));
-        let t52 = T::fused(-block_e1, t49, t51);
-        let t53 = block_e3 * t50;
-        let t54 = block_e2 * t49;
-        let t55 = t54 - t53;
-        let t56 = block_e2 * t50;
-        let t57 = block_e3 * t49;
-        let t58 = t57 + t56;
-        let t59 = block_rx
-            - T::fused(k(0.1), t58, -T::fused(-k(0.03), t52, k(0.05) * t55))
-            - (arm_rx + T::fused(k(0.1), t13, T::fused(-k(0.2), t3, k(0.1) * t9)));
-        let t60 = T::fused(arm_wy, t3, arm_wx * t9);
-        let t61 = T::fused(arm_wz, t3, arm_wx * t13);
-        let t62 = T::fused(-arm_wz, t9, arm_wy * t13);
-        let t63 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t52, block_wx * t58),
-            k(0.03) * T::fused(-block_wz, t55, block_wy * t58),
-        );
-        let t64 = arm_sx - T::fused(k(0.1), t60, T::fused(-k(0.1), t61, k(0.2) * t62))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(block_wy, t52, block_wx * t55), t63));
-        let t65 = t64
-            * T::fused(
-                k(0.6666666666666666),
-                t60,
-                T::fused(-k(0.6666666666666666), t61, k(0.3333333333333333) * t62),
-            );
-        let t66 = block_wy * block_wy;
-        let t67 = block_wz * block_wz;
-        let t68 = t67 + t66;
-        let t69 = block_wx * block_wy;
-        let t70 = block_wx * block_wz;
-        let t71 = block_wx * block_wx;
-        let t72 = t67 + t71;
-        let t73 = block_wy * block_wz;
-        let t74 = T::fused(
-            k(0.03),
-            T::fused(t70, t58, T::fused(t68, t52, t69 * t55)),
-            k(0.05) * T::fused(t73, t58, -T::fused(t69, t52, t72 * t55)),
-        );
-        let t75 = t66 + t71;
-        let t76 = T::fused(
-            k(0.1),
-            T::fused(t75, t58, -T::fused(-t70, t52, t73 * t55)),
-            t74,
-        );
-        let t77 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t13,
-                T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t9),
+            k(5.0),
+            arm_rz,
+            -T::fused(
+                k(0.3),
+                t47,
+                T::fused(k(0.5), t44, -T::fused(-k(5.0), block_rz, t41)),
             ),
-            t76 + T::fused(k(0.1), t40, -(t21 + t16)),
+        );
+        let t49 = block_wx * block_wz;
+        let t50 = block_wx * block_wy;
+        let t51 = block_wy * block_wy;
+        let t52 = block_wz * block_wz;
+        let t53 = t52 + t51;
+        let t54 = block_wy * block_wz;
+        let t55 = block_wx * block_wx;
+        let t56 = t52 + t55;
+        let t57 = t51 + t55;
+        let t58 = T::fused(
+            -k(0.5),
+            T::fused(t47, t50, -T::fused(-t54, t41, t44 * t56)),
+            T::fused(t47, t49, T::fused(-t57, t41, t44 * t54)),
+        );
+        let t59 = T::fused(
+            k(0.3),
+            T::fused(t47, t53, -T::fused(t49, t41, t44 * t50)),
+            t58,
+        );
+        let t60 = T::fused(-arm_wy, t27, t28 * arm_wz);
+        let t61 = T::fused(-arm_wx, t27, t29 * arm_wz);
+        let t62 = T::fused(-t28, arm_wx, t29 * arm_wy);
+        let t63 = T::fused(
+            k(5.0),
+            block_sz,
+            -(t62 - (t61 - T::fused(k(2.0), t60, k(5.0) * arm_sz))),
+        );
+        let t64 = T::fused(
+            -k(0.5),
+            T::fused(-block_wx, t41, t47 * block_wz),
+            T::fused(k(0.3), T::fused(-block_wy, t41, t44 * block_wz), t63),
+        );
+        let t65 = (T::fused(-t44, block_wx, t47 * block_wy) - t64)
+            * (t62 - T::fused(-k(0.5), t60, t61));
+        let t66 = T::fused(
+            -(t31 - (t32 + (t38 + t59))),
+            T::fused(k(0.5), t29, t28 + t27),
             t65,
         );
-        let t78 = t77
-            + T::fused(
-                T::fused(k(0.3333333333333333), t15, k(0.6666666666666666) * t20) - t41,
-                t59,
-                t65,
-            );
-        let t79 = t54 + t53;
-        let t80 = k(2.0) * block_e2;
-        let t81 = T::fused(-block_e2, t80, t51);
-        let t82 = block_e1 * t50;
-        let t83 = block_e3 * t80;
-        let t84 = t83 - t82;
-        let t85 = block_ry
-            - T::fused(k(0.1), t84, T::fused(-k(0.03), t79, k(0.05) * t81))
-            - (arm_ry + T::fused(k(0.1), t27, -T::fused(-k(0.2), t22, k(0.1) * t24)));
-        let t86 = T::fused(arm_wy, t22, arm_wx * t24);
-        let t87 = T::fused(-arm_wz, t22, arm_wx * t27);
-        let t88 = T::fused(arm_wz, t24, arm_wy * t27);
+        let t67 = T::fused(
+            t38 + T::fused(-k(0.5), t30, t32),
+            T::fused(k(2.0), t29, t28 + (t27 + t48)),
+            t65 + t66,
+        );
+        let t68 = T::fused(block_e2, block_e2, -t40);
+        let t69 = t43 - t42;
+        let t70 = block_e0 * block_e3;
+        let t71 = block_e1 * block_e2;
+        let t72 = t71 + t70;
+        let t73 = T::fused(
+            -k(0.5),
+            T::fused(t72, t50, T::fused(-t56, t68, t69 * t54)),
+            T::fused(t72, t49, -T::fused(-t54, t68, t69 * t57)),
+        );
+        let t74 = T::fused(
+            k(0.3),
+            T::fused(t72, t53, -T::fused(t50, t68, t69 * t49)),
+            t73,
+        );
+        let t75 = T::fused(
+            t25 - (t26 + (t36 + t74)),
+            T::fused(k(0.5), t23, t22 + t19),
+            -t67,
+        );
+        let t76 = T::fused(-arm_wz, t19, t22 * arm_wy);
+        let t77 = T::fused(-t22, arm_wx, t23 * arm_wz);
+        let t78 = T::fused(-arm_wx, t19, t23 * arm_wy);
+        let t79 = T::fused(
+            k(5.0),
+            block_sy,
+            -(t78 - (t77 - T::fused(-k(2.0), t76, k(5.0) * arm_sy))),
+        );
+        let t80 = T::fused(
+            k(0.5),
+            T::fused(-t69, block_wx, t72 * block_wz),
+            -T::fused(-k(0.3), T::fused(-block_wz, t68, t69 * block_wy), t79),
+        );
+        let t81 = (T::fused(-block_wx, t68, t72 * block_wy) + t80)
+            * (t78 - T::fused(k(0.5), t76, t77));
+        let t82 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t72,
+                T::fused(k(0.5), t68, -T::fused(-k(5.0), block_ry, t69)),
+            ),
+        );
+        let t83 = T::fused(
+            t36 + T::fused(-k(0.5), t24, t26),
+            T::fused(k(2.0), t23, t19 + (t22 + t82)),
+            t81 + (t81 - t75),
+        );
+        let t84 = T::fused(block_e1, block_e1, -t40);
+        let t85 = t46 + t45;
+        let t86 = t71 - t70;
+        let t87 = T::fused(
+            k(0.5),
+            T::fused(-t50, t84, T::fused(-t85, t54, t86 * t56)),
+            T::fused(t49, t84, T::fused(-t85, t57, t86 * t54)),
+        );
+        let t88 = T::fused(
+            -k(0.3),
+            T::fused(-t53, t84, T::fused(t85, t49, t86 * t50)),
+            t87,
+        );
         let t89 = T::fused(
-            -k(0.05),
-            T::fused(-block_wz, t79, block_wx * t84),
-            k(0.03) * T::fused(block_wz, t81, block_wy * t84),
+            t14 - (t18 - (t34 + t88)),
+            T::fused(k(0.5), t1, t12 + t8),
+            t83,
         );
-        let t90 = arm_sy - T::fused(-k(0.1), t86, T::fused(-k(0.1), t87, k(0.2) * t88))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(block_wy, t79, block_wx * t81), t89));
-        let t91 = t90
-            * T::fused(
-                -k(0.6666666666666666),
-                t86,
-                T::fused(-k(0.6666666666666666), t87, k(0.3333333333333333) * t88),
-            );
-        let t92 = T::fused(
-            k(0.03),
-            T::fused(t70, t84, -T::fused(t68, t79, t69 * t81)),
-            k(0.05) * T::fused(t73, t84, T::fused(t69, t79, t72 * t81)),
-        );
+        let t90 = T::fused(-arm_wz, t1, t8 * arm_wx);
+        let t91 = T::fused(-t8, arm_wy, t12 * arm_wz);
+        let t92 = T::fused(-arm_wy, t1, t12 * arm_wx);
         let t93 = T::fused(
-            k(0.1),
-            T::fused(t75, t84, T::fused(-t70, t79, t73 * t81)),
-            t92,
+            k(5.0),
+            block_sx,
+            t92 - (T::fused(k(5.0), arm_sx, k(2.0) * t91) + t90),
         );
         let t94 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t27,
-                -T::fused(-k(0.3333333333333333), t22, k(0.6666666666666666) * t24),
+            k(0.5),
+            T::fused(-block_wz, t84, t85 * block_wx),
+            T::fused(k(0.3), T::fused(-t85, block_wy, t86 * block_wz), t93),
+        );
+        let t95 = (T::fused(-block_wy, t84, t86 * block_wx) + t94)
+            * (t92 - T::fused(k(0.5), t91, t90));
+        let t96 = T::fused(
+            k(5.0),
+            arm_rx,
+            -T::fused(
+                k(0.3),
+                t84,
+                T::fused(k(0.5), t86, -T::fused(-k(5.0), block_rx, t85)),
             ),
-            t93 + T::fused(k(0.1), t43, -(t31 + t29)),
-            t91,
         );
-        let t95 = t94
-            + T::fused(
-                T::fused(k(0.3333333333333333), t28, k(0.6666666666666666) * t30) - t44,
-                t85,
-                t91,
-            );
-        let t96 = t57 - t56;
-        let t97 = t83 + t82;
-        let t98 = T::fused(-block_e3, k(2.0) * block_e3, t51);
-        let t99 = block_rz + T::fused(k(0.1), t98, T::fused(k(0.03), t96, k(0.05) * t97))
-            - (arm_rz - T::fused(k(0.1), t34, -T::fused(k(0.2), t32, k(0.1) * t33)));
-        let t100 = T::fused(-arm_wy, t32, arm_wx * t33);
-        let t101 = T::fused(arm_wz, t32, arm_wx * t34);
-        let t102 = T::fused(arm_wz, t33, arm_wy * t34);
-        let t103 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t96, block_wx * t98),
-            k(0.03) * T::fused(block_wz, t97, block_wy * t98),
+        let t97 = T::fused(
+            t34 - T::fused(-k(0.5), t13, t18),
+            T::fused(k(2.0), t1, t12 + (t8 + t96)),
+            t95 + (t95 + t89),
         );
-        let t104 = arm_sz
-            + T::fused(-k(0.1), t100, T::fused(-k(0.1), t101, k(0.2) * t102))
-            - (block_sz
-                + T::fused(k(0.1), T::fused(-block_wy, t96, block_wx * t97), t103));
-        let t105 = t104
-            * T::fused(
-                -k(0.6666666666666666),
-                t100,
-                T::fused(-k(0.6666666666666666), t101, k(0.3333333333333333) * t102),
-            );
-        let t106 = T::fused(
-            k(0.03),
-            T::fused(t70, t98, -T::fused(-t68, t96, t69 * t97)),
-            k(0.05) * T::fused(t73, t98, T::fused(-t69, t96, t72 * t97)),
-        );
+        let t98 = T::fused(t8, t85, T::fused(t27, t41, t22 * t69));
+        let t99 = T::fused(t8, t86, T::fused(t44, t27, t22 * t68));
+        let t100 = T::fused(-block_wy, t98, block_wz * t99);
+        let t101 = T::fused(t85, t1, T::fused(t29, t41, t23 * t69));
+        let t102 = T::fused(t86, t1, T::fused(t23, t68, t29 * t44));
+        let t103 = T::fused(-block_wy, t101, block_wz * t102);
+        let t104 = T::fused(t12, t85, T::fused(t28, t41, t69 * t19));
+        let t105 = T::fused(t12, t86, T::fused(t19, t68, t28 * t44));
+        let t106 = T::fused(t12, t84, T::fused(t72, t19, t28 * t47));
         let t107 = T::fused(
-            k(0.1),
-            T::fused(t75, t98, T::fused(t70, t96, t73 * t97)),
-            t106,
+            k(2.0),
+            T::fused(-arm_wx, t100, arm_wz * t103),
+            T::fused(t53, t106, -T::fused(t49, t104, t50 * t105)),
         );
-        let t108 = T::fused(
-            T::fused(
-                k(0.6666666666666666),
-                t34,
-                -T::fused(k(0.3333333333333333), t32, k(0.6666666666666666) * t33),
-            ),
-            t107 + T::fused(k(0.1), t46, -(t38 + t36)),
-            -t105,
+        let t108 = T::fused(t8, t84, T::fused(t47, t27, t22 * t72));
+        let t109 = T::fused(t1, t84, T::fused(t29, t47, t23 * t72));
+        let t110 = T::fused(-block_wx, t98, block_wz * t108);
+        let t111 = T::fused(-block_wx, t101, block_wz * t109);
+        let t112 = T::fused(
+            k(2.0),
+            T::fused(-arm_wx, t110, arm_wz * t111),
+            T::fused(t50, t106, -T::fused(-t54, t104, t56 * t105)),
         );
-        let t109 = t108
-            - T::fused(
-                T::fused(k(0.3333333333333333), t35, k(0.6666666666666666) * t37) - t47,
-                t99,
-                t105,
-            );
-        let t110 = T::fused(t32, t98, -T::fused(-t3, t58, t22 * t84));
-        let t111 = T::fused(t33, t98, T::fused(-t9, t58, t24 * t84));
-        let t112 = T::fused(t34, t98, T::fused(t13, t58, t27 * t84));
-        let t113 = T::fused(t33, t96, -T::fused(t9, t52, t24 * t79));
-        let t114 = T::fused(t33, t97, T::fused(t9, t55, t24 * t81));
-        let t115 = T::fused(-block_wy, t113, block_wx * t114);
-        let t116 = T::fused(t34, t96, -T::fused(-t13, t52, t27 * t79));
-        let t117 = T::fused(t34, t97, T::fused(-t13, t55, t27 * t81));
-        let t118 = T::fused(-block_wy, t116, block_wx * t117);
-        let t119 = T::fused(t32, t96, T::fused(t3, t52, t22 * t79));
-        let t120 = T::fused(t32, t97, -T::fused(t3, t55, t22 * t81));
+        let t113 = T::fused(
+            k(0.5),
+            T::fused(t9, t109, -T::fused(t17, t106, -T::fused(t15, t108, -t107))),
+            T::fused(t9, t102, -T::fused(t17, t105, -T::fused(t15, t99, t112))),
+        );
+        let t114 = T::fused(-block_wx, t99, block_wy * t108);
+        let t115 = T::fused(-block_wx, t102, block_wy * t109);
+        let t116 = T::fused(
+            -k(2.0),
+            T::fused(-arm_wx, t114, arm_wz * t115),
+            T::fused(t49, t106, T::fused(-t57, t104, t54 * t105)),
+        );
+        let t117 = T::fused(t9, t101, -T::fused(t17, t104, -T::fused(t15, t98, t116)))
+            + t113;
+        let t118 = T::fused(-block_wy, t104, block_wz * t105);
+        let t119 = T::fused(
+            -k(2.0),
+            T::fused(-arm_wx, t118, arm_wy * t103),
+            T::fused(t53, t108, -T::fused(t49, t98, t50 * t99)),
+        );
+        let t120 = T::fused(-block_wx, t104, block_wz * t106);
         let t121 = T::fused(
             -k(2.0),
-            T::fused(arm_wz, t115, arm_wy * t118),
-            T::fused(t75, t110, T::fused(t70, t119, t73 * t120)),
+            T::fused(-arm_wx, t120, arm_wy * t111),
+            T::fused(t50, t108, -T::fused(-t54, t98, t56 * t99)),
         );
-        let t122 = T::fused(block_wz, t114, block_wy * t111);
-        let t123 = T::fused(block_wz, t117, block_wy * t112);
+        let t122 = T::fused(
+            k(0.5),
+            T::fused(t5, t109, T::fused(t15, t106, -T::fused(t33, t108, t119))),
+            T::fused(t5, t102, T::fused(t15, t105, -T::fused(t33, t99, -t121))),
+        );
+        let t123 = T::fused(-block_wx, t105, block_wy * t106);
         let t124 = T::fused(
-            -k(2.0),
-            T::fused(arm_wz, t122, arm_wy * t123),
-            T::fused(t70, t110, -T::fused(-t68, t119, t69 * t120)),
-        );
-        let t125 = T::fused(block_wz, t113, block_wx * t111);
-        let t126 = T::fused(block_wz, t116, block_wx * t112);
-        let t127 = T::fused(
             k(2.0),
-            T::fused(arm_wz, t125, arm_wy * t126),
-            T::fused(t73, t110, T::fused(-t69, t119, t72 * t120)),
+            T::fused(-arm_wx, t123, arm_wy * t115),
+            T::fused(t49, t108, T::fused(-t57, t98, t54 * t99)),
+        );
+        let t125 = T::fused(t5, t101, T::fused(t15, t104, -T::fused(t33, t98, -t124)))
+            + t122;
+        let t126 = T::fused(
+            -k(2.0),
+            T::fused(-arm_wy, t100, arm_wz * t118),
+            T::fused(t53, t109, -T::fused(t49, t101, t50 * t102)),
+        );
+        let t127 = T::fused(
+            -k(2.0),
+            T::fused(-arm_wy, t110, arm_wz * t120),
+            T::fused(t50, t109, -T::fused(-t54, t101, t56 * t102)),
         );
         let t128 = T::fused(
-            k(0.3333333333333333),
-            t124 + T::fused(t14, t116, -T::fused(-t6, t119, t10 * t113)),
-            k(0.6666666666666666)
-                * (t127 + T::fused(t14, t117, -T::fused(-t6, t120, t10 * t114))),
+            k(0.5),
+            T::fused(t4, t109, -T::fused(t9, t106, T::fused(t5, t108, -t126))),
+            T::fused(t4, t102, -T::fused(t9, t105, T::fused(t5, t99, t127))),
         );
         let t129 = T::fused(
-            -k(0.6666666666666666),
-            t121 + T::fused(t14, t112, -T::fused(-t6, t110, t10 * t111)),
-            t128,
-        );
-        let t130 = T::fused(-block_wy, t119, block_wx * t120);
-        let t131 = T::fused(
             k(2.0),
-            T::fused(arm_wz, t130, arm_wx * t118),
-            T::fused(t75, t111, T::fused(t70, t113, t73 * t114)),
+            T::fused(-arm_wy, t114, arm_wz * t123),
+            T::fused(t49, t109, T::fused(-t57, t101, t54 * t102)),
         );
-        let t132 = T::fused(block_wz, t120, block_wy * t110);
-        let t133 = T::fused(
-            k(2.0),
-            T::fused(arm_wz, t132, arm_wx * t123),
-            T::fused(t70, t111, -T::fused(-t68, t113, t69 * t114)),
-        );
-        let t134 = T::fused(block_wz, t119, block_wx * t110);
-        let t135 = T::fused(
-            -k(2.0),
-            T::fused(arm_wz, t134, arm_wx * t126),
-            T::fused(t73, t111, T::fused(-t69, t113, t72 * t114)),
-        );
-        let t136 = T::fused(
-            k(0.3333333333333333),
-            t133 + T::fused(t19, t116, T::fused(-t10, t119, t18 * t113)),
-            k(0.6666666666666666)
-                * (t135 + T::fused(t19, t117, T::fused(-t10, t120, t18 * t114))),
-        );
-        let t137 = T::fused(
-            -k(0.6666666666666666),
-            t131 + T::fused(t19, t112, T::fused(-t10, t110, t18 * t111)),
-            t136,
-        );
-        let t138 = T::fused(
-            -k(2.0),
-            T::fused(-arm_wy, t130, arm_wx * t115),
-            T::fused(t75, t112, T::fused(t70, t116, t73 * t117)),
-        );
-        let t139 = T::fused(
-            -k(2.0),
-            T::fused(-arm_wy, t132, arm_wx * t122),
-            T::fused(t70, t112, -T::fused(-t68, t116, t69 * t117)),
-        );
-        let t140 = T::fused(
-            k(2.0),
-            T::fused(-arm_wy, t134, arm_wx * t125),
-            T::fused(t73, t112, T::fused(-t69, t116, t72 * t117)),
-        );
-        let t141 = T::fused(
-            k(0.3333333333333333),
-            t139 + T::fused(t39, t116, T::fused(t14, t119, t19 * t113)),
-            k(0.6666666666666666)
-                * (t140 + T::fused(t39, t117, T::fused(t14, t120, t19 * t114))),
-        );
-        let t142 = T::fused(
-            -k(0.6666666666666666),
-            t138 + T::fused(t39, t112, T::fused(t14, t110, t19 * t111)),
-            t141,
-        );
+        let t130 = T::fused(t4, t101, -T::fused(t9, t104, T::fused(t5, t98, t129)))
+            + t128;
         *out = [
-            t16 - t21,
-            t29 - t31,
-            t38 - t36,
-            T::fused(k(0.4472135954999579), t42, k(0.8944271909999159) * t45),
-            -t48,
-            -(t109 + (t95 + t78)),
-            T::fused(
-                k(0.6666666666666666),
-                t142,
-                T::fused(k(0.6666666666666666), t129, k(0.3333333333333333) * t137),
-            ),
-            T::fused(k(0.6666666666666666), t137 - t129, k(0.3333333333333333) * t142),
+            k(0.2) * (t18 + t14),
+            -(k(0.2) * (t26 + t25)),
+            -(k(0.2) * (t32 + t31)),
+            k(1.1925695879998879) * T::fused(-k(0.5), t35, t37),
+            k(0.9938079899999065) * t39,
+            k(0.26666666666666666) * t97,
+            k(1.7777777777777777) * (t130 + T::fused(-k(0.5), t117, t125)),
+            k(0.8888888888888888) * T::fused(-k(2.0), t130 + t117, t125),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 544 operations (243 ±, 301 ×, 0 ÷) and 3 functions.
+    /// Writes (f, n' − w̃'J'w'): 518 operations (243 ±, 275 ×, 0 ÷) and 3 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -3137,320 +2526,290 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_wy = y[24];
         let block_wz = y[25];
         let turn0 = y[27];
-        let t0 = k(2.0) * block_e0;
-        let t1 = block_e2 * t0;
-        let t2 = k(2.0) * block_e1;
-        let t3 = block_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = block_e1 * t0;
-        let t6 = k(2.0) * block_e2;
-        let t7 = block_e3 * t6;
-        let t8 = t7 + t5;
-        let t9 = T::fused(-block_e0, t0, k(1.0));
-        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
-        let t11 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t4, block_wx * t10),
-            k(0.03) * T::fused(block_wz, t8, block_wy * t10),
+        let t0 = T::fused(-block_e0, block_e0, k(0.5));
+        let t1 = T::fused(block_e3, block_e3, -t0);
+        let t2 = block_e0 * block_e1;
+        let t3 = block_e2 * block_e3;
+        let t4 = t3 + t2;
+        let t5 = block_e0 * block_e2;
+        let t6 = block_e1 * block_e3;
+        let t7 = t6 - t5;
+        let t8 = t7
+            + T::fused(
+                k(1.6666666666666667),
+                t4,
+                T::fused(-k(3.3333333333333335), t1, k(16.666666666666668) * block_rz),
+            );
+        let t9 = T::fused(-arm_e0, arm_e0, k(0.5));
+        let t10 = T::fused(arm_e3, arm_e3, -t9);
+        let t11 = arm_e0 * arm_e1;
+        let t12 = arm_e2 * arm_e3;
+        let t13 = t12 + t11;
+        let t14 = arm_e0 * arm_e2;
+        let t15 = arm_e1 * arm_e3;
+        let t16 = t15 - t14;
+        let t17 = T::fused(
+            k(2.0),
+            t16,
+            t13 + (t10 + T::fused(-k(0.3), t8, k(5.0) * arm_rz)),
         );
-        let t12 = k(2.0) * arm_e0;
-        let t13 = arm_e2 * t12;
-        let t14 = k(2.0) * arm_e1;
-        let t15 = arm_e3 * t14;
-        let t16 = t15 - t13;
-        let t17 = arm_e1 * t12;
-        let t18 = k(2.0) * arm_e2;
-        let t19 = arm_e3 * t18;
-        let t20 = t19 + t17;
-        let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
-        let t22 = T::fused(-arm_e0, t12, k(1.0));
-        let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
-        let t24 = T::fused(arm_wz, t16, arm_wx * t23);
-        let t25 = T::fused(arm_wz, t20, arm_wy * t23);
-        let t26 = arm_sz + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
-            - (block_sz + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
-        let t27 = T::fused(
-            k(0.6666666666666666),
-            t23,
-            T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
-        );
-        let t28 = block_rz + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8));
-        let t29 = t28
-            - (arm_rz - T::fused(k(0.1), t23, -T::fused(k(0.2), t16, k(0.1) * t20)));
+        let t18 = T::fused(k(2.0), t16 - t13, t10);
+        let t19 = t3 - t2;
+        let t20 = T::fused(block_e2, block_e2, -t0);
+        let t21 = block_e0 * block_e3;
+        let t22 = block_e1 * block_e2;
+        let t23 = t22 + t21;
+        let t24 = t23
+            + T::fused(
+                k(1.6666666666666667),
+                t20,
+                -T::fused(-k(16.666666666666668), block_ry, k(3.3333333333333335) * t19),
+            );
+        let t25 = t12 - t11;
+        let t26 = T::fused(arm_e2, arm_e2, -t9);
+        let t27 = arm_e0 * arm_e3;
+        let t28 = arm_e1 * arm_e2;
+        let t29 = t28 + t27;
         let t30 = T::fused(
-            -t27,
-            t26,
-            t29
-                * T::fused(
-                    k(0.6666666666666666),
-                    t21,
-                    T::fused(-k(0.3333333333333333), t24, k(0.6666666666666666) * t25),
-                ),
+            k(2.0),
+            t29,
+            t26 + (t25 + T::fused(-k(0.3), t24, k(5.0) * arm_ry)),
         );
-        let t31 = block_e3 * t0;
-        let t32 = block_e2 * t2;
-        let t33 = t32 + t31;
-        let t34 = T::fused(-block_e2, t6, t9);
-        let t35 = t7 - t5;
-        let t36 = T::fused(
-            -k(0.05),
-            T::fused(-block_wz, t33, block_wx * t35),
-            k(0.03) * T::fused(block_wz, t34, block_wy * t35),
+        let t31 = T::fused(k(2.0), t29 - t26, t25);
+        let t32 = t6 + t5;
+        let t33 = t22 - t21;
+        let t34 = T::fused(block_e1, block_e1, -t0);
+        let t35 = t34
+            + T::fused(
+                k(1.6666666666666667),
+                t33,
+                -T::fused(-k(16.666666666666668), block_rx, k(3.3333333333333335) * t32),
+            );
+        let t36 = t15 + t14;
+        let t37 = t28 - t27;
+        let t38 = T::fused(arm_e1, arm_e1, -t9);
+        let t39 = T::fused(
+            k(2.0),
+            t38,
+            t37 + (t36 + T::fused(-k(0.3), t35, k(5.0) * arm_rx)),
         );
-        let t37 = arm_e3 * t12;
-        let t38 = arm_e2 * t14;
-        let t39 = t38 + t37;
-        let t40 = T::fused(-arm_e2, t18, t22);
-        let t41 = T::fused(arm_wy, t39, arm_wx * t40);
-        let t42 = t19 - t17;
-        let t43 = T::fused(-arm_wz, t39, arm_wx * t42);
-        let t44 = T::fused(arm_wz, t40, arm_wy * t42);
-        let t45 = arm_sy - T::fused(-k(0.1), t41, T::fused(-k(0.1), t43, k(0.2) * t44))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(block_wy, t33, block_wx * t34), t36));
-        let t46 = T::fused(
-            k(0.6666666666666666),
-            t42,
-            T::fused(-k(0.6666666666666666), t39, k(0.3333333333333333) * t40),
+        let t40 = T::fused(-k(2.0), t37 - t38, t36);
+        let t41 = k(0.375) - T::fused(t40, t39, T::fused(t18, t17, t31 * t30));
+        let t42 = k(12.5) * t41;
+        let t43 = T::fused(k(0.5), t13, t16) - t10;
+        let t44 = t25 - T::fused(k(0.5), t26, t29);
+        let t45 = t36 - T::fused(k(0.5), t37, t38);
+        let t46 = k(31.25) * T::fused(t45, t39, T::fused(-t43, t17, t44 * t30));
+        let t47 = T::fused(-arm_wy, t38, t37 * arm_wx);
+        let t48 = T::fused(-t36, arm_wy, t37 * arm_wz);
+        let t49 = T::fused(-arm_wz, t38, t36 * arm_wx);
+        let t50 = T::fused(
+            k(5.0),
+            block_sx,
+            t47 - (T::fused(k(5.0), arm_sx, k(2.0) * t48) + t49),
         );
-        let t47 = block_ry
-            - T::fused(k(0.1), t35, T::fused(-k(0.03), t33, k(0.05) * t34));
-        let t48 = t47
-            - (arm_ry + T::fused(k(0.1), t42, -T::fused(-k(0.2), t39, k(0.1) * t40)));
-        let t49 = T::fused(
-            -t46,
-            t45,
-            t48
-                * T::fused(
-                    k(0.6666666666666666),
-                    t41,
-                    T::fused(-k(0.3333333333333333), t43, k(0.6666666666666666) * t44),
-                ),
+        let t51 = T::fused(
+            k(0.5),
+            T::fused(-block_wz, t34, t32 * block_wx),
+            T::fused(k(0.3), T::fused(-t32, block_wy, t33 * block_wz), t50),
         );
-        let t50 = T::fused(-block_e1, t2, t9);
-        let t51 = t32 - t31;
-        let t52 = t3 + t1;
-        let t53 = T::fused(
-            -k(0.05),
-            T::fused(block_wz, t50, block_wx * t52),
-            k(0.03) * T::fused(-block_wz, t51, block_wy * t52),
+        let t52 = T::fused(
+            T::fused(k(0.5), t49, t48 + t47),
+            t39,
+            t45 * (T::fused(-block_wy, t34, t33 * block_wx) + t51),
         );
-        let t54 = T::fused(-arm_e1, t14, t22);
-        let t55 = t38 - t37;
-        let t56 = T::fused(arm_wy, t54, arm_wx * t55);
-        let t57 = t15 + t13;
-        let t58 = T::fused(arm_wz, t54, arm_wx * t57);
-        let t59 = T::fused(-arm_wz, t55, arm_wy * t57);
-        let t60 = arm_sx - T::fused(k(0.1), t56, T::fused(-k(0.1), t58, k(0.2) * t59))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(block_wy, t50, block_wx * t51), t53));
-        let t61 = T::fused(
-            -k(0.6666666666666666),
-            t57,
-            T::fused(-k(0.6666666666666666), t54, k(0.3333333333333333) * t55),
+        let t53 = T::fused(-arm_wz, t26, t25 * arm_wy);
+        let t54 = T::fused(-arm_wx, t26, t29 * arm_wy);
+        let t55 = T::fused(-t25, arm_wx, t29 * arm_wz);
+        let t56 = T::fused(
+            k(5.0),
+            block_sy,
+            -(t54 - (t55 - T::fused(-k(2.0), t53, k(5.0) * arm_sy))),
         );
-        let t62 = block_rx
-            - T::fused(k(0.1), t52, -T::fused(-k(0.03), t50, k(0.05) * t51));
-        let t63 = t62
-            - (arm_rx + T::fused(k(0.1), t57, T::fused(-k(0.2), t54, k(0.1) * t55)));
+        let t57 = T::fused(
+            k(0.5),
+            T::fused(-t19, block_wx, t23 * block_wz),
+            -T::fused(-k(0.3), T::fused(-block_wz, t20, t19 * block_wy), t56),
+        );
+        let t58 = T::fused(
+            t44,
+            T::fused(-block_wx, t20, t23 * block_wy) + t57,
+            T::fused(T::fused(k(0.5), t55, t54 + t53), t30, -t52),
+        );
+        let t59 = T::fused(-arm_wy, t10, t13 * arm_wz);
+        let t60 = T::fused(-t13, arm_wx, t16 * arm_wy);
+        let t61 = T::fused(-arm_wx, t10, t16 * arm_wz);
+        let t62 = T::fused(
+            k(5.0),
+            block_sz,
+            -(t60 - (t61 - T::fused(k(2.0), t59, k(5.0) * arm_sz))),
+        );
+        let t63 = T::fused(
+            -k(0.5),
+            T::fused(-block_wx, t1, t7 * block_wz),
+            T::fused(k(0.3), T::fused(-block_wy, t1, t4 * block_wz), t62),
+        );
         let t64 = T::fused(
-            -t61,
-            t60,
-            t63
-                * T::fused(
-                    k(0.6666666666666666),
-                    t56,
-                    -T::fused(-k(0.3333333333333333), t58, k(0.6666666666666666) * t59),
-                ),
+            t43,
+            T::fused(-t4, block_wx, t7 * block_wy) - t63,
+            -T::fused(T::fused(k(0.5), t61, t60 - t59), t17, t58),
         );
-        let t65 = k(0.8) * (t64 - t49 + t30);
-        let t66 = T::fused(
-            -k(0.3333333333333333),
-            t57,
-            k(0.6666666666666666) * (t54 + t55),
-        );
-        let t67 = T::fused(
-            k(0.3333333333333333),
-            t42,
-            k(0.6666666666666666) * (t39 + t40),
-        );
-        let t68 = T::fused(
-            -k(0.3333333333333333),
-            t23,
-            k(0.6666666666666666) * (t16 - t20),
-        );
-        let t69 = k(40.0)
-            * (k(0.05) + T::fused(t68, t29, T::fused(-t66, t63, t67 * t48)));
-        let t70 = k(25.0) * T::fused(t27, t29, -T::fused(-t61, t63, t46 * t48));
-        let t71 = T::fused(t61, t70, -T::fused(-t61, t65, t66 * t69));
-        let t72 = T::fused(t46, t70, -T::fused(-t46, t65, t67 * t69));
-        let t73 = T::fused(t27, t70, T::fused(t27, t65, t68 * t69));
-        let t74 = k(0.05) * arm_wy;
+        let t65 = T::fused(t45, t64, -T::fused(-t40, t42, t45 * t46));
+        let t66 = T::fused(t44, t64, -T::fused(-t31, t42, t44 * t46));
+        let t67 = T::fused(t43, t64, -T::fused(t18, t42, t43 * t46));
+        let t68 = k(25.0) * t41;
+        let t69 = T::fused(k(16.666666666666668), arm_rz, -t8);
+        let t70 = T::fused(k(16.666666666666668), arm_ry, -t24);
+        let t71 = T::fused(k(16.666666666666668), arm_rx, -t35);
+        let t72 = T::fused(t36, t71, T::fused(t10, t69, t25 * t70));
+        let t73 = T::fused(t37, t71, T::fused(t13, t69, t26 * t70));
+        let t74 = k(5.859375) * arm_wz;
         let t75 = arm_wy * arm_wy;
         let t76 = arm_wz * arm_wz;
-        let t77 = k(0.02) * arm_wz;
-        let t78 = k(0.03) * arm_wy;
-        let t79 = T::fused(
-            arm_wx,
-            t78 + t77,
-            T::fused(arm_wz, t74, k(0.01) * (t76 - t75)),
+        let t77 = T::fused(
+            k(1.171875),
+            t76 - t75,
+            T::fused(
+                arm_wy,
+                t74,
+                k(2.34375) * (arm_wx * T::fused(k(1.5), arm_wy, arm_wz)),
+            ),
         );
-        let t80 = arm_rx - t62;
-        let t81 = arm_ry - t47;
-        let t82 = arm_rz - t28;
-        let t83 = T::fused(t23, t82, -T::fused(t57, t80, t42 * t81));
-        let t84 = T::fused(t20, t82, -T::fused(-t55, t80, t40 * t81));
-        let t85 = k(0.6666666666666666) * t84;
-        let t86 = T::fused(-k(0.3333333333333333), t83, t85);
-        let t87 = k(0.6666666666666666) * t83;
-        let t88 = T::fused(
-            t70,
-            t86,
-            T::fused(t65, t86, t69 * T::fused(-k(0.3333333333333333), t84, t87)),
+        let t78 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
+        let t79 = k(0.5208333333333334) * t78;
+        let t80 = T::fused(
+            -k(0.5),
+            T::fused(t36, t33, T::fused(t4, t10, t25 * t20)),
+            T::fused(t36, t32, T::fused(t10, t1, t25 * t19)),
         );
-        let t89 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t16, t4, T::fused(t54, t50, t39 * t33)),
-            k(0.3333333333333333) * T::fused(t16, t8, -T::fused(t54, t51, t39 * t34)),
+        let t81 = T::fused(t36, t34, T::fused(t7, t10, t25 * t23)) - t80;
+        let t82 = T::fused(
+            -k(0.5),
+            T::fused(t37, t33, T::fused(t26, t20, t13 * t4)),
+            T::fused(t37, t32, T::fused(t13, t1, t19 * t26)),
         );
-        let t90 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t16, t10, -T::fused(-t54, t52, t39 * t35)),
-            t89,
+        let t83 = T::fused(t37, t34, T::fused(t23, t26, t13 * t7)) - t82;
+        let t84 = T::fused(
+            -k(0.5),
+            T::fused(t33, t38, T::fused(t29, t20, t16 * t4)),
+            T::fused(t32, t38, T::fused(t16, t1, t29 * t19)),
         );
-        let t91 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t20, t4, -T::fused(t55, t50, t40 * t33)),
-            k(0.3333333333333333) * T::fused(t20, t8, T::fused(t55, t51, t40 * t34)),
-        );
-        let t92 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t20, t10, T::fused(-t55, t52, t40 * t35)),
-            t91,
-        );
-        let t93 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t23, t4, -T::fused(-t57, t50, t42 * t33)),
-            k(0.3333333333333333) * T::fused(t23, t8, T::fused(-t57, t51, t42 * t34)),
-        );
+        let t85 = T::fused(t38, t34, T::fused(t16, t7, t29 * t23)) - t84;
+        let t86 = T::fused(k(0.5), t81, t85 - t83);
+        let t87 = turn0.sin();
+        let t88 = t85 - T::fused(-k(0.5), t83, t81);
+        let t89 = turn0.cos();
+        let t90 = -(k(1.7777777777777777) * T::fused(t89, t86, t87 * t88))
+            .atan2(k(1.7777777777777777) * T::fused(-t87, t86, t89 * t88));
+        let t91 = turn0 + t90;
+        let t92 = k(23.4375) * t91;
+        let t93 = T::fused(k(2.0), t73, t72);
         let t94 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t23, t10, T::fused(t57, t52, t42 * t35)),
-            t93,
+            -T::fused(k(2.0), t72, t73),
+            t68,
+            T::fused(t93, t46, t92 + (t79 + t77)),
         );
-        let t95 = T::fused(
-            k(0.6666666666666666),
-            t94,
-            T::fused(k(0.6666666666666666), t90, k(0.3333333333333333) * t92),
+        let t95 = T::fused(t38, t71, T::fused(t16, t69, t29 * t70));
+        let t96 = k(0.5) * t95;
+        let t97 = arm_wx * arm_wx;
+        let t98 = T::fused(
+            k(1.7578125),
+            t76 - t97,
+            T::fused(
+                -arm_wx,
+                t74,
+                k(0.5859375) * (arm_wy * T::fused(-k(2.0), arm_wz, arm_wx)),
+            ),
         );
-        let t96 = turn0.cos();
-        let t97 = T::fused(
-            k(0.6666666666666666),
-            t92 - t90,
-            k(0.3333333333333333) * t94,
-        );
-        let t98 = turn0.sin();
-        let t99 = T::fused(-t98, t95, t96 * t97).atan2(T::fused(t96, t95, t98 * t97));
-        let t100 = turn0 + t99;
-        let t101 = k(0.2) * t100;
+        let t99 = t72 + t95;
+        let t100 = T::fused(t72 - t96, t68, T::fused(t99, t46, -(t92 + (t79 + t98))));
+        let t101 = t73 - t96;
         let t102 = T::fused(
-            k(0.6666666666666666),
-            arm_wz,
-            T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
-        )
-            - T::fused(
-                k(0.6666666666666666),
-                block_wz,
-                T::fused(
-                    k(0.6666666666666666),
-                    block_wy,
-                    k(0.3333333333333333) * block_wx,
-                ),
-            );
-        let t103 = k(0.006666666666666667) * t102;
-        let t104 = T::fused(t16, t82, T::fused(-t54, t80, t39 * t81));
-        let t105 = k(0.6666666666666666) * (t83 - t104);
-        let t106 = k(0.3333333333333333) * t104;
-        let t107 = k(0.4) * t100;
-        let t108 = t107 + T::fused(t70, t105, T::fused(t65, t105, t69 * (t106 + t87)));
-        let t109 = k(0.013333333333333334) * t102;
-        let t110 = arm_wx * arm_wx;
-        let t111 = k(0.01) * arm_wx;
-        let t112 = T::fused(
-            arm_wy,
-            t77 - t111,
-            T::fused(-k(0.03), t76 - t110, k(0.1) * (arm_wx * arm_wz)),
+            -k(2.9296875),
+            arm_wx * arm_wy,
+            k(0.5859375) * (arm_wz * T::fused(k(3.0), arm_wy, arm_wx)),
         );
-        let t113 = T::fused(
-            arm_wz,
-            t78 + t111,
-            -T::fused(arm_wx, t74, k(0.02) * (t75 - t110)),
+        let t103 = T::fused(
+            t101,
+            t46,
+            t79 - T::fused(-k(1.171875), t75 - t97, t102) + t92,
         );
-        let t114 = t106 - t85;
+        let t104 = T::fused(t33, t40, T::fused(t4, t18, t20 * t31));
+        let t105 = T::fused(t32, t40, T::fused(t1, t18, t19 * t31));
+        let t106 = k(0.17578125) * block_wz;
+        let t107 = block_wy * block_wy;
+        let t108 = block_wz * block_wz;
+        let t109 = T::fused(
+            k(0.10546875),
+            t108 - t107,
+            -T::fused(
+                block_wy,
+                t106,
+                k(0.03515625) * (block_wx * T::fused(-k(2.0), block_wy, block_wz)),
+            ),
+        );
+        let t110 = k(0.15625) * t78;
+        let t111 = k(7.03125) * t91;
+        let t112 = T::fused(t33, t45, T::fused(-t4, t43, t20 * t44));
+        let t113 = T::fused(t32, t45, T::fused(-t1, t43, t19 * t44));
+        let t114 = T::fused(k(2.0), t112, t113);
         let t115 = T::fused(
-            t70,
-            t114,
-            -T::fused(-t65, t114, t69 * (k(0.6666666666666666) * (t84 + t104))),
+            -T::fused(k(2.0), t104, t105),
+            t42,
+            T::fused(t114, t46, -(t111 + (t110 + t109))),
         );
-        let t116 = k(0.005) * block_wz;
-        let t117 = block_wy * block_wy;
-        let t118 = block_wz * block_wz;
-        let t119 = k(0.001) * block_wz;
-        let t120 = k(0.002) * block_wy;
+        let t116 = T::fused(t34, t40, T::fused(t7, t18, t23 * t31));
+        let t117 = T::fused(t45, t34, T::fused(-t7, t43, t23 * t44));
+        let t118 = T::fused(k(0.3), t113, t117);
+        let t119 = block_wx * block_wx;
+        let t120 = T::fused(
+            -k(0.087890625),
+            block_wx * block_wz,
+            k(0.052734375)
+                * (block_wy * T::fused(k(0.3333333333333333), block_wz, block_wx)),
+        );
         let t121 = T::fused(
-            block_wx,
-            t120 - t119,
-            T::fused(-block_wy, t116, k(0.003) * (t118 - t117)),
+            t118,
+            t46,
+            t110 + T::fused(k(0.03515625), t108 - t119, t120) + t111,
         );
-        let t122 = T::fused(t10, t27, T::fused(-t52, t61, t35 * t46));
-        let t123 = T::fused(t8, t27, T::fused(t51, t61, t34 * t46));
-        let t124 = T::fused(-k(0.05), t122, k(0.1) * t123);
-        let t125 = T::fused(t10, t68, -T::fused(-t52, t66, t35 * t67));
-        let t126 = T::fused(t8, t68, -T::fused(t51, t66, t34 * t67));
-        let t127 = T::fused(
-            t70,
-            t124,
-            T::fused(t65, t124, t69 * T::fused(-k(0.05), t125, k(0.1) * t126)),
+        let t122 = k(0.05688888888888889)
+            * T::fused(t118, t64, -T::fused(-T::fused(k(0.3), t105, t116), t42, t121));
+        let t123 = T::fused(
+            k(0.05859375),
+            t107 - t119,
+            -T::fused(
+                -T::fused(k(0.6666666666666666), block_wy, block_wx),
+                t106,
+                k(0.5859375) * (block_wx * block_wy),
+            ),
         );
-        let t128 = block_wx * block_wx;
-        let t129 = k(0.003) * block_wx;
-        let t130 = T::fused(
-            block_wy,
-            t119 + t129,
-            T::fused(-block_wx, t116, k(0.002) * (t118 - t128)),
-        );
-        let t131 = T::fused(t4, t27, -T::fused(t50, t61, t33 * t46));
-        let t132 = T::fused(-k(0.1), t131, k(0.03) * t122);
-        let t133 = T::fused(t4, t68, T::fused(t50, t66, t33 * t67));
-        let t134 = T::fused(
-            t70,
-            t132,
-            T::fused(t65, t132, t69 * T::fused(-k(0.1), t133, k(0.03) * t125)),
-        );
-        let t135 = T::fused(-k(0.03), t123, k(0.05) * t131);
-        let t136 = T::fused(
-            t135,
-            t70,
-            T::fused(t135, t65, T::fused(-k(0.03), t126, k(0.05) * t133) * t69),
-        );
-        let t137 = T::fused(
-            block_wz,
-            t120 + t129,
-            -T::fused(-k(0.001), t117 - t128, k(0.01) * (block_wx * block_wy)),
+        let t124 = T::fused(-k(1.6666666666666667), t117, t112);
+        let t125 = T::fused(
+            -T::fused(-k(1.6666666666666667), t116, t104),
+            t42,
+            T::fused(t124, t46, -(t92 + (t79 - t123))),
         );
         *out = [
-            k(1.5) + t71,
-            -(k(13.5) + t72),
-            k(4.5) + t73,
-            t79 - (t103 - (t101 + t88)),
-            -(t112 + (t109 - t108)),
-            -(t109 - (t107 - t115) + t113),
-            k(0.6) - t71,
-            t72 - k(5.4),
-            k(1.8) - t73,
-            t103 - (t101 + t127) - t121,
-            t109 - (t107 + t134) - t130,
-            t137 + (t109 - (t107 - t136)),
+            k(0.28444444444444444) * (k(5.2734375) + t65),
+            -(k(0.28444444444444444) * (k(47.4609375) - t66)),
+            k(0.28444444444444444) * (k(15.8203125) - t67),
+            -(k(0.008533333333333334) * T::fused(t64, t93, -t94)),
+            k(0.017066666666666667) * T::fused(t64, t99, -t100),
+            -(k(0.017066666666666667)
+                * T::fused(t64, t101, -T::fused(t73 + t95, t68, t103))),
+            k(0.28444444444444444) * (k(2.109375) - t65),
+            -(k(0.28444444444444444) * (k(18.984375) + t66)),
+            k(0.28444444444444444) * (k(6.328125) + t67),
+            -(k(0.028444444444444446) * T::fused(t114, t64, -t115)),
+            t122,
+            -(k(0.017066666666666667) * T::fused(t124, t64, -t125)),
         ];
     }
     /// Solves eq. (17): 1763 operations (792 ±, 965 ×, 6 ÷) and 3 functions.
@@ -4719,7 +4078,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             T::fused(t31, t450, T::fused(t22, t451, t9 * t452)),
         ];
     }
-    /// Writes λ: 891 operations (395 ±, 494 ×, 2 ÷) and 3 functions.
+    /// Writes λ: 847 operations (394 ±, 451 ×, 2 ÷) and 3 functions.
     fn multipliers(
         &self,
         _t: T,
@@ -4768,647 +4127,565 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_dwy = accelerations[10];
         let block_dwz = accelerations[11];
         let (
-            t20,
-            t23,
-            t27,
-            t29,
-            t42,
-            t44,
-            t48,
-            t50,
-            t59,
-            t61,
-            t65,
+            t36,
             t67,
+            t68,
             t71,
-            t78,
-            t79,
-            t81,
-            t82,
+            t74,
             t84,
-            t85,
-            t87,
-            t88,
-            t101,
-            t102,
-            t103,
-            t104,
-            t105,
-            t108,
-            t109,
-            t110,
+            t86,
+            t94,
+            t96,
             t111,
-            t114,
-            t115,
-            t116,
-            t117,
+            t122,
             t130,
-            t138,
-            t139,
-            t142,
-            t148,
+            t147,
             t152,
-            t156,
-            t158,
-            t160,
-            t162,
-            t168,
-            t170,
-            t172,
-            t174,
-            t179,
-            t182,
-            t184,
-            t185,
-            t186,
+            t161,
+            t163,
+            t164,
             t187,
             t188,
             t189,
+            t190,
             t191,
+            t192,
             t193,
+            t194,
             t195,
             t196,
+            t197,
             t198,
             t199,
         ) = {
-            let t0 = k(2.0) * block_e0;
-            let t1 = block_e2 * t0;
-            let t2 = k(2.0) * block_e1;
-            let t3 = block_e3 * t2;
-            let t4 = t3 - t1;
-            let t5 = block_e1 * t0;
-            let t6 = k(2.0) * block_e2;
-            let t7 = block_e3 * t6;
-            let t8 = t7 + t5;
-            let t9 = T::fused(-block_e0, t0, k(1.0));
-            let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
-            let t11 = T::fused(
-                -k(0.05),
-                T::fused(block_wz, t4, block_wx * t10),
-                k(0.03) * T::fused(block_wz, t8, block_wy * t10),
+            let t0 = block_e0 * block_e0;
+            let t1 = k(0.5) - T::fused(block_e3, block_e3, t0);
+            let t2 = block_e0 * block_e1;
+            let t3 = block_e2 * block_e3;
+            let t4 = t3 + t2;
+            let t5 = block_e0 * block_e2;
+            let t6 = block_e1 * block_e3;
+            let t7 = t6 - t5;
+            let t8 = t7
+                + T::fused(
+                    k(1.6666666666666667),
+                    t4,
+                    T::fused(k(16.666666666666668), block_rz, k(3.3333333333333335) * t1),
+                );
+            let t9 = arm_e0 * arm_e0;
+            let t10 = k(0.5) - T::fused(arm_e3, arm_e3, t9);
+            let t11 = arm_e0 * arm_e1;
+            let t12 = arm_e2 * arm_e3;
+            let t13 = t12 + t11;
+            let t14 = arm_e0 * arm_e2;
+            let t15 = arm_e1 * arm_e3;
+            let t16 = t15 - t14;
+            let t17 = T::fused(
+                k(2.0),
+                t16,
+                t13 - (t10 - T::fused(-k(0.3), t8, k(5.0) * arm_rz)),
             );
-            let t12 = k(2.0) * arm_e0;
-            let t13 = arm_e2 * t12;
-            let t14 = k(2.0) * arm_e1;
-            let t15 = arm_e3 * t14;
-            let t16 = t15 - t13;
-            let t17 = arm_e1 * t12;
-            let t18 = k(2.0) * arm_e2;
-            let t19 = arm_e3 * t18;
-            let t20 = t19 + t17;
-            let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
-            let t22 = T::fused(-arm_e0, t12, k(1.0));
-            let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
-            let t24 = T::fused(arm_wz, t16, arm_wx * t23);
-            let t25 = T::fused(arm_wz, t20, arm_wy * t23);
-            let t26 = arm_sz
-                + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
-                - (block_sz
-                    + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
-            let t27 = k(0.6666666666666666) * t23;
-            let t28 = T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20)
-                + t27;
-            let t29 = k(0.1) * t23;
-            let t30 = block_rz
-                + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8));
-            let t31 = t30 - (arm_rz - (t29 - T::fused(k(0.2), t16, k(0.1) * t20)));
-            let t32 = T::fused(
-                -t28,
-                t26,
-                t31
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t21,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t24,
-                            k(0.6666666666666666) * t25,
-                        ),
-                    ),
-            );
-            let t33 = block_e3 * t0;
-            let t34 = block_e2 * t2;
-            let t35 = t34 + t33;
-            let t36 = T::fused(-block_e2, t6, t9);
-            let t37 = t7 - t5;
-            let t38 = T::fused(
-                -k(0.05),
-                T::fused(-block_wz, t35, block_wx * t37),
-                k(0.03) * T::fused(block_wz, t36, block_wy * t37),
-            );
-            let t39 = arm_e3 * t12;
-            let t40 = arm_e2 * t14;
-            let t41 = t40 + t39;
-            let t42 = T::fused(-arm_e2, t18, t22);
-            let t43 = T::fused(arm_wy, t41, arm_wx * t42);
-            let t44 = t19 - t17;
-            let t45 = T::fused(-arm_wz, t41, arm_wx * t44);
-            let t46 = T::fused(arm_wz, t42, arm_wy * t44);
-            let t47 = arm_sy
-                - T::fused(-k(0.1), t43, T::fused(-k(0.1), t45, k(0.2) * t46))
-                - (block_sy
-                    - T::fused(k(0.1), T::fused(block_wy, t35, block_wx * t36), t38));
-            let t48 = k(0.6666666666666666) * t44;
-            let t49 = T::fused(-k(0.6666666666666666), t41, k(0.3333333333333333) * t42)
-                + t48;
-            let t50 = k(0.1) * t44;
-            let t51 = block_ry
-                - T::fused(k(0.1), t37, T::fused(-k(0.03), t35, k(0.05) * t36));
-            let t52 = t51 - (arm_ry + (t50 - T::fused(-k(0.2), t41, k(0.1) * t42)));
-            let t53 = T::fused(
-                -t49,
-                t47,
-                t52
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t43,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t45,
-                            k(0.6666666666666666) * t46,
-                        ),
-                    ),
-            );
-            let t54 = T::fused(-block_e1, t2, t9);
-            let t55 = t34 - t33;
-            let t56 = t3 + t1;
-            let t57 = T::fused(
-                -k(0.05),
-                T::fused(block_wz, t54, block_wx * t56),
-                k(0.03) * T::fused(-block_wz, t55, block_wy * t56),
-            );
-            let t58 = T::fused(-arm_e1, t14, t22);
-            let t59 = t40 - t39;
-            let t60 = T::fused(arm_wy, t58, arm_wx * t59);
-            let t61 = t15 + t13;
-            let t62 = T::fused(arm_wz, t58, arm_wx * t61);
-            let t63 = T::fused(-arm_wz, t59, arm_wy * t61);
-            let t64 = arm_sx
-                - T::fused(k(0.1), t60, T::fused(-k(0.1), t62, k(0.2) * t63))
-                - (block_sx
-                    - T::fused(-k(0.1), T::fused(block_wy, t54, block_wx * t55), t57));
-            let t65 = k(0.6666666666666666) * t61;
-            let t66 = T::fused(-k(0.6666666666666666), t58, k(0.3333333333333333) * t59)
-                - t65;
-            let t67 = k(0.1) * t61;
-            let t68 = block_rx
-                - T::fused(k(0.1), t56, -T::fused(-k(0.03), t54, k(0.05) * t55));
-            let t69 = t68 - (arm_rx + (t67 + T::fused(-k(0.2), t58, k(0.1) * t59)));
-            let t70 = T::fused(
-                -t66,
-                t64,
-                t69
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t60,
-                        -T::fused(
-                            -k(0.3333333333333333),
-                            t62,
-                            k(0.6666666666666666) * t63,
-                        ),
-                    ),
-            );
-            let t71 = k(0.8) * (t70 - t53 + t32);
-            let t72 = k(0.3333333333333333) * t61;
-            let t73 = T::fused(k(0.6666666666666666), t58 + t59, -t72);
-            let t74 = k(0.3333333333333333) * t44;
-            let t75 = T::fused(k(0.6666666666666666), t41 + t42, t74);
-            let t76 = k(0.3333333333333333) * t23;
-            let t77 = T::fused(k(0.6666666666666666), t16 - t20, -t76);
-            let t78 = k(40.0)
-                * (k(0.05) + T::fused(t77, t31, T::fused(-t73, t69, t75 * t52)));
-            let t79 = k(25.0) * T::fused(t28, t31, -T::fused(-t66, t69, t49 * t52));
-            let t80 = T::fused(t66, t79, -T::fused(-t66, t71, t73 * t78));
-            let t81 = T::fused(k(0.6), block_dsx, -(k(0.6) - t80));
-            let t82 = t81 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t80));
-            let t83 = T::fused(t49, t79, -T::fused(-t49, t71, t75 * t78));
-            let t84 = T::fused(k(0.6), block_dsy, k(5.4) - t83);
-            let t85 = t84 + T::fused(k(1.5), arm_dsy, k(13.5) + t83);
-            let t86 = T::fused(t28, t79, T::fused(t28, t71, t77 * t78));
-            let t87 = T::fused(k(0.6), block_dsz, -(k(1.8) - t86));
-            let t88 = t87 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t86));
-            let t89 = k(0.005) * block_wz;
-            let t90 = block_wx * block_wx;
-            let t91 = block_wz * block_wz;
-            let t92 = k(0.003) * block_wx;
-            let t93 = k(0.001) * block_wz;
-            let t94 = T::fused(
-                block_wy,
-                t93 + t92,
-                T::fused(-block_wx, t89, k(0.002) * (t91 - t90)),
-            );
-            let t95 = T::fused(t4, t28, -T::fused(t54, t66, t35 * t49));
-            let t96 = T::fused(t10, t28, T::fused(-t56, t66, t37 * t49));
-            let t97 = T::fused(-k(0.1), t95, k(0.03) * t96);
-            let t98 = T::fused(t4, t77, T::fused(t54, t73, t35 * t75));
-            let t99 = T::fused(t10, t77, -T::fused(-t56, t73, t37 * t75));
-            let t100 = T::fused(
-                t79,
-                t97,
-                T::fused(t71, t97, t78 * T::fused(-k(0.1), t98, k(0.03) * t99)),
-            );
-            let t101 = T::fused(t16, t4, T::fused(t58, t54, t41 * t35));
-            let t102 = k(0.6666666666666666) * t101;
-            let t103 = T::fused(t16, t8, -T::fused(t58, t55, t41 * t36));
-            let t104 = k(0.3333333333333333) * t103;
-            let t105 = T::fused(t16, t10, -T::fused(-t58, t56, t41 * t37));
-            let t106 = T::fused(k(0.6666666666666666), t105, t104 + t102);
-            let t107 = T::fused(t20, t4, -T::fused(t59, t54, t42 * t35));
-            let t108 = k(0.6666666666666666) * t107;
-            let t109 = T::fused(t20, t8, T::fused(t59, t55, t42 * t36));
-            let t110 = k(0.3333333333333333) * t109;
-            let t111 = T::fused(t20, t10, T::fused(-t59, t56, t42 * t37));
-            let t112 = T::fused(k(0.6666666666666666), t111, t110 + t108);
-            let t113 = T::fused(t23, t4, -T::fused(-t61, t54, t44 * t35));
-            let t114 = k(0.6666666666666666) * t113;
-            let t115 = T::fused(t23, t8, T::fused(-t61, t55, t44 * t36));
-            let t116 = k(0.3333333333333333) * t115;
-            let t117 = T::fused(t23, t10, T::fused(t61, t56, t44 * t37));
-            let t118 = T::fused(k(0.6666666666666666), t117, t116 + t114);
-            let t119 = T::fused(
-                k(0.6666666666666666),
-                t118,
-                T::fused(k(0.6666666666666666), t106, k(0.3333333333333333) * t112),
-            );
-            let t120 = turn0.cos();
-            let t121 = T::fused(
-                k(0.6666666666666666),
-                t112 - t106,
-                k(0.3333333333333333) * t118,
-            );
-            let t122 = turn0.sin();
-            let t123 = T::fused(-t122, t119, t120 * t121)
-                .atan2(T::fused(t120, t119, t122 * t121));
-            let t124 = turn0 + t123;
-            let t125 = k(0.4) * t124;
-            let t126 = T::fused(
-                k(0.6666666666666666),
-                arm_wz,
-                T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
-            )
+            let t18 = T::fused(-k(2.0), t16 - t13, t10);
+            let t19 = t3 - t2;
+            let t20 = k(0.5) - T::fused(block_e2, block_e2, t0);
+            let t21 = block_e0 * block_e3;
+            let t22 = block_e1 * block_e2;
+            let t23 = t22 + t21;
+            let t24 = t23
                 - T::fused(
-                    k(0.6666666666666666),
-                    block_wz,
+                    k(1.6666666666666667),
+                    t20,
                     T::fused(
-                        k(0.6666666666666666),
-                        block_wy,
-                        k(0.3333333333333333) * block_wx,
+                        -k(16.666666666666668),
+                        block_ry,
+                        k(3.3333333333333335) * t19,
                     ),
                 );
-            let t127 = k(0.013333333333333334) * t126;
-            let t128 = T::fused(
-                -k(0.003),
-                block_dwz,
-                T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
-            ) - (t127 - (t125 + t100) - t94);
+            let t25 = t12 - t11;
+            let t26 = k(0.5) - T::fused(arm_e2, arm_e2, t9);
+            let t27 = arm_e0 * arm_e3;
+            let t28 = arm_e1 * arm_e2;
+            let t29 = t28 + t27;
+            let t30 = T::fused(
+                k(2.0),
+                t29,
+                -(t26 - (t25 + T::fused(-k(0.3), t24, k(5.0) * arm_ry))),
+            );
+            let t31 = T::fused(k(2.0), t29 + t26, t25);
+            let t32 = t6 + t5;
+            let t33 = t22 - t21;
+            let t34 = k(0.5) - T::fused(block_e1, block_e1, t0);
+            let t35 = t34
+                - T::fused(
+                    k(1.6666666666666667),
+                    t33,
+                    -T::fused(
+                        -k(16.666666666666668),
+                        block_rx,
+                        k(3.3333333333333335) * t32,
+                    ),
+                );
+            let t36 = t15 + t14;
+            let t37 = t28 - t27;
+            let t38 = k(0.5) - T::fused(arm_e1, arm_e1, t9);
+            let t39 = T::fused(
+                k(2.0),
+                t38,
+                -(t37 + (t36 + T::fused(k(0.3), t35, k(5.0) * arm_rx))),
+            );
+            let t40 = T::fused(-k(2.0), t38 + t37, t36);
+            let t41 = k(0.375) + T::fused(t40, t39, -T::fused(-t18, t17, t31 * t30));
+            let t42 = k(12.5) * t41;
+            let t43 = t10 + T::fused(k(0.5), t13, t16);
+            let t44 = t25 - T::fused(-k(0.5), t26, t29);
+            let t45 = t36 + T::fused(-k(0.5), t37, t38);
+            let t46 = T::fused(t45, t39, -T::fused(-t43, t17, t44 * t30));
+            let t47 = k(31.25) * t46;
+            let t48 = T::fused(-t36, arm_wy, t37 * arm_wz);
+            let t49 = T::fused(t37, arm_wx, t38 * arm_wy);
+            let t50 = T::fused(t36, arm_wx, t38 * arm_wz);
+            let t51 = T::fused(
+                k(5.0),
+                block_sx,
+                t49 - (t50 + T::fused(k(5.0), arm_sx, k(2.0) * t48)),
+            );
+            let t52 = T::fused(
+                k(0.5),
+                T::fused(t32, block_wx, t34 * block_wz),
+                T::fused(k(0.3), T::fused(-t32, block_wy, t33 * block_wz), t51),
+            );
+            let t53 = T::fused(
+                -T::fused(k(0.5), t50, t49 + t48),
+                t39,
+                t45 * (T::fused(t33, block_wx, t34 * block_wy) + t52),
+            );
+            let t54 = T::fused(t25, arm_wy, t26 * arm_wz);
+            let t55 = T::fused(t26, arm_wx, t29 * arm_wy);
+            let t56 = T::fused(-t25, arm_wx, t29 * arm_wz);
+            let t57 = T::fused(
+                -k(5.0),
+                block_sy,
+                t55 - (t56 + T::fused(-k(5.0), arm_sy, k(2.0) * t54)),
+            );
+            let t58 = T::fused(
+                k(0.5),
+                T::fused(-t19, block_wx, t23 * block_wz),
+                T::fused(k(0.3), T::fused(t19, block_wy, t20 * block_wz), t57),
+            );
+            let t59 = T::fused(
+                t44,
+                T::fused(t20, block_wx, t23 * block_wy) + t58,
+                T::fused(T::fused(k(0.5), t56, t55 + t54), t30, -t53),
+            );
+            let t60 = T::fused(t10, arm_wy, t13 * arm_wz);
+            let t61 = T::fused(-t13, arm_wx, t16 * arm_wy);
+            let t62 = T::fused(t10, arm_wx, t16 * arm_wz);
+            let t63 = T::fused(
+                -k(5.0),
+                block_sz,
+                t61 - (t62 - T::fused(k(5.0), arm_sz, k(2.0) * t60)),
+            );
+            let t64 = T::fused(
+                k(0.5),
+                T::fused(t1, block_wx, t7 * block_wz),
+                T::fused(-k(0.3), T::fused(t1, block_wy, t4 * block_wz), t63),
+            );
+            let t65 = T::fused(
+                t43,
+                T::fused(-t4, block_wx, t7 * block_wy) + t64,
+                -T::fused(T::fused(k(0.5), t62, t61 - t60), t17, t59),
+            );
+            let t66 = T::fused(t45, t65, T::fused(t40, t42, t45 * t47));
+            let t67 = k(2.109375) - T::fused(k(2.109375), block_dsx, t66);
+            let t68 = k(5.2734375) + (t66 - T::fused(k(5.2734375), arm_dsx, -t67));
+            let t69 = T::fused(t44, t65, T::fused(t31, t42, t44 * t47));
+            let t70 = k(18.984375) + T::fused(k(2.109375), block_dsy, t69);
+            let t71 = k(47.4609375) - (t69 - T::fused(k(5.2734375), arm_dsy, t70));
+            let t72 = T::fused(t43, t65, T::fused(t18, t42, t43 * t47));
+            let t73 = k(6.328125) + T::fused(-k(2.109375), block_dsz, t72);
+            let t74 = k(15.8203125) - (t72 + T::fused(k(5.2734375), arm_dsz, -t73));
+            let t75 = T::fused(
+                T::fused(-k(0.5), t19, t20),
+                t70,
+                T::fused(-k(0.5), t1, t4) * t73,
+            );
+            let t76 = T::fused(
+                k(0.017578125),
+                block_dwy,
+                T::fused(
+                    k(0.3515625),
+                    block_dwx,
+                    T::fused(T::fused(k(0.5), t32, t33), t67, t75),
+                ),
+            );
+            let t77 = T::fused(
+                k(0.017578125),
+                block_wx * T::fused(-k(2.0), block_wy, block_wz),
+                -T::fused(k(0.03515625), block_dwz, t76),
+            );
+            let t78 = k(0.087890625) * block_wz;
+            let t79 = block_wy * block_wy;
+            let t80 = block_wz * block_wz;
+            let t81 = block_wz
+                + (block_wy
+                    + T::fused(
+                        k(0.5),
+                        block_wx,
+                        -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                    ));
+            let t82 = T::fused(
+                k(0.078125),
+                t81,
+                T::fused(k(0.052734375), t80 - t79, -T::fused(block_wy, t78, t77)),
+            );
+            let t83 = T::fused(t25, t20, -T::fused(-t10, t4, t36 * t33));
+            let t84 = k(0.5) * t83;
+            let t85 = T::fused(t10, t1, T::fused(t36, t32, t25 * t19));
+            let t86 = T::fused(t36, t34, -T::fused(-t10, t7, t25 * t23));
+            let t87 = t86 + (t85 + t84);
+            let t88 = T::fused(t26, t20, T::fused(t13, t4, t37 * t33));
+            let t89 = k(0.5) * t88;
+            let t90 = T::fused(t26, t19, -T::fused(-t13, t1, t37 * t32));
+            let t91 = T::fused(t37, t34, T::fused(-t13, t7, t26 * t23));
+            let t92 = t91 - (t90 + t89);
+            let t93 = T::fused(t38, t33, T::fused(-t16, t4, t29 * t20));
+            let t94 = k(0.5) * t93;
+            let t95 = T::fused(t38, t32, -T::fused(-t16, t1, t29 * t19));
+            let t96 = T::fused(t38, t34, T::fused(t16, t7, t29 * t23));
+            let t97 = t96 + (t95 - t94);
+            let t98 = T::fused(-k(0.5), t87, t97 + t92);
+            let t99 = turn0.sin();
+            let t100 = t97 + T::fused(-k(0.5), t92, t87);
+            let t101 = turn0.cos();
+            let t102 = -(k(1.7777777777777777) * T::fused(t101, t98, t99 * t100))
+                .atan2(k(1.7777777777777777) * T::fused(-t99, t98, t101 * t100));
+            let t103 = turn0 + t102;
+            let t104 = T::fused(t33, t45, -T::fused(t4, t43, t20 * t44));
+            let t105 = T::fused(t32, t45, T::fused(t1, t43, t19 * t44));
+            let t106 = T::fused(k(2.0), t104, t105);
+            let t107 = k(6.25) * t41;
+            let t108 = T::fused(t33, t40, -T::fused(t4, t18, t20 * t31));
+            let t109 = T::fused(t32, t40, T::fused(t1, t18, t19 * t31));
+            let t110 = T::fused(
+                T::fused(k(2.0), t108, t109),
+                t107,
+                T::fused(k(15.625), t106 * t46, T::fused(k(3.515625), t103, t82)),
+            );
+            let t111 = T::fused(k(0.5), t106 * t65, t110);
+            let t112 = k(3.3333333333333335) * t111;
+            let t113 = T::fused(
+                -T::fused(k(0.3), t19, t23),
+                t70,
+                T::fused(-k(0.3), t1, t7) * t73,
+            );
+            let t114 = T::fused(
+                k(0.52734375),
+                block_dwy,
+                T::fused(
+                    k(0.017578125),
+                    block_dwx,
+                    -T::fused(-T::fused(-k(0.3), t32, t34), t67, t113),
+                ),
+            );
+            let t115 = T::fused(
+                k(0.052734375),
+                block_wy * T::fused(k(0.3333333333333333), block_wz, block_wx),
+                -T::fused(k(0.052734375), block_dwz, -t114),
+            );
+            let t116 = block_wx * block_wx;
+            let t117 = T::fused(
+                k(0.15625),
+                t81,
+                T::fused(k(0.03515625), t80 - t116, T::fused(-block_wx, t78, t115)),
+            );
+            let t118 = T::fused(t34, t45, -T::fused(-t7, t43, t23 * t44));
+            let t119 = T::fused(-k(0.3), t105, t118);
+            let t120 = T::fused(t34, t40, -T::fused(-t7, t18, t23 * t31));
+            let t121 = T::fused(
+                T::fused(-k(0.3), t109, t120),
+                t42,
+                T::fused(t119, t47, T::fused(k(7.03125), t103, t117)),
+            );
+            let t122 = T::fused(t119, t65, t121);
+            let t123 = k(3.3333333333333335) * t122;
+            let t124 = T::fused(
+                T::fused(k(1.6666666666666667), t23, t20),
+                t70,
+                T::fused(-k(1.6666666666666667), t7, t4) * t73,
+            );
+            let t125 = T::fused(
+                k(0.17578125),
+                block_dwy,
+                -T::fused(
+                    k(0.1171875),
+                    block_dwx,
+                    T::fused(T::fused(k(1.6666666666666667), t34, t33), t67, t124),
+                ),
+            );
+            let t126 = T::fused(
+                k(0.17578125),
+                block_wz * T::fused(k(0.6666666666666666), block_wy, block_wx),
+                -T::fused(k(1.46484375), block_dwz, -t125),
+            );
+            let t127 = T::fused(
+                k(0.5208333333333334),
+                t81,
+                -T::fused(
+                    k(0.05859375),
+                    t79 - t116,
+                    -T::fused(k(0.5859375), block_wx * block_wy, -t126),
+                ),
+            );
+            let t128 = T::fused(k(1.6666666666666667), t118, t104);
             let t129 = T::fused(
-                T::fused(-k(0.1), t54, k(0.03) * t56),
-                t81,
-                T::fused(k(0.1), t35, k(0.03) * t37) * t84,
+                T::fused(k(1.6666666666666667), t120, t108),
+                t42,
+                T::fused(t128, t47, T::fused(k(23.4375), t103, t127)),
             );
-            let t130 = T::fused(T::fused(-k(0.1), t4, k(0.03) * t10), t87, -t129) - t128;
-            let t131 = block_wy * block_wy;
-            let t132 = k(0.002) * block_wy;
-            let t133 = T::fused(
-                block_wx,
-                t132 - t93,
-                T::fused(-block_wy, t89, k(0.003) * (t91 - t131)),
+            let t130 = T::fused(t128, t65, t129);
+            let t131 = T::fused(k(16.666666666666668), arm_rz, -t8);
+            let t132 = T::fused(k(16.666666666666668), arm_ry, -t24);
+            let t133 = T::fused(k(16.666666666666668), arm_rx, t35);
+            let t134 = T::fused(t37, t133, -T::fused(-t13, t131, t26 * t132));
+            let t135 = T::fused(t36, t133, T::fused(-t10, t131, t25 * t132));
+            let t136 = k(0.732421875) * arm_wy;
+            let t137 = T::fused(-t36, t68, T::fused(t25, t71, t10 * t74));
+            let t138 = T::fused(
+                k(0.439453125),
+                arm_dwz,
+                -T::fused(
+                    k(0.29296875),
+                    arm_dwy,
+                    T::fused(-k(0.8333333333333334), t137, k(4.39453125) * arm_dwx),
+                ),
             );
-            let t134 = T::fused(t8, t28, T::fused(t55, t66, t36 * t49));
-            let t135 = T::fused(-k(0.05), t96, k(0.1) * t134);
-            let t136 = T::fused(t8, t77, -T::fused(t55, t73, t36 * t75));
-            let t137 = T::fused(
-                t79,
-                t135,
-                T::fused(t71, t135, t78 * T::fused(-k(0.05), t99, k(0.1) * t136)),
+            let t139 = T::fused(
+                arm_wz,
+                t136,
+                T::fused(k(0.29296875), arm_wx * T::fused(k(1.5), arm_wy, arm_wz), t138),
             );
-            let t138 = k(0.2) * t124;
-            let t139 = k(0.006666666666666667) * t126;
-            let t140 = T::fused(
-                k(0.002),
-                block_dwz,
-                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
-            ) - (t139 - (t138 + t137) - t133);
-            let t141 = T::fused(
-                T::fused(k(0.1), t55, k(0.05) * t56),
-                t81,
-                T::fused(-k(0.1), t36, k(0.05) * t37) * t84,
+            let t140 = arm_wy * arm_wy;
+            let t141 = arm_wz * arm_wz;
+            let t142 = T::fused(
+                k(2.9296875),
+                t103,
+                T::fused(
+                    k(0.06510416666666667),
+                    t81,
+                    T::fused(k(0.146484375), t141 - t140, t139),
+                ),
             );
-            let t142 = T::fused(T::fused(-k(0.1), t8, k(0.05) * t10), t87, -t141) + t140;
-            let t143 = T::fused(-k(0.03), t134, k(0.05) * t95);
+            let t143 = T::fused(k(2.0), t134, t135);
             let t144 = T::fused(
-                t143,
-                t79,
-                T::fused(t143, t71, T::fused(-k(0.03), t136, k(0.05) * t98) * t78),
+                k(3.125),
+                t41 * T::fused(k(2.0), t135, t134),
+                T::fused(k(3.90625), t46 * t143, -t142),
             );
             let t145 = T::fused(
-                block_wz,
-                t132 + t92,
-                -T::fused(-k(0.001), t131 - t90, k(0.01) * (block_wx * block_wy)),
+                -T::fused(t10, t134, t13 * t135),
+                t73,
+                T::fused(k(0.125), t65 * t143, t144),
             );
             let t146 = T::fused(
-                k(0.025),
-                block_dwz,
-                T::fused(-k(0.003), block_dwy, k(0.002) * block_dwx),
-            ) - (t145 + (t127 - (t125 - t144)));
-            let t147 = T::fused(
-                -T::fused(k(0.05), t54, k(0.03) * t55),
-                t81,
-                T::fused(k(0.05), t35, k(0.03) * t36) * t84,
-            );
-            let t148 = T::fused(T::fused(-k(0.05), t4, k(0.03) * t8), t87, -t147) - t146;
-            let t149 = arm_rx - t68;
-            let t150 = arm_ry - t51;
-            let t151 = arm_rz - t30;
-            let t152 = T::fused(t20, t151, -T::fused(-t59, t149, t42 * t150));
-            let t153 = T::fused(t16, t151, T::fused(-t58, t149, t41 * t150));
-            let t154 = T::fused(
-                -t81,
-                T::fused(t58, t152, t59 * t153),
-                t84 * T::fused(t41, t152, t42 * t153),
-            );
-            let t155 = T::fused(t87, T::fused(-t16, t152, t20 * t153), -t154)
-                + T::fused(t117, t148, T::fused(-t115, t130, t113 * t142));
-            let t156 = k(0.05) * arm_wy;
-            let t157 = arm_wx * arm_wx;
-            let t158 = arm_wy * arm_wy;
-            let t159 = k(0.01) * arm_wx;
-            let t160 = k(0.03) * arm_wy;
-            let t161 = T::fused(
-                arm_wz,
-                t160 + t159,
-                -T::fused(arm_wx, t156, k(0.02) * (t158 - t157)),
-            );
-            let t162 = k(0.6666666666666666) * t152;
-            let t163 = k(0.3333333333333333) * t153;
-            let t164 = t163 - t162;
-            let t165 = T::fused(
-                t79,
-                t164,
-                -T::fused(-t71, t164, t78 * (k(0.6666666666666666) * (t152 + t153))),
-            );
-            let t166 = T::fused(
-                -k(0.2),
-                arm_dwz,
-                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
-            ) - (t127 - (t125 - t165) + t161);
-            let t167 = T::fused(
-                -T::fused(-k(0.1), t58, k(0.2) * t59),
-                t82,
-                T::fused(-k(0.1), t41, k(0.2) * t42) * t85,
-            );
-            let t168 = T::fused(T::fused(k(0.1), t16, k(0.2) * t20), t88, -t167)
-                - (t166 + t155);
-            let t169 = k(0.6666666666666666) * t20;
-            let t170 = T::fused(k(0.3333333333333333), t16, t169);
-            let t171 = k(0.6666666666666666) * t42;
-            let t172 = T::fused(-k(0.3333333333333333), t41, t171);
-            let t173 = k(0.6666666666666666) * t59;
-            let t174 = T::fused(-k(0.3333333333333333), t58, t173);
-            let t175 = T::fused(
-                -k(0.7453559924999299),
-                t170,
-                T::fused(k(0.29814239699997197), t172, k(0.5962847939999439) * t174),
-            );
-            let t176 = t41 - t44;
-            let t177 = t58 + t61;
-            let t178 = k(0.6666666666666666)
-                * T::fused(
-                    k(0.49690399499995325),
-                    t16 + t23,
-                    T::fused(k(0.1987615979999813), t176, k(0.3975231959999626) * t177),
-                );
-            let t179 = T::fused(-k(0.3333333333333333), t175, t178);
-            let t180 = t74 - t171;
-            let t181 = t72 + t173;
-            let t182 = T::fused(
-                k(0.8944271909999159),
-                t180,
-                k(0.4472135954999579) * t181,
-            );
-            let t183 = T::fused(
-                k(0.7453559924999299),
-                t76 - t169,
-                T::fused(-k(0.29814239699997197), t180, k(0.5962847939999439) * t181),
-            );
-            let t184 = k(0.6666666666666666) * (t183 + t175);
-            let t185 = T::fused(
-                -k(0.5962847939999439),
-                t176,
-                k(0.29814239699997197) * t177,
-            );
-            let t186 = T::fused(k(0.3333333333333333), t183, t178);
-            let t187 = T::fused(
-                -k(0.8944271909999159),
-                t172,
-                k(0.4472135954999579) * t174,
-            );
-            let t188 = k(1.0)
-                / T::fused(t187, t186, -T::fused(-t182, t179, t185 * t184));
-            let t189 = T::fused(t23, t151, -T::fused(t61, t149, t44 * t150));
-            let t190 = T::fused(
-                t81,
-                T::fused(-t58, t189, t61 * t153),
-                t84 * T::fused(t41, t189, t44 * t153),
-            );
-            let t191 = T::fused(t87, T::fused(-t16, t189, t23 * t153), -t190)
-                - T::fused(t111, t148, T::fused(-t109, t130, t107 * t142));
-            let t192 = k(0.6666666666666666) * (t189 - t153);
-            let t193 = k(0.6666666666666666) * t189;
-            let t194 = t125
-                + T::fused(t79, t192, T::fused(t71, t192, t78 * (t163 + t193)));
-            let t195 = arm_wz * arm_wz;
-            let t196 = k(0.02) * arm_wz;
-            let t197 = T::fused(
-                arm_wy,
-                t196 - t159,
-                T::fused(-k(0.03), t195 - t157, k(0.1) * (arm_wx * arm_wz)),
-            );
-            let t198 = T::fused(
-                k(0.01),
-                arm_dwz,
-                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
-            ) + (t197 + (t127 - t194));
-            let t199 = T::fused(
-                k(0.2) * t23,
-                t88,
-                -T::fused(k(0.2) * t61, t82, k(0.2) * t44 * t85),
-            );
-            (
-                t20,
-                t23,
-                t27,
-                t29,
-                t42,
-                t44,
-                t48,
-                t50,
-                t59,
-                t61,
-                t65,
+                -T::fused(-t36, t134, t37 * t135),
                 t67,
-                t71,
-                t78,
-                t79,
-                t81,
-                t82,
-                t84,
-                t85,
-                t87,
-                t88,
-                t101,
-                t102,
-                t103,
-                t104,
-                t105,
-                t108,
-                t109,
-                t110,
-                t111,
-                t114,
-                t115,
-                t116,
-                t117,
+                T::fused(-T::fused(t25, t134, t26 * t135), t70, t145),
+            );
+            let t147 = T::fused(
+                t96,
+                t112,
+                T::fused(-t93, t123, T::fused(-t95, t130, t146)),
+            );
+            let t148 = t29 - t25;
+            let t149 = t38 + t36;
+            let t150 = t16 + t10 + T::fused(k(0.4), t148, k(0.8) * t149);
+            let t151 = T::fused(-k(2.0), t26, t29);
+            let t152 = T::fused(-k(2.0), t37, t38);
+            let t153 = T::fused(k(2.0), t13, t16);
+            let t154 = t153 + T::fused(k(0.4), t151, k(0.8) * t152);
+            let t155 = T::fused(k(4.0), t150, t154);
+            let t156 = T::fused(k(0.5), t36, t37);
+            let t157 = T::fused(-k(0.5), t25, t26);
+            let t158 = T::fused(-k(0.5), t156, t157);
+            let t159 = T::fused(-k(0.5), t10, t13)
+                - T::fused(k(0.4), t157, k(0.8) * t156);
+            let t160 = T::fused(-k(0.5), t159, t150);
+            let t161 = T::fused(-k(0.5), t152, t151);
+            let t162 = T::fused(k(2.0), t159, t154);
+            let t163 = T::fused(-k(0.5), t149, t148);
+            let t164 = k(1.0)
+                / T::fused(k(0.5), t158 * t155, T::fused(-t161, t160, t163 * t162));
+            let t165 = T::fused(t38, t133, -T::fused(t16, t131, t29 * t132));
+            let t166 = k(0.25) * t65;
+            let t167 = t135 - t165;
+            let t168 = k(0.5) * t165;
+            let t169 = k(7.8125) * t46;
+            let t170 = T::fused(
+                k(0.146484375),
+                arm_dwz,
+                T::fused(
+                    k(3.662109375),
+                    arm_dwy,
+                    T::fused(-k(1.6666666666666667), t137, k(0.29296875) * arm_dwx),
+                ),
+            );
+            let t171 = T::fused(
+                k(1.46484375),
+                arm_wx * arm_wz,
+                -T::fused(
+                    k(0.146484375),
+                    arm_wy * T::fused(-k(2.0), arm_wz, arm_wx),
+                    -t170,
+                ),
+            );
+            let t172 = arm_wx * arm_wx;
+            let t173 = k(0.13020833333333334) * t81;
+            let t174 = k(5.859375) * t103;
+            let t175 = T::fused(
+                t167,
+                t169,
+                t174 + (t173 + T::fused(k(0.439453125), t141 - t172, -t171)),
+            );
+            let t176 = T::fused(
+                -T::fused(-t10, t165, t16 * t135),
+                t73,
+                T::fused(t167, t166, T::fused(-(t135 + t168), t107, t175)),
+            );
+            let t177 = T::fused(
+                T::fused(-t36, t165, t38 * t135),
+                t67,
+                T::fused(T::fused(t25, t165, t29 * t135), t70, t176),
+            );
+            let t178 = k(2.0)
+                * T::fused(t91, t112, T::fused(-t88, t123, T::fused(t90, t130, t177)));
+            let t179 = t134 + t168;
+            let t180 = T::fused(
+                k(0.8333333333333334),
+                T::fused(-t152, t68, T::fused(-t151, t71, t153 * t74)),
+                k(0.439453125) * arm_dwx,
+            );
+            let t181 = T::fused(
+                k(0.146484375),
+                arm_wz * T::fused(k(3.0), arm_wy, arm_wx),
+                T::fused(k(2.9296875), arm_dwz, T::fused(k(0.146484375), arm_dwy, -t180)),
+            );
+            let t182 = t174
+                + (t173
+                    + T::fused(
+                        k(0.29296875),
+                        t140 - t172,
+                        -T::fused(-arm_wx, t136, t181),
+                    ));
+            let t183 = T::fused(
+                -t179,
+                t166,
+                T::fused(t134 - t165, t107, T::fused(-t179, t169, t182)),
+            );
+            let t184 = T::fused(
+                -T::fused(-t26, t165, t29 * t134),
+                t70,
+                T::fused(T::fused(t13, t165, t16 * t134), t73, t183),
+            );
+            let t185 = T::fused(
+                -t85,
                 t130,
-                t138,
-                t139,
-                t142,
-                t148,
+                T::fused(-T::fused(-t37, t165, t38 * t134), t67, t184),
+            );
+            let t186 = k(4.0) * T::fused(t86, t112, T::fused(t83, t123, t185));
+            let t187 = T::fused(
+                t155 * t164,
+                t147,
+                T::fused(-(t162 * t164), t178, t160 * t164 * t186),
+            );
+            let t188 = T::fused(
+                -(t164 * T::fused(-k(2.0), t158, t161)),
+                t178,
+                t164 * T::fused(k(0.5), t158, t163) * t186,
+            );
+            let t189 = T::fused(
+                T::fused(k(2.0), t25, t151),
+                t70,
+                T::fused(k(2.0), t10, -t153) * t73,
+            );
+            let t190 = T::fused(k(2.0), t96, t95);
+            let t191 = T::fused(k(2.0), t91, -t90);
+            let t192 = T::fused(k(2.0), t86, t85);
+            let t193 = T::fused(-k(2.0), t191 + t190, t192);
+            let t194 = t93 - t95;
+            let t195 = t88 + t90;
+            let t196 = t83 + t85;
+            let t197 = T::fused(k(2.0), t195 + t194, t196);
+            let t198 = T::fused(k(0.25), t193, t197);
+            let t199 = t91 + t89;
+            (
+                t36,
+                t67,
+                t68,
+                t71,
+                t74,
+                t84,
+                t86,
+                t94,
+                t96,
+                t111,
+                t122,
+                t130,
+                t147,
                 t152,
-                t156,
-                t158,
-                t160,
-                t162,
-                t168,
-                t170,
-                t172,
-                t174,
-                t179,
-                t182,
-                t184,
-                t185,
-                t186,
+                t161,
+                t163,
+                t164,
                 t187,
                 t188,
                 t189,
+                t190,
                 t191,
+                t192,
                 t193,
+                t194,
                 t195,
                 t196,
+                t197,
                 t198,
                 t199,
             )
         };
-        let (t208, t209, t210, t211, t227, t230, t231, t232, t233) = {
-            let t200 = t199 + (t198 - t191);
-            let t201 = T::fused(
-                t81,
-                T::fused(t59, t189, t61 * t152),
-                t84 * T::fused(-t42, t189, t44 * t152),
-            );
-            let t202 = T::fused(t87, T::fused(-t20, t189, t23 * t152), -t201)
-                + T::fused(t105, t148, T::fused(-t103, t130, t101 * t142));
-            let t203 = T::fused(
-                arm_wx,
-                t160 + t196,
-                T::fused(arm_wz, t156, k(0.01) * (t195 - t158)),
-            );
-            let t204 = T::fused(-k(0.3333333333333333), t189, t162);
-            let t205 = T::fused(
-                t79,
-                t204,
-                T::fused(t71, t204, t78 * T::fused(-k(0.3333333333333333), t152, t193)),
-            );
-            let t206 = T::fused(
-                -k(0.03),
-                arm_dwz,
-                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
-            ) + (t139 - (t138 + t205) - t203);
-            let t207 = T::fused(t29, t88, -T::fused(t67, t82, t50 * t85))
-                + (t206 + t202);
-            let t208 = T::fused(
-                -(t186 * t188),
-                t168,
-                T::fused(-(t184 * t188), t200, t179 * t188 * t207),
-            );
-            let t209 = k(0.6666666666666666) * t185;
-            let t210 = T::fused(
-                -(t188 * (k(0.6666666666666666) * (t182 + t187))),
-                t200,
-                t188 * T::fused(-k(0.3333333333333333), t187, t209) * t207,
-            );
+        let (t202, t205, t208, t211, t212) = {
+            let t200 = t96 + t94;
+            let t201 = t86 - t84;
+            let t202 = t201 + T::fused(-k(0.5), t199, t200);
+            let t203 = T::fused(-k(2.0), t199 + t200, t201);
+            let t204 = T::fused(-k(2.0), t197, t203);
+            let t205 = t192 + T::fused(-k(0.5), t191, t190);
+            let t206 = T::fused(k(0.5), t193, t203);
+            let t207 = t196 - T::fused(-k(0.5), t195, t194);
+            let t208 = k(1.0)
+                / T::fused(t207, t206, T::fused(-t202, t198, k(0.25) * (t205 * t204)));
+            let t209 = k(0.5) * t122;
+            let t210 = k(0.3) * t130;
             let t211 = T::fused(
-                t27 - t170,
-                t87,
-                -T::fused(t65 + t174, t81, (t48 - t172) * t84),
+                -(t206 * t208),
+                t111,
+                T::fused(t204 * t208, t209, t198 * t208 * t210),
             );
-            let t212 = t116 - t114;
-            let t213 = t110 - t108;
-            let t214 = t104 - t102;
-            let t215 = T::fused(
-                -k(0.3333333333333333),
-                t212,
-                k(0.6666666666666666) * (t214 - t213),
+            let t212 = T::fused(
+                t208 * T::fused(-k(2.0), t207, t202),
+                t209,
+                t208 * T::fused(k(0.25), t205, t207) * t210,
             );
-            let t216 = T::fused(k(0.3333333333333333), t117, t114);
-            let t217 = T::fused(k(0.3333333333333333), t111, t108);
-            let t218 = T::fused(k(0.3333333333333333), t105, t102);
-            let t219 = T::fused(
-                -k(0.3333333333333333),
-                t216,
-                k(0.6666666666666666) * (t218 - t217),
-            );
-            let t220 = k(0.6666666666666666) * (t219 - t215);
-            let t221 = t117 + t115;
-            let t222 = t111 + t109;
-            let t223 = t105 + t103;
-            let t224 = T::fused(
-                k(0.4444444444444444),
-                t221,
-                T::fused(k(0.2222222222222222), t222, k(0.4444444444444444) * t223),
-            );
-            let t225 = k(0.6666666666666666)
-                * T::fused(
-                    -k(0.2222222222222222),
-                    t221,
-                    k(0.4444444444444444) * (t223 - t222),
-                );
-            let t226 = T::fused(k(0.3333333333333333), t215, t225);
-            let t227 = T::fused(
-                k(0.6666666666666666),
-                t216,
-                T::fused(k(0.3333333333333333), t217, k(0.6666666666666666) * t218),
-            );
-            let t228 = T::fused(k(0.3333333333333333), t219, t225);
-            let t229 = T::fused(
-                k(0.6666666666666666),
-                t212,
-                T::fused(k(0.3333333333333333), t213, k(0.6666666666666666) * t214),
-            );
-            let t230 = k(1.0)
-                / T::fused(t229, t228, -T::fused(-t224, t220, t227 * t226));
-            let t231 = T::fused(
-                t228 * t230,
-                t148,
-                T::fused(-(t226 * t230), t130, t220 * t230 * t142),
-            );
-            let t232 = k(0.6666666666666666) * t224;
-            let t233 = T::fused(
-                -(t230 * T::fused(k(0.3333333333333333), t229, t232)),
-                t130,
-                t230 * (k(0.6666666666666666) * (t227 - t229)) * t142,
-            );
-            (t208, t209, t210, t211, t227, t230, t231, t232, t233)
+            (t202, t205, t208, t211, t212)
         };
         *lambda = [
-            -t82,
-            -t85,
-            -t88,
-            t208,
-            T::fused(-(t188 * T::fused(k(0.3333333333333333), t182, t209)), t168, t210),
-            t211,
-            t231,
-            T::fused(t230 * T::fused(k(0.3333333333333333), t227, t232), t148, t233),
+            k(0.28444444444444444) * t68,
+            -(k(0.28444444444444444) * t71),
+            k(0.28444444444444444) * t74,
+            -(k(0.02862167011199731) * t187),
+            k(0.03434600413439677)
+                * T::fused(T::fused(k(4.0), t163, t161) * t164, t147, t188),
+            -(k(0.18962962962962962)
+                * T::fused(-T::fused(k(2.0), t36, -t152), t67, t189)),
+            -(k(0.032) * t211),
+            k(0.064) * T::fused(-(T::fused(k(0.5), t205, t202) * t208), t111, t212),
         ];
     }
 }
@@ -6347,7 +5624,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         );
         *out = [-t43, t44, t45, -t46];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 404 operations (187 ±, 217 ×, 0 ÷) and 4 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 365 operations (174 ±, 191 ×, 0 ÷) and 4 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -6360,213 +5637,244 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let u1 = x[5];
         let u2 = x[6];
         let u3 = x[7];
-        let t0 = k(0.5) * x3;
-        let t1 = t0.sin();
-        let t2 = k(2.0) * t1;
-        let t3 = t0.cos();
-        let t4 = t3 * t2;
-        let t5 = k(0.6666666666666666) * t4;
-        let t6 = T::fused(-t1, t2, k(1.0));
-        let t7 = T::fused(-k(0.2222222222222222), t6, k(0.2222222222222222));
-        let t8 = k(0.6666666666666666) * u0;
-        let t9 = t8 * (t7 - t5);
-        let t10 = T::fused(k(0.5555555555555556), t6, k(0.4444444444444444));
-        let t11 = k(0.3333333333333333) * u0;
-        let t12 = k(0.3333333333333333) * t4;
-        let t13 = T::fused(-k(0.4444444444444444), t6, k(0.4444444444444444));
-        let t14 = k(0.6666666666666666) * u3;
-        let t15 = t14 + T::fused(t8, t13 + t12, -T::fused(t11, t10, -t9));
-        let t16 = k(0.6666666666666666) * t1;
-        let t17 = k(0.5) * x0;
-        let t18 = t17.cos();
-        let t19 = t18 * t16;
-        let t20 = k(0.3333333333333333) * t1;
-        let t21 = t17.sin();
-        let t22 = k(0.6666666666666666) * t21;
-        let t23 = t22 * t20;
-        let t24 = t22 * t16;
-        let t25 = k(0.3333333333333333) * t21;
-        let t26 = T::fused(t25, t3, t24 - (t23 + t19));
-        let t27 = t25 * t16;
-        let t28 = T::fused(t18, t3, -(t23 - t27 + t24));
-        let t29 = t28 * t26;
-        let t30 = t22 * t3;
-        let t31 = t30 + (t19 + T::fused(t25, t20, t24));
-        let t32 = t30 - (t27 + T::fused(-t18, t20, t24));
-        let t33 = t32 * t31;
-        let t34 = t33 + t29;
-        let t35 = k(2.0) * t34;
-        let t36 = t7 + t5;
-        let t37 = T::fused(
-            k(0.3333333333333333),
-            u3,
-            t9
-                - T::fused(
-                    -t8,
-                    T::fused(k(0.8888888888888888), t6, k(0.1111111111111111)),
-                    t11 * t36,
-                ),
-        );
-        let t38 = t28 * t32;
-        let t39 = t26 * t31;
-        let t40 = t39 - t38;
-        let t41 = k(2.0) * t40;
-        let t42 = t14 + T::fused(t8, t10, -T::fused(-t8, t36, t11 * (t13 - t12)));
-        let t43 = t28 * t28;
-        let t44 = k(0.5) - T::fused(t31, t31, t43);
-        let t45 = k(2.0) * t44;
-        let t46 = T::fused(
-            -k(0.05),
-            T::fused(t35, t42, t45 * t37),
-            k(0.03) * T::fused(-t41, t42, t45 * t15),
-        );
-        let t47 = T::fused(k(0.1), t15, k(0.05) * t42);
-        let t48 = T::fused(k(0.03), t42, k(0.1) * t37);
-        let t49 = T::fused(-k(0.05), t37, k(0.03) * t15);
-        let t50 = k(0.6666666666666666) * x2;
-        let t51 = k(0.6666666666666666) * x1;
-        let t52 = k(0.2) + t51 - t50;
-        let t53 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t50;
-        let t54 = t53 * t8;
-        let t55 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
-            - T::fused(t52, t11, t54);
-        let t56 = t22 * t22;
-        let t57 = t18 * t18;
-        let t58 = k(0.5) - (t57 + t56);
-        let t59 = k(2.0) * t58;
-        let t60 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t51);
-        let t61 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
-            + T::fused(-t60, t8, t52 * t8);
-        let t62 = t18 * t22;
-        let t63 = t22 * t25;
-        let t64 = t63 - t62;
-        let t65 = k(2.0) * t64;
-        let t66 = T::fused(k(0.6666666666666666), u1 - u2, -T::fused(t60, t11, t54));
-        let t67 = t18 * t25;
-        let t68 = t56 + t67;
-        let t69 = k(2.0) * t68;
-        let t70 = k(0.13333333333333333) * u0;
-        let t71 = k(0.06666666666666667) * u0;
-        let t72 = T::fused(-t65, t70, t69 * t71);
-        let t73 = t72 + T::fused(t59, t55, T::fused(-t65, t61, t69 * t66))
-            - T::fused(t45, t49, -T::fused(t35, t47, t41 * t48));
-        let t74 = t8 * t65;
-        let t75 = T::fused(-t11, t69, t74);
-        let t76 = t8 * t59;
-        let t77 = T::fused(t8, t69, t76);
-        let t78 = t11 * t59;
-        let t79 = t78 + t74;
-        let t80 = t72 - T::fused(-k(0.1), t75, T::fused(k(0.1), t77, k(0.2) * t79))
-            - (t73 + T::fused(-k(0.1), T::fused(t35, t15, t41 * t37), t46));
-        let t81 = k(1.3333333333333333) * t58;
-        let t82 = k(0.2) * t64;
-        let t83 = k(0.4) * t68;
-        let t84 = k(0.2) + (t83 + t82);
-        let t85 = T::fused(k(0.2), t44, T::fused(-k(0.1), t40, k(0.06) * t34));
-        let t86 = t85 - (t84 + T::fused(-t60, t59, T::fused(-t53, t65, t52 * t69)));
-        let t87 = T::fused(
-            t81 - T::fused(-k(1.3333333333333333), t68, k(0.6666666666666666) * t64),
-            t80,
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = t0.sin();
+        let t3 = t2 * t1;
+        let t4 = k(0.75) * t3;
+        let t5 = t2 * t2;
+        let t6 = t5 + t4;
+        let t7 = k(3.3333333333333335) * t6;
+        let t8 = k(0.15) - T::fused(k(0.5), x2, x1);
+        let t9 = u0 * t8;
+        let t10 = k(0.3) + T::fused(k(2.0), x2, x1);
+        let t11 = u0 * t10;
+        let t12 = t11 + T::fused(-k(3.0), u1 - u2, t9);
+        let t13 = u0 * t6;
+        let t14 = k(3.0) * t3;
+        let t15 = t5 - t14;
+        let t16 = u0 * t15;
+        let t17 = t16 - t13;
+        let t18 = t1 * t1;
+        let t19 = k(0.5) - T::fused(k(0.4444444444444444), t5, t18);
+        let t20 = u0 * t19;
+        let t21 = T::fused(k(0.4444444444444444), t13, t20);
+        let t22 = T::fused(k(0.4444444444444444), t16, t20);
+        let t23 = t17
+            - T::fused(
+                -k(0.5),
+                t17,
+                T::fused(k(2.25), t21, T::fused(k(2.25), t22, t17)),
+            );
+        let t24 = k(3.3333333333333335) * t15;
+        let t25 = k(1.5) * u2;
+        let t26 = k(0.3) + (x1 - x2);
+        let t27 = u0 * t26;
+        let t28 = t9 - (t27 + T::fused(k(0.75), u1, t25));
+        let t29 = k(7.5) * t19;
+        let t30 = t27 + (t11 - T::fused(k(3.0), u1, t25));
+        let t31 = k(0.5) * x3;
+        let t32 = t31.cos();
+        let t33 = t31.sin();
+        let t34 = (t33 - t32) * (t33 + t32);
+        let t35 = t33 * t32;
+        let t36 = k(6.0) * t35;
+        let t37 = k(1.0) + t34;
+        let t38 = u0 * (t37 + t36);
+        let t39 = u0 * (t37 - t36);
+        let t40 = T::fused(
+            k(1.7777777777777777),
+            u0 * (k(0.125) - t34),
             T::fused(
-                k(0.6666666666666666),
-                t75,
-                T::fused(k(0.3333333333333333), t77, k(0.6666666666666666) * t79),
-            ) * (t85 - t86 - (t84 - T::fused(k(0.2), t58, -(t83 - t82)))),
+                -k(0.2222222222222222),
+                t38,
+                T::fused(k(0.4444444444444444), t39, u3),
+            ),
         );
-        let t88 = t28 * t31;
-        let t89 = t32 * t26;
-        let t90 = t89 - t88;
-        let t91 = k(2.0) * t90;
-        let t92 = k(0.5) - T::fused(t26, t26, t43);
-        let t93 = k(2.0) * t92;
-        let t94 = t39 + t38;
-        let t95 = k(2.0) * t94;
+        let t41 = u0 * (k(0.8) - t34);
+        let t42 = k(1.5) * t35;
+        let t43 = T::fused(
+            k(0.2222222222222222),
+            t39,
+            T::fused(
+                -k(0.2777777777777778),
+                t41,
+                T::fused(k(0.4444444444444444), u0 * (t37 + t42), u3),
+            ),
+        );
+        let t44 = T::fused(-k(0.8333333333333334), t40, t43);
+        let t45 = t2 * t32;
+        let t46 = t1 * t33;
+        let t47 = t2 * t33;
+        let t48 = k(0.6666666666666666) * t47;
+        let t49 = T::fused(k(0.16666666666666666), t47, t48 + (t46 + t45));
+        let t50 = T::fused(k(2.0), t47, -(t47 - T::fused(-k(4.5), t1 * t32, t47)));
+        let t51 = t50 * t50;
+        let t52 = k(10.125) - T::fused(k(9.0), t49 * t49, t51);
+        let t53 = T::fused(
+            k(0.03333333333333333),
+            t52 * t44,
+            T::fused(t30, t29, -T::fused(t28, t24, -T::fused(t12, t7, t23))),
+        );
+        let t54 = k(0.6666666666666666) * t50;
+        let t55 = T::fused(
+            -k(0.5),
+            t46,
+            t48 - T::fused(-k(0.3333333333333333), t47, t45),
+        );
+        let t56 = t55 * t54;
+        let t57 = T::fused(
+            -k(2.0),
+            t46,
+            T::fused(k(1.3333333333333333), t47, t45) - t48,
+        );
+        let t58 = t57 * t49;
+        let t59 = t58 - t56;
+        let t60 = t38 - T::fused(u0, t37 - t42, -T::fused(k(2.5), t41, k(4.5) * u3));
+        let t61 = T::fused(k(0.13333333333333333), t60, t40);
+        let t62 = T::fused(k(9.0), t43, t60);
+        let t63 = k(0.1111111111111111) * t62;
+        let t64 = k(0.16666666666666666) * (t57 * t50);
+        let t65 = t49 * t55;
+        let t66 = t65 + t64;
+        let t67 = T::fused(
+            k(0.03333333333333333),
+            T::fused(-t60, t59, t43 * t52),
+            -T::fused(t66, t63, -T::fused(k(0.25), t61 * t59, -t53)),
+        );
+        let t68 = k(4.0) * t66;
+        let t69 = T::fused(
+            k(0.25),
+            T::fused(-t40, t59, t43 * t68),
+            -T::fused(k(0.027777777777777776), T::fused(-t60, t68, t40 * t52), -t67),
+        );
+        let t70 = k(0.25) * t15;
+        let t71 = k(1.125) + (t6 + t70);
+        let t72 = T::fused(
+            t8,
+            t29,
+            T::fused(k(0.8333333333333334), t10 * t15, -T::fused(t26, t7, t71)),
+        );
+        let t73 = t49 * t54;
+        let t74 = t57 * t55;
+        let t75 = t74 + t73;
+        let t76 = k(10.125) - T::fused(k(9.0), t55 * t55, t51);
+        let t77 = k(0.04938271604938271) * t76;
+        let t78 = t65 - t64;
+        let t79 = k(2.25) * t20;
+        let t80 = t5 + t14;
+        let t81 = u0 * t80;
+        let t82 = t81 + t79;
+        let t83 = t5 - t4;
+        let t84 = u0 * t83;
+        let t85 = t79 + t84;
+        let t86 = t81 - t84;
+        let t87 = k(9.0) * T::fused(k(0.4444444444444444), t81, t20);
+        let t88 = t87
+            - T::fused(-k(2.0), t82, T::fused(-k(4.0), t85, T::fused(k(4.0), t86, t87)));
+        let t89 = T::fused(
+            k(13.333333333333334),
+            t30 * t83,
+            T::fused(
+                k(13.333333333333334),
+                t28 * t80,
+                T::fused(k(30.0), t19 * t12, -t88),
+            ),
+        );
+        let t90 = T::fused(
+            t62,
+            t77,
+            T::fused(t61, t75, T::fused(k(1.2), t44 * t78, -t89)),
+        );
+        let t91 = T::fused(
+            -k(1.2),
+            T::fused(k(0.1111111111111111), t60 * t75, t43 * t78),
+            t90,
+        ) + T::fused(-t60, t77, t40 * t78);
+        let t92 = T::fused(k(4.0), t83, T::fused(k(9.0), t19, t80))
+            * (t91 - T::fused(t40, t75, k(0.4444444444444444) * (t43 * t76)));
+        let t93 = k(0.1111111111111111) * t80;
+        let t94 = k(0.25) - (t19 - t93);
+        let t95 = T::fused(
+            k(1.4814814814814814),
+            t8 * t83,
+            T::fused(
+                -k(0.37037037037037035),
+                t10 * t80,
+                T::fused(-k(3.3333333333333335), t26 * t19, t94),
+            ),
+        );
         let t96 = T::fused(
-            -k(0.05),
-            T::fused(-t91, t42, t95 * t37),
-            k(0.03) * T::fused(-t93, t42, t95 * t15),
+            -k(0.027777777777777776),
+            t92,
+            (t93 + (t19 - T::fused(k(0.2222222222222222), t83, t94 - t95)))
+                * (t82 - (t85 - t86)),
         );
-        let t97 = t63 + t62;
-        let t98 = k(2.0) * t97;
-        let t99 = k(0.5) - T::fused(t25, t25, t57);
-        let t100 = k(2.0) * t99;
-        let t101 = T::fused(t100, t70, t65 * t71);
-        let t102 = t101 + T::fused(-t98, t55, T::fused(t100, t61, t65 * t66))
-            + T::fused(t95, t49, -T::fused(-t91, t47, t93 * t48));
-        let t103 = t8 * t100;
-        let t104 = T::fused(t11, t65, t103);
-        let t105 = t8 * t98;
-        let t106 = t105 - t74;
-        let t107 = T::fused(t11, t98, t103);
-        let t108 = t101 + T::fused(-k(0.1), t104, T::fused(k(0.1), t106, k(0.2) * t107))
-            - (t102 - T::fused(-k(0.1), T::fused(-t91, t15, t93 * t37), t96));
-        let t109 = k(0.2) * t99;
-        let t110 = k(0.4) * t64;
-        let t111 = k(0.2) * t97;
-        let t112 = t110 - t109;
-        let t113 = T::fused(-k(0.2), t94, T::fused(k(0.1), t92, k(0.06) * t90));
-        let t114 = t113 - (t112 + T::fused(t60, t98, T::fused(t53, t100, t52 * t65)));
+        let t97 = k(0.5) - T::fused(k(0.1111111111111111), t5, t18);
+        let t98 = k(2.25) * t97;
+        let t99 = t15 - t98;
+        let t100 = k(3.3333333333333335) * t80;
+        let t101 = T::fused(
+            t8,
+            t100,
+            T::fused(k(7.5), t10 * t97, T::fused(t26, t24, t99)),
+        );
+        let t102 = u0 * t97;
+        let t103 = T::fused(k(0.1111111111111111), t16, t102);
+        let t104 = k(9.0) * t102;
+        let t105 = t104 + t81;
+        let t106 = t16 - t81;
+        let t107 = T::fused(-k(9.0), t103, t106 - t105)
+            * (t98 + (t15 + T::fused(k(0.5), t80, t99 - t101)));
+        let t108 = t16 + t104;
+        let t109 = T::fused(
+            -t12,
+            t24,
+            t108 + T::fused(k(4.5), t103, t106 - (t108 + t105)),
+        );
+        let t110 = t58 + t56;
+        let t111 = T::fused(
+            k(0.3),
+            t44 * t110,
+            T::fused(t30, t100, -T::fused(k(30.0), t28 * t97, -t109)),
+        );
+        let t112 = k(10.125) - T::fused(k(2.25), t57 * t57, t51);
+        let t113 = t74 - t73;
+        let t114 = T::fused(
+            k(0.3),
+            T::fused(-t43, t110, k(0.04938271604938271) * (t60 * t112)),
+            -T::fused(t113, t63, T::fused(k(0.1111111111111111), t61 * t112, -t111)),
+        );
         let t115 = T::fused(
+            k(0.1111111111111111),
+            T::fused(k(9.0), t43 * t113, t40 * t112),
+            T::fused(
+                k(0.25),
+                T::fused(t40, t110, k(0.4444444444444444) * (t60 * t113)),
+                t114,
+            ),
+        );
+        let t116 = T::fused(
+            k(0.1111111111111111),
+            (t80 - (t15 + t98)) * t115,
+            -T::fused(k(0.1111111111111111), t107, -t96),
+        );
+        let t117 = T::fused(
+            T::fused(k(0.4444444444444444), t17, t21 + t22),
+            t70 - (t6 - T::fused(k(1.125), t19, -(t71 + t72))),
+            t116,
+        );
+        let t118 = T::fused(
             -T::fused(
-                -k(1.3333333333333333),
-                t97,
-                T::fused(k(1.3333333333333333), t64, k(0.6666666666666666) * t99),
+                k(0.4444444444444444),
+                t6,
+                T::fused(-k(0.1111111111111111), t15, t19),
             ),
-            t108,
-            T::fused(
-                k(0.6666666666666666),
-                t104,
-                T::fused(k(0.3333333333333333), t106, k(0.6666666666666666) * t107),
-            ) * (t113 - t114 - (t112 + (t111 + (t110 + t109)))),
+            t69,
+            t117,
         );
-        let t116 = k(0.5) - T::fused(t32, t32, t43);
-        let t117 = k(2.0) * t116;
-        let t118 = t89 + t88;
-        let t119 = k(2.0) * t118;
-        let t120 = t33 - t29;
-        let t121 = k(2.0) * t120;
-        let t122 = T::fused(
-            -k(0.05),
-            T::fused(t117, t42, t121 * t37),
-            k(0.03) * T::fused(t119, t42, t121 * t15),
-        );
-        let t123 = t56 - t67;
-        let t124 = k(2.0) * t123;
-        let t125 = T::fused(t98, t70, t59 * t71);
-        let t126 = t125 + T::fused(t124, t55, T::fused(t98, t61, t59 * t66))
-            - T::fused(t121, t49, T::fused(-t117, t47, t119 * t48));
-        let t127 = t105 + t78;
-        let t128 = T::fused(t8, t124, t76);
-        let t129 = T::fused(t11, t124, -t105);
-        let t130 = t125 - T::fused(k(0.1), t127, T::fused(k(0.1), t128, k(0.2) * t129))
-            - (t126 + T::fused(k(0.1), T::fused(-t117, t15, t119 * t37), t122));
-        let t131 = k(0.4) * t58;
-        let t132 = k(0.1) - (t131 - t111);
-        let t133 = T::fused(k(0.2), t120, T::fused(k(0.1), t118, k(0.06) * t116));
-        let t134 = t133 + (t132 - T::fused(-t60, t124, T::fused(t53, t98, t52 * t59)));
-        let t135 = T::fused(
-            T::fused(
-                k(1.3333333333333333),
-                t123,
-                T::fused(k(0.6666666666666666), t97, t81),
-            ),
-            t130,
-            T::fused(
-                -k(0.6666666666666666),
-                t127,
-                T::fused(k(0.3333333333333333), t128, k(0.6666666666666666) * t129),
-            ) * (t133 - t134 + (t132 + T::fused(k(0.2), t123, -(t131 + t111)))),
-        );
-        let t136 = t135 - t115 + t87;
-        let t137 = T::fused(
-            -k(0.4444444444444444),
-            u0,
-            T::fused(
-                k(0.6666666666666666),
-                t42,
-                T::fused(k(0.3333333333333333), t37, k(0.6666666666666666) * t15),
-            ),
-        );
+        let t119 = u0
+            - T::fused(k(0.25), t40, T::fused(k(0.2222222222222222), t60, t43));
         *dx = [
             u0,
             u1,
@@ -6576,10 +5884,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             rates[1],
             rates[2],
             rates[3],
-            -T::fused(t136, k(0.8) * t136, t137 * (k(0.02) * t137)),
+            -(k(0.003950617283950617)
+                * T::fused(k(1.2641975308641975), t118 * t118, t119 * t119)),
         ];
     }
-    /// Writes the maximal state of a joint state: 249 operations (112 ±, 137 ×, 0 ÷) and 4 functions.
+    /// Writes the maximal state of a joint state: 250 operations (113 ±, 137 ×, 0 ÷) and 4 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -6662,56 +5971,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t66 = T::fused(-t50, t62, t57 * t63);
         let t67 = k(0.6666666666666666) * u0;
         let t68 = k(0.3333333333333333) * u0;
-        let t69 = k(2.0) * t27;
-        let t70 = t33 * t69;
-        let t71 = k(0.6666666666666666) * t70;
-        let t72 = T::fused(-t27, t69, k(1.0));
-        let t73 = T::fused(-k(0.2222222222222222), t72, k(0.2222222222222222));
-        let t74 = t67 * (t73 - t71);
-        let t75 = T::fused(k(0.5555555555555556), t72, k(0.4444444444444444));
-        let t76 = k(0.3333333333333333) * t70;
-        let t77 = T::fused(-k(0.4444444444444444), t72, k(0.4444444444444444));
-        let t78 = k(0.6666666666666666) * u3;
-        let t79 = t78 + T::fused(t67, t77 + t76, -T::fused(t68, t75, -t74));
-        let t80 = t73 + t71;
-        let t81 = t78 + T::fused(t67, t75, -T::fused(-t67, t80, t68 * (t77 - t76)));
-        let t82 = T::fused(k(0.1), t79, k(0.05) * t81);
-        let t83 = T::fused(
+        let t69 = t33 * (k(2.0) * t27);
+        let t70 = k(0.6666666666666666) * t69;
+        let t71 = (t27 - t33) * (t27 + t33);
+        let t72 = T::fused(k(0.2222222222222222), t71, k(0.2222222222222222));
+        let t73 = t67 * (t72 - t70);
+        let t74 = T::fused(-k(0.5555555555555556), t71, k(0.4444444444444444));
+        let t75 = k(0.3333333333333333) * t69;
+        let t76 = T::fused(k(0.4444444444444444), t71, k(0.4444444444444444));
+        let t77 = k(0.6666666666666666) * u3;
+        let t78 = t77 + T::fused(t67, t76 + t75, -T::fused(t68, t74, -t73));
+        let t79 = t72 + t70;
+        let t80 = t77 + T::fused(t67, t74, -T::fused(-t67, t79, t68 * (t76 - t75)));
+        let t81 = T::fused(k(0.1), t78, k(0.05) * t80);
+        let t82 = T::fused(
             k(0.3333333333333333),
             u3,
-            t74
+            t73
                 - T::fused(
                     -t67,
-                    T::fused(k(0.8888888888888888), t72, k(0.1111111111111111)),
-                    t68 * t80,
+                    T::fused(-k(0.8888888888888888), t71, k(0.1111111111111111)),
+                    t68 * t79,
                 ),
         );
-        let t84 = T::fused(k(0.03), t81, k(0.1) * t83);
-        let t85 = T::fused(-k(0.05), t83, k(0.03) * t79);
-        let t86 = T::fused(
+        let t83 = T::fused(k(0.03), t80, k(0.1) * t82);
+        let t84 = T::fused(-k(0.05), t82, k(0.03) * t78);
+        let t85 = T::fused(
             k(2.0) * t42,
-            t85,
-            T::fused(-(k(2.0) * t47), t82, k(2.0) * t45 * t84),
+            t84,
+            T::fused(-(k(2.0) * t47), t81, k(2.0) * t45 * t83),
         );
-        let t87 = t23 * t67;
-        let t88 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
-            - T::fused(t25, t68, t87);
-        let t89 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
+        let t86 = t23 * t67;
+        let t87 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
+            - T::fused(t25, t68, t86);
+        let t88 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
             + T::fused(-t20, t67, t25 * t67);
-        let t90 = T::fused(k(0.6666666666666666), u1 - u2, -T::fused(t20, t68, t87));
-        let t91 = t64 + T::fused(t18, t88, T::fused(t21, t89, t24 * t90)) - t86;
-        let t92 = T::fused(
+        let t89 = T::fused(k(0.6666666666666666), u1 - u2, -T::fused(t20, t68, t86));
+        let t90 = t64 + T::fused(t18, t87, T::fused(t21, t88, t24 * t89)) - t85;
+        let t91 = T::fused(
             k(2.0) * t53,
-            t85,
-            -T::fused(-(k(2.0) * t55), t82, k(2.0) * t54 * t84),
+            t84,
+            -T::fused(-(k(2.0) * t55), t81, k(2.0) * t54 * t83),
         );
-        let t93 = t65 + T::fused(-t21, t88, T::fused(t49, t89, t50 * t90)) + t92;
-        let t94 = T::fused(
+        let t92 = t65 + T::fused(-t21, t87, T::fused(t49, t88, t50 * t89)) + t91;
+        let t93 = T::fused(
             k(2.0) * t58,
-            t85,
-            -T::fused(k(2.0) * t60, t82, k(2.0) * t59 * t84),
+            t84,
+            -T::fused(k(2.0) * t60, t81, k(2.0) * t59 * t83),
         );
-        let t95 = t66 + T::fused(t24, t88, T::fused(-t50, t89, t57 * t90)) - t94;
+        let t94 = t66 + T::fused(t24, t87, T::fused(-t50, t88, t57 * t89)) - t93;
         *y = [
             t11,
             -t14,
@@ -6733,17 +6041,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t67,
             -t68,
             t67,
-            -t91,
-            -t93,
-            t95,
-            t83,
-            t79,
-            t81,
+            -t90,
+            -t92,
+            t94,
+            t82,
+            t78,
+            t80,
             x[8],
             x3,
         ];
     }
-    /// Writes the joint state of a maximal state: 405 operations (181 ±, 224 ×, 0 ÷) and 6 functions.
+    /// Writes the joint state of a maximal state: 362 operations (181 ±, 181 ×, 0 ÷) and 6 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -6774,283 +6082,204 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let block_wz = y[25];
         let x0 = x[0];
         let x3 = x[3];
-        let t0 = x0.sin();
-        let t1 = arm_e0 * arm_e1;
-        let t2 = arm_e2 * arm_e3;
-        let t3 = t2 + t1;
-        let t4 = arm_e0 * arm_e2;
-        let t5 = arm_e1 * arm_e3;
-        let t6 = t5 - t4;
-        let t7 = arm_e2 * arm_e2;
-        let t8 = arm_e0 * arm_e0;
-        let t9 = T::fused(arm_e1, arm_e1, t8);
-        let t10 = arm_e3 * arm_e3;
-        let t11 = k(1.0) - (t10 + (t9 + t7));
-        let t12 = k(0.5) - (t8 + t7);
-        let t13 = k(2.0) * t12;
-        let t14 = t13 - t11;
-        let t15 = arm_e0 * arm_e3;
-        let t16 = arm_e1 * arm_e2;
-        let t17 = t16 + t15;
-        let t18 = t17 - t14;
-        let t19 = t16 - t15;
-        let t20 = k(0.5) - t9;
-        let t21 = k(2.0) * t20;
-        let t22 = t21 - t11;
-        let t23 = T::fused(-k(1.7888543819998317), t19, k(0.4472135954999579) * t22);
-        let t24 = T::fused(
-            k(0.7453559924999299),
-            T::fused(k(1.7888543819998317), t3, k(0.8944271909999159) * t6),
-            T::fused(k(0.26666666666666666), t18, k(0.5962847939999439) * t23),
-        );
-        let t25 = x0.cos();
-        let t26 = T::fused(-k(0.8), t18, k(0.4472135954999579) * t23);
-        let t27 = T::fused(t24, t25, t26 * t0).atan2(T::fused(-t26, t25, t24 * t0));
-        let t28 = t5 + t4;
-        let t29 = block_e0 * block_e0;
-        let t30 = T::fused(block_e1, block_e1, t29);
-        let t31 = k(0.5) - t30;
-        let t32 = block_e0 * block_e3;
-        let t33 = block_e1 * block_e2;
+        let t0 = arm_e0 * arm_e1;
+        let t1 = arm_e2 * arm_e3;
+        let t2 = t1 + t0;
+        let t3 = arm_e0 * arm_e2;
+        let t4 = arm_e1 * arm_e3;
+        let t5 = t4 - t3;
+        let t6 = arm_e3 * arm_e3;
+        let t7 = arm_e0 * arm_e0;
+        let t8 = T::fused(arm_e1, arm_e1, t7);
+        let t9 = arm_e2 * arm_e2;
+        let t10 = k(0.5) * (k(1.0) - (t9 + (t8 + t6)));
+        let t11 = k(0.5) - (t7 + t9);
+        let t12 = t11 - t10;
+        let t13 = arm_e0 * arm_e3;
+        let t14 = arm_e1 * arm_e2;
+        let t15 = t14 + t13;
+        let t16 = T::fused(-k(2.0), t12, t15);
+        let t17 = k(0.5) - t8;
+        let t18 = t17 - t10;
+        let t19 = t14 - t13;
+        let t20 = T::fused(k(2.0), t19, -t18);
+        let t21 = k(1.3333333333333333)
+            * T::fused(-k(1.25), T::fused(k(2.0), t2, t5), T::fused(-k(0.5), t16, t20));
+        let t22 = x0.sin();
+        let t23 = T::fused(k(2.0), t16, t20);
+        let t24 = x0.cos();
+        let t25 = -(k(0.4) * T::fused(t24, t21, t22 * t23))
+            .atan2(k(0.4) * T::fused(-t22, t21, t24 * t23));
+        let t26 = block_e3 * block_e3;
+        let t27 = block_e0 * block_e0;
+        let t28 = k(0.5) - (t27 + t26);
+        let t29 = block_e0 * block_e1;
+        let t30 = block_e2 * block_e3;
+        let t31 = t30 + t29;
+        let t32 = block_e0 * block_e2;
+        let t33 = block_e1 * block_e3;
         let t34 = t33 - t32;
-        let t35 = block_e0 * block_e2;
-        let t36 = block_e1 * block_e3;
-        let t37 = t36 + t35;
-        let t38 = block_rx
-            - T::fused(k(0.2), t37, -T::fused(-k(0.06), t31, k(0.1) * t34))
-            - (arm_rx + T::fused(k(0.2), t28, T::fused(-k(0.4), t20, k(0.2) * t19)));
-        let t39 = T::fused(
-            -k(1.3333333333333333),
-            t28,
-            T::fused(-k(1.3333333333333333), t20, k(0.6666666666666666) * t19),
+        let t35 = T::fused(
+            k(5.0),
+            arm_rz,
+            -T::fused(
+                k(0.3),
+                t34,
+                T::fused(k(0.5), t31, T::fused(k(5.0), block_rz, t28)),
+            ),
         );
-        let t40 = t2 - t1;
-        let t41 = t33 + t32;
-        let t42 = block_e2 * block_e2;
-        let t43 = k(0.5) - (t29 + t42);
-        let t44 = block_e0 * block_e1;
-        let t45 = block_e2 * block_e3;
-        let t46 = t45 - t44;
-        let t47 = block_ry - T::fused(k(0.2), t46, T::fused(-k(0.06), t41, k(0.1) * t43))
-            - (arm_ry + T::fused(k(0.2), t40, -T::fused(-k(0.4), t17, k(0.2) * t12)));
-        let t48 = T::fused(
-            k(1.3333333333333333),
-            t40,
-            T::fused(-k(1.3333333333333333), t17, k(0.6666666666666666) * t12),
+        let t36 = k(0.5) - (t7 + t6);
+        let t37 = T::fused(k(2.0), t5, t2 - (t36 - t35));
+        let t38 = t36 + T::fused(k(0.5), t2, t5);
+        let t39 = t30 - t29;
+        let t40 = block_e2 * block_e2;
+        let t41 = k(0.5) - (t27 + t40);
+        let t42 = block_e0 * block_e3;
+        let t43 = block_e1 * block_e2;
+        let t44 = t43 + t42;
+        let t45 = T::fused(
+            k(5.0),
+            arm_ry,
+            -T::fused(
+                k(0.3),
+                t44,
+                -T::fused(k(0.5), t41, T::fused(-k(5.0), block_ry, t39)),
+            ),
         );
-        let t49 = k(0.5) - (t8 + t10);
-        let t50 = t36 - t35;
-        let t51 = t45 + t44;
-        let t52 = block_e3 * block_e3;
-        let t53 = k(0.5) - (t29 + t52);
-        let t54 = block_rz + T::fused(k(0.2), t53, T::fused(k(0.06), t50, k(0.1) * t51))
-            - (arm_rz - T::fused(k(0.2), t49, -T::fused(k(0.4), t6, k(0.2) * t3)));
-        let t55 = T::fused(
-            k(1.3333333333333333),
-            t49,
-            T::fused(k(1.3333333333333333), t6, k(0.6666666666666666) * t3),
+        let t46 = t1 - t0;
+        let t47 = T::fused(k(2.0), t15, -(t11 - (t46 + t45)));
+        let t48 = t46 - T::fused(-k(0.5), t11, t15);
+        let t49 = t33 + t32;
+        let t50 = t43 - t42;
+        let t51 = T::fused(block_e1, block_e1, t27);
+        let t52 = k(0.5) - t51;
+        let t53 = T::fused(
+            k(5.0),
+            arm_rx,
+            T::fused(
+                k(0.3),
+                t52,
+                -T::fused(k(0.5), t50, -T::fused(-k(5.0), block_rx, t49)),
+            ),
         );
-        let t56 = T::fused(
-            -k(0.6666666666666666),
-            t28,
-            k(1.3333333333333333) * (t20 + t19),
+        let t54 = t4 + t3;
+        let t55 = T::fused(k(2.0), t17, -(t19 + (t54 + t53)));
+        let t56 = t54 + T::fused(-k(0.5), t19, t17);
+        let t57 = T::fused(-k(0.5), t36, t5 - t2);
+        let t58 = T::fused(k(0.5), t46, t15 + t11);
+        let t59 = T::fused(-k(0.5), t54, t17 + t19);
+        let t60 = k(0.5) * (k(1.0) - (t40 + (t51 + t26)));
+        let t61 = t41 - t60;
+        let t62 = t52 - t60;
+        let t63 = T::fused(
+            k(0.5),
+            T::fused(t2, t31, T::fused(t12, t61, t19 * t50)),
+            T::fused(t2, t34, -T::fused(t19, t62, t44 * t12)),
         );
-        let t57 = T::fused(
-            k(0.6666666666666666),
-            t40,
-            k(1.3333333333333333) * (t17 + t12),
+        let t64 = t28 - t60;
+        let t65 = T::fused(t2, t64, -T::fused(-t39, t12, t19 * t49)) + t63;
+        let t66 = T::fused(
+            k(0.5),
+            T::fused(t5, t31, -T::fused(t50, t18, t15 * t61)),
+            T::fused(t5, t34, T::fused(t18, t62, t15 * t44)),
         );
-        let t58 = T::fused(
-            -k(0.6666666666666666),
-            t49,
-            k(1.3333333333333333) * (t6 - t3),
+        let t67 = T::fused(t5, t64, -T::fused(-t49, t18, t15 * t39)) + t66;
+        let t68 = t36 - t10;
+        let t69 = T::fused(
+            k(0.5),
+            T::fused(t31, t68, -T::fused(-t46, t61, t54 * t50)),
+            T::fused(t34, t68, -T::fused(-t54, t62, t46 * t44)),
         );
-        let t59 = x3.sin();
-        let t60 = k(1.0) - (t52 + (t30 + t42));
-        let t61 = k(2.0) * t53;
-        let t62 = t61 - t60;
-        let t63 = k(2.0) * t49;
-        let t64 = t63 - t11;
-        let t65 = k(2.0) * t46;
-        let t66 = k(2.0) * t40;
-        let t67 = k(2.0) * t37;
-        let t68 = k(2.0) * t28;
-        let t69 = k(2.0) * t51;
-        let t70 = k(2.0) * t43;
-        let t71 = t70 - t60;
-        let t72 = k(2.0) * t34;
-        let t73 = k(2.0) * t50;
-        let t74 = k(2.0) * t41;
-        let t75 = k(2.0) * t31;
-        let t76 = t75 - t60;
-        let t77 = T::fused(
-            -k(0.3333333333333333),
-            T::fused(-t69, t64, T::fused(-t66, t71, t68 * t72)),
-            k(0.6666666666666666) * T::fused(t73, t64, T::fused(-t66, t74, t68 * t76)),
+        let t70 = T::fused(t64, t68, T::fused(t54, t49, t46 * t39)) + t69;
+        let t71 = t70 + T::fused(k(0.5), t65, t67);
+        let t72 = x3.cos();
+        let t73 = T::fused(k(0.5), t70, t65 - t67);
+        let t74 = x3.sin();
+        let t75 = (k(1.7777777777777777) * T::fused(-t74, t71, t72 * t73))
+            .atan2(k(1.7777777777777777) * T::fused(t72, t71, t74 * t73));
+        let t76 = T::fused(-t54, arm_wy, t19 * arm_wz);
+        let t77 = T::fused(t19, arm_wx, t17 * arm_wy);
+        let t78 = T::fused(t54, arm_wx, t17 * arm_wz);
+        let t79 = T::fused(
+            k(5.0),
+            block_sx,
+            t77 - (t78 + T::fused(k(5.0), arm_sx, k(2.0) * t76)),
         );
-        let t78 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t64, t62, T::fused(t66, t65, t68 * t67)),
-            t77,
+        let t80 = T::fused(
+            k(0.5),
+            T::fused(t49, block_wx, t52 * block_wz),
+            T::fused(k(0.3), T::fused(-t49, block_wy, t50 * block_wz), t79),
         );
-        let t79 = k(2.0) * t3;
-        let t80 = k(2.0) * t19;
-        let t81 = T::fused(
-            -k(0.3333333333333333),
-            T::fused(t79, t69, T::fused(t14, t71, t80 * t72)),
-            k(0.6666666666666666) * T::fused(-t79, t73, T::fused(t74, t14, t80 * t76)),
-        );
-        let t82 = T::fused(
-            k(0.6666666666666666),
-            T::fused(-t79, t62, T::fused(-t65, t14, t80 * t67)),
-            t81,
-        );
-        let t83 = k(2.0) * t6;
-        let t84 = k(2.0) * t17;
+        let t81 = T::fused(t50, block_wx, t52 * block_wy) + t80;
+        let t82 = T::fused(t46, arm_wy, t11 * arm_wz);
+        let t83 = T::fused(t11, arm_wx, t15 * arm_wy);
+        let t84 = T::fused(-t46, arm_wx, t15 * arm_wz);
         let t85 = T::fused(
-            -k(0.3333333333333333),
-            T::fused(-t83, t69, T::fused(t84, t71, t72 * t22)),
-            k(0.6666666666666666) * T::fused(t83, t73, T::fused(t84, t74, t22 * t76)),
+            T::fused(k(0.5), t84, t83 + t82),
+            t47,
+            -T::fused(-T::fused(k(0.5), t78, t77 + t76), t55, t56 * t81),
         );
         let t86 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t83, t62, T::fused(-t84, t65, t67 * t22)),
-            t85,
+            -k(5.0),
+            block_sy,
+            t83 - (t84 + T::fused(-k(5.0), arm_sy, k(2.0) * t82)),
         );
         let t87 = T::fused(
-            -k(0.3333333333333333),
-            t78,
-            k(0.6666666666666666) * (t86 + t82),
+            k(0.5),
+            T::fused(-t39, block_wx, t44 * block_wz),
+            T::fused(k(0.3), T::fused(t39, block_wy, t41 * block_wz), t86),
         );
-        let t88 = x3.cos();
-        let t89 = T::fused(
-            k(0.6666666666666666),
-            t78,
-            T::fused(-k(0.3333333333333333), t82, k(0.6666666666666666) * t86),
-        );
-        let t90 = -T::fused(t87, t88, t89 * t59).atan2(T::fused(-t87, t59, t89 * t88));
-        let t91 = k(0.6666666666666666) * arm_wz;
+        let t88 = T::fused(t41, block_wx, t44 * block_wy) + t87;
+        let t89 = T::fused(t36, arm_wy, t2 * arm_wz);
+        let t90 = T::fused(-t2, arm_wx, t5 * arm_wy);
+        let t91 = T::fused(t36, arm_wx, t5 * arm_wz);
         let t92 = T::fused(
-            -k(0.05),
-            T::fused(t73, block_wz, t61 * block_wx),
-            k(0.03) * T::fused(t69, block_wz, t61 * block_wy),
+            T::fused(k(0.5), t91, t90 - t89),
+            t37,
+            T::fused(t48, t88, t85),
         );
-        let t93 = T::fused(-t83, arm_wy, t79 * arm_wx);
-        let t94 = T::fused(t83, arm_wz, t63 * arm_wx);
-        let t95 = T::fused(t79, arm_wz, t63 * arm_wy);
-        let t96 = arm_sz + T::fused(-k(0.1), t93, T::fused(-k(0.1), t94, k(0.2) * t95))
-            - (block_sz
-                + T::fused(k(0.1), T::fused(-t73, block_wy, t69 * block_wx), t92));
+        let t93 = T::fused(
+            -k(5.0),
+            block_sz,
+            t90 - (t91 - T::fused(k(5.0), arm_sz, k(2.0) * t89)),
+        );
+        let t94 = T::fused(
+            k(0.5),
+            T::fused(t28, block_wx, t34 * block_wz),
+            T::fused(-k(0.3), T::fused(t28, block_wy, t31 * block_wz), t93),
+        );
+        let t95 = T::fused(-t31, block_wx, t34 * block_wy) + t94;
+        let t96 = T::fused(k(2.0), t59 * t81, t55 * T::fused(k(2.0), t78 - t76, t77));
         let t97 = T::fused(
-            -t55,
-            t96,
-            t54
-                * T::fused(
-                    k(0.6666666666666666),
-                    t93,
-                    T::fused(-k(0.3333333333333333), t94, k(0.6666666666666666) * t95),
-                ),
+            k(2.0),
+            t58 * t88,
+            T::fused(t47, T::fused(k(2.0), t84 - t82, t83), t96),
         );
         let t98 = T::fused(
-            -k(0.05),
-            T::fused(-t74, block_wz, t65 * block_wx),
-            k(0.03) * T::fused(t70, block_wz, t65 * block_wy),
+            k(2.0),
+            t57 * t95,
+            T::fused(t37, T::fused(k(2.0), t91 + t89, t90), t97),
         );
-        let t99 = T::fused(t84, arm_wy, t13 * arm_wx);
-        let t100 = T::fused(-t84, arm_wz, t66 * arm_wx);
-        let t101 = T::fused(t13, arm_wz, t66 * arm_wy);
-        let t102 = arm_sy
-            - T::fused(-k(0.1), t99, T::fused(-k(0.1), t100, k(0.2) * t101))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(t74, block_wy, t70 * block_wx), t98));
-        let t103 = T::fused(
-            -t48,
-            t102,
-            t47
-                * T::fused(
-                    k(0.6666666666666666),
-                    t99,
-                    T::fused(-k(0.3333333333333333), t100, k(0.6666666666666666) * t101),
-                ),
-        );
-        let t104 = T::fused(
-            -k(0.05),
-            T::fused(t75, block_wz, t67 * block_wx),
-            k(0.03) * T::fused(-t72, block_wz, t67 * block_wy),
-        );
-        let t105 = T::fused(t21, arm_wy, t80 * arm_wx);
-        let t106 = T::fused(t21, arm_wz, t68 * arm_wx);
-        let t107 = T::fused(-t80, arm_wz, t68 * arm_wy);
-        let t108 = arm_sx
-            - T::fused(k(0.1), t105, T::fused(-k(0.1), t106, k(0.2) * t107))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(t75, block_wy, t72 * block_wx), t104));
-        let t109 = T::fused(
-            -t39,
-            t108,
-            t38
-                * T::fused(
-                    k(0.6666666666666666),
-                    t105,
-                    -T::fused(-k(0.3333333333333333), t106, k(0.6666666666666666) * t107),
-                ),
-        );
-        let t110 = T::fused(
-            t58,
-            t96,
-            t54
-                * T::fused(
-                    -k(0.6666666666666666),
-                    t95 + t94,
-                    k(0.3333333333333333) * t93,
-                ),
-        );
-        let t111 = T::fused(
-            -t57,
-            t102,
-            t47
-                * T::fused(
-                    -k(0.6666666666666666),
-                    t101 + t100,
-                    k(0.3333333333333333) * t99,
-                ),
-        );
-        let t112 = T::fused(
-            -t56,
-            t108,
-            t38
-                * T::fused(
-                    k(0.6666666666666666),
-                    t107 + t106,
-                    k(0.3333333333333333) * t105,
-                ),
-        );
-        let t113 = T::fused(
-            k(0.6666666666666666),
-            arm_wy,
-            k(0.3333333333333333) * arm_wx,
-        ) + t91
-            - T::fused(
-                k(0.6666666666666666),
-                block_wz,
-                T::fused(
-                    k(0.6666666666666666),
-                    block_wy,
-                    k(0.3333333333333333) * block_wx,
-                ),
-            );
-        x[0] = x0 + t27;
-        x[1] = T::fused(t55, t54, -T::fused(-t39, t38, t48 * t47));
-        x[2] = -T::fused(t58, t54, T::fused(-t56, t38, t57 * t47));
-        x[3] = x3 + t90;
-        x[4] = t91
-            + T::fused(-k(0.3333333333333333), arm_wy, k(0.6666666666666666) * arm_wx);
-        x[5] = t109 - t103 + t97;
-        x[6] = t112 - t111 + t110;
-        x[7] = -t113;
+        let t99 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
+        x[0] = x0 + t25;
+        x[1] = -(k(0.26666666666666666)
+            * T::fused(t56, t55, -T::fused(-t38, t37, t48 * t47)));
+        x[2] = k(0.26666666666666666)
+            * T::fused(t59, t55, T::fused(t57, t37, t58 * t47));
+        x[3] = x3 + t75;
+        x[4] = -(k(0.6666666666666666) * T::fused(k(0.5), arm_wy, -(arm_wx + arm_wz)));
+        x[5] = -(k(0.26666666666666666) * T::fused(t38, t95, -t92));
+        x[6] = k(0.13333333333333333) * t98;
+        x[7] = k(0.6666666666666666) * t99;
         x[8] = y[26];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 634 operations (273 ±, 358 ×, 3 ÷) and 3 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 589 operations (275 ±, 311 ×, 3 ÷) and 3 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -7080,475 +6309,372 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let block_wy = y[24];
         let block_wz = y[25];
         let turn0 = y[27];
-        let t0 = arm_e0 * arm_e0;
-        let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
-        let t2 = arm_e0 * arm_e3;
-        let t3 = arm_e1 * arm_e2;
-        let t4 = t3 - t2;
-        let t5 = arm_e0 * arm_e2;
-        let t6 = arm_e1 * arm_e3;
-        let t7 = t6 + t5;
-        let t8 = block_e0 * block_e0;
-        let t9 = k(0.5) - T::fused(block_e1, block_e1, t8);
-        let t10 = block_e0 * block_e3;
-        let t11 = block_e1 * block_e2;
-        let t12 = t11 - t10;
-        let t13 = block_e0 * block_e2;
-        let t14 = block_e1 * block_e3;
-        let t15 = t14 + t13;
-        let t16 = block_rx - T::fused(k(0.2), t15, -T::fused(-k(0.06), t9, k(0.1) * t12))
-            - (arm_rx + T::fused(k(0.2), t7, T::fused(-k(0.4), t1, k(0.2) * t4)));
-        let t17 = T::fused(
-            -k(0.6666666666666666),
-            t7,
-            k(1.3333333333333333) * (t1 + t4),
+        let t0 = block_e0 * block_e1;
+        let t1 = block_e2 * block_e3;
+        let t2 = t1 + t0;
+        let t3 = arm_e0 * arm_e1;
+        let t4 = arm_e2 * arm_e3;
+        let t5 = t4 + t3;
+        let t6 = block_e0 * block_e3;
+        let t7 = block_e1 * block_e2;
+        let t8 = t7 - t6;
+        let t9 = arm_e0 * arm_e3;
+        let t10 = arm_e1 * arm_e2;
+        let t11 = t10 - t9;
+        let t12 = block_e0 * block_e0;
+        let t13 = k(0.5) - T::fused(block_e2, block_e2, t12);
+        let t14 = arm_e0 * arm_e0;
+        let t15 = k(0.5) - T::fused(arm_e2, arm_e2, t14);
+        let t16 = k(0.5) - T::fused(block_e3, block_e3, t12);
+        let t17 = block_e0 * block_e2;
+        let t18 = block_e1 * block_e3;
+        let t19 = t18 + t17;
+        let t20 = t1 - t0;
+        let t21 = T::fused(
+            k(0.5),
+            T::fused(t15, t13, T::fused(t5, t2, t11 * t8)),
+            T::fused(t15, t20, -T::fused(-t5, t16, t11 * t19)),
         );
-        let t18 = t3 + t2;
-        let t19 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
-        let t20 = arm_e0 * arm_e1;
-        let t21 = arm_e2 * arm_e3;
-        let t22 = t21 - t20;
-        let t23 = t11 + t10;
-        let t24 = k(0.5) - T::fused(block_e2, block_e2, t8);
-        let t25 = block_e0 * block_e1;
-        let t26 = block_e2 * block_e3;
-        let t27 = t26 - t25;
-        let t28 = block_ry - T::fused(k(0.2), t27, T::fused(-k(0.06), t23, k(0.1) * t24))
-            - (arm_ry + T::fused(k(0.2), t22, -T::fused(-k(0.4), t18, k(0.2) * t19)));
-        let t29 = T::fused(
-            k(0.6666666666666666),
-            t22,
-            k(1.3333333333333333) * (t18 + t19),
+        let t22 = t18 - t17;
+        let t23 = t7 + t6;
+        let t24 = k(0.5) - T::fused(block_e1, block_e1, t12);
+        let t25 = T::fused(t11, t24, T::fused(-t5, t22, t15 * t23)) - t21;
+        let t26 = k(0.5) - T::fused(arm_e3, arm_e3, t14);
+        let t27 = arm_e0 * arm_e2;
+        let t28 = arm_e1 * arm_e3;
+        let t29 = t28 + t27;
+        let t30 = t4 - t3;
+        let t31 = T::fused(
+            k(0.5),
+            T::fused(t30, t13, -T::fused(-t26, t2, t29 * t8)),
+            T::fused(t26, t16, T::fused(t29, t19, t30 * t20)),
         );
-        let t30 = t6 - t5;
-        let t31 = t21 + t20;
-        let t32 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
-        let t33 = t14 - t13;
-        let t34 = t26 + t25;
-        let t35 = k(0.5) - T::fused(block_e3, block_e3, t8);
-        let t36 = block_rz + T::fused(k(0.2), t35, T::fused(k(0.06), t33, k(0.1) * t34))
-            - (arm_rz - T::fused(k(0.2), t32, -T::fused(k(0.4), t30, k(0.2) * t31)));
-        let t37 = T::fused(
-            -k(0.6666666666666666),
-            t32,
-            k(1.3333333333333333) * (t30 - t31),
+        let t32 = T::fused(t29, t24, -T::fused(-t26, t22, t30 * t23)) + t31;
+        let t33 = t28 - t27;
+        let t34 = t10 + t9;
+        let t35 = k(0.5) - T::fused(arm_e1, arm_e1, t14);
+        let t36 = T::fused(
+            -k(0.5),
+            T::fused(t35, t8, T::fused(-t33, t2, t34 * t13)),
+            T::fused(t35, t19, -T::fused(-t33, t16, t34 * t20)),
         );
-        let t38 = T::fused(t37, t36, T::fused(-t17, t16, t29 * t28));
-        let t39 = T::fused(
-            -arm_e0,
-            block_e3,
-            T::fused(arm_e1, block_e2, T::fused(-arm_e2, block_e1, arm_e3 * block_e0)),
-        );
-        let t40 = T::fused(
-            -arm_e1,
-            block_e3,
-            T::fused(-arm_e0, block_e2, T::fused(arm_e3, block_e1, arm_e2 * block_e0)),
-        );
-        let t41 = T::fused(
+        let t37 = T::fused(t35, t24, T::fused(t33, t22, t34 * t23)) + t36;
+        let t38 = k(2.0) * (t37 + T::fused(-k(0.5), t25, t32));
+        let t39 = turn0.cos();
+        let t40 = T::fused(-k(2.0), t37 + t25, t32);
+        let t41 = turn0.sin();
+        let t42 = (k(0.8888888888888888) * T::fused(-t41, t38, t39 * t40))
+            .atan2(k(0.8888888888888888) * T::fused(t39, t38, t41 * t40));
+        let t43 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
+        let t44 = T::fused(k(0.5), arm_e2, -(arm_e1 + arm_e3));
+        let t45 = k(0.6666666666666666) * t44;
+        let t46 = (arm_e0 - t45) * (arm_e0 + t45);
+        let t47 = arm_e0 * t44;
+        let t48 = T::fused(
             arm_e2,
             block_e3,
             T::fused(-arm_e3, block_e2, T::fused(-arm_e0, block_e1, arm_e1 * block_e0)),
         );
-        let t42 = T::fused(
-            k(0.6666666666666666),
-            t39,
-            T::fused(k(0.6666666666666666), t40, k(0.3333333333333333) * t41),
-        );
-        let t43 = k(2.0) * t42;
-        let t44 = T::fused(-t42, t43, k(1.0));
-        let t45 = T::fused(
-            -k(1.3333333333333333),
-            t7,
-            T::fused(-k(1.3333333333333333), t1, k(0.6666666666666666) * t4),
-        );
-        let t46 = T::fused(
-            k(1.3333333333333333),
-            t22,
-            T::fused(-k(1.3333333333333333), t18, k(0.6666666666666666) * t19),
-        );
-        let t47 = T::fused(
-            k(1.3333333333333333),
-            t32,
-            T::fused(k(1.3333333333333333), t30, k(0.6666666666666666) * t31),
-        );
-        let t48 = T::fused(t47, t36, -T::fused(-t45, t16, t46 * t28));
         let t49 = T::fused(
+            -arm_e1,
+            block_e3,
+            T::fused(-arm_e0, block_e2, T::fused(arm_e3, block_e1, arm_e2 * block_e0)),
+        );
+        let t50 = T::fused(
+            -arm_e0,
+            block_e3,
+            T::fused(arm_e1, block_e2, T::fused(-arm_e2, block_e1, arm_e3 * block_e0)),
+        );
+        let t51 = t50 + T::fused(k(0.5), t48, t49);
+        let t52 = T::fused(
             arm_e3,
             block_e3,
             T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
         );
-        let t50 = t49 * t43;
-        let t51 = T::fused(
-            k(0.9521072796934866),
-            T::fused(-k(12.072434607645874), t48, t50),
-            T::fused(-k(4.022988505747127), t38 + k(1.7985714285714285), t44),
+        let t53 = t52 * t51;
+        let t54 = T::fused(
+            k(46.4),
+            t53 * T::fused(-k(0.6535759897828863), k(0.5937957987298486) + t46, t47),
+            T::fused(k(45.0), turn0 + t42, t43),
         );
-        let t52 = T::fused(
-            k(0.6666666666666666),
-            arm_e3,
-            T::fused(-k(0.3333333333333333), arm_e2, k(0.6666666666666666) * arm_e1),
-        );
-        let t53 = k(2.0) * t52;
-        let t54 = T::fused(-t52, t53, k(1.0));
-        let t55 = T::fused(
-            k(5.202735710796287),
-            t38,
-            -T::fused(
-                k(7.327796775769419),
-                t48,
-                -T::fused(-k(0.1956521739130435), t50 + k(9.549313358302122), t44),
-            ),
-        );
-        let t56 = arm_e0 * t53;
-        let t57 = k(0.6666666666666666) * arm_wz;
-        let t58 = T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx)
-            + t57
-            - T::fused(
-                k(0.6666666666666666),
-                block_wz,
-                T::fused(
-                    k(0.6666666666666666),
-                    block_wy,
-                    k(0.3333333333333333) * block_wx,
-                ),
-            );
-        let t59 = T::fused(k(0.027555555555555555), t44, k(0.012444444444444444) * t50);
-        let t60 = T::fused(-k(0.012444444444444444), t44, k(0.027555555555555555) * t50);
+        let t55 = k(0.6666666666666666) * t51;
+        let t56 = (t52 - t55) * (t52 + t55);
+        let t57 = T::fused(-k(0.3387096774193548), t56, t53);
+        let t58 = T::fused(-t29, arm_wy, t11 * arm_wz);
+        let t59 = T::fused(t29, arm_wx, t35 * arm_wz);
+        let t60 = T::fused(t11, arm_wx, t35 * arm_wy);
         let t61 = T::fused(
-            -t38,
-            t59,
+            k(5.0),
+            block_sx,
+            t60 - (t59 + T::fused(k(5.0), arm_sx, k(2.0) * t58)),
+        );
+        let t62 = T::fused(
+            k(0.5),
+            T::fused(t19, block_wx, t24 * block_wz),
+            T::fused(k(0.3), T::fused(-t19, block_wy, t8 * block_wz), t61),
+        );
+        let t63 = T::fused(t8, block_wx, t24 * block_wy) + t62;
+        let t64 = T::fused(-k(0.5), t29, t35 + t11);
+        let t65 = T::fused(
+            k(5.0),
+            arm_rx,
             T::fused(
-                k(0.010245185185185185),
-                t50,
-                T::fused(k(0.002191111111111111), t44, t48 * t60),
+                k(0.3),
+                t24,
+                -T::fused(k(0.5), t8, -T::fused(-k(5.0), block_rx, t19)),
             ),
         );
-        let t62 = k(2.4442567567567566)
-            - T::fused(
-                k(0.5777027027027027),
-                t50,
-                -T::fused(
-                    k(1.0135135135135136),
-                    t38,
-                    -T::fused(-k(10.135135135135135), t48, t44),
-                ),
-            );
-        let t63 = k(2.0) * t33;
-        let t64 = k(2.0) * t34;
-        let t65 = k(2.0) * t35;
-        let t66 = T::fused(
-            -k(0.05),
-            T::fused(t63, block_wz, t65 * block_wx),
-            k(0.03) * T::fused(t64, block_wz, t65 * block_wy),
-        );
-        let t67 = k(2.0) * t30;
-        let t68 = k(2.0) * t31;
-        let t69 = T::fused(-t67, arm_wy, t68 * arm_wx);
-        let t70 = k(2.0) * t32;
-        let t71 = T::fused(t67, arm_wz, t70 * arm_wx);
-        let t72 = T::fused(t68, arm_wz, t70 * arm_wy);
-        let t73 = arm_sz + T::fused(-k(0.1), t69, T::fused(-k(0.1), t71, k(0.2) * t72))
-            - (block_sz
-                + T::fused(k(0.1), T::fused(-t63, block_wy, t64 * block_wx), t66));
-        let t74 = T::fused(
-            -t47,
-            t73,
-            t36
-                * T::fused(
-                    k(0.6666666666666666),
-                    t69,
-                    T::fused(-k(0.3333333333333333), t71, k(0.6666666666666666) * t72),
-                ),
-        );
-        let t75 = k(2.0) * t23;
-        let t76 = k(2.0) * t24;
-        let t77 = k(2.0) * t27;
-        let t78 = T::fused(
-            -k(0.05),
-            T::fused(-t75, block_wz, t77 * block_wx),
-            k(0.03) * T::fused(t76, block_wz, t77 * block_wy),
-        );
-        let t79 = k(2.0) * t18;
-        let t80 = k(2.0) * t19;
-        let t81 = T::fused(t79, arm_wy, t80 * arm_wx);
-        let t82 = k(2.0) * t22;
-        let t83 = T::fused(-t79, arm_wz, t82 * arm_wx);
-        let t84 = T::fused(t80, arm_wz, t82 * arm_wy);
-        let t85 = arm_sy - T::fused(-k(0.1), t81, T::fused(-k(0.1), t83, k(0.2) * t84))
-            - (block_sy
-                - T::fused(k(0.1), T::fused(t75, block_wy, t76 * block_wx), t78));
-        let t86 = T::fused(
-            -t46,
-            t85,
-            t28
-                * T::fused(
-                    k(0.6666666666666666),
-                    t81,
-                    T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * t84),
-                ),
-        );
-        let t87 = k(2.0) * t9;
-        let t88 = k(2.0) * t12;
-        let t89 = k(2.0) * t15;
-        let t90 = T::fused(
-            -k(0.05),
-            T::fused(t87, block_wz, t89 * block_wx),
-            k(0.03) * T::fused(-t88, block_wz, t89 * block_wy),
-        );
-        let t91 = k(2.0) * t1;
-        let t92 = k(2.0) * t4;
-        let t93 = T::fused(t91, arm_wy, t92 * arm_wx);
-        let t94 = k(2.0) * t7;
-        let t95 = T::fused(t91, arm_wz, t94 * arm_wx);
-        let t96 = T::fused(-t92, arm_wz, t94 * arm_wy);
-        let t97 = arm_sx - T::fused(k(0.1), t93, T::fused(-k(0.1), t95, k(0.2) * t96))
-            - (block_sx
-                - T::fused(-k(0.1), T::fused(t87, block_wy, t88 * block_wx), t90));
-        let t98 = T::fused(
-            -t45,
-            t97,
-            t16
-                * T::fused(
-                    k(0.6666666666666666),
-                    t93,
-                    -T::fused(-k(0.3333333333333333), t95, k(0.6666666666666666) * t96),
-                ),
-        );
-        let t99 = t98 - t86 + t74;
-        let t100 = k(0.03106238683127572)
-            + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t48);
-        let t101 = k(0.01146962962962963)
-            + T::fused(k(0.03155555555555556), t38, k(0.06755555555555555) * t48);
-        let t102 = T::fused(
-            -t50,
-            t100,
-            t44
-                * T::fused(
-                    k(0.005428148148148148),
-                    T::fused(k(2.7249211547792336), t50, t44),
-                    t101,
-                ),
-        );
-        let t103 = k(0.002714074074074074) - t102;
-        let t104 = T::fused(-k(0.11851851851851852), t48, k(0.0066172839506172835));
-        let t105 = T::fused(
-            k(0.2518518518518518),
-            t38,
+        let t66 = T::fused(k(2.0), t35, -(t11 + (t29 + t65)));
+        let t67 = T::fused(k(2.0), t64 * t63, t66 * T::fused(k(2.0), t59 - t58, t60));
+        let t68 = T::fused(t30, arm_wy, t15 * arm_wz);
+        let t69 = T::fused(-t30, arm_wx, t34 * arm_wz);
+        let t70 = T::fused(t15, arm_wx, t34 * arm_wy);
+        let t71 = T::fused(
+            k(5.0),
+            arm_ry,
             -T::fused(
-                k(0.0004938271604938272),
-                t44,
-                T::fused(k(0.03155555555555556), t50, t104),
+                k(0.3),
+                t23,
+                -T::fused(k(0.5), t13, T::fused(-k(5.0), block_ry, t20)),
             ),
         );
-        let t106 = T::fused(
-            t37,
-            t73,
-            t36
+        let t72 = T::fused(k(2.0), t34, -(t15 - (t30 + t71)));
+        let t73 = T::fused(
+            -k(5.0),
+            block_sy,
+            t70 - (t69 + T::fused(-k(5.0), arm_sy, k(2.0) * t68)),
+        );
+        let t74 = T::fused(
+            k(0.5),
+            T::fused(-t20, block_wx, t23 * block_wz),
+            T::fused(k(0.3), T::fused(t20, block_wy, t13 * block_wz), t73),
+        );
+        let t75 = T::fused(t13, block_wx, t23 * block_wy) + t74;
+        let t76 = T::fused(k(0.5), t30, t34 + t15);
+        let t77 = T::fused(
+            k(2.0),
+            t76 * t75,
+            T::fused(t72, T::fused(k(2.0), t69 - t68, t70), t67),
+        );
+        let t78 = T::fused(t26, arm_wy, t5 * arm_wz);
+        let t79 = T::fused(t26, arm_wx, t33 * arm_wz);
+        let t80 = T::fused(-t5, arm_wx, t33 * arm_wy);
+        let t81 = T::fused(
+            k(5.0),
+            arm_rz,
+            -T::fused(k(0.3), t22, T::fused(k(0.5), t2, T::fused(k(5.0), block_rz, t16))),
+        );
+        let t82 = T::fused(k(2.0), t33, t5 - (t26 - t81));
+        let t83 = T::fused(
+            -k(5.0),
+            block_sz,
+            t80 - (t79 - T::fused(k(5.0), arm_sz, k(2.0) * t78)),
+        );
+        let t84 = T::fused(
+            k(0.5),
+            T::fused(t16, block_wx, t22 * block_wz),
+            T::fused(-k(0.3), T::fused(t16, block_wy, t2 * block_wz), t83),
+        );
+        let t85 = T::fused(-t2, block_wx, t22 * block_wy) + t84;
+        let t86 = T::fused(-k(0.5), t26, t33 - t5);
+        let t87 = T::fused(
+            k(2.0),
+            t86 * t85,
+            T::fused(t82, T::fused(k(2.0), t79 + t78, t80), t77),
+        );
+        let t88 = T::fused(k(1.6607142857142858), t56, t53);
+        let t89 = t29 + T::fused(-k(0.5), t11, t35);
+        let t90 = T::fused(
+            T::fused(k(0.5), t69, t70 + t68),
+            t72,
+            -T::fused(-T::fused(k(0.5), t59, t60 + t58), t66, t89 * t63),
+        );
+        let t91 = t30 - T::fused(-k(0.5), t15, t34);
+        let t92 = T::fused(
+            T::fused(k(0.5), t79, t80 - t78),
+            t82,
+            T::fused(t91, t75, t90),
+        );
+        let t93 = t26 + T::fused(k(0.5), t5, t33);
+        let t94 = T::fused(t93, t85, -t92);
+        let t95 = T::fused(t64, t66, T::fused(t86, t82, t76 * t72));
+        let t96 = T::fused(t89, t66, -T::fused(-t93, t82, t91 * t72));
+        let t97 = T::fused(k(0.004222972972972973), t95, t96) - k(0.9961148648648649);
+        let t98 = T::fused(k(0.46710526315789475), t95, t96) - k(0.6366776315789474);
+        let t99 = T::fused(
+            -k(2.3079922027290447),
+            t53 * t97,
+            t56
                 * T::fused(
-                    -k(0.6666666666666666),
-                    t72 + t71,
-                    k(0.3333333333333333) * t69,
+                    -k(0.3013157894736842),
+                    T::fused(k(3.633228206372311), t53, t56),
+                    t98,
                 ),
         );
-        let t107 = T::fused(
-            -t29,
-            t85,
-            t28
-                * T::fused(
-                    -k(0.6666666666666666),
-                    t84 + t83,
-                    k(0.3333333333333333) * t81,
-                ),
+        let t100 = t99 + k(0.1506578947368421);
+        let t101 = T::fused(k(0.5), arm_wy, -(arm_wx + arm_wz));
+        let t102 = T::fused(
+            -k(1.631578947368421),
+            t87 * t57,
+            T::fused(-k(1.4736842105263157), t94 * t88, t101 * t100),
         );
-        let t108 = T::fused(
-            -t17,
-            t97,
-            t16 * T::fused(k(0.6666666666666666), t96 + t95, k(0.3333333333333333) * t93),
+        let t103 = T::fused(
+            k(0.3002469135802469),
+            t101 * t102,
+            -T::fused(
+                k(4.45),
+                t56 * (k(4.966292134831461) + T::fused(k(7.4456928838951315), t47, t46)),
+                -t54,
+            ),
         );
-        let t109 = t108 - t107 + t106;
-        let t110 = t57
-            + T::fused(-k(0.3333333333333333), arm_wy, k(0.6666666666666666) * arm_wx);
-        let t111 = T::fused(
-            t61,
-            t58 * t58,
-            t110
-                * T::fused(
-                    -k(0.11693827160493828),
-                    t99 * t62,
-                    T::fused(-t58, t103, t109 * t105),
-                ),
-        );
-        let t112 = k(2.0) * t110;
-        let t113 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t67, t63, T::fused(t91, t87, t79 * t75)),
-            k(0.3333333333333333) * T::fused(t67, t64, -T::fused(t91, t88, t79 * t76)),
-        );
-        let t114 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t67, t65, -T::fused(-t91, t89, t79 * t77)),
-            t113,
-        );
-        let t115 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t68, t63, -T::fused(t92, t87, t80 * t75)),
-            k(0.3333333333333333) * T::fused(t68, t64, T::fused(t80, t76, t92 * t88)),
-        );
-        let t116 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t68, t65, -T::fused(-t80, t77, t92 * t89)),
-            t115,
-        );
-        let t117 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t70, t63, -T::fused(-t94, t87, t82 * t75)),
-            k(0.3333333333333333) * T::fused(t70, t64, -T::fused(-t82, t76, t94 * t88)),
-        );
-        let t118 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t70, t65, T::fused(t82, t77, t94 * t89)),
-            t117,
-        );
-        let t119 = T::fused(
-            k(0.6666666666666666),
-            t118,
-            T::fused(k(0.6666666666666666), t114, k(0.3333333333333333) * t116),
-        );
-        let t120 = turn0.cos();
-        let t121 = T::fused(
-            k(0.6666666666666666),
-            t116 - t114,
-            k(0.3333333333333333) * t118,
-        );
-        let t122 = turn0.sin();
-        let t123 = T::fused(-t122, t119, t120 * t121)
-            .atan2(T::fused(t120, t119, t122 * t121));
-        let t124 = T::fused(
-            k(0.348),
-            t50 * T::fused(k(0.8714346530438485), t54 + k(0.5937957987298486), t56),
-            T::fused(-k(0.6), turn0 + t123, k(0.02) * t58),
-        );
-        let t125 = T::fused(
-            -T::fused(k(0.25), t110 * t103, -T::fused(-t109, t60, t99 * t59)),
-            t112,
+        let t104 = T::fused(
+            -k(0.43188007615742413),
+            t96 * t88,
             T::fused(
-                k(0.3313333333333333),
-                t44
-                    * T::fused(
-                        k(0.1790744466800805),
-                        t54,
-                        -(t56 - k(0.8893360160965795)),
-                    ),
-                t124,
+                -k(0.9563058829200106),
+                t95 * t57,
+                T::fused(-k(0.2851565324271564), t53, t56),
             ),
+        );
+        let t105 = k(1.4335912081555926) - t104;
+        let t106 = T::fused(
+            k(708.1428571428571),
+            t95,
+            T::fused(k(104.74613095238095), t46, T::fused(t88, t103, k(123.925) * t47)),
+        );
+        let t107 = t96 + k(0.209375);
+        let t108 = T::fused(
+            k(0.007352941176470588),
+            t56,
+            T::fused(
+                k(0.6264705882352941),
+                t53,
+                T::fused(k(0.47058823529411764), t107, t95),
+            ),
+        );
+        let t109 = t43 * T::fused(-k(1.125), t43, t101);
+        let t110 = T::fused(
+            k(2.1681410934744267),
+            t57 * t109,
+            T::fused(
+                k(6.294603174603175),
+                t101 * T::fused(-k(0.1574074074074074), t101 * t108, t94),
+                t106,
+            ),
+        );
+        let t111 = k(67.86369047619047) + t110;
+        let t112 = k(1.0) / T::fused(t88, t88, -k(14.22608418367347));
+        let t113 = T::fused(
+            -k(6.143962320666825),
+            t96,
+            T::fused(-k(1.4335912081555926), t88, t88 * t105),
+        ) + k(5.894363851389735);
+        let t114 = t113 * t112;
+        let t115 = t88 * t57;
+        let t116 = t112 * t115;
+        let t117 = T::fused(
+            k(199.8790322580645),
+            t96,
+            T::fused(k(6.396129032258065), t94, T::fused(-t57, t103, t116 * t111)),
+        );
+        let t118 = k(2.4442567567567566)
+            - T::fused(
+                k(2.7027027027027026),
+                t96,
+                t56 + T::fused(k(0.7702702702702703), t53, k(0.2702702702702703) * t95),
+            );
+        let t119 = T::fused(
+            k(1.4213620071684587),
+            t101 * T::fused(-k(0.5481481481481482), t101 * t118, t87),
+            T::fused(
+                k(66.6263440860215),
+                t46,
+                -T::fused(k(159.90322580645162), t47, t117),
+            ),
+        );
+        let t120 = k(11.326478494623656)
+            - T::fused(k(0.4422015133412983), t88 * t109, -t119);
+        let t121 = k(1.0) / (k(2.9014698231009364) - T::fused(-t115, t116, t57 * t57));
+        let t122 = T::fused(
+            k(2.7746926609463083),
+            t95,
+            T::fused(k(1.4335912081555926), t57, -T::fused(-t113, t116, t57 * t105)),
+        );
+        let t123 = k(1.5260809635204695) + t122;
+        let t124 = t123 * t121;
+        let t125 = T::fused(
+            -k(3.4823529411764707),
+            t94 * t118,
+            T::fused(-k(1.3411764705882352), t43 * t100, t87 * t108),
         );
         let t126 = T::fused(
-            -t48,
-            t59,
+            k(1.4442104022900784),
+            t101 * t125,
+            -T::fused(-t105, t103, T::fused(t114, t111, t124 * t120)),
+        );
+        let t127 = T::fused(
+            k(0.3239100571180681),
+            t95 * t88,
             T::fused(
-                -t38,
-                t60,
-                T::fused(
-                    k(0.002191111111111111),
-                    t50,
-                    T::fused(-k(0.010245185185185185), t44, k(0.014687407407407408)),
-                ),
+                k(0.16040054949027546),
+                t56,
+                T::fused(-k(0.7172294121900079), t96 * t57, t53),
             ),
         );
-        let t127 = k(30.26023804720597) * t126;
         let t128 = T::fused(
-            t127,
-            t125,
-            -T::fused(
-                k(0.348),
-                t54 * t51,
-                T::fused(-k(0.3032592592592593), t56 * t55, t111),
+            k(0.2608695652173913),
+            t53 + k(7.161985018726591),
+            -(t56 + T::fused(-k(1.3873961895456766), t95, k(1.9540791402051783) * t96)),
+        );
+        let t129 = T::fused(
+            k(97.8187067698166),
+            t47 * t128,
+            -T::fused(k(1.4687407407407407), t43 * t43 * t127, t126),
+        );
+        let t130 = T::fused(
+            k(1.0727969348659003),
+            t95 - k(6.744642857142857),
+            T::fused(
+                k(1.2694763729246488),
+                T::fused(k(2.414486921529175), t96, t53),
+                t56,
             ),
         );
-        let t129 = t58 * T::fused(-k(2.25), t58, t112);
-        let t130 = k(0.5333333333333333) * t110;
         let t131 = T::fused(
-            T::fused(k(0.9375), t110 * t105, t99),
-            t130,
-            T::fused(
-                -k(40.0),
-                t38,
-                T::fused(
-                    k(1.5777777777777777),
-                    t54,
-                    T::fused(-k(1.4), t56, k(1.0222222222222221)),
-                ),
-            ),
+            k(7.562346507630108),
+            t53 * T::fused(-k(0.1506578947368421), t56, t98),
+            -T::fused(t105, t105, -T::fused(-t123, t124, t113 * t114)),
         );
-        let t132 = k(68.08553560621344) * t59;
-        let t133 = T::fused(t132, t125, -T::fused(t60, t129, t131));
-        let t134 = T::fused(
-            t132,
-            t126,
-            -(t59 - T::fused(k(0.26666666666666666), t48, k(0.06822222222222223))),
+        let t132 = T::fused(
+            k(2.819295847142804),
+            t95 * T::fused(k(0.9411764705882353), t107, t95),
+            T::fused(k(13.267274574789663), t96 * (t96 - k(1.80875)), t131),
         );
-        let t135 = k(1.0) / T::fused(-t132, k(2.25) * t59, k(0.6));
-        let t136 = t135 * t134;
-        let t137 = T::fused(
-            k(0.8),
-            t99,
-            T::fused(
-                k(25.0),
-                t48,
-                T::fused(
-                    k(2.2222222222222223),
-                    t54,
-                    T::fused(k(4.0), t56, k(0.37777777777777777)),
-                ),
-            ),
-        );
-        let t138 = T::fused(
-            -t59,
-            t129,
-            T::fused(-t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
-        );
-        let t139 = k(68.08553560621344) * t60;
-        let t140 = k(2.25) * t60;
-        let t141 = t132 * t140;
-        let t142 = t135 * t141;
-        let t143 = T::fused(t142, t133, T::fused(t139, t125, -t138));
-        let t144 = T::fused(
-            t142,
-            t134,
-            T::fused(
-                t139,
-                t126,
-                -(t60 + T::fused(-k(0.26666666666666666), t38, k(0.03911111111111111))),
-            ),
-        );
-        let t145 = k(1.0) / T::fused(t141, t142, -T::fused(-t140, t139, k(0.6)));
-        let t146 = t145 * t144;
-        let t147 = T::fused(
-            k(0.5925925925925926),
-            t48 * (t48 + k(0.48233333333333334)),
-            T::fused(
-                -t50,
-                T::fused(k(0.002714074074074074), t44, t101),
-                k(0.3062334156378601),
-            ),
-        );
-        let t148 = T::fused(
-            -t44,
-            T::fused(-k(0.007395637860082305), t44, t100),
-            T::fused(t38, T::fused(k(0.1259259259259259), t38, -t104), t147),
-        );
-        let t149 = T::fused(t146, t143, -T::fused(t136, t133, t128))
-            / T::fused(t144, t146, -T::fused(t134, t136, T::fused(t126, t127, -t148)));
-        let t150 = T::fused(-t145, t143, t146 * t149);
-        let t151 = T::fused(t142, t150, -T::fused(-t135, t133, t136 * t149));
-        let t152 = T::fused(
-            t132,
-            t151,
-            T::fused(t139, t150, -T::fused(-k(30.26023804720597), t125, t127 * t149)),
-        );
-        *out = [t149, t150, t151, t152];
+        let t133 = T::fused(k(84.18764369893717), t46 * t130, -t129)
+            / (k(96.41411353965741)
+                + T::fused(
+                    k(9.817783185344352),
+                    t56 * T::fused(k(0.23716480152027028), t56, t97),
+                    t132,
+                ));
+        let t134 = T::fused(-t121, t120, t124 * t133);
+        let t135 = T::fused(-t112, t111, T::fused(-t114, t133, t116 * t134));
+        let t136 = k(0.40346984062941293)
+            * (t103 + T::fused(t105, t133, T::fused(-t57, t134, t88 * t135)));
+        *out = [
+            k(1.301424336635095) * t133,
+            k(0.16129032258064516) * t134,
+            -(k(0.35714285714285715) * t135),
+            -t136,
+        ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 914 operations (397 ±, 514 ×, 3 ÷) and 3 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 895 operations (398 ±, 494 ×, 3 ÷) and 3 functions.
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -7584,136 +6710,118 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let block_wz = y[25];
         let turn0 = y[27];
         let (
-            t63,
-            t64,
-            t65,
-            t67,
-            t68,
-            t70,
-            t75,
-            t76,
-            t77,
-            t79,
-            t80,
-            t82,
-            t87,
-            t88,
-            t89,
-            t91,
-            t92,
-            t94,
-            t125,
-            t127,
-            t132,
-            t139,
-            t149,
-            t154,
-            t157,
+            t2,
+            t5,
+            t8,
+            t11,
+            t13,
+            t15,
+            t16,
+            t19,
+            t20,
+            t22,
+            t23,
+            t24,
+            t26,
+            t29,
+            t30,
+            t33,
+            t34,
+            t35,
+            t138,
+            t141,
+            t142,
+            t145,
+            t146,
+            t148,
+            t156,
             t159,
-            t160,
-            t161,
             t162,
+            t164,
+            t166,
             t167,
-            t168,
-            t170,
-            t173,
+            t169,
             t174,
-            t175,
-            t180,
-            t183,
-            t184,
+            t178,
+            t181,
             t185,
             t186,
             t188,
             t189,
-            t190,
             t191,
-            t192,
-            t193,
             t194,
-            t195,
-            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = arm_e0 * arm_e0;
-            let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
-            let t2 = arm_e0 * arm_e3;
-            let t3 = arm_e1 * arm_e2;
-            let t4 = t3 - t2;
-            let t5 = arm_e0 * arm_e2;
-            let t6 = arm_e1 * arm_e3;
-            let t7 = t6 + t5;
-            let t8 = block_e0 * block_e0;
-            let t9 = k(0.5) - T::fused(block_e1, block_e1, t8);
-            let t10 = block_e0 * block_e3;
-            let t11 = block_e1 * block_e2;
-            let t12 = t11 - t10;
-            let t13 = block_e0 * block_e2;
-            let t14 = block_e1 * block_e3;
-            let t15 = t14 + t13;
-            let t16 = block_rx
-                - T::fused(k(0.2), t15, -T::fused(-k(0.06), t9, k(0.1) * t12))
-                - (arm_rx + T::fused(k(0.2), t7, T::fused(-k(0.4), t1, k(0.2) * t4)));
-            let t17 = T::fused(
-                -k(0.6666666666666666),
-                t7,
-                k(1.3333333333333333) * (t1 + t4),
+            let t0 = block_e0 * block_e1;
+            let t1 = block_e2 * block_e3;
+            let t2 = t1 + t0;
+            let t3 = arm_e0 * arm_e1;
+            let t4 = arm_e2 * arm_e3;
+            let t5 = t4 + t3;
+            let t6 = block_e0 * block_e3;
+            let t7 = block_e1 * block_e2;
+            let t8 = t7 - t6;
+            let t9 = arm_e0 * arm_e3;
+            let t10 = arm_e1 * arm_e2;
+            let t11 = t10 - t9;
+            let t12 = block_e0 * block_e0;
+            let t13 = k(0.5) - T::fused(block_e2, block_e2, t12);
+            let t14 = arm_e0 * arm_e0;
+            let t15 = k(0.5) - T::fused(arm_e2, arm_e2, t14);
+            let t16 = k(0.5) - T::fused(block_e3, block_e3, t12);
+            let t17 = block_e0 * block_e2;
+            let t18 = block_e1 * block_e3;
+            let t19 = t18 + t17;
+            let t20 = t1 - t0;
+            let t21 = T::fused(
+                k(0.5),
+                T::fused(t15, t13, T::fused(t5, t2, t11 * t8)),
+                T::fused(t15, t20, -T::fused(-t5, t16, t11 * t19)),
             );
-            let t18 = t3 + t2;
-            let t19 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
-            let t20 = arm_e0 * arm_e1;
-            let t21 = arm_e2 * arm_e3;
-            let t22 = t21 - t20;
-            let t23 = t11 + t10;
-            let t24 = k(0.5) - T::fused(block_e2, block_e2, t8);
-            let t25 = block_e0 * block_e1;
-            let t26 = block_e2 * block_e3;
-            let t27 = t26 - t25;
-            let t28 = block_ry
-                - T::fused(k(0.2), t27, T::fused(-k(0.06), t23, k(0.1) * t24))
-                - (arm_ry
-                    + T::fused(k(0.2), t22, -T::fused(-k(0.4), t18, k(0.2) * t19)));
-            let t29 = T::fused(
-                k(0.6666666666666666),
-                t22,
-                k(1.3333333333333333) * (t18 + t19),
+            let t22 = t18 - t17;
+            let t23 = t7 + t6;
+            let t24 = k(0.5) - T::fused(block_e1, block_e1, t12);
+            let t25 = T::fused(t11, t24, T::fused(-t5, t22, t15 * t23)) - t21;
+            let t26 = k(0.5) - T::fused(arm_e3, arm_e3, t14);
+            let t27 = arm_e0 * arm_e2;
+            let t28 = arm_e1 * arm_e3;
+            let t29 = t28 + t27;
+            let t30 = t4 - t3;
+            let t31 = T::fused(
+                k(0.5),
+                T::fused(t30, t13, -T::fused(-t26, t2, t29 * t8)),
+                T::fused(t26, t16, T::fused(t29, t19, t30 * t20)),
             );
-            let t30 = t6 - t5;
-            let t31 = t21 + t20;
-            let t32 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
-            let t33 = t14 - t13;
-            let t34 = t26 + t25;
-            let t35 = k(0.5) - T::fused(block_e3, block_e3, t8);
-            let t36 = block_rz
-                + T::fused(k(0.2), t35, T::fused(k(0.06), t33, k(0.1) * t34))
-                - (arm_rz - T::fused(k(0.2), t32, -T::fused(k(0.4), t30, k(0.2) * t31)));
-            let t37 = T::fused(
-                -k(0.6666666666666666),
-                t32,
-                k(1.3333333333333333) * (t30 - t31),
+            let t32 = T::fused(t29, t24, -T::fused(-t26, t22, t30 * t23)) + t31;
+            let t33 = t28 - t27;
+            let t34 = t10 + t9;
+            let t35 = k(0.5) - T::fused(arm_e1, arm_e1, t14);
+            let t36 = T::fused(
+                -k(0.5),
+                T::fused(t35, t8, T::fused(-t33, t2, t34 * t13)),
+                T::fused(t35, t19, -T::fused(-t33, t16, t34 * t20)),
             );
-            let t38 = T::fused(t37, t36, T::fused(-t17, t16, t29 * t28));
-            let t39 = T::fused(
-                -arm_e0,
-                block_e3,
-                T::fused(
-                    arm_e1,
-                    block_e2,
-                    T::fused(-arm_e2, block_e1, arm_e3 * block_e0),
-                ),
-            );
-            let t40 = T::fused(
-                -arm_e1,
-                block_e3,
-                T::fused(
-                    -arm_e0,
-                    block_e2,
-                    T::fused(arm_e3, block_e1, arm_e2 * block_e0),
-                ),
-            );
-            let t41 = T::fused(
+            let t37 = T::fused(t35, t24, T::fused(t33, t22, t34 * t23)) + t36;
+            let t38 = k(2.0) * (t37 + T::fused(-k(0.5), t25, t32));
+            let t39 = turn0.cos();
+            let t40 = T::fused(-k(2.0), t37 + t25, t32);
+            let t41 = turn0.sin();
+            let t42 = (k(0.8888888888888888) * T::fused(-t41, t38, t39 * t40))
+                .atan2(k(0.8888888888888888) * T::fused(t39, t38, t41 * t40));
+            let t43 = block_wz
+                + (block_wy
+                    + T::fused(
+                        k(0.5),
+                        block_wx,
+                        -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                    ));
+            let t44 = T::fused(k(0.5), arm_e2, -(arm_e1 + arm_e3));
+            let t45 = k(0.6666666666666666) * t44;
+            let t46 = (arm_e0 - t45) * (arm_e0 + t45);
+            let t47 = arm_e0 * t44;
+            let t48 = T::fused(
                 arm_e2,
                 block_e3,
                 T::fused(
@@ -7722,658 +6830,594 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     T::fused(-arm_e0, block_e1, arm_e1 * block_e0),
                 ),
             );
-            let t42 = T::fused(
-                k(0.6666666666666666),
-                t39,
-                T::fused(k(0.6666666666666666), t40, k(0.3333333333333333) * t41),
-            );
-            let t43 = k(2.0) * t42;
-            let t44 = T::fused(-t42, t43, k(1.0));
-            let t45 = T::fused(
-                -k(1.3333333333333333),
-                t7,
-                T::fused(-k(1.3333333333333333), t1, k(0.6666666666666666) * t4),
-            );
-            let t46 = T::fused(
-                k(1.3333333333333333),
-                t22,
-                T::fused(-k(1.3333333333333333), t18, k(0.6666666666666666) * t19),
-            );
-            let t47 = T::fused(
-                k(1.3333333333333333),
-                t32,
-                T::fused(k(1.3333333333333333), t30, k(0.6666666666666666) * t31),
-            );
-            let t48 = T::fused(t47, t36, -T::fused(-t45, t16, t46 * t28));
             let t49 = T::fused(
+                -arm_e1,
+                block_e3,
+                T::fused(
+                    -arm_e0,
+                    block_e2,
+                    T::fused(arm_e3, block_e1, arm_e2 * block_e0),
+                ),
+            );
+            let t50 = T::fused(
+                -arm_e0,
+                block_e3,
+                T::fused(
+                    arm_e1,
+                    block_e2,
+                    T::fused(-arm_e2, block_e1, arm_e3 * block_e0),
+                ),
+            );
+            let t51 = t50 + T::fused(k(0.5), t48, t49);
+            let t52 = T::fused(
                 arm_e3,
                 block_e3,
                 T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
             );
-            let t50 = t49 * t43;
-            let t51 = T::fused(
-                k(0.9521072796934866),
-                T::fused(-k(12.072434607645874), t48, t50),
-                T::fused(-k(4.022988505747127), t38 + k(1.7985714285714285), t44),
+            let t53 = t52 * t51;
+            let t54 = T::fused(
+                k(46.4),
+                t53 * T::fused(-k(0.6535759897828863), k(0.5937957987298486) + t46, t47),
+                T::fused(k(45.0), turn0 + t42, t43),
             );
-            let t52 = T::fused(
-                k(0.6666666666666666),
-                arm_e3,
-                T::fused(-k(0.3333333333333333), arm_e2, k(0.6666666666666666) * arm_e1),
-            );
-            let t53 = k(2.0) * t52;
-            let t54 = T::fused(-t52, t53, k(1.0));
-            let t55 = T::fused(
-                k(5.202735710796287),
-                t38,
-                -T::fused(
-                    k(7.327796775769419),
-                    t48,
-                    -T::fused(-k(0.1956521739130435), t50 + k(9.549313358302122), t44),
-                ),
-            );
-            let t56 = arm_e0 * t53;
-            let t57 = k(0.6666666666666666) * arm_wz;
-            let t58 = T::fused(
-                k(0.6666666666666666),
-                arm_wy,
-                k(0.3333333333333333) * arm_wx,
-            ) + t57
-                - T::fused(
-                    k(0.6666666666666666),
-                    block_wz,
-                    T::fused(
-                        k(0.6666666666666666),
-                        block_wy,
-                        k(0.3333333333333333) * block_wx,
-                    ),
-                );
-            let t59 = T::fused(
-                k(0.027555555555555555),
-                t44,
-                k(0.012444444444444444) * t50,
-            );
-            let t60 = T::fused(
-                -k(0.012444444444444444),
-                t44,
-                k(0.027555555555555555) * t50,
-            );
+            let t55 = k(0.6666666666666666) * t51;
+            let t56 = (t52 - t55) * (t52 + t55);
+            let t57 = T::fused(-k(0.3387096774193548), t56, t53);
+            let t58 = T::fused(-t29, arm_wy, t11 * arm_wz);
+            let t59 = T::fused(t29, arm_wx, t35 * arm_wz);
+            let t60 = T::fused(t11, arm_wx, t35 * arm_wy);
             let t61 = T::fused(
-                -t38,
-                t59,
+                k(5.0),
+                block_sx,
+                t60 - (t59 + T::fused(k(5.0), arm_sx, k(2.0) * t58)),
+            );
+            let t62 = T::fused(
+                k(0.5),
+                T::fused(t19, block_wx, t24 * block_wz),
+                T::fused(k(0.3), T::fused(-t19, block_wy, t8 * block_wz), t61),
+            );
+            let t63 = T::fused(t8, block_wx, t24 * block_wy) + t62;
+            let t64 = T::fused(-k(0.5), t29, t35 + t11);
+            let t65 = T::fused(
+                k(5.0),
+                arm_rx,
                 T::fused(
-                    k(0.010245185185185185),
-                    t50,
-                    T::fused(k(0.002191111111111111), t44, t48 * t60),
+                    k(0.3),
+                    t24,
+                    -T::fused(k(0.5), t8, -T::fused(-k(5.0), block_rx, t19)),
                 ),
             );
-            let t62 = k(2.4442567567567566)
-                - T::fused(
-                    k(0.5777027027027027),
-                    t50,
-                    -T::fused(
-                        k(1.0135135135135136),
-                        t38,
-                        -T::fused(-k(10.135135135135135), t48, t44),
-                    ),
-                );
-            let t63 = k(2.0) * t33;
-            let t64 = k(2.0) * t34;
-            let t65 = k(2.0) * t35;
-            let t66 = T::fused(
-                -k(0.05),
-                T::fused(t63, block_wz, t65 * block_wx),
-                k(0.03) * T::fused(t64, block_wz, t65 * block_wy),
+            let t66 = T::fused(k(2.0), t35, -(t11 + (t29 + t65)));
+            let t67 = T::fused(
+                k(2.0),
+                t64 * t63,
+                t66 * T::fused(k(2.0), t59 - t58, t60),
             );
-            let t67 = k(2.0) * t30;
-            let t68 = k(2.0) * t31;
-            let t69 = T::fused(-t67, arm_wy, t68 * arm_wx);
-            let t70 = k(2.0) * t32;
-            let t71 = T::fused(t67, arm_wz, t70 * arm_wx);
-            let t72 = T::fused(t68, arm_wz, t70 * arm_wy);
-            let t73 = arm_sz
-                + T::fused(-k(0.1), t69, T::fused(-k(0.1), t71, k(0.2) * t72))
-                - (block_sz
-                    + T::fused(k(0.1), T::fused(-t63, block_wy, t64 * block_wx), t66));
+            let t68 = T::fused(t30, arm_wy, t15 * arm_wz);
+            let t69 = T::fused(-t30, arm_wx, t34 * arm_wz);
+            let t70 = T::fused(t15, arm_wx, t34 * arm_wy);
+            let t71 = T::fused(
+                k(5.0),
+                arm_ry,
+                -T::fused(
+                    k(0.3),
+                    t23,
+                    -T::fused(k(0.5), t13, T::fused(-k(5.0), block_ry, t20)),
+                ),
+            );
+            let t72 = T::fused(k(2.0), t34, -(t15 - (t30 + t71)));
+            let t73 = T::fused(
+                -k(5.0),
+                block_sy,
+                t70 - (t69 + T::fused(-k(5.0), arm_sy, k(2.0) * t68)),
+            );
             let t74 = T::fused(
-                -t47,
-                t73,
-                t36
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t69,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t71,
-                            k(0.6666666666666666) * t72,
-                        ),
-                    ),
+                k(0.5),
+                T::fused(-t20, block_wx, t23 * block_wz),
+                T::fused(k(0.3), T::fused(t20, block_wy, t13 * block_wz), t73),
             );
-            let t75 = k(2.0) * t23;
-            let t76 = k(2.0) * t24;
-            let t77 = k(2.0) * t27;
-            let t78 = T::fused(
-                -k(0.05),
-                T::fused(-t75, block_wz, t77 * block_wx),
-                k(0.03) * T::fused(t76, block_wz, t77 * block_wy),
+            let t75 = T::fused(t13, block_wx, t23 * block_wy) + t74;
+            let t76 = T::fused(k(0.5), t30, t34 + t15);
+            let t77 = T::fused(
+                k(2.0),
+                t76 * t75,
+                T::fused(t72, T::fused(k(2.0), t69 - t68, t70), t67),
             );
-            let t79 = k(2.0) * t18;
-            let t80 = k(2.0) * t19;
-            let t81 = T::fused(t79, arm_wy, t80 * arm_wx);
-            let t82 = k(2.0) * t22;
-            let t83 = T::fused(-t79, arm_wz, t82 * arm_wx);
-            let t84 = T::fused(t80, arm_wz, t82 * arm_wy);
-            let t85 = arm_sy
-                - T::fused(-k(0.1), t81, T::fused(-k(0.1), t83, k(0.2) * t84))
-                - (block_sy
-                    - T::fused(k(0.1), T::fused(t75, block_wy, t76 * block_wx), t78));
-            let t86 = T::fused(
-                -t46,
-                t85,
-                t28
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t81,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t83,
-                            k(0.6666666666666666) * t84,
-                        ),
-                    ),
+            let t78 = T::fused(t26, arm_wy, t5 * arm_wz);
+            let t79 = T::fused(t26, arm_wx, t33 * arm_wz);
+            let t80 = T::fused(-t5, arm_wx, t33 * arm_wy);
+            let t81 = T::fused(
+                k(5.0),
+                arm_rz,
+                -T::fused(
+                    k(0.3),
+                    t22,
+                    T::fused(k(0.5), t2, T::fused(k(5.0), block_rz, t16)),
+                ),
             );
-            let t87 = k(2.0) * t9;
-            let t88 = k(2.0) * t12;
-            let t89 = k(2.0) * t15;
+            let t82 = T::fused(k(2.0), t33, t5 - (t26 - t81));
+            let t83 = T::fused(
+                -k(5.0),
+                block_sz,
+                t80 - (t79 - T::fused(k(5.0), arm_sz, k(2.0) * t78)),
+            );
+            let t84 = T::fused(
+                k(0.5),
+                T::fused(t16, block_wx, t22 * block_wz),
+                T::fused(-k(0.3), T::fused(t16, block_wy, t2 * block_wz), t83),
+            );
+            let t85 = T::fused(-t2, block_wx, t22 * block_wy) + t84;
+            let t86 = T::fused(-k(0.5), t26, t33 - t5);
+            let t87 = T::fused(
+                k(2.0),
+                t86 * t85,
+                T::fused(t82, T::fused(k(2.0), t79 + t78, t80), t77),
+            );
+            let t88 = T::fused(k(1.6607142857142858), t56, t53);
+            let t89 = t29 + T::fused(-k(0.5), t11, t35);
             let t90 = T::fused(
-                -k(0.05),
-                T::fused(t87, block_wz, t89 * block_wx),
-                k(0.03) * T::fused(-t88, block_wz, t89 * block_wy),
+                T::fused(k(0.5), t69, t70 + t68),
+                t72,
+                -T::fused(-T::fused(k(0.5), t59, t60 + t58), t66, t89 * t63),
             );
-            let t91 = k(2.0) * t1;
-            let t92 = k(2.0) * t4;
-            let t93 = T::fused(t91, arm_wy, t92 * arm_wx);
-            let t94 = k(2.0) * t7;
-            let t95 = T::fused(t91, arm_wz, t94 * arm_wx);
-            let t96 = T::fused(-t92, arm_wz, t94 * arm_wy);
-            let t97 = arm_sx
-                - T::fused(k(0.1), t93, T::fused(-k(0.1), t95, k(0.2) * t96))
-                - (block_sx
-                    - T::fused(-k(0.1), T::fused(t87, block_wy, t88 * block_wx), t90));
-            let t98 = T::fused(
-                -t45,
-                t97,
-                t16
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t93,
-                        -T::fused(
-                            -k(0.3333333333333333),
-                            t95,
-                            k(0.6666666666666666) * t96,
-                        ),
-                    ),
-            );
-            let t99 = t98 - t86 + t74;
-            let t100 = k(0.03106238683127572)
-                + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t48);
-            let t101 = k(0.01146962962962963)
-                + T::fused(k(0.03155555555555556), t38, k(0.06755555555555555) * t48);
-            let t102 = T::fused(
-                -t50,
-                t100,
-                t44
-                    * T::fused(
-                        k(0.005428148148148148),
-                        T::fused(k(2.7249211547792336), t50, t44),
-                        t101,
-                    ),
-            );
-            let t103 = k(0.002714074074074074) - t102;
-            let t104 = T::fused(-k(0.11851851851851852), t48, k(0.0066172839506172835));
-            let t105 = T::fused(
-                k(0.2518518518518518),
-                t38,
-                -T::fused(
-                    k(0.0004938271604938272),
-                    t44,
-                    T::fused(k(0.03155555555555556), t50, t104),
-                ),
-            );
-            let t106 = T::fused(
-                t37,
-                t73,
-                t36
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t72 + t71,
-                        k(0.3333333333333333) * t69,
-                    ),
-            );
-            let t107 = T::fused(
-                -t29,
-                t85,
-                t28
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t84 + t83,
-                        k(0.3333333333333333) * t81,
-                    ),
-            );
-            let t108 = T::fused(
-                -t17,
-                t97,
-                t16
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t96 + t95,
-                        k(0.3333333333333333) * t93,
-                    ),
-            );
-            let t109 = t108 - t107 + t106;
-            let t110 = t57
-                + T::fused(
-                    -k(0.3333333333333333),
-                    arm_wy,
-                    k(0.6666666666666666) * arm_wx,
-                );
-            let t111 = T::fused(
-                t61,
-                t58 * t58,
-                t110
-                    * T::fused(
-                        -k(0.11693827160493828),
-                        t99 * t62,
-                        T::fused(-t58, t103, t109 * t105),
-                    ),
-            );
-            let t112 = k(2.0) * t110;
-            let t113 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t67, t63, T::fused(t91, t87, t79 * t75)),
-                k(0.3333333333333333)
-                    * T::fused(t67, t64, -T::fused(t91, t88, t79 * t76)),
-            );
-            let t114 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t67, t65, -T::fused(-t91, t89, t79 * t77)),
-                t113,
-            );
-            let t115 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t68, t63, -T::fused(t92, t87, t80 * t75)),
-                k(0.3333333333333333) * T::fused(t68, t64, T::fused(t80, t76, t92 * t88)),
-            );
-            let t116 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t68, t65, -T::fused(-t80, t77, t92 * t89)),
-                t115,
-            );
-            let t117 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t70, t63, -T::fused(-t94, t87, t82 * t75)),
-                k(0.3333333333333333)
-                    * T::fused(t70, t64, -T::fused(-t82, t76, t94 * t88)),
-            );
-            let t118 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t70, t65, T::fused(t82, t77, t94 * t89)),
-                t117,
-            );
-            let t119 = T::fused(
-                k(0.6666666666666666),
-                t118,
-                T::fused(k(0.6666666666666666), t114, k(0.3333333333333333) * t116),
-            );
-            let t120 = turn0.cos();
-            let t121 = T::fused(
-                k(0.6666666666666666),
-                t116 - t114,
-                k(0.3333333333333333) * t118,
-            );
-            let t122 = turn0.sin();
-            let t123 = T::fused(-t122, t119, t120 * t121)
-                .atan2(T::fused(t120, t119, t122 * t121));
-            let t124 = T::fused(
-                k(0.348),
-                t50 * T::fused(k(0.8714346530438485), t54 + k(0.5937957987298486), t56),
-                T::fused(-k(0.6), turn0 + t123, k(0.02) * t58),
-            );
-            let t125 = T::fused(
-                -T::fused(k(0.25), t110 * t103, -T::fused(-t109, t60, t99 * t59)),
-                t112,
-                T::fused(
-                    k(0.3313333333333333),
-                    t44
-                        * T::fused(
-                            k(0.1790744466800805),
-                            t54,
-                            -(t56 - k(0.8893360160965795)),
-                        ),
-                    t124,
-                ),
-            );
-            let t126 = T::fused(
-                -t48,
-                t59,
-                T::fused(
-                    -t38,
-                    t60,
-                    T::fused(
-                        k(0.002191111111111111),
-                        t50,
-                        T::fused(-k(0.010245185185185185), t44, k(0.014687407407407408)),
-                    ),
-                ),
-            );
-            let t127 = k(30.26023804720597) * t126;
-            let t128 = T::fused(
-                t127,
-                t125,
-                -T::fused(
-                    k(0.348),
-                    t54 * t51,
-                    T::fused(-k(0.3032592592592593), t56 * t55, t111),
-                ),
-            );
-            let t129 = t58 * T::fused(-k(2.25), t58, t112);
-            let t130 = k(0.5333333333333333) * t110;
-            let t131 = T::fused(
-                T::fused(k(0.9375), t110 * t105, t99),
-                t130,
-                T::fused(
-                    -k(40.0),
-                    t38,
-                    T::fused(
-                        k(1.5777777777777777),
-                        t54,
-                        T::fused(-k(1.4), t56, k(1.0222222222222221)),
-                    ),
-                ),
-            );
-            let t132 = k(68.08553560621344) * t59;
-            let t133 = T::fused(t132, t125, -T::fused(t60, t129, t131));
-            let t134 = T::fused(
-                t132,
-                t126,
-                -(t59 - T::fused(k(0.26666666666666666), t48, k(0.06822222222222223))),
-            );
-            let t135 = k(1.0) / T::fused(-t132, k(2.25) * t59, k(0.6));
-            let t136 = t135 * t134;
-            let t137 = T::fused(
-                k(0.8),
-                t99,
-                T::fused(
-                    k(25.0),
-                    t48,
-                    T::fused(
-                        k(2.2222222222222223),
-                        t54,
-                        T::fused(k(4.0), t56, k(0.37777777777777777)),
-                    ),
-                ),
-            );
-            let t138 = T::fused(
-                -t59,
-                t129,
-                T::fused(-t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
-            );
-            let t139 = k(68.08553560621344) * t60;
-            let t140 = k(2.25) * t60;
-            let t141 = t132 * t140;
-            let t142 = t135 * t141;
-            let t143 = T::fused(t142, t133, T::fused(t139, t125, -t138));
-            let t144 = T::fused(
-                t142,
-                t134,
-                T::fused(
-                    t139,
-                    t126,
-                    -(t60
-                        + T::fused(-k(0.26666666666666666), t38, k(0.03911111111111111))),
-                ),
-            );
-            let t145 = k(1.0) / T::fused(t141, t142, -T::fused(-t140, t139, k(0.6)));
-            let t146 = t145 * t144;
-            let t147 = T::fused(
-                k(0.5925925925925926),
-                t48 * (t48 + k(0.48233333333333334)),
-                T::fused(
-                    -t50,
-                    T::fused(k(0.002714074074074074), t44, t101),
-                    k(0.3062334156378601),
-                ),
-            );
-            let t148 = T::fused(
-                -t44,
-                T::fused(-k(0.007395637860082305), t44, t100),
-                T::fused(t38, T::fused(k(0.1259259259259259), t38, -t104), t147),
-            );
-            let t149 = T::fused(t146, t143, -T::fused(t136, t133, t128))
-                / T::fused(
-                    t144,
-                    t146,
-                    -T::fused(t134, t136, T::fused(t126, t127, -t148)),
-                );
-            let t150 = k(0.6666666666666666) * t149;
-            let t151 = k(0.6666666666666666) * t110;
-            let t152 = arm_wy * t151;
-            let t153 = k(0.3333333333333333) * t110;
-            let t154 = T::fused(arm_wx, t153, t152) - t150;
-            let t155 = k(0.2) * arm_wz;
-            let t156 = T::fused(k(0.2), arm_wy, k(0.1) * arm_wx);
-            let t157 = T::fused(k(0.1), t154, T::fused(arm_wz, t155, arm_wy * t156));
-            let t158 = k(0.1) * arm_wz;
-            let t159 = T::fused(-k(0.2), t154, T::fused(arm_wx, t156, arm_wz * t158));
-            let t160 = T::fused(arm_wz, t153, t152) + t150;
-            let t161 = T::fused(
-                k(0.3333333333333333),
-                t149,
-                T::fused(-arm_wz, t151, arm_wx * t151),
-            );
-            let t162 = T::fused(-arm_wy, t158, arm_wx * t155)
-                + T::fused(-k(0.1), t160, k(0.2) * t161);
-            let t163 = k(0.6666666666666666) * t48;
-            let t164 = T::fused(k(0.3333333333333333), t38, k(0.1) - t163);
-            let t165 = k(0.6666666666666666) * t38;
-            let t166 = t165 - T::fused(k(0.3333333333333333), t48, k(0.1));
-            let t167 = t157 + T::fused(t164, t161, t166 * t154);
-            let t168 = T::fused(k(0.8888888888888888), t44, k(0.1111111111111111));
-            let t169 = t165 + (k(0.2) + t163);
-            let t170 = t159 - T::fused(t164, t160, t169 * t154);
-            let t171 = k(0.6666666666666666) * t50;
-            let t172 = T::fused(-k(0.2222222222222222), t44, k(0.2222222222222222));
-            let t173 = t172 - t171;
-            let t174 = t162 + T::fused(-t166, t160, t169 * t161);
-            let t175 = t172 + t171;
-            let t176 = T::fused(
-                k(0.6666666666666666),
-                t99,
-                k(0.3333333333333333) * t109,
-            );
-            let t177 = T::fused(
-                k(0.3333333333333333),
-                t99,
-                k(0.6666666666666666) * t109,
-            );
-            let t178 = T::fused(arm_wx, t166, arm_wy * t169);
-            let t179 = T::fused(-arm_wz, t169, arm_wx * t164);
-            let t180 = T::fused(
-                -k(2.0),
-                T::fused(arm_wy, t176, arm_wz * t177),
-                T::fused(-arm_wy, t178, arm_wz * t179),
-            );
-            let t181 = k(0.6666666666666666) * (t99 - t109);
-            let t182 = T::fused(arm_wy, t164, arm_wz * t166);
-            let t183 = T::fused(
-                k(2.0),
-                T::fused(arm_wz, t181, arm_wx * t176),
-                T::fused(arm_wz, t182, arm_wx * t178),
-            );
-            let t184 = T::fused(
-                k(2.0),
-                T::fused(-arm_wx, t177, arm_wy * t181),
-                T::fused(arm_wx, t179, arm_wy * t182),
-            );
-            let t185 = T::fused(k(0.1), block_wx, k(0.03) * block_wz);
-            let t186 = T::fused(-k(0.05), block_wx, k(0.03) * block_wy);
-            let t187 = T::fused(block_wz, t185, block_wy * t186)
-                - T::fused(t175, t184, -T::fused(t168, t180, t173 * t183));
-            let t188 = T::fused(-t145, t143, t146 * t149);
-            let t189 = T::fused(t142, t188, -T::fused(-t135, t133, t136 * t149));
-            let t190 = T::fused(
-                T::fused(
-                    -k(0.6666666666666666),
-                    t173 - t168,
-                    k(0.3333333333333333) * t175,
-                ),
-                t189,
-                -(t187 + T::fused(t175, t174, T::fused(-t168, t167, t173 * t170))),
-            );
-            let t191 = k(0.6666666666666666) * t175;
-            let t192 = T::fused(k(0.5555555555555556), t44, k(0.4444444444444444));
-            let t193 = k(0.3333333333333333) * t50;
-            let t194 = T::fused(-k(0.4444444444444444), t44, k(0.4444444444444444));
-            let t195 = t194 - t193;
-            let t196 = k(0.3333333333333333) * t58;
-            let t197 = k(0.6666666666666666) * t58;
-            let t198 = block_wx * t197;
-            let t199 = T::fused(-block_wz, t196, t198)
-                - T::fused(t195, t154, T::fused(-t175, t160, t192 * t161));
-            (
-                t63,
-                t64,
-                t65,
-                t67,
-                t68,
-                t70,
-                t75,
-                t76,
-                t77,
-                t79,
-                t80,
+            let t91 = t30 - T::fused(-k(0.5), t15, t34);
+            let t92 = T::fused(
+                T::fused(k(0.5), t79, t80 - t78),
                 t82,
-                t87,
-                t88,
-                t89,
-                t91,
-                t92,
-                t94,
-                t125,
-                t127,
-                t132,
-                t139,
-                t149,
-                t154,
-                t157,
+                T::fused(t91, t75, t90),
+            );
+            let t93 = t26 + T::fused(k(0.5), t5, t33);
+            let t94 = T::fused(t93, t85, -t92);
+            let t95 = T::fused(t64, t66, T::fused(t86, t82, t76 * t72));
+            let t96 = T::fused(t89, t66, -T::fused(-t93, t82, t91 * t72));
+            let t97 = T::fused(k(0.004222972972972973), t95, t96)
+                - k(0.9961148648648649);
+            let t98 = T::fused(k(0.46710526315789475), t95, t96) - k(0.6366776315789474);
+            let t99 = T::fused(
+                -k(2.3079922027290447),
+                t53 * t97,
+                t56
+                    * T::fused(
+                        -k(0.3013157894736842),
+                        T::fused(k(3.633228206372311), t53, t56),
+                        t98,
+                    ),
+            );
+            let t100 = t99 + k(0.1506578947368421);
+            let t101 = k(0.5) * arm_wy;
+            let t102 = t101 - (arm_wx + arm_wz);
+            let t103 = T::fused(
+                -k(1.631578947368421),
+                t87 * t57,
+                T::fused(-k(1.4736842105263157), t94 * t88, t102 * t100),
+            );
+            let t104 = T::fused(
+                k(0.3002469135802469),
+                t102 * t103,
+                -T::fused(
+                    k(4.45),
+                    t56
+                        * (k(4.966292134831461)
+                            + T::fused(k(7.4456928838951315), t47, t46)),
+                    -t54,
+                ),
+            );
+            let t105 = T::fused(
+                -k(0.43188007615742413),
+                t96 * t88,
+                T::fused(
+                    -k(0.9563058829200106),
+                    t95 * t57,
+                    T::fused(-k(0.2851565324271564), t53, t56),
+                ),
+            );
+            let t106 = k(1.4335912081555926) - t105;
+            let t107 = T::fused(
+                k(708.1428571428571),
+                t95,
+                T::fused(
+                    k(104.74613095238095),
+                    t46,
+                    T::fused(t88, t104, k(123.925) * t47),
+                ),
+            );
+            let t108 = t96 + k(0.209375);
+            let t109 = T::fused(
+                k(0.007352941176470588),
+                t56,
+                T::fused(
+                    k(0.6264705882352941),
+                    t53,
+                    T::fused(k(0.47058823529411764), t108, t95),
+                ),
+            );
+            let t110 = t43 * T::fused(-k(1.125), t43, t102);
+            let t111 = T::fused(
+                k(2.1681410934744267),
+                t57 * t110,
+                T::fused(
+                    k(6.294603174603175),
+                    t102 * T::fused(-k(0.1574074074074074), t102 * t109, t94),
+                    t107,
+                ),
+            );
+            let t112 = k(67.86369047619047) + t111;
+            let t113 = k(1.0) / T::fused(t88, t88, -k(14.22608418367347));
+            let t114 = T::fused(
+                -k(6.143962320666825),
+                t96,
+                T::fused(-k(1.4335912081555926), t88, t88 * t106),
+            ) + k(5.894363851389735);
+            let t115 = t114 * t113;
+            let t116 = t88 * t57;
+            let t117 = t113 * t116;
+            let t118 = T::fused(
+                k(199.8790322580645),
+                t96,
+                T::fused(k(6.396129032258065), t94, T::fused(-t57, t104, t117 * t112)),
+            );
+            let t119 = k(2.4442567567567566)
+                - T::fused(
+                    k(2.7027027027027026),
+                    t96,
+                    t56
+                        + T::fused(
+                            k(0.7702702702702703),
+                            t53,
+                            k(0.2702702702702703) * t95,
+                        ),
+                );
+            let t120 = T::fused(
+                k(1.4213620071684587),
+                t102 * T::fused(-k(0.5481481481481482), t102 * t119, t87),
+                T::fused(
+                    k(66.6263440860215),
+                    t46,
+                    -T::fused(k(159.90322580645162), t47, t118),
+                ),
+            );
+            let t121 = k(11.326478494623656)
+                - T::fused(k(0.4422015133412983), t88 * t110, -t120);
+            let t122 = k(1.0)
+                / (k(2.9014698231009364) - T::fused(-t116, t117, t57 * t57));
+            let t123 = T::fused(
+                k(2.7746926609463083),
+                t95,
+                T::fused(k(1.4335912081555926), t57, -T::fused(-t114, t117, t57 * t106)),
+            );
+            let t124 = k(1.5260809635204695) + t123;
+            let t125 = t124 * t122;
+            let t126 = T::fused(
+                -k(3.4823529411764707),
+                t94 * t119,
+                T::fused(-k(1.3411764705882352), t43 * t100, t87 * t109),
+            );
+            let t127 = T::fused(
+                k(1.4442104022900784),
+                t102 * t126,
+                -T::fused(-t106, t104, T::fused(t115, t112, t125 * t121)),
+            );
+            let t128 = T::fused(
+                k(0.3239100571180681),
+                t95 * t88,
+                T::fused(
+                    k(0.16040054949027546),
+                    t56,
+                    T::fused(-k(0.7172294121900079), t96 * t57, t53),
+                ),
+            );
+            let t129 = T::fused(
+                k(0.2608695652173913),
+                t53 + k(7.161985018726591),
+                -(t56
+                    + T::fused(-k(1.3873961895456766), t95, k(1.9540791402051783) * t96)),
+            );
+            let t130 = T::fused(
+                k(97.8187067698166),
+                t47 * t129,
+                -T::fused(k(1.4687407407407407), t43 * t43 * t128, t127),
+            );
+            let t131 = T::fused(
+                k(1.0727969348659003),
+                t95 - k(6.744642857142857),
+                T::fused(
+                    k(1.2694763729246488),
+                    T::fused(k(2.414486921529175), t96, t53),
+                    t56,
+                ),
+            );
+            let t132 = T::fused(
+                k(7.562346507630108),
+                t53 * T::fused(-k(0.1506578947368421), t56, t98),
+                -T::fused(t106, t106, -T::fused(-t124, t125, t114 * t115)),
+            );
+            let t133 = T::fused(
+                k(2.819295847142804),
+                t95 * T::fused(k(0.9411764705882353), t108, t95),
+                T::fused(k(13.267274574789663), t96 * (t96 - k(1.80875)), t132),
+            );
+            let t134 = T::fused(k(84.18764369893717), t46 * t131, -t130)
+                / (k(96.41411353965741)
+                    + T::fused(
+                        k(9.817783185344352),
+                        t56 * T::fused(k(0.23716480152027028), t56, t97),
+                        t133,
+                    ));
+            let t135 = arm_wy * t102;
+            let t136 = arm_wx * t102;
+            let t137 = T::fused(
+                k(3.9042730099052854),
+                t134,
+                T::fused(k(2.0), t135, t136),
+            );
+            let t138 = k(0.2222222222222222) * t137;
+            let t139 = arm_wz * arm_wz;
+            let t140 = T::fused(k(2.0), arm_wy, arm_wx);
+            let t141 = T::fused(k(2.0), t139, arm_wy * t140) - t138;
+            let t142 = T::fused(
+                k(0.4444444444444444),
+                t137,
+                T::fused(arm_wx, t140, t139),
+            );
+            let t143 = arm_wz * t102;
+            let t144 = T::fused(k(0.9760682524763213), t134, t143 - t136);
+            let t145 = k(0.4444444444444444) * t144;
+            let t146 = T::fused(
+                -k(1.9521365049526427),
+                t134,
+                T::fused(k(0.5), t143, t135),
+            );
+            let t147 = T::fused(
+                k(0.2222222222222222),
+                t146,
+                t145 + T::fused(-arm_wz, t101, arm_wx * arm_wz),
+            );
+            let t148 = k(2.0) * t147;
+            let t149 = T::fused(-k(4.0), t94, t87);
+            let t150 = t94 - t87;
+            let t151 = k(1.125) - (t96 + t95);
+            let t152 = k(1.125) - T::fused(-k(2.0), t96, t95);
+            let t153 = k(0.5) * T::fused(-k(2.0), arm_wz * t151, arm_wx * t152);
+            let t154 = k(0.5625) + T::fused(-k(0.5), t96, t95);
+            let t155 = T::fused(-arm_wy, t151, arm_wx * t154);
+            let t156 = T::fused(arm_wz, t153, arm_wy * t155)
+                + T::fused(-t101, t149, arm_wz * t150);
+            let t157 = k(4.0) * t53;
+            let t158 = k(1.0) - t56;
+            let t159 = t158 - t157;
+            let t160 = T::fused(-t152, t101, arm_wz * t154);
+            let t161 = T::fused(k(0.5), t87, t94);
+            let t162 = T::fused(
+                k(0.5),
+                T::fused(-k(4.0), arm_wz * t161, arm_wx * t149),
+                -T::fused(arm_wz, t160, arm_wx * t155),
+            );
+            let t163 = t53 + t158;
+            let t164 = T::fused(
+                k(2.0),
+                T::fused(-k(0.5), arm_wx * t150, arm_wy * t161),
+                -T::fused(-arm_wy, t160, arm_wx * t153),
+            );
+            let t165 = k(0.8) + t56;
+            let t166 = k(0.125) + t56;
+            let t167 = t158 + t157;
+            let t168 = T::fused(-t122, t121, t125 * t134);
+            let t169 = T::fused(-t113, t112, T::fused(-t115, t134, t117 * t168));
+            let t170 = t104 + T::fused(t106, t134, T::fused(-t57, t168, t88 * t169));
+            let t171 = block_wz * t43;
+            let t172 = block_wy * t43;
+            let t173 = T::fused(
+                -k(0.2222222222222222),
+                t159 * t144,
+                T::fused(
+                    k(0.1111111111111111),
+                    t167 * t137,
+                    t172 - T::fused(k(0.30260238047205973), t170, t171),
+                ),
+            );
+            let t174 = T::fused(-k(0.8888888888888888), t166 * t146, t173);
+            let t175 = t53 - t158;
+            let t176 = block_wx * t43;
+            let t177 = T::fused(
+                -t175,
+                t137,
+                T::fused(
+                    k(2.25),
+                    t171,
+                    -T::fused(k(2.7234214242485373), t170, k(4.5) * t176),
+                ),
+            );
+            let t178 = T::fused(-t167, t146, T::fused(-k(2.5), t165 * t144, t177));
+            let t179 = T::fused(
+                k(8.064516129032258),
+                (t159 + T::fused(-k(2.5), t165, t163)) * t168,
+                T::fused(-k(7.5), t174, t178),
+            );
+            let t180 = k(0.5) * t159;
+            let t181 = T::fused(k(3.3333333333333335), block_wx, block_wz);
+            let t182 = T::fused(
+                k(10.125),
+                block_wx * t181,
+                -T::fused(
+                    k(22.321428571428573),
+                    T::fused(-k(1.6), t163 - t180, t165) * t169,
+                    t179,
+                ),
+            );
+            let t183 = T::fused(k(0.5), block_wz, block_wy);
+            let t184 = T::fused(
+                -k(26.666666666666668),
+                t163 * t162,
+                T::fused(
+                    -k(33.333333333333336),
+                    t165 * t164,
+                    T::fused(k(33.75), block_wy * t183, t182),
+                ),
+            );
+            let t185 = T::fused(-t154, t146, T::fused(t151, t144, k(2.53125) * t147));
+            let t186 = T::fused(t152, t146, T::fused(t151, t137, k(2.53125) * t142));
+            let t187 = T::fused(
+                k(5.925925925925926),
+                t163 * t186,
+                T::fused(
+                    k(14.814814814814815),
+                    t165 * t185,
+                    -T::fused(-k(13.333333333333334), t159 * t156, t184),
+                ),
+            );
+            let t188 = T::fused(t152, t144, T::fused(t154, t137, k(2.53125) * t141));
+            let t189 = T::fused(k(2.962962962962963), t159 * t188, -t187);
+            let t190 = T::fused(
+                k(0.4589814814814815),
+                t165 * t137,
+                T::fused(
+                    k(1.6523333333333334),
+                    t176,
+                    -T::fused(k(0.8261666666666667), t172, t170),
+                ),
+            );
+            let t191 = T::fused(
+                k(0.36718518518518517),
+                t159 * t146,
+                T::fused(k(0.7343703703703703), t163 * t144, -t190),
+            );
+            let t192 = T::fused(
+                k(5.922341696535245),
+                T::fused(k(0.5), t167, T::fused(k(0.625), t165, t175)) * t168,
+                T::fused(-k(5.507777777777778), t174, t191),
+            );
+            let t193 = T::fused(
+                k(6.556878306878307),
+                T::fused(k(2.5), T::fused(-k(0.4), t167, t165), t175) * t169,
+                -t192,
+            );
+            let t194 = T::fused(-k(1.6666666666666667), block_wx, block_wy);
+            let t195 = T::fused(
+                k(9.791604938271606),
+                t175 * t164,
+                T::fused(
+                    k(3.71775),
+                    block_wx * t194,
+                    -T::fused(k(12.3925), block_wz * t183, -t193),
+                ),
+            );
+            let t196 = T::fused(
+                k(4.3518244170096025),
+                t175 * t185,
+                -T::fused(
+                    k(4.895802469135803),
+                    t167 * t156,
+                    T::fused(k(12.239506172839507), t165 * t162, -t195),
+                ),
+            );
+            let t197 = k(2.7234214242485373)
+                * T::fused(
+                    k(1.0879561042524006),
+                    t167 * t188,
+                    -T::fused(k(2.7198902606310016), t165 * t186, -t196),
+                );
+            let t198 = k(4.0) * t166;
+            let t199 = T::fused(
+                -k(0.7964954201513341),
+                (t167 - t180 - t198) * t168,
+                T::fused(-k(0.44829982292156995), t191, k(0.3292181069958848) * t178),
+            );
+            (
+                t2,
+                t5,
+                t8,
+                t11,
+                t13,
+                t15,
+                t16,
+                t19,
+                t20,
+                t22,
+                t23,
+                t24,
+                t26,
+                t29,
+                t30,
+                t33,
+                t34,
+                t35,
+                t138,
+                t141,
+                t142,
+                t145,
+                t146,
+                t148,
+                t156,
                 t159,
-                t160,
-                t161,
                 t162,
+                t164,
+                t166,
                 t167,
-                t168,
-                t170,
-                t173,
+                t169,
                 t174,
-                t175,
-                t180,
-                t183,
-                t184,
+                t178,
+                t181,
                 t185,
                 t186,
                 t188,
                 t189,
-                t190,
                 t191,
-                t192,
-                t193,
                 t194,
-                t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t202, t205, t206, t212, t213, t217) = {
+        let (t203,) = {
             let t200 = T::fused(
-                t132,
-                t189,
-                T::fused(t139, t188, -T::fused(-k(30.26023804720597), t125, t127 * t149)),
-            );
-            let t201 = k(0.6666666666666666) * t200;
-            let t202 = t201 + t199;
-            let t203 = t194 + t193;
-            let t204 = T::fused(block_wy, t196, -t198)
-                - T::fused(t192, t154, T::fused(-t173, t160, t203 * t161));
-            let t205 = t201 + t204;
-            let t206 = T::fused(k(0.1), t202, k(0.05) * t205)
-                - T::fused(
-                    t191
-                        - T::fused(
-                            k(0.6666666666666666),
-                            t168,
-                            k(0.3333333333333333) * t173,
-                        ),
-                    t188,
-                    t190,
-                );
-            let t207 = T::fused(k(0.05), block_wz, k(0.1) * block_wy);
-            let t208 = T::fused(-block_wx, t186, block_wz * t207)
-                - T::fused(t195, t184, -T::fused(t175, t180, t192 * t183));
-            let t209 = T::fused(
+                block_wy,
+                t194,
                 T::fused(
-                    -k(0.6666666666666666),
-                    t192 - t175,
-                    k(0.3333333333333333) * t195,
+                    k(0.8818342151675485),
+                    T::fused(-k(2.0), t159 - t198, t167) * t169,
+                    t199,
                 ),
-                t189,
-                -(t208 + T::fused(t195, t174, T::fused(-t175, t167, t192 * t170))),
             );
-            let t210 = k(0.3333333333333333) * t192;
-            let t211 = T::fused(-block_wy, t197, block_wz * t197)
-                - T::fused(t175, t154, T::fused(-t168, t160, t173 * t161));
-            let t212 = T::fused(k(0.3333333333333333), t200, t211);
-            let t213 = T::fused(k(0.1), t212, k(0.03) * t205)
-                + T::fused(
-                    T::fused(k(0.6666666666666666), t195, -(t210 + t191)),
-                    t188,
-                    t209,
-                );
-            let t214 = T::fused(block_wy, t207, block_wx * t185)
-                + T::fused(t192, t184, -T::fused(t173, t180, t203 * t183));
-            let t215 = T::fused(
-                T::fused(-k(0.6666666666666666), t203 - t173, t210),
-                t189,
-                t214 - T::fused(t192, t174, T::fused(-t173, t167, t203 * t170)),
-            );
-            let t216 = T::fused(
+            let t201 = T::fused(
+                k(1.316872427983539),
+                t159 * t162,
                 T::fused(
-                    k(0.6666666666666666),
-                    t192,
-                    -T::fused(k(0.6666666666666666), t173, k(0.3333333333333333) * t203),
+                    k(1.316872427983539),
+                    t167 * t164,
+                    T::fused(block_wz, t181, t200),
                 ),
-                t188,
-                t215,
             );
-            let t217 = T::fused(-k(0.05), t212, k(0.03) * t202) - t216;
-            (t202, t205, t206, t212, t213, t217)
+            let t202 = T::fused(
+                k(0.2926383173296754),
+                t159 * t186,
+                T::fused(
+                    k(0.5852766346593508),
+                    t167 * t185,
+                    T::fused(k(5.267489711934156), t166 * t156, t201),
+                ),
+            );
+            let t203 = k(10.125) * T::fused(-k(1.1705532693187015), t166 * t188, t202);
+            (t203,)
         };
         *out = [
-            T::fused(t94, t162, T::fused(t91, t157, t92 * t159)),
-            T::fused(t82, t162, -T::fused(t79, t157, t80 * t159)),
-            T::fused(-t70, t162, T::fused(-t67, t157, t68 * t159)),
-            t160,
-            -t161,
-            -t154,
-            T::fused(t89, t217, -T::fused(t87, t206, t88 * t213)),
-            T::fused(t77, t217, T::fused(t75, t206, t76 * t213)),
-            -T::fused(t65, t217, T::fused(-t63, t206, t64 * t213)),
-            t212,
-            t202,
-            t205,
+            k(0.2) * T::fused(t35, t141, T::fused(t11, t142, t29 * t148)),
+            k(0.2) * T::fused(-t34, t141, T::fused(-t15, t142, t30 * t148)),
+            -(k(0.2) * T::fused(t33, t141, T::fused(-t5, t142, t26 * t148))),
+            -(k(0.4444444444444444) * t146),
+            -t145,
+            t138,
+            -(k(0.005925925925925926)
+                * T::fused(t24, t203, T::fused(t19, t189, t8 * t197))),
+            k(0.005925925925925926)
+                * T::fused(t23, t203, T::fused(-t20, t189, t13 * t197)),
+            k(0.005925925925925926)
+                * T::fused(t22, t203, -T::fused(-t16, t189, t2 * t197)),
+            k(0.4444444444444444) * t174,
+            k(0.09876543209876543) * t178,
+            -(k(0.26897989375294196) * t191),
         ];
     }
-    /// Writes λ: 880 operations (392 ±, 488 ×, 0 ÷) and 3 functions.
+    /// Writes λ: 834 operations (392 ±, 442 ×, 0 ÷) and 3 functions.
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -8421,680 +7465,501 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let block_dwx = accelerations[9];
         let block_dwy = accelerations[10];
         let block_dwz = accelerations[11];
-        let (
-            t14,
-            t15,
-            t18,
-            t19,
-            t22,
-            t23,
-            t27,
+        let t0 = block_e0 * block_e0;
+        let t1 = k(0.5) - T::fused(block_e3, block_e3, t0);
+        let t2 = block_e0 * block_e1;
+        let t3 = block_e2 * block_e3;
+        let t4 = t3 + t2;
+        let t5 = block_e0 * block_e2;
+        let t6 = block_e1 * block_e3;
+        let t7 = t6 - t5;
+        let t8 = t7
+            + T::fused(
+                k(1.6666666666666667),
+                t4,
+                T::fused(k(16.666666666666668), block_rz, k(3.3333333333333335) * t1),
+            );
+        let t9 = arm_e0 * arm_e0;
+        let t10 = k(0.5) - T::fused(arm_e3, arm_e3, t9);
+        let t11 = arm_e0 * arm_e1;
+        let t12 = arm_e2 * arm_e3;
+        let t13 = t12 + t11;
+        let t14 = arm_e0 * arm_e2;
+        let t15 = arm_e1 * arm_e3;
+        let t16 = t15 - t14;
+        let t17 = T::fused(
+            k(2.0),
+            t16,
+            t13 - (t10 - T::fused(-k(0.3), t8, k(5.0) * arm_rz)),
+        );
+        let t18 = T::fused(-k(2.0), t16 - t13, t10);
+        let t19 = t3 - t2;
+        let t20 = k(0.5) - T::fused(block_e2, block_e2, t0);
+        let t21 = block_e0 * block_e3;
+        let t22 = block_e1 * block_e2;
+        let t23 = t22 + t21;
+        let t24 = t23
+            - T::fused(
+                k(1.6666666666666667),
+                t20,
+                T::fused(-k(16.666666666666668), block_ry, k(3.3333333333333335) * t19),
+            );
+        let t25 = t12 - t11;
+        let t26 = k(0.5) - T::fused(arm_e2, arm_e2, t9);
+        let t27 = arm_e0 * arm_e3;
+        let t28 = arm_e1 * arm_e2;
+        let t29 = t28 + t27;
+        let t30 = T::fused(
+            k(2.0),
             t29,
+            -(t26 - (t25 + T::fused(-k(0.3), t24, k(5.0) * arm_ry))),
+        );
+        let t31 = T::fused(k(2.0), t29 + t26, t25);
+        let t32 = t6 + t5;
+        let t33 = t22 - t21;
+        let t34 = k(0.5) - T::fused(block_e1, block_e1, t0);
+        let t35 = t34
+            - T::fused(
+                k(1.6666666666666667),
+                t33,
+                -T::fused(-k(16.666666666666668), block_rx, k(3.3333333333333335) * t32),
+            );
+        let t36 = t15 + t14;
+        let t37 = t28 - t27;
+        let t38 = k(0.5) - T::fused(arm_e1, arm_e1, t9);
+        let t39 = T::fused(
+            k(2.0),
+            t38,
+            -(t37 + (t36 + T::fused(k(0.3), t35, k(5.0) * arm_rx))),
+        );
+        let t40 = T::fused(-k(2.0), t38 + t37, t36);
+        let t41 = T::fused(t40, t39, -T::fused(-t18, t17, t31 * t30));
+        let t42 = k(0.375) + t41;
+        let t43 = k(12.5) * t42;
+        let t44 = t10 + T::fused(k(0.5), t13, t16);
+        let t45 = t25 - T::fused(-k(0.5), t26, t29);
+        let t46 = t36 + T::fused(-k(0.5), t37, t38);
+        let t47 = T::fused(t46, t39, -T::fused(-t44, t17, t45 * t30));
+        let t48 = k(31.25) * t47;
+        let t49 = T::fused(-t36, arm_wy, t37 * arm_wz);
+        let t50 = T::fused(t37, arm_wx, t38 * arm_wy);
+        let t51 = T::fused(t36, arm_wx, t38 * arm_wz);
+        let t52 = T::fused(
+            k(5.0),
+            block_sx,
+            t50 - (t51 + T::fused(k(5.0), arm_sx, k(2.0) * t49)),
+        );
+        let t53 = T::fused(
+            k(0.5),
+            T::fused(t32, block_wx, t34 * block_wz),
+            T::fused(k(0.3), T::fused(-t32, block_wy, t33 * block_wz), t52),
+        );
+        let t54 = T::fused(
+            -T::fused(k(0.5), t51, t50 + t49),
+            t39,
+            t46 * (T::fused(t33, block_wx, t34 * block_wy) + t53),
+        );
+        let t55 = T::fused(t25, arm_wy, t26 * arm_wz);
+        let t56 = T::fused(t26, arm_wx, t29 * arm_wy);
+        let t57 = T::fused(-t25, arm_wx, t29 * arm_wz);
+        let t58 = T::fused(
+            -k(5.0),
+            block_sy,
+            t56 - (t57 + T::fused(-k(5.0), arm_sy, k(2.0) * t55)),
+        );
+        let t59 = T::fused(
+            k(0.5),
+            T::fused(-t19, block_wx, t23 * block_wz),
+            T::fused(k(0.3), T::fused(t19, block_wy, t20 * block_wz), t58),
+        );
+        let t60 = T::fused(
+            t45,
+            T::fused(t20, block_wx, t23 * block_wy) + t59,
+            T::fused(T::fused(k(0.5), t57, t56 + t55), t30, -t54),
+        );
+        let t61 = T::fused(t10, arm_wy, t13 * arm_wz);
+        let t62 = T::fused(-t13, arm_wx, t16 * arm_wy);
+        let t63 = T::fused(t10, arm_wx, t16 * arm_wz);
+        let t64 = T::fused(
+            -k(5.0),
+            block_sz,
+            t62 - (t63 - T::fused(k(5.0), arm_sz, k(2.0) * t61)),
+        );
+        let t65 = T::fused(
+            k(0.5),
+            T::fused(t1, block_wx, t7 * block_wz),
+            T::fused(-k(0.3), T::fused(t1, block_wy, t4 * block_wz), t64),
+        );
+        let t66 = T::fused(
             t44,
-            t46,
-            t47,
-            t49,
-            t50,
-            t54,
-            t56,
-            t67,
-            t69,
-            t70,
-            t72,
-            t73,
-            t77,
-            t79,
-            t83,
-            t88,
-            t90,
-            t92,
-            t93,
-            t95,
-            t96,
-            t98,
-            t99,
-            t126,
-            t129,
-            t138,
-            t147,
-            t148,
-            t151,
-            t154,
-            t160,
-            t162,
-            t164,
-            t166,
-            t168,
-            t169,
-            t170,
-            t171,
-            t172,
-            t177,
-            t178,
-            t186,
-            t188,
-            t189,
-            t190,
-            t191,
-            t192,
-            t193,
-            t194,
-            t195,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = block_e0 * block_e2;
-            let t1 = block_e1 * block_e3;
-            let t2 = t1 - t0;
-            let t3 = k(2.0) * t2;
-            let t4 = block_e0 * block_e1;
-            let t5 = block_e2 * block_e3;
-            let t6 = t5 + t4;
-            let t7 = k(2.0) * t6;
-            let t8 = block_e0 * block_e0;
-            let t9 = k(0.5) - T::fused(block_e3, block_e3, t8);
-            let t10 = k(2.0) * t9;
-            let t11 = T::fused(
-                -k(0.05),
-                T::fused(t3, block_wz, t10 * block_wx),
-                k(0.03) * T::fused(t7, block_wz, t10 * block_wy),
-            );
-            let t12 = arm_e0 * arm_e2;
-            let t13 = arm_e1 * arm_e3;
-            let t14 = t13 - t12;
-            let t15 = k(2.0) * t14;
-            let t16 = arm_e0 * arm_e1;
-            let t17 = arm_e2 * arm_e3;
-            let t18 = t17 + t16;
-            let t19 = k(2.0) * t18;
-            let t20 = T::fused(-t15, arm_wy, t19 * arm_wx);
-            let t21 = arm_e0 * arm_e0;
-            let t22 = k(0.5) - T::fused(arm_e3, arm_e3, t21);
-            let t23 = k(2.0) * t22;
-            let t24 = T::fused(t15, arm_wz, t23 * arm_wx);
-            let t25 = T::fused(t19, arm_wz, t23 * arm_wy);
-            let t26 = arm_sz
-                + T::fused(-k(0.1), t20, T::fused(-k(0.1), t24, k(0.2) * t25))
-                - (block_sz
-                    + T::fused(k(0.1), T::fused(-t3, block_wy, t7 * block_wx), t11));
-            let t27 = k(1.3333333333333333) * t22;
-            let t28 = T::fused(k(1.3333333333333333), t14, k(0.6666666666666666) * t18)
-                + t27;
-            let t29 = k(0.2) * t22;
-            let t30 = block_rz
-                + T::fused(k(0.2), t9, T::fused(k(0.06), t2, k(0.1) * t6));
-            let t31 = t30 - (arm_rz - (t29 - T::fused(k(0.4), t14, k(0.2) * t18)));
-            let t32 = T::fused(
-                -t28,
-                t26,
-                t31
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t20,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t24,
-                            k(0.6666666666666666) * t25,
-                        ),
-                    ),
-            );
-            let t33 = block_e0 * block_e3;
-            let t34 = block_e1 * block_e2;
-            let t35 = t34 + t33;
-            let t36 = k(2.0) * t35;
-            let t37 = k(0.5) - T::fused(block_e2, block_e2, t8);
-            let t38 = k(2.0) * t37;
-            let t39 = t5 - t4;
-            let t40 = k(2.0) * t39;
-            let t41 = T::fused(
-                -k(0.05),
-                T::fused(-t36, block_wz, t40 * block_wx),
-                k(0.03) * T::fused(t38, block_wz, t40 * block_wy),
-            );
-            let t42 = arm_e0 * arm_e3;
-            let t43 = arm_e1 * arm_e2;
-            let t44 = t43 + t42;
-            let t45 = k(2.0) * t44;
-            let t46 = k(0.5) - T::fused(arm_e2, arm_e2, t21);
-            let t47 = k(2.0) * t46;
-            let t48 = T::fused(t45, arm_wy, t47 * arm_wx);
-            let t49 = t17 - t16;
-            let t50 = k(2.0) * t49;
-            let t51 = T::fused(-t45, arm_wz, t50 * arm_wx);
-            let t52 = T::fused(t47, arm_wz, t50 * arm_wy);
-            let t53 = arm_sy
-                - T::fused(-k(0.1), t48, T::fused(-k(0.1), t51, k(0.2) * t52))
-                - (block_sy
-                    - T::fused(k(0.1), T::fused(t36, block_wy, t38 * block_wx), t41));
-            let t54 = k(1.3333333333333333) * t49;
-            let t55 = T::fused(-k(1.3333333333333333), t44, k(0.6666666666666666) * t46)
-                + t54;
-            let t56 = k(0.2) * t49;
-            let t57 = block_ry
-                - T::fused(k(0.2), t39, T::fused(-k(0.06), t35, k(0.1) * t37));
-            let t58 = t57 - (arm_ry + (t56 - T::fused(-k(0.4), t44, k(0.2) * t46)));
-            let t59 = T::fused(
-                -t55,
-                t53,
-                t58
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t48,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t51,
-                            k(0.6666666666666666) * t52,
-                        ),
-                    ),
-            );
-            let t60 = k(0.5) - T::fused(block_e1, block_e1, t8);
-            let t61 = k(2.0) * t60;
-            let t62 = t34 - t33;
-            let t63 = k(2.0) * t62;
-            let t64 = t1 + t0;
-            let t65 = k(2.0) * t64;
-            let t66 = T::fused(
-                -k(0.05),
-                T::fused(t61, block_wz, t65 * block_wx),
-                k(0.03) * T::fused(-t63, block_wz, t65 * block_wy),
-            );
-            let t67 = k(0.5) - T::fused(arm_e1, arm_e1, t21);
-            let t68 = k(2.0) * t67;
-            let t69 = t43 - t42;
-            let t70 = k(2.0) * t69;
-            let t71 = T::fused(t68, arm_wy, t70 * arm_wx);
-            let t72 = t13 + t12;
-            let t73 = k(2.0) * t72;
-            let t74 = T::fused(t68, arm_wz, t73 * arm_wx);
-            let t75 = T::fused(-t70, arm_wz, t73 * arm_wy);
-            let t76 = arm_sx
-                - T::fused(k(0.1), t71, T::fused(-k(0.1), t74, k(0.2) * t75))
-                - (block_sx
-                    - T::fused(-k(0.1), T::fused(t61, block_wy, t63 * block_wx), t66));
-            let t77 = k(1.3333333333333333) * t72;
-            let t78 = T::fused(-k(1.3333333333333333), t67, k(0.6666666666666666) * t69)
-                - t77;
-            let t79 = k(0.2) * t72;
-            let t80 = block_rx
-                - T::fused(k(0.2), t64, -T::fused(-k(0.06), t60, k(0.1) * t62));
-            let t81 = t80 - (arm_rx + (t79 + T::fused(-k(0.4), t67, k(0.2) * t69)));
-            let t82 = T::fused(
-                -t78,
-                t76,
-                t81
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t71,
-                        -T::fused(
-                            -k(0.3333333333333333),
-                            t74,
-                            k(0.6666666666666666) * t75,
-                        ),
-                    ),
-            );
-            let t83 = k(0.8) * (t82 - t59 + t32);
-            let t84 = T::fused(
-                -k(0.6666666666666666),
-                t72,
-                k(1.3333333333333333) * (t67 + t69),
-            );
-            let t85 = T::fused(
-                k(0.6666666666666666),
-                t49,
-                k(1.3333333333333333) * (t44 + t46),
-            );
-            let t86 = T::fused(
-                -k(0.6666666666666666),
-                t22,
-                k(1.3333333333333333) * (t14 - t18),
-            );
-            let t87 = T::fused(t86, t31, T::fused(-t84, t81, t85 * t58));
-            let t88 = k(40.0) * (k(0.05) + t87);
-            let t89 = T::fused(t28, t31, -T::fused(-t78, t81, t55 * t58));
-            let t90 = k(25.0) * t89;
-            let t91 = T::fused(t78, t90, -T::fused(-t78, t83, t84 * t88));
-            let t92 = T::fused(k(0.6), block_dsx, -(k(0.6) - t91));
-            let t93 = t92 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t91));
-            let t94 = T::fused(t55, t90, -T::fused(-t55, t83, t85 * t88));
-            let t95 = T::fused(k(0.6), block_dsy, k(5.4) - t94);
-            let t96 = t95 + T::fused(k(1.5), arm_dsy, k(13.5) + t94);
-            let t97 = T::fused(t28, t90, T::fused(t28, t83, t86 * t88));
-            let t98 = T::fused(k(0.6), block_dsz, -(k(1.8) - t97));
-            let t99 = t98 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t97));
-            let t100 = k(0.005) * block_wz;
-            let t101 = block_wx * block_wx;
-            let t102 = block_wz * block_wz;
-            let t103 = k(0.003) * block_wx;
-            let t104 = k(0.001) * block_wz;
-            let t105 = T::fused(
-                block_wy,
-                t104 + t103,
-                T::fused(-block_wx, t100, k(0.002) * (t102 - t101)),
-            );
-            let t106 = T::fused(t3, t28, -T::fused(t61, t78, t36 * t55));
-            let t107 = T::fused(t10, t28, T::fused(-t65, t78, t40 * t55));
-            let t108 = T::fused(-k(0.1), t106, k(0.03) * t107);
-            let t109 = T::fused(t3, t86, T::fused(t61, t84, t36 * t85));
-            let t110 = T::fused(t10, t86, -T::fused(-t65, t84, t40 * t85));
-            let t111 = T::fused(
-                t90,
-                t108,
-                T::fused(t83, t108, t88 * T::fused(-k(0.1), t109, k(0.03) * t110)),
-            );
-            let t112 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t15, t3, T::fused(t68, t61, t45 * t36)),
-                k(0.3333333333333333) * T::fused(t15, t7, -T::fused(t68, t63, t45 * t38)),
-            );
-            let t113 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t15, t10, -T::fused(-t68, t65, t45 * t40)),
-                t112,
-            );
-            let t114 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t19, t3, -T::fused(t70, t61, t47 * t36)),
-                k(0.3333333333333333) * T::fused(t19, t7, T::fused(t47, t38, t70 * t63)),
-            );
-            let t115 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t19, t10, -T::fused(-t47, t40, t70 * t65)),
-                t114,
-            );
-            let t116 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t23, t3, -T::fused(-t73, t61, t50 * t36)),
-                k(0.3333333333333333)
-                    * T::fused(t23, t7, -T::fused(-t50, t38, t73 * t63)),
-            );
-            let t117 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t23, t10, T::fused(t50, t40, t73 * t65)),
-                t116,
-            );
-            let t118 = T::fused(
-                k(0.6666666666666666),
-                t117,
-                T::fused(k(0.6666666666666666), t113, k(0.3333333333333333) * t115),
-            );
-            let t119 = turn0.cos();
-            let t120 = T::fused(
-                k(0.6666666666666666),
-                t115 - t113,
-                k(0.3333333333333333) * t117,
-            );
-            let t121 = turn0.sin();
-            let t122 = T::fused(-t121, t118, t119 * t120)
-                .atan2(T::fused(t119, t118, t121 * t120));
-            let t123 = turn0 + t122;
-            let t124 = k(0.4) * t123;
-            let t125 = T::fused(
-                k(0.6666666666666666),
-                arm_wz,
-                T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
-            )
-                - T::fused(
-                    k(0.6666666666666666),
-                    block_wz,
-                    T::fused(
-                        k(0.6666666666666666),
-                        block_wy,
-                        k(0.3333333333333333) * block_wx,
-                    ),
-                );
-            let t126 = k(0.013333333333333334) * t125;
-            let t127 = T::fused(
-                -k(0.003),
-                block_dwz,
-                T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
-            ) - (t126 - (t124 + t111) - t105);
-            let t128 = T::fused(
-                T::fused(-k(0.2), t60, k(0.06) * t64),
-                t92,
-                T::fused(k(0.2), t35, k(0.06) * t39) * t95,
-            );
-            let t129 = T::fused(T::fused(-k(0.2), t2, k(0.06) * t9), t98, -t128) - t127;
-            let t130 = T::fused(
-                -arm_e0,
-                block_e3,
-                T::fused(
-                    arm_e1,
-                    block_e2,
-                    T::fused(-arm_e2, block_e1, arm_e3 * block_e0),
-                ),
-            );
-            let t131 = T::fused(
-                -arm_e1,
-                block_e3,
-                T::fused(
-                    -arm_e0,
-                    block_e2,
-                    T::fused(arm_e3, block_e1, arm_e2 * block_e0),
-                ),
-            );
-            let t132 = T::fused(
-                arm_e2,
-                block_e3,
-                T::fused(
-                    -arm_e3,
-                    block_e2,
-                    T::fused(-arm_e0, block_e1, arm_e1 * block_e0),
-                ),
-            );
-            let t133 = T::fused(
-                k(0.6666666666666666),
-                t130,
-                T::fused(k(0.6666666666666666), t131, k(0.3333333333333333) * t132),
-            );
-            let t134 = k(2.0) * t133;
-            let t135 = T::fused(
-                arm_e3,
-                block_e3,
-                T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
-            );
-            let t136 = t135 * t134;
-            let t137 = k(0.3333333333333333) * t136;
-            let t138 = T::fused(-t133, t134, k(1.0));
-            let t139 = T::fused(-k(0.4444444444444444), t138, k(0.4444444444444444));
-            let t140 = block_wy * block_wy;
-            let t141 = k(0.002) * block_wy;
-            let t142 = T::fused(
-                block_wx,
-                t141 - t104,
-                T::fused(-block_wy, t100, k(0.003) * (t102 - t140)),
-            );
-            let t143 = T::fused(t7, t28, T::fused(t63, t78, t38 * t55));
-            let t144 = T::fused(-k(0.05), t107, k(0.1) * t143);
-            let t145 = T::fused(t7, t86, -T::fused(t63, t84, t38 * t85));
-            let t146 = T::fused(
-                t90,
-                t144,
-                T::fused(t83, t144, t88 * T::fused(-k(0.05), t110, k(0.1) * t145)),
-            );
-            let t147 = k(0.2) * t123;
-            let t148 = k(0.006666666666666667) * t125;
-            let t149 = T::fused(
-                k(0.002),
-                block_dwz,
-                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
-            ) - (t148 - (t147 + t146) - t142);
-            let t150 = T::fused(
-                T::fused(k(0.2), t62, k(0.1) * t64),
-                t92,
-                T::fused(-k(0.2), t37, k(0.1) * t39) * t95,
-            );
-            let t151 = T::fused(T::fused(-k(0.2), t6, k(0.1) * t9), t98, -t150) + t149;
-            let t152 = k(0.6666666666666666) * t136;
-            let t153 = T::fused(-k(0.2222222222222222), t138, k(0.2222222222222222));
-            let t154 = t153 + t152;
-            let t155 = T::fused(-k(0.03), t143, k(0.05) * t106);
-            let t156 = T::fused(
-                t155,
-                t90,
-                T::fused(t155, t83, T::fused(-k(0.03), t145, k(0.05) * t109) * t88),
-            );
-            let t157 = T::fused(
-                block_wz,
-                t141 + t103,
-                -T::fused(-k(0.001), t140 - t101, k(0.01) * (block_wx * block_wy)),
-            );
-            let t158 = T::fused(
-                k(0.025),
-                block_dwz,
-                T::fused(-k(0.003), block_dwy, k(0.002) * block_dwx),
-            ) - (t157 + (t126 - (t124 - t156)));
-            let t159 = T::fused(
-                -T::fused(k(0.1), t60, k(0.06) * t62),
-                t92,
-                T::fused(k(0.1), t35, k(0.06) * t37) * t95,
-            );
-            let t160 = T::fused(T::fused(-k(0.1), t2, k(0.06) * t6), t98, -t159) - t158;
-            let t161 = T::fused(k(0.5555555555555556), t138, k(0.4444444444444444));
-            let t162 = T::fused(
-                t161,
-                t160,
-                -T::fused(-(t139 - t137), t129, t154 * t151),
-            );
-            let t163 = k(0.6666666666666666) * t87;
-            let t164 = t163 - T::fused(k(0.3333333333333333), t89, k(0.1));
-            let t165 = k(0.6666666666666666) * t89;
-            let t166 = t163 + (k(0.2) + t165);
-            let t167 = T::fused(
-                -T::fused(-t68, t164, t70 * t166),
-                t92,
-                T::fused(-t45, t164, t47 * t166) * t95,
-            );
-            let t168 = k(0.05) * arm_wy;
-            let t169 = arm_wx * arm_wx;
-            let t170 = arm_wy * arm_wy;
-            let t171 = k(0.01) * arm_wx;
-            let t172 = k(0.03) * arm_wy;
-            let t173 = T::fused(
-                arm_wz,
-                t172 + t171,
-                -T::fused(arm_wx, t168, k(0.02) * (t170 - t169)),
-            );
-            let t174 = arm_rx - t80;
-            let t175 = arm_ry - t57;
-            let t176 = arm_rz - t30;
-            let t177 = T::fused(t19, t176, -T::fused(-t70, t174, t47 * t175));
-            let t178 = k(0.6666666666666666) * t177;
-            let t179 = T::fused(t15, t176, T::fused(-t68, t174, t45 * t175));
-            let t180 = k(0.3333333333333333) * t179;
-            let t181 = t180 - t178;
-            let t182 = T::fused(
-                t90,
-                t181,
-                -T::fused(-t83, t181, t88 * (k(0.6666666666666666) * (t177 + t179))),
-            );
-            let t183 = T::fused(
-                -k(0.2),
-                arm_dwz,
-                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
-            ) - (t126 - (t124 - t182) + t173);
-            let t184 = t183
-                - (T::fused(T::fused(t15, t164, t19 * t166), t98, -t167) - t162);
-            let t185 = T::fused(
-                -T::fused(-k(0.2), t67, k(0.4) * t69),
-                t93,
-                T::fused(-k(0.2), t44, k(0.4) * t46) * t96,
-            );
-            let t186 = T::fused(T::fused(k(0.2), t14, k(0.4) * t18), t99, -t185) - t184;
-            let t187 = T::fused(
-                k(0.6666666666666666),
-                arm_e3,
-                T::fused(-k(0.3333333333333333), arm_e2, k(0.6666666666666666) * arm_e1),
-            );
-            let t188 = k(2.0) * t187;
-            let t189 = T::fused(-t187, t188, k(1.0));
-            let t190 = T::fused(k(0.5555555555555556), t189, k(0.4444444444444444));
-            let t191 = t153 - t152;
-            let t192 = T::fused(t139 + t137, t160, -T::fused(-t161, t129, t191 * t151));
-            let t193 = T::fused(k(0.3333333333333333), t87, k(0.1) - t165);
-            let t194 = T::fused(
-                T::fused(t68, t193, t73 * t166),
-                t92,
-                T::fused(-t45, t193, t50 * t166) * t95,
-            );
-            let t195 = T::fused(t23, t176, -T::fused(t73, t174, t50 * t175));
-            let t196 = k(0.6666666666666666) * (t195 - t179);
-            let t197 = k(0.6666666666666666) * t195;
-            let t198 = t124
-                + T::fused(t90, t196, T::fused(t83, t196, t88 * (t180 + t197)));
-            let t199 = arm_wz * arm_wz;
-            (
-                t14,
-                t15,
-                t18,
-                t19,
-                t22,
-                t23,
-                t27,
-                t29,
-                t44,
-                t46,
-                t47,
-                t49,
-                t50,
-                t54,
-                t56,
-                t67,
-                t69,
-                t70,
-                t72,
-                t73,
-                t77,
-                t79,
-                t83,
-                t88,
-                t90,
-                t92,
-                t93,
-                t95,
-                t96,
-                t98,
-                t99,
-                t126,
-                t129,
-                t138,
-                t147,
-                t148,
-                t151,
-                t154,
-                t160,
-                t162,
-                t164,
-                t166,
-                t168,
-                t169,
-                t170,
-                t171,
-                t172,
-                t177,
-                t178,
-                t186,
-                t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t193,
-                t194,
-                t195,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t210, t221, t222, t223, t224) = {
-            let t200 = k(0.02) * arm_wz;
-            let t201 = T::fused(
-                arm_wy,
-                t200 - t171,
-                T::fused(-k(0.03), t199 - t169, k(0.1) * (arm_wx * arm_wz)),
-            );
-            let t202 = T::fused(
-                k(0.01),
-                arm_dwz,
-                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
-            ) + (t201 + (t126 - t198));
-            let t203 = t202
-                + (T::fused(T::fused(t15, t193, t23 * t166), t98, -t194) - t192);
-            let t204 = T::fused(
-                k(0.4) * t22,
-                t99,
-                -T::fused(k(0.4) * t72, t93, k(0.4) * t49 * t96),
-            );
-            let t205 = t204 + t203;
-            let t206 = arm_e0 * t188;
-            let t207 = k(0.6666666666666666) * t206;
-            let t208 = T::fused(-k(0.2222222222222222), t189, k(0.2222222222222222));
-            let t209 = t208 - t207;
-            let t210 = T::fused(
-                t191,
-                t160,
-                -T::fused(
-                    -t154,
-                    t129,
-                    T::fused(k(0.8888888888888888), t138, k(0.1111111111111111)) * t151,
-                ),
-            );
-            let t211 = T::fused(
-                T::fused(t70, t193, t73 * t164),
-                t92,
-                T::fused(-t47, t193, t50 * t164) * t95,
-            );
-            let t212 = T::fused(
-                arm_wx,
-                t172 + t200,
-                T::fused(arm_wz, t168, k(0.01) * (t199 - t170)),
-            );
-            let t213 = T::fused(-k(0.3333333333333333), t195, t178);
-            let t214 = T::fused(
-                t90,
-                t213,
-                T::fused(t83, t213, t88 * T::fused(-k(0.3333333333333333), t177, t197)),
-            );
-            let t215 = T::fused(
-                -k(0.03),
-                arm_dwz,
-                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
-            ) + (t148 - (t147 + t214) - t212);
-            let t216 = t215
-                + (T::fused(T::fused(-t19, t193, t23 * t164), t98, -t211) - t210);
-            let t217 = T::fused(t29, t99, -T::fused(t79, t93, t56 * t96)) + t216;
-            let t218 = k(0.3333333333333333) * t206;
-            let t219 = T::fused(-k(0.4444444444444444), t189, k(0.4444444444444444));
-            let t220 = t208 + t207;
-            let t221 = T::fused(
-                t220,
-                t186,
-                T::fused(
-                    -T::fused(k(0.8888888888888888), t189, k(0.1111111111111111)),
-                    t205,
-                    t209 * t217,
-                ),
-            );
-            let t222 = T::fused(t219 - t218, t186, T::fused(-t220, t205, t190 * t217));
-            let t223 = T::fused(
-                -k(0.7453559924999299),
-                T::fused(t190, t186, T::fused(-t209, t205, (t219 + t218) * t217)),
-                T::fused(k(0.29814239699997197), t221, k(0.5962847939999439) * t222),
-            );
-            let t224 = T::fused(
-                t77 + T::fused(-k(0.6666666666666666), t67, k(1.3333333333333333) * t69),
-                t92,
-                (t54
-                    - T::fused(-k(0.6666666666666666), t44, k(1.3333333333333333) * t46))
-                    * t95,
-            );
-            (t210, t221, t222, t223, t224)
-        };
-        *lambda = [
-            -t93,
-            -t96,
-            -t99,
-            t223,
-            T::fused(-k(0.8944271909999159), t221, k(0.4472135954999579) * t222),
+            T::fused(-t4, block_wx, t7 * block_wy) + t65,
+            -T::fused(T::fused(k(0.5), t63, t62 - t61), t17, t60),
+        );
+        let t67 = T::fused(t46, t66, T::fused(t40, t43, t46 * t48));
+        let t68 = k(2.109375) - T::fused(k(2.109375), block_dsx, t67);
+        let t69 = k(5.2734375) + (t67 - T::fused(k(5.2734375), arm_dsx, -t68));
+        let t70 = T::fused(t45, t66, T::fused(t31, t43, t45 * t48));
+        let t71 = k(18.984375) + T::fused(k(2.109375), block_dsy, t70);
+        let t72 = k(47.4609375) - (t70 - T::fused(k(5.2734375), arm_dsy, t71));
+        let t73 = T::fused(t44, t66, T::fused(t18, t43, t44 * t48));
+        let t74 = k(6.328125) + T::fused(-k(2.109375), block_dsz, t73);
+        let t75 = k(15.8203125) - (t73 + T::fused(k(5.2734375), arm_dsz, -t74));
+        let t76 = k(1.125) - (t41 + t47);
+        let t77 = k(0.5) * t76;
+        let t78 = k(0.5625) + T::fused(k(0.25), t41, t47);
+        let t79 = T::fused(
+            t71,
+            T::fused(t25, t77, t26 * t78),
+            t74 * T::fused(t10, t77, t13 * t78),
+        );
+        let t80 = T::fused(
+            T::fused(-k(0.5), t19, t20),
+            t71,
+            T::fused(-k(0.5), t1, t4) * t74,
+        );
+        let t81 = T::fused(
+            k(0.017578125),
+            block_dwy,
             T::fused(
-                t27 - T::fused(k(0.6666666666666666), t14, k(1.3333333333333333) * t18),
-                t98,
-                -t224,
+                k(0.3515625),
+                block_dwx,
+                T::fused(T::fused(k(0.5), t32, t33), t68, t80),
             ),
+        );
+        let t82 = T::fused(
+            k(0.017578125),
+            block_wx * T::fused(-k(2.0), block_wy, block_wz),
+            -T::fused(k(0.03515625), block_dwz, t81),
+        );
+        let t83 = k(0.087890625) * block_wz;
+        let t84 = block_wy * block_wy;
+        let t85 = block_wz * block_wz;
+        let t86 = block_wz
+            + (block_wy
+                + T::fused(
+                    k(0.5),
+                    block_wx,
+                    -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                ));
+        let t87 = k(0.078125) * t86;
+        let t88 = T::fused(
+            k(0.5),
+            T::fused(t25, t20, -T::fused(-t10, t4, t36 * t33)),
+            T::fused(t10, t1, T::fused(t36, t32, t25 * t19)),
+        );
+        let t89 = T::fused(t36, t34, -T::fused(-t10, t7, t25 * t23)) + t88;
+        let t90 = T::fused(
+            k(0.5),
+            T::fused(t26, t20, T::fused(t13, t4, t37 * t33)),
+            T::fused(t26, t19, -T::fused(-t13, t1, t37 * t32)),
+        );
+        let t91 = T::fused(t37, t34, T::fused(-t13, t7, t26 * t23)) - t90;
+        let t92 = T::fused(
+            -k(0.5),
+            T::fused(t38, t33, T::fused(-t16, t4, t29 * t20)),
+            T::fused(t38, t32, -T::fused(-t16, t1, t29 * t19)),
+        );
+        let t93 = T::fused(t38, t34, T::fused(t16, t7, t29 * t23)) + t92;
+        let t94 = T::fused(-k(0.5), t89, t93 + t91);
+        let t95 = turn0.sin();
+        let t96 = t93 + T::fused(-k(0.5), t91, t89);
+        let t97 = turn0.cos();
+        let t98 = -(k(1.7777777777777777) * T::fused(t97, t94, t95 * t96))
+            .atan2(k(1.7777777777777777) * T::fused(-t95, t94, t97 * t96));
+        let t99 = turn0 + t98;
+        let t100 = k(3.515625) * t99;
+        let t101 = t100
+            + (t87 + T::fused(k(0.052734375), t85 - t84, -T::fused(block_wy, t83, t82)));
+        let t102 = T::fused(t33, t46, -T::fused(t4, t44, t20 * t45));
+        let t103 = T::fused(t32, t46, T::fused(t1, t44, t19 * t45));
+        let t104 = T::fused(k(2.0), t102, t103);
+        let t105 = T::fused(t33, t40, -T::fused(t4, t18, t20 * t31));
+        let t106 = T::fused(t32, t40, T::fused(t1, t18, t19 * t31));
+        let t107 = T::fused(
+            k(6.25),
+            T::fused(k(2.0), t105, t106) * t42,
+            T::fused(k(15.625), t104 * t47, t101),
+        );
+        let t108 = T::fused(k(0.5), t104 * t66, t107);
+        let t109 = T::fused(
+            arm_e3,
+            block_e3,
+            T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
+        );
+        let t110 = k(1.5) * t109;
+        let t111 = T::fused(
+            arm_e2,
+            block_e3,
+            T::fused(-arm_e3, block_e2, T::fused(-arm_e0, block_e1, arm_e1 * block_e0)),
+        );
+        let t112 = T::fused(
+            -arm_e1,
+            block_e3,
+            T::fused(-arm_e0, block_e2, T::fused(arm_e3, block_e1, arm_e2 * block_e0)),
+        );
+        let t113 = T::fused(
+            -arm_e0,
+            block_e3,
+            T::fused(arm_e1, block_e2, T::fused(-arm_e2, block_e1, arm_e3 * block_e0)),
+        );
+        let t114 = t113 + T::fused(k(0.5), t111, t112);
+        let t115 = (t114 - t110) * (t114 + t110);
+        let t116 = T::fused(
+            -T::fused(k(0.3), t19, t23),
+            t71,
+            T::fused(-k(0.3), t1, t7) * t74,
+        );
+        let t117 = T::fused(
+            k(0.52734375),
+            block_dwy,
+            T::fused(
+                k(0.017578125),
+                block_dwx,
+                -T::fused(-T::fused(-k(0.3), t32, t34), t68, t116),
+            ),
+        );
+        let t118 = T::fused(
+            k(0.052734375),
+            block_wy * T::fused(k(0.3333333333333333), block_wz, block_wx),
+            -T::fused(k(0.052734375), block_dwz, -t117),
+        );
+        let t119 = block_wx * block_wx;
+        let t120 = T::fused(
+            k(0.15625),
+            t86,
+            T::fused(k(0.03515625), t85 - t119, T::fused(-block_wx, t83, t118)),
+        );
+        let t121 = T::fused(t34, t46, -T::fused(-t7, t44, t23 * t45));
+        let t122 = T::fused(-k(0.3), t103, t121);
+        let t123 = T::fused(t34, t40, -T::fused(-t7, t18, t23 * t31));
+        let t124 = T::fused(
+            T::fused(-k(0.3), t106, t123),
+            t43,
+            T::fused(t122, t48, T::fused(k(7.03125), t99, t120)),
+        );
+        let t125 = T::fused(t122, t66, t124);
+        let t126 = k(2.25) + t115;
+        let t127 = k(0.1111111111111111) * t126;
+        let t128 = t109 * t114;
+        let t129 = t128 + t127;
+        let t130 = T::fused(
+            T::fused(k(1.6666666666666667), t23, t20),
+            t71,
+            T::fused(-k(1.6666666666666667), t7, t4) * t74,
+        );
+        let t131 = T::fused(
+            k(0.17578125),
+            block_dwy,
             -T::fused(
-                k(0.3333333333333333),
-                t162,
-                k(0.6666666666666666) * (t210 - t192),
+                k(0.1171875),
+                block_dwx,
+                T::fused(T::fused(k(1.6666666666666667), t34, t33), t68, t130),
             ),
+        );
+        let t132 = T::fused(
+            k(0.17578125),
+            block_wz * T::fused(k(0.6666666666666666), block_wy, block_wx),
+            -T::fused(k(1.46484375), block_dwz, -t131),
+        );
+        let t133 = T::fused(
+            k(0.5208333333333334),
+            t86,
+            -T::fused(
+                k(0.05859375),
+                t84 - t119,
+                -T::fused(k(0.5859375), block_wx * block_wy, -t132),
+            ),
+        );
+        let t134 = T::fused(k(1.6666666666666667), t121, t102);
+        let t135 = T::fused(
+            T::fused(k(1.6666666666666667), t123, t105),
+            t43,
+            T::fused(t134, t48, T::fused(k(23.4375), t99, t133)),
+        );
+        let t136 = T::fused(t134, t66, t135);
+        let t137 = t128 - t127;
+        let t138 = T::fused(
+            -(k(0.28125) - t115),
+            t108,
+            T::fused(-k(2.25), t129 * t125, k(0.675) * (t137 * t136)),
+        );
+        let t139 = T::fused(
+            -k(1.7777777777777777),
+            T::fused(t68, T::fused(-t36, t77, t37 * t78), t79),
+            k(0.3950617283950617) * t138,
+        );
+        let t140 = T::fused(
+            k(0.3515625),
+            arm_wx * T::fused(k(1.5), arm_wy, arm_wz),
             T::fused(
-                k(0.6666666666666666),
-                t162,
-                -T::fused(k(0.3333333333333333), t192, k(0.6666666666666666) * t210),
+                k(0.52734375),
+                arm_dwz,
+                -T::fused(k(0.3515625), arm_dwy, T::fused(k(5.2734375), arm_dwx, -t139)),
             ),
+        );
+        let t141 = k(0.87890625) * arm_wz;
+        let t142 = arm_wy * arm_wy;
+        let t143 = arm_wz * arm_wz;
+        let t144 = t100
+            + (t87 + T::fused(k(0.17578125), t143 - t142, T::fused(arm_wy, t141, t140)));
+        let t145 = k(4.6875) * t47;
+        let t146 = T::fused(k(16.666666666666668), arm_rz, -t8);
+        let t147 = T::fused(k(16.666666666666668), arm_ry, -t24);
+        let t148 = T::fused(k(16.666666666666668), arm_rx, t35);
+        let t149 = T::fused(t37, t148, -T::fused(-t13, t146, t26 * t147));
+        let t150 = T::fused(t36, t148, T::fused(-t10, t146, t25 * t147));
+        let t151 = T::fused(k(2.0), t149, t150);
+        let t152 = k(3.75) * t42;
+        let t153 = k(0.15) * t66;
+        let t154 = T::fused(
+            t151,
+            t153,
+            T::fused(T::fused(k(2.0), t150, t149), t152, T::fused(t151, t145, -t144)),
+        );
+        let t155 = t10 * t75;
+        let t156 = t25 * t72;
+        let t157 = t36 * t69;
+        let t158 = t157 - (t156 + (t155 - t154));
+        let t159 = k(1.5) * arm_e0;
+        let t160 = T::fused(k(0.5), arm_e2, -(arm_e1 + arm_e3));
+        let t161 = (t160 - t159) * (t160 + t159);
+        let t162 = k(1.8) - t161;
+        let t163 = k(1.125) - T::fused(-k(0.5), t41, t47);
+        let t164 = T::fused(
+            -t71,
+            T::fused(-t25, t163, t29 * t78),
+            t74 * T::fused(t10, t163, t16 * t78),
+        );
+        let t165 = k(1.8) - t115;
+        let t166 = k(0.4444444444444444) * t126;
+        let t167 = T::fused(
+            -t137,
+            t108,
+            T::fused(
+                k(0.2777777777777778),
+                t165 * t125,
+                k(0.15) * ((t128 + t166) * t136),
+            ),
+        );
+        let t168 = T::fused(
+            -k(0.8888888888888888),
+            T::fused(-t68, T::fused(t36, t163, t38 * t78), t164),
+            k(0.4444444444444444) * t167,
+        );
+        let t169 = T::fused(
+            k(0.087890625),
+            arm_wy * T::fused(-k(2.0), arm_wz, arm_wx),
+            -T::fused(
+                k(0.087890625),
+                arm_dwz,
+                T::fused(k(2.197265625), arm_dwy, T::fused(k(0.17578125), arm_dwx, t168)),
+            ),
+        );
+        let t170 = arm_wx * arm_wx;
+        let t171 = t100
+            + (t87
+                + T::fused(k(0.263671875), t143 - t170, T::fused(-arm_wx, t141, t169)));
+        let t172 = T::fused(t38, t148, -T::fused(t16, t146, t29 * t147));
+        let t173 = t150 - t172;
+        let t174 = k(0.5) * t172;
+        let t175 = T::fused(
+            t173,
+            t153,
+            -T::fused(t150 + t174, t152, -T::fused(t173, t145, t171)),
+        );
+        let t176 = t157 - (t156 + (t155 + t175));
+        let t177 = k(2.25) + t161;
+        let t178 = k(0.1111111111111111) * t177;
+        let t179 = arm_e0 * t160;
+        let t180 = t179 - t178;
+        let t181 = T::fused(
+            t129,
+            t108,
+            T::fused(
+                -k(0.5),
+                (t128 - t166) * t125,
+                k(0.08333333333333333) * (t165 * t136),
+            ),
+        );
+        let t182 = k(2.0) * t163;
+        let t183 = T::fused(
+            -t71,
+            T::fused(t26, t182, t29 * t76),
+            t74 * T::fused(-t13, t182, t16 * t76),
+        );
+        let t184 = T::fused(
+            k(0.59326171875),
+            arm_dwx,
+            -(T::fused(-t68, T::fused(t37, t182, t38 * t76), t183) + t181),
+        );
+        let t185 = T::fused(
+            k(0.19775390625),
+            arm_wz * T::fused(k(3.0), arm_wy, arm_wx),
+            T::fused(k(3.955078125), arm_dwz, T::fused(k(0.19775390625), arm_dwy, -t184)),
+        );
+        let t186 = T::fused(
+            k(0.17578125),
+            t86,
+            T::fused(
+                k(0.3955078125),
+                t142 - t170,
+                T::fused(k(0.98876953125), arm_wx * arm_wy, -t185),
+            ),
+        );
+        let t187 = t149 + t174;
+        let t188 = T::fused(
+            k(8.4375),
+            t42 * (t149 - t172),
+            -T::fused(k(10.546875), t47 * t187, -T::fused(k(7.91015625), t99, t186)),
+        );
+        let t189 = T::fused(
+            k(1.125),
+            T::fused(k(2.0), t13, t16) * t75,
+            -T::fused(k(0.3375), t66 * t187, -t188),
+        );
+        let t190 = T::fused(
+            k(1.125),
+            T::fused(-k(2.0), t37, t38) * t69,
+            T::fused(k(1.125), T::fused(-k(2.0), t26, t29) * t72, -t189),
+        );
+        let t191 = k(0.4444444444444444) * t177;
+        let t192 = T::fused(
+            t162,
+            t158,
+            T::fused(k(7.2), t180 * t176, k(1.6) * ((t179 + t191) * t190)),
+        );
+        let t193 = t179 + t178;
+        let t194 = T::fused(
+            k(1.125),
+            t193 * t158,
+            -T::fused(k(0.28125) - t161, t176, t180 * t190),
+        );
+        let t195 = T::fused(
+            -(t179 - t191),
+            t158,
+            T::fused(-k(4.0), t193 * t176, k(0.49382716049382713) * (t162 * t190)),
+        );
+        let t196 = T::fused(
+            T::fused(-k(0.5), t29, t26 - t25),
+            t71,
+            T::fused(k(0.5), t16, t13 - t10) * t74,
+        );
+        *lambda = [
+            k(0.28444444444444444) * t69,
+            -(k(0.28444444444444444) * t72),
+            k(0.28444444444444444) * t75,
+            -(k(0.008375797380739953)
+                * (T::fused(-k(1.6), t194, k(2.25) * t195) - t192)),
+            k(0.006281848035554965) * T::fused(-k(6.4), t194, t192),
+            k(0.37925925925925924)
+                * T::fused(T::fused(-k(0.5), t38, t37 + t36), t68, t196),
+            k(0.014983081847279377)
+                * T::fused(k(1.125), t181, -T::fused(k(2.25), t167, t138)),
+            -(k(0.014983081847279377)
+                * (t138 + T::fused(-k(1.125), t167, k(2.25) * t181))),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1376 operations (610 ±, 763 ×, 3 ÷) and 3 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1378 operations (612 ±, 763 ×, 3 ÷) and 3 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -9160,60 +8025,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t54,
             t55,
             t56,
-            t59,
+            t58,
+            t61,
             t63,
             t65,
-            t67,
+            t70,
+            t71,
             t72,
-            t73,
             t74,
-            t76,
+            t75,
             t77,
-            t79,
+            t82,
+            t83,
             t84,
-            t85,
             t86,
-            t88,
+            t87,
             t89,
-            t91,
+            t94,
+            t95,
             t96,
-            t97,
             t98,
-            t100,
+            t99,
             t101,
-            t103,
+            t131,
             t133,
             t135,
-            t137,
-            t142,
+            t140,
+            t141,
             t143,
+            t144,
             t145,
             t146,
-            t147,
             t148,
-            t150,
-            t153,
+            t151,
+            t152,
             t154,
-            t156,
-            t157,
-            t160,
-            t165,
-            t169,
-            t172,
+            t155,
+            t158,
+            t163,
+            t167,
+            t170,
+            t171,
             t173,
+            t174,
             t175,
-            t176,
             t177,
             t179,
+            t180,
             t181,
             t182,
             t183,
-            t184,
-            t185,
+            t186,
+            t187,
             t188,
-            t189,
-            t190,
-            t195,
+            t193,
+            t196,
+            t197,
             t198,
             t199,
         ) = {
@@ -9309,8 +8176,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t45,
                 T::fused(k(0.6666666666666666), t46, k(0.3333333333333333) * t47),
             );
-            let t49 = k(2.0) * t48;
-            let t50 = T::fused(-t48, t49, k(1.0));
+            let t49 = T::fused(
+                arm_e3,
+                block_e3,
+                T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
+            );
+            let t50 = (t49 + t48) * (t49 - t48);
             let t51 = k(1.3333333333333333) * t7;
             let t52 = T::fused(-k(1.3333333333333333), t1, k(0.6666666666666666) * t4)
                 - t51;
@@ -9321,40 +8192,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t56 = T::fused(k(1.3333333333333333), t34, k(0.6666666666666666) * t35)
                 + t55;
             let t57 = T::fused(t56, t42, -T::fused(-t52, t18, t54 * t32));
-            let t58 = T::fused(
-                arm_e3,
-                block_e3,
-                T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
-            );
-            let t59 = t58 * t49;
-            let t60 = T::fused(
+            let t58 = t49 * (k(2.0) * t48);
+            let t59 = T::fused(
                 k(0.9521072796934866),
-                T::fused(-k(12.072434607645874), t57, t59),
+                T::fused(-k(12.072434607645874), t57, t58),
                 T::fused(-k(4.022988505747127), t44 + k(1.7985714285714285), t50),
             );
-            let t61 = T::fused(
+            let t60 = T::fused(
                 k(0.6666666666666666),
                 arm_e3,
                 T::fused(-k(0.3333333333333333), arm_e2, k(0.6666666666666666) * arm_e1),
             );
-            let t62 = k(2.0) * t61;
-            let t63 = T::fused(-t61, t62, k(1.0));
-            let t64 = T::fused(
+            let t61 = (arm_e0 - t60) * (arm_e0 + t60);
+            let t62 = T::fused(
                 k(5.202735710796287),
                 t44,
                 -T::fused(
                     k(7.327796775769419),
                     t57,
-                    -T::fused(-k(0.1956521739130435), t59 + k(9.549313358302122), t50),
+                    -T::fused(-k(0.1956521739130435), t58 + k(9.549313358302122), t50),
                 ),
             );
-            let t65 = arm_e0 * t62;
-            let t66 = k(0.6666666666666666) * arm_wz;
-            let t67 = T::fused(
+            let t63 = arm_e0 * (k(2.0) * t60);
+            let t64 = k(0.6666666666666666) * arm_wz;
+            let t65 = T::fused(
                 k(0.6666666666666666),
                 arm_wy,
                 k(0.3333333333333333) * arm_wx,
-            ) + t66
+            ) + t64
                 - T::fused(
                     k(0.6666666666666666),
                     block_wz,
@@ -9364,437 +8229,438 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         k(0.3333333333333333) * block_wx,
                     ),
                 );
-            let t68 = T::fused(
+            let t66 = T::fused(
                 k(0.027555555555555555),
                 t50,
-                k(0.012444444444444444) * t59,
+                k(0.012444444444444444) * t58,
             );
-            let t69 = T::fused(
+            let t67 = T::fused(
                 -k(0.012444444444444444),
                 t50,
-                k(0.027555555555555555) * t59,
+                k(0.027555555555555555) * t58,
             );
-            let t70 = T::fused(
+            let t68 = T::fused(
                 -t44,
-                t68,
+                t66,
                 T::fused(
                     k(0.010245185185185185),
-                    t59,
-                    T::fused(k(0.002191111111111111), t50, t57 * t69),
+                    t58,
+                    T::fused(k(0.002191111111111111), t50, t57 * t67),
                 ),
             );
-            let t71 = k(2.4442567567567566)
+            let t69 = k(2.4442567567567566)
                 - T::fused(
                     k(0.5777027027027027),
-                    t59,
+                    t58,
                     -T::fused(
                         k(1.0135135135135136),
                         t44,
                         -T::fused(-k(10.135135135135135), t57, t50),
                     ),
                 );
-            let t72 = k(2.0) * t38;
-            let t73 = k(2.0) * t39;
-            let t74 = k(2.0) * t40;
-            let t75 = T::fused(
+            let t70 = k(2.0) * t38;
+            let t71 = k(2.0) * t39;
+            let t72 = k(2.0) * t40;
+            let t73 = T::fused(
                 -k(0.05),
-                T::fused(t72, block_wz, t74 * block_wx),
-                k(0.03) * T::fused(t73, block_wz, t74 * block_wy),
+                T::fused(t70, block_wz, t72 * block_wx),
+                k(0.03) * T::fused(t71, block_wz, t72 * block_wy),
             );
-            let t76 = k(2.0) * t34;
-            let t77 = k(2.0) * t35;
-            let t78 = T::fused(-t76, arm_wy, t77 * arm_wx);
-            let t79 = k(2.0) * t36;
-            let t80 = T::fused(t76, arm_wz, t79 * arm_wx);
-            let t81 = T::fused(t77, arm_wz, t79 * arm_wy);
-            let t82 = arm_sz
-                + T::fused(-k(0.1), t78, T::fused(-k(0.1), t80, k(0.2) * t81))
+            let t74 = k(2.0) * t34;
+            let t75 = k(2.0) * t35;
+            let t76 = T::fused(-t74, arm_wy, t75 * arm_wx);
+            let t77 = k(2.0) * t36;
+            let t78 = T::fused(t74, arm_wz, t77 * arm_wx);
+            let t79 = T::fused(t75, arm_wz, t77 * arm_wy);
+            let t80 = arm_sz
+                + T::fused(-k(0.1), t76, T::fused(-k(0.1), t78, k(0.2) * t79))
                 - (block_sz
-                    + T::fused(k(0.1), T::fused(-t72, block_wy, t73 * block_wx), t75));
-            let t83 = T::fused(
+                    + T::fused(k(0.1), T::fused(-t70, block_wy, t71 * block_wx), t73));
+            let t81 = T::fused(
                 -t56,
-                t82,
+                t80,
                 t42
                     * T::fused(
                         k(0.6666666666666666),
-                        t78,
+                        t76,
                         T::fused(
                             -k(0.3333333333333333),
-                            t80,
-                            k(0.6666666666666666) * t81,
+                            t78,
+                            k(0.6666666666666666) * t79,
                         ),
                     ),
             );
-            let t84 = k(2.0) * t26;
-            let t85 = k(2.0) * t27;
-            let t86 = k(2.0) * t30;
-            let t87 = T::fused(
+            let t82 = k(2.0) * t26;
+            let t83 = k(2.0) * t27;
+            let t84 = k(2.0) * t30;
+            let t85 = T::fused(
                 -k(0.05),
-                T::fused(-t84, block_wz, t86 * block_wx),
-                k(0.03) * T::fused(t85, block_wz, t86 * block_wy),
+                T::fused(-t82, block_wz, t84 * block_wx),
+                k(0.03) * T::fused(t83, block_wz, t84 * block_wy),
             );
-            let t88 = k(2.0) * t20;
-            let t89 = k(2.0) * t21;
-            let t90 = T::fused(t88, arm_wy, t89 * arm_wx);
-            let t91 = k(2.0) * t24;
-            let t92 = T::fused(-t88, arm_wz, t91 * arm_wx);
-            let t93 = T::fused(t89, arm_wz, t91 * arm_wy);
-            let t94 = arm_sy
-                - T::fused(-k(0.1), t90, T::fused(-k(0.1), t92, k(0.2) * t93))
+            let t86 = k(2.0) * t20;
+            let t87 = k(2.0) * t21;
+            let t88 = T::fused(t86, arm_wy, t87 * arm_wx);
+            let t89 = k(2.0) * t24;
+            let t90 = T::fused(-t86, arm_wz, t89 * arm_wx);
+            let t91 = T::fused(t87, arm_wz, t89 * arm_wy);
+            let t92 = arm_sy
+                - T::fused(-k(0.1), t88, T::fused(-k(0.1), t90, k(0.2) * t91))
                 - (block_sy
-                    - T::fused(k(0.1), T::fused(t84, block_wy, t85 * block_wx), t87));
-            let t95 = T::fused(
+                    - T::fused(k(0.1), T::fused(t82, block_wy, t83 * block_wx), t85));
+            let t93 = T::fused(
                 -t54,
-                t94,
+                t92,
                 t32
                     * T::fused(
                         k(0.6666666666666666),
-                        t90,
+                        t88,
                         T::fused(
                             -k(0.3333333333333333),
-                            t92,
-                            k(0.6666666666666666) * t93,
+                            t90,
+                            k(0.6666666666666666) * t91,
                         ),
                     ),
             );
-            let t96 = k(2.0) * t10;
-            let t97 = k(2.0) * t13;
-            let t98 = k(2.0) * t16;
-            let t99 = T::fused(
+            let t94 = k(2.0) * t10;
+            let t95 = k(2.0) * t13;
+            let t96 = k(2.0) * t16;
+            let t97 = T::fused(
                 -k(0.05),
-                T::fused(t96, block_wz, t98 * block_wx),
-                k(0.03) * T::fused(-t97, block_wz, t98 * block_wy),
+                T::fused(t94, block_wz, t96 * block_wx),
+                k(0.03) * T::fused(-t95, block_wz, t96 * block_wy),
             );
-            let t100 = k(2.0) * t1;
-            let t101 = k(2.0) * t4;
-            let t102 = T::fused(t100, arm_wy, t101 * arm_wx);
-            let t103 = k(2.0) * t7;
-            let t104 = T::fused(t100, arm_wz, t103 * arm_wx);
-            let t105 = T::fused(-t101, arm_wz, t103 * arm_wy);
-            let t106 = arm_sx
-                - T::fused(k(0.1), t102, T::fused(-k(0.1), t104, k(0.2) * t105))
+            let t98 = k(2.0) * t1;
+            let t99 = k(2.0) * t4;
+            let t100 = T::fused(t98, arm_wy, t99 * arm_wx);
+            let t101 = k(2.0) * t7;
+            let t102 = T::fused(t98, arm_wz, t101 * arm_wx);
+            let t103 = T::fused(-t99, arm_wz, t101 * arm_wy);
+            let t104 = arm_sx
+                - T::fused(k(0.1), t100, T::fused(-k(0.1), t102, k(0.2) * t103))
                 - (block_sx
-                    - T::fused(-k(0.1), T::fused(t96, block_wy, t97 * block_wx), t99));
-            let t107 = T::fused(
+                    - T::fused(-k(0.1), T::fused(t94, block_wy, t95 * block_wx), t97));
+            let t105 = T::fused(
                 -t52,
-                t106,
+                t104,
                 t18
                     * T::fused(
                         k(0.6666666666666666),
-                        t102,
+                        t100,
                         -T::fused(
                             -k(0.3333333333333333),
-                            t104,
-                            k(0.6666666666666666) * t105,
+                            t102,
+                            k(0.6666666666666666) * t103,
                         ),
                     ),
             );
-            let t108 = t107 - t95 + t83;
-            let t109 = k(0.03106238683127572)
+            let t106 = t105 - t93 + t81;
+            let t107 = k(0.03106238683127572)
                 + T::fused(k(0.0004938271604938272), t44, k(0.11693827160493828) * t57);
-            let t110 = k(0.01146962962962963)
+            let t108 = k(0.01146962962962963)
                 + T::fused(k(0.03155555555555556), t44, k(0.06755555555555555) * t57);
-            let t111 = T::fused(
-                -t59,
-                t109,
+            let t109 = T::fused(
+                -t58,
+                t107,
                 t50
                     * T::fused(
                         k(0.005428148148148148),
-                        T::fused(k(2.7249211547792336), t59, t50),
-                        t110,
+                        T::fused(k(2.7249211547792336), t58, t50),
+                        t108,
                     ),
             );
-            let t112 = k(0.002714074074074074) - t111;
-            let t113 = T::fused(-k(0.11851851851851852), t57, k(0.0066172839506172835));
-            let t114 = T::fused(
+            let t110 = k(0.002714074074074074) - t109;
+            let t111 = T::fused(-k(0.11851851851851852), t57, k(0.0066172839506172835));
+            let t112 = T::fused(
                 k(0.2518518518518518),
                 t44,
                 -T::fused(
                     k(0.0004938271604938272),
                     t50,
-                    T::fused(k(0.03155555555555556), t59, t113),
+                    T::fused(k(0.03155555555555556), t58, t111),
                 ),
             );
-            let t115 = T::fused(
+            let t113 = T::fused(
                 t43,
-                t82,
+                t80,
                 t42
                     * T::fused(
                         -k(0.6666666666666666),
-                        t81 + t80,
-                        k(0.3333333333333333) * t78,
+                        t79 + t78,
+                        k(0.3333333333333333) * t76,
                     ),
             );
-            let t116 = T::fused(
+            let t114 = T::fused(
                 -t33,
-                t94,
+                t92,
                 t32
                     * T::fused(
                         -k(0.6666666666666666),
-                        t93 + t92,
-                        k(0.3333333333333333) * t90,
+                        t91 + t90,
+                        k(0.3333333333333333) * t88,
                     ),
             );
-            let t117 = T::fused(
+            let t115 = T::fused(
                 -t19,
-                t106,
+                t104,
                 t18
                     * T::fused(
                         k(0.6666666666666666),
-                        t105 + t104,
-                        k(0.3333333333333333) * t102,
+                        t103 + t102,
+                        k(0.3333333333333333) * t100,
                     ),
             );
-            let t118 = t117 - t116 + t115;
-            let t119 = t66
+            let t116 = t115 - t114 + t113;
+            let t117 = t64
                 + T::fused(
                     -k(0.3333333333333333),
                     arm_wy,
                     k(0.6666666666666666) * arm_wx,
                 );
-            let t120 = T::fused(
-                t70,
-                t67 * t67,
-                t119
+            let t118 = T::fused(
+                t68,
+                t65 * t65,
+                t117
                     * T::fused(
                         -k(0.11693827160493828),
-                        t108 * t71,
-                        T::fused(-t67, t112, t118 * t114),
+                        t106 * t69,
+                        T::fused(-t65, t110, t116 * t112),
                     ),
             );
-            let t121 = k(2.0) * t119;
+            let t119 = k(2.0) * t117;
+            let t120 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t74, t70, T::fused(t98, t94, t86 * t82)),
+                k(0.3333333333333333)
+                    * T::fused(t74, t71, -T::fused(t98, t95, t86 * t83)),
+            );
+            let t121 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t74, t72, -T::fused(-t98, t96, t86 * t84)),
+                t120,
+            );
             let t122 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t76, t72, T::fused(t100, t96, t88 * t84)),
-                k(0.3333333333333333)
-                    * T::fused(t76, t73, -T::fused(t100, t97, t88 * t85)),
+                T::fused(t75, t70, -T::fused(t99, t94, t87 * t82)),
+                k(0.3333333333333333) * T::fused(t75, t71, T::fused(t87, t83, t99 * t95)),
             );
             let t123 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t76, t74, -T::fused(-t100, t98, t88 * t86)),
+                T::fused(t75, t72, -T::fused(-t87, t84, t99 * t96)),
                 t122,
             );
             let t124 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t77, t72, -T::fused(t101, t96, t89 * t84)),
+                T::fused(t77, t70, -T::fused(-t101, t94, t89 * t82)),
                 k(0.3333333333333333)
-                    * T::fused(t77, t73, T::fused(t89, t85, t101 * t97)),
+                    * T::fused(t77, t71, -T::fused(-t89, t83, t101 * t95)),
             );
             let t125 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t77, t74, -T::fused(-t89, t86, t101 * t98)),
+                T::fused(t77, t72, T::fused(t89, t84, t101 * t96)),
                 t124,
             );
             let t126 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t79, t72, -T::fused(-t103, t96, t91 * t84)),
-                k(0.3333333333333333)
-                    * T::fused(t79, t73, -T::fused(-t91, t85, t103 * t97)),
+                t125,
+                T::fused(k(0.6666666666666666), t121, k(0.3333333333333333) * t123),
             );
-            let t127 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t79, t74, T::fused(t91, t86, t103 * t98)),
-                t126,
-            );
+            let t127 = turn0.cos();
             let t128 = T::fused(
                 k(0.6666666666666666),
-                t127,
-                T::fused(k(0.6666666666666666), t123, k(0.3333333333333333) * t125),
+                t123 - t121,
+                k(0.3333333333333333) * t125,
             );
-            let t129 = turn0.cos();
-            let t130 = T::fused(
-                k(0.6666666666666666),
-                t125 - t123,
-                k(0.3333333333333333) * t127,
-            );
-            let t131 = turn0.sin();
-            let t132 = T::fused(-t131, t128, t129 * t130)
-                .atan2(T::fused(t129, t128, t131 * t130));
-            let t133 = turn0 + t132;
-            let t134 = T::fused(
+            let t129 = turn0.sin();
+            let t130 = T::fused(-t129, t126, t127 * t128)
+                .atan2(T::fused(t127, t126, t129 * t128));
+            let t131 = turn0 + t130;
+            let t132 = T::fused(
                 k(0.348),
-                t59 * T::fused(k(0.8714346530438485), t63 + k(0.5937957987298486), t65),
-                T::fused(-k(0.6), t133, k(0.02) * t67),
+                t58 * T::fused(k(0.8714346530438485), t61 + k(0.5937957987298486), t63),
+                T::fused(-k(0.6), t131, k(0.02) * t65),
             );
-            let t135 = T::fused(
-                -T::fused(k(0.25), t119 * t112, -T::fused(-t118, t69, t108 * t68)),
-                t121,
+            let t133 = T::fused(
+                -T::fused(k(0.25), t117 * t110, -T::fused(-t116, t67, t106 * t66)),
+                t119,
                 T::fused(
                     k(0.3313333333333333),
                     t50
                         * T::fused(
                             k(0.1790744466800805),
-                            t63,
-                            -(t65 - k(0.8893360160965795)),
+                            t61,
+                            -(t63 - k(0.8893360160965795)),
                         ),
-                    t134,
+                    t132,
                 ),
             );
-            let t136 = T::fused(
+            let t134 = T::fused(
                 -t57,
-                t68,
+                t66,
                 T::fused(
                     -t44,
-                    t69,
+                    t67,
                     T::fused(
                         k(0.002191111111111111),
-                        t59,
+                        t58,
                         T::fused(-k(0.010245185185185185), t50, k(0.014687407407407408)),
                     ),
                 ),
             );
-            let t137 = k(30.26023804720597) * t136;
-            let t138 = T::fused(
-                t137,
+            let t135 = k(30.26023804720597) * t134;
+            let t136 = T::fused(
                 t135,
+                t133,
                 -T::fused(
                     k(0.348),
-                    t63 * t60,
-                    T::fused(-k(0.3032592592592593), t65 * t64, t120),
+                    t61 * t59,
+                    T::fused(-k(0.3032592592592593), t63 * t62, t118),
                 ),
             );
-            let t139 = t67 * T::fused(-k(2.25), t67, t121);
-            let t140 = k(0.5333333333333333) * t119;
-            let t141 = T::fused(
-                T::fused(k(0.9375), t119 * t114, t108),
-                t140,
+            let t137 = t65 * T::fused(-k(2.25), t65, t119);
+            let t138 = k(0.5333333333333333) * t117;
+            let t139 = T::fused(
+                T::fused(k(0.9375), t117 * t112, t106),
+                t138,
                 T::fused(
                     -k(40.0),
                     t44,
                     T::fused(
                         k(1.5777777777777777),
-                        t63,
-                        T::fused(-k(1.4), t65, k(1.0222222222222221)),
+                        t61,
+                        T::fused(-k(1.4), t63, k(1.0222222222222221)),
                     ),
                 ),
             );
-            let t142 = k(68.08553560621344) * t68;
-            let t143 = T::fused(t142, t135, -T::fused(t69, t139, t141));
-            let t144 = T::fused(
-                t142,
-                t136,
-                -(t68 - T::fused(k(0.26666666666666666), t57, k(0.06822222222222223))),
+            let t140 = k(68.08553560621344) * t66;
+            let t141 = T::fused(t140, t133, -T::fused(t67, t137, t139));
+            let t142 = T::fused(
+                t140,
+                t134,
+                -(t66 - T::fused(k(0.26666666666666666), t57, k(0.06822222222222223))),
             );
-            let t145 = k(1.0) / T::fused(-t142, k(2.25) * t68, k(0.6));
-            let t146 = t145 * t144;
-            let t147 = k(25.0) * t57;
-            let t148 = k(0.8) * t108;
-            let t149 = T::fused(
-                -t140,
-                T::fused(k(0.10962962962962963), t119 * t71, t118),
-                t148
-                    + (t147
+            let t143 = k(1.0) / T::fused(-t140, k(2.25) * t66, k(0.6));
+            let t144 = t143 * t142;
+            let t145 = k(25.0) * t57;
+            let t146 = k(0.8) * t106;
+            let t147 = T::fused(
+                -t138,
+                T::fused(k(0.10962962962962963), t117 * t69, t116),
+                t146
+                    + (t145
                         + T::fused(
                             k(2.2222222222222223),
-                            t63,
-                            T::fused(k(4.0), t65, k(0.37777777777777777)),
+                            t61,
+                            T::fused(k(4.0), t63, k(0.37777777777777777)),
                         )),
             );
-            let t150 = k(68.08553560621344) * t69;
-            let t151 = k(2.25) * t69;
-            let t152 = t142 * t151;
-            let t153 = t145 * t152;
-            let t154 = T::fused(
-                t153,
-                t143,
-                T::fused(t150, t135, -T::fused(-t68, t139, t149)),
+            let t148 = k(68.08553560621344) * t67;
+            let t149 = k(2.25) * t67;
+            let t150 = t140 * t149;
+            let t151 = t143 * t150;
+            let t152 = T::fused(
+                t151,
+                t141,
+                T::fused(t148, t133, -T::fused(-t66, t137, t147)),
             );
-            let t155 = T::fused(
-                t153,
-                t144,
+            let t153 = T::fused(
+                t151,
+                t142,
                 T::fused(
-                    t150,
-                    t136,
-                    -(t69
+                    t148,
+                    t134,
+                    -(t67
                         + T::fused(-k(0.26666666666666666), t44, k(0.03911111111111111))),
                 ),
             );
-            let t156 = k(1.0) / T::fused(t152, t153, -T::fused(-t151, t150, k(0.6)));
-            let t157 = t156 * t155;
-            let t158 = T::fused(
+            let t154 = k(1.0) / T::fused(t150, t151, -T::fused(-t149, t148, k(0.6)));
+            let t155 = t154 * t153;
+            let t156 = T::fused(
                 k(0.5925925925925926),
                 t57 * (t57 + k(0.48233333333333334)),
                 T::fused(
-                    -t59,
-                    T::fused(k(0.002714074074074074), t50, t110),
+                    -t58,
+                    T::fused(k(0.002714074074074074), t50, t108),
                     k(0.3062334156378601),
                 ),
             );
-            let t159 = T::fused(
+            let t157 = T::fused(
                 -t50,
-                T::fused(-k(0.007395637860082305), t50, t109),
-                T::fused(t44, T::fused(k(0.1259259259259259), t44, -t113), t158),
+                T::fused(-k(0.007395637860082305), t50, t107),
+                T::fused(t44, T::fused(k(0.1259259259259259), t44, -t111), t156),
             );
-            let t160 = T::fused(t157, t154, -T::fused(t146, t143, t138))
+            let t158 = T::fused(t155, t152, -T::fused(t144, t141, t136))
                 / T::fused(
+                    t153,
                     t155,
-                    t157,
-                    -T::fused(t144, t146, T::fused(t136, t137, -t159)),
+                    -T::fused(t142, t144, T::fused(t134, t135, -t157)),
                 );
-            let t161 = k(0.6666666666666666) * t160;
-            let t162 = k(0.6666666666666666) * t119;
-            let t163 = arm_wy * t162;
-            let t164 = k(0.3333333333333333) * t119;
-            let t165 = T::fused(arm_wx, t164, t163) - t161;
-            let t166 = k(0.2) * arm_wz;
-            let t167 = T::fused(k(0.2), arm_wy, k(0.1) * arm_wx);
-            let t168 = T::fused(k(0.1), t165, T::fused(arm_wz, t166, arm_wy * t167));
-            let t169 = k(0.2) * t165;
-            let t170 = k(0.1) * arm_wz;
-            let t171 = T::fused(arm_wx, t167, arm_wz * t170) - t169;
-            let t172 = T::fused(arm_wz, t164, t163) + t161;
-            let t173 = T::fused(
+            let t159 = k(0.6666666666666666) * t158;
+            let t160 = k(0.6666666666666666) * t117;
+            let t161 = arm_wy * t160;
+            let t162 = k(0.3333333333333333) * t117;
+            let t163 = T::fused(arm_wx, t162, t161) - t159;
+            let t164 = k(0.2) * arm_wz;
+            let t165 = T::fused(k(0.2), arm_wy, k(0.1) * arm_wx);
+            let t166 = T::fused(k(0.1), t163, T::fused(arm_wz, t164, arm_wy * t165));
+            let t167 = k(0.2) * t163;
+            let t168 = k(0.1) * arm_wz;
+            let t169 = T::fused(arm_wx, t165, arm_wz * t168) - t167;
+            let t170 = T::fused(arm_wz, t162, t161) + t159;
+            let t171 = T::fused(
                 k(0.3333333333333333),
-                t160,
-                T::fused(-arm_wz, t162, arm_wx * t162),
+                t158,
+                T::fused(-arm_wz, t160, arm_wx * t160),
             );
-            let t174 = T::fused(-arm_wy, t170, arm_wx * t166)
-                + T::fused(-k(0.1), t172, k(0.2) * t173);
-            let t175 = T::fused(t103, t174, T::fused(t100, t168, t101 * t171));
-            let t176 = T::fused(t91, t174, -T::fused(t88, t168, t89 * t171));
-            let t177 = T::fused(t79, t174, -T::fused(-t76, t168, t77 * t171));
-            let t178 = k(0.6666666666666666) * t57;
-            let t179 = T::fused(k(0.3333333333333333), t44, k(0.1) - t178);
-            let t180 = k(0.6666666666666666) * t44;
-            let t181 = t180 - T::fused(k(0.3333333333333333), t57, k(0.1));
-            let t182 = t168 + T::fused(t179, t173, t181 * t165);
-            let t183 = T::fused(k(0.8888888888888888), t50, k(0.1111111111111111));
-            let t184 = t180 + (k(0.2) + t178);
-            let t185 = t171 - T::fused(t179, t172, t184 * t165);
-            let t186 = k(0.6666666666666666) * t59;
-            let t187 = T::fused(-k(0.2222222222222222), t50, k(0.2222222222222222));
-            let t188 = t187 - t186;
-            let t189 = t174 + T::fused(-t181, t172, t184 * t173);
-            let t190 = t187 + t186;
-            let t191 = T::fused(
+            let t172 = T::fused(-arm_wy, t168, arm_wx * t164)
+                + T::fused(-k(0.1), t170, k(0.2) * t171);
+            let t173 = T::fused(t101, t172, T::fused(t98, t166, t99 * t169));
+            let t174 = T::fused(t89, t172, -T::fused(t86, t166, t87 * t169));
+            let t175 = T::fused(t77, t172, -T::fused(-t74, t166, t75 * t169));
+            let t176 = k(0.6666666666666666) * t57;
+            let t177 = T::fused(k(0.3333333333333333), t44, k(0.1) - t176);
+            let t178 = k(0.6666666666666666) * t44;
+            let t179 = t178 - T::fused(k(0.3333333333333333), t57, k(0.1));
+            let t180 = t166 + T::fused(t177, t171, t179 * t163);
+            let t181 = T::fused(k(0.8888888888888888), t50, k(0.1111111111111111));
+            let t182 = t178 + (k(0.2) + t176);
+            let t183 = t169 - T::fused(t177, t170, t182 * t163);
+            let t184 = k(0.6666666666666666) * t58;
+            let t185 = T::fused(-k(0.2222222222222222), t50, k(0.2222222222222222));
+            let t186 = t185 - t184;
+            let t187 = t172 + T::fused(-t179, t170, t182 * t171);
+            let t188 = t185 + t184;
+            let t189 = T::fused(
                 k(0.6666666666666666),
-                t108,
-                k(0.3333333333333333) * t118,
+                t106,
+                k(0.3333333333333333) * t116,
             );
-            let t192 = T::fused(
+            let t190 = T::fused(
                 k(0.3333333333333333),
-                t108,
-                k(0.6666666666666666) * t118,
+                t106,
+                k(0.6666666666666666) * t116,
             );
-            let t193 = T::fused(arm_wx, t181, arm_wy * t184);
-            let t194 = T::fused(-arm_wz, t184, arm_wx * t179);
-            let t195 = T::fused(
+            let t191 = T::fused(arm_wx, t179, arm_wy * t182);
+            let t192 = T::fused(-arm_wz, t182, arm_wx * t177);
+            let t193 = T::fused(
                 -k(2.0),
-                T::fused(arm_wy, t191, arm_wz * t192),
-                T::fused(-arm_wy, t193, arm_wz * t194),
+                T::fused(arm_wy, t189, arm_wz * t190),
+                T::fused(-arm_wy, t191, arm_wz * t192),
             );
-            let t196 = k(0.6666666666666666) * (t108 - t118);
-            let t197 = T::fused(arm_wy, t179, arm_wz * t181);
-            let t198 = T::fused(
+            let t194 = k(0.6666666666666666) * (t106 - t116);
+            let t195 = T::fused(arm_wy, t177, arm_wz * t179);
+            let t196 = T::fused(
                 k(2.0),
-                T::fused(arm_wz, t196, arm_wx * t191),
-                T::fused(arm_wz, t197, arm_wx * t193),
+                T::fused(arm_wz, t194, arm_wx * t189),
+                T::fused(arm_wz, t195, arm_wx * t191),
             );
-            let t199 = T::fused(
+            let t197 = T::fused(
                 k(2.0),
-                T::fused(-arm_wx, t192, arm_wy * t196),
-                T::fused(arm_wx, t194, arm_wy * t197),
+                T::fused(-arm_wx, t190, arm_wy * t194),
+                T::fused(arm_wx, t192, arm_wy * t195),
             );
+            let t198 = T::fused(k(0.1), block_wx, k(0.03) * block_wz);
+            let t199 = T::fused(-k(0.05), block_wx, k(0.03) * block_wy);
             (
                 t1,
                 t4,
@@ -9831,435 +8697,435 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t54,
                 t55,
                 t56,
-                t59,
+                t58,
+                t61,
                 t63,
                 t65,
-                t67,
+                t70,
+                t71,
                 t72,
-                t73,
                 t74,
-                t76,
+                t75,
                 t77,
-                t79,
+                t82,
+                t83,
                 t84,
-                t85,
                 t86,
-                t88,
+                t87,
                 t89,
-                t91,
+                t94,
+                t95,
                 t96,
-                t97,
                 t98,
-                t100,
+                t99,
                 t101,
-                t103,
+                t131,
                 t133,
                 t135,
-                t137,
-                t142,
+                t140,
+                t141,
                 t143,
+                t144,
                 t145,
                 t146,
-                t147,
                 t148,
-                t150,
-                t153,
+                t151,
+                t152,
                 t154,
-                t156,
-                t157,
-                t160,
-                t165,
-                t169,
-                t172,
+                t155,
+                t158,
+                t163,
+                t167,
+                t170,
+                t171,
                 t173,
+                t174,
                 t175,
-                t176,
                 t177,
                 t179,
+                t180,
                 t181,
                 t182,
                 t183,
-                t184,
-                t185,
+                t186,
+                t187,
                 t188,
-                t189,
-                t190,
-                t195,
+                t193,
+                t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (
-            t217,
-            t220,
-            t227,
+            t215,
+            t218,
+            t225,
+            t232,
+            t233,
             t234,
-            t235,
-            t236,
-            t240,
+            t238,
+            t241,
             t243,
-            t245,
-            t246,
-            t298,
-            t303,
-            t323,
+            t244,
+            t296,
+            t301,
+            t321,
+            t328,
             t330,
+            t331,
             t332,
-            t333,
-            t334,
         ) = {
-            let t200 = T::fused(k(0.1), block_wx, k(0.03) * block_wz);
-            let t201 = T::fused(-k(0.05), block_wx, k(0.03) * block_wy);
-            let t202 = T::fused(block_wz, t200, block_wy * t201)
-                - T::fused(t190, t199, -T::fused(t183, t195, t188 * t198));
-            let t203 = T::fused(-t156, t154, t157 * t160);
-            let t204 = T::fused(t153, t203, -T::fused(-t145, t143, t146 * t160));
-            let t205 = T::fused(
+            let t200 = T::fused(block_wz, t198, block_wy * t199)
+                - T::fused(t188, t197, -T::fused(t181, t193, t186 * t196));
+            let t201 = T::fused(-t154, t152, t155 * t158);
+            let t202 = T::fused(t151, t201, -T::fused(-t143, t141, t144 * t158));
+            let t203 = T::fused(
                 T::fused(
                     -k(0.6666666666666666),
-                    t188 - t183,
-                    k(0.3333333333333333) * t190,
+                    t186 - t181,
+                    k(0.3333333333333333) * t188,
                 ),
-                t204,
-                -(t202 + T::fused(t190, t189, T::fused(-t183, t182, t188 * t185))),
+                t202,
+                -(t200 + T::fused(t188, t187, T::fused(-t181, t180, t186 * t183))),
             );
-            let t206 = k(0.6666666666666666) * t190;
-            let t207 = T::fused(k(0.5555555555555556), t50, k(0.4444444444444444));
-            let t208 = k(0.3333333333333333) * t59;
-            let t209 = T::fused(-k(0.4444444444444444), t50, k(0.4444444444444444));
-            let t210 = t209 - t208;
-            let t211 = k(0.3333333333333333) * t67;
-            let t212 = k(0.6666666666666666) * t67;
-            let t213 = block_wx * t212;
-            let t214 = T::fused(-block_wz, t211, t213)
-                - T::fused(t210, t165, T::fused(-t190, t172, t207 * t173));
-            let t215 = T::fused(
-                t142,
-                t204,
-                T::fused(t150, t203, -T::fused(-k(30.26023804720597), t135, t137 * t160)),
+            let t204 = k(0.6666666666666666) * t188;
+            let t205 = T::fused(k(0.5555555555555556), t50, k(0.4444444444444444));
+            let t206 = k(0.3333333333333333) * t58;
+            let t207 = T::fused(-k(0.4444444444444444), t50, k(0.4444444444444444));
+            let t208 = t207 - t206;
+            let t209 = k(0.3333333333333333) * t65;
+            let t210 = k(0.6666666666666666) * t65;
+            let t211 = block_wx * t210;
+            let t212 = T::fused(-block_wz, t209, t211)
+                - T::fused(t208, t163, T::fused(-t188, t170, t205 * t171));
+            let t213 = T::fused(
+                t140,
+                t202,
+                T::fused(t148, t201, -T::fused(-k(30.26023804720597), t133, t135 * t158)),
             );
-            let t216 = k(0.6666666666666666) * t215;
-            let t217 = t216 + t214;
-            let t218 = t209 + t208;
-            let t219 = T::fused(block_wy, t211, -t213)
-                - T::fused(t207, t165, T::fused(-t188, t172, t218 * t173));
-            let t220 = t216 + t219;
-            let t221 = T::fused(k(0.1), t217, k(0.05) * t220)
+            let t214 = k(0.6666666666666666) * t213;
+            let t215 = t214 + t212;
+            let t216 = t207 + t206;
+            let t217 = T::fused(block_wy, t209, -t211)
+                - T::fused(t205, t163, T::fused(-t186, t170, t216 * t171));
+            let t218 = t214 + t217;
+            let t219 = T::fused(k(0.1), t215, k(0.05) * t218)
                 - T::fused(
-                    t206
+                    t204
                         - T::fused(
                             k(0.6666666666666666),
-                            t183,
-                            k(0.3333333333333333) * t188,
+                            t181,
+                            k(0.3333333333333333) * t186,
                         ),
+                    t201,
                     t203,
-                    t205,
                 );
-            let t222 = T::fused(k(0.05), block_wz, k(0.1) * block_wy);
-            let t223 = T::fused(-block_wx, t201, block_wz * t222)
-                - T::fused(t210, t199, -T::fused(t190, t195, t207 * t198));
-            let t224 = T::fused(
+            let t220 = T::fused(k(0.05), block_wz, k(0.1) * block_wy);
+            let t221 = T::fused(-block_wx, t199, block_wz * t220)
+                - T::fused(t208, t197, -T::fused(t188, t193, t205 * t196));
+            let t222 = T::fused(
                 T::fused(
                     -k(0.6666666666666666),
-                    t207 - t190,
-                    k(0.3333333333333333) * t210,
+                    t205 - t188,
+                    k(0.3333333333333333) * t208,
                 ),
-                t204,
-                -(t223 + T::fused(t210, t189, T::fused(-t190, t182, t207 * t185))),
+                t202,
+                -(t221 + T::fused(t208, t187, T::fused(-t188, t180, t205 * t183))),
             );
-            let t225 = k(0.3333333333333333) * t207;
-            let t226 = T::fused(-block_wy, t212, block_wz * t212)
-                - T::fused(t190, t165, T::fused(-t183, t172, t188 * t173));
-            let t227 = T::fused(k(0.3333333333333333), t215, t226);
-            let t228 = T::fused(k(0.1), t227, k(0.03) * t220)
+            let t223 = k(0.3333333333333333) * t205;
+            let t224 = T::fused(-block_wy, t210, block_wz * t210)
+                - T::fused(t188, t163, T::fused(-t181, t170, t186 * t171));
+            let t225 = T::fused(k(0.3333333333333333), t213, t224);
+            let t226 = T::fused(k(0.1), t225, k(0.03) * t218)
                 + T::fused(
-                    T::fused(k(0.6666666666666666), t210, -(t225 + t206)),
-                    t203,
-                    t224,
+                    T::fused(k(0.6666666666666666), t208, -(t223 + t204)),
+                    t201,
+                    t222,
                 );
-            let t229 = T::fused(block_wy, t222, block_wx * t200)
-                + T::fused(t207, t199, -T::fused(t188, t195, t218 * t198));
-            let t230 = T::fused(
-                T::fused(-k(0.6666666666666666), t218 - t188, t225),
-                t204,
-                t229 - T::fused(t207, t189, T::fused(-t188, t182, t218 * t185)),
+            let t227 = T::fused(block_wy, t220, block_wx * t198)
+                + T::fused(t205, t197, -T::fused(t186, t193, t216 * t196));
+            let t228 = T::fused(
+                T::fused(-k(0.6666666666666666), t216 - t186, t223),
+                t202,
+                t227 - T::fused(t205, t187, T::fused(-t186, t180, t216 * t183)),
             );
-            let t231 = T::fused(
+            let t229 = T::fused(
                 T::fused(
                     k(0.6666666666666666),
-                    t207,
-                    -T::fused(k(0.6666666666666666), t188, k(0.3333333333333333) * t218),
+                    t205,
+                    -T::fused(k(0.6666666666666666), t186, k(0.3333333333333333) * t216),
                 ),
-                t203,
-                t230,
+                t201,
+                t228,
             );
-            let t232 = k(0.03) * t217;
-            let t233 = T::fused(-k(0.05), t227, t232) - t231;
-            let t234 = T::fused(t98, t233, -T::fused(t96, t221, t97 * t228));
-            let t235 = T::fused(t86, t233, T::fused(t84, t221, t85 * t228));
-            let t236 = T::fused(t74, t233, T::fused(-t72, t221, t73 * t228));
-            let t237 = k(40.0) * (k(0.05) + t44);
-            let t238 = T::fused(t52, t147, -T::fused(-t52, t148, t19 * t237));
-            let t239 = T::fused(-k(0.6), t234, k(0.6) - t238);
-            let t240 = T::fused(-k(1.5), t175, k(1.5) + t238) + t239;
-            let t241 = T::fused(t54, t147, -T::fused(-t54, t148, t33 * t237));
-            let t242 = T::fused(k(0.6), t235, k(5.4) - t241);
-            let t243 = T::fused(k(1.5), t176, k(13.5) + t241) + t242;
-            let t244 = T::fused(t56, t147, T::fused(t56, t148, t43 * t237));
-            let t245 = T::fused(k(0.6), t236, k(1.8) - t244);
-            let t246 = T::fused(k(1.5), t177, k(4.5) + t244) + t245;
-            let t247 = k(0.05) * arm_wy;
-            let t248 = arm_wy * arm_wy;
-            let t249 = arm_wz * arm_wz;
-            let t250 = k(0.02) * arm_wz;
-            let t251 = k(0.03) * arm_wy;
-            let t252 = T::fused(
+            let t230 = k(0.03) * t215;
+            let t231 = T::fused(-k(0.05), t225, t230) - t229;
+            let t232 = T::fused(t96, t231, -T::fused(t94, t219, t95 * t226));
+            let t233 = T::fused(t84, t231, T::fused(t82, t219, t83 * t226));
+            let t234 = T::fused(t72, t231, T::fused(-t70, t219, t71 * t226));
+            let t235 = k(40.0) * (k(0.05) + t44);
+            let t236 = T::fused(t52, t145, -T::fused(-t52, t146, t19 * t235));
+            let t237 = T::fused(-k(0.6), t232, k(0.6) - t236);
+            let t238 = T::fused(-k(1.5), t173, k(1.5) + t236) + t237;
+            let t239 = T::fused(t54, t145, -T::fused(-t54, t146, t33 * t235));
+            let t240 = T::fused(k(0.6), t233, k(5.4) - t239);
+            let t241 = T::fused(k(1.5), t174, k(13.5) + t239) + t240;
+            let t242 = T::fused(t56, t145, T::fused(t56, t146, t43 * t235));
+            let t243 = T::fused(k(0.6), t234, k(1.8) - t242);
+            let t244 = T::fused(k(1.5), t175, k(4.5) + t242) + t243;
+            let t245 = k(0.05) * arm_wy;
+            let t246 = arm_wy * arm_wy;
+            let t247 = arm_wz * arm_wz;
+            let t248 = k(0.02) * arm_wz;
+            let t249 = k(0.03) * arm_wy;
+            let t250 = T::fused(
                 arm_wx,
-                t251 + t250,
-                T::fused(arm_wz, t247, k(0.01) * (t249 - t248)),
+                t249 + t248,
+                T::fused(arm_wz, t245, k(0.01) * (t247 - t246)),
             );
-            let t253 = arm_rx - t17;
-            let t254 = arm_ry - t31;
-            let t255 = arm_rz - t41;
-            let t256 = T::fused(t79, t255, -T::fused(t103, t253, t91 * t254));
-            let t257 = T::fused(t77, t255, -T::fused(-t101, t253, t89 * t254));
-            let t258 = k(0.6666666666666666) * t257;
-            let t259 = T::fused(-k(0.3333333333333333), t256, t258);
-            let t260 = k(0.6666666666666666) * t256;
-            let t261 = T::fused(
-                t147,
-                t259,
-                T::fused(t148, t259, t237 * T::fused(-k(0.3333333333333333), t257, t260)),
+            let t251 = arm_rx - t17;
+            let t252 = arm_ry - t31;
+            let t253 = arm_rz - t41;
+            let t254 = T::fused(t77, t253, -T::fused(t101, t251, t89 * t252));
+            let t255 = T::fused(t75, t253, -T::fused(-t99, t251, t87 * t252));
+            let t256 = k(0.6666666666666666) * t255;
+            let t257 = T::fused(-k(0.3333333333333333), t254, t256);
+            let t258 = k(0.6666666666666666) * t254;
+            let t259 = T::fused(
+                t145,
+                t257,
+                T::fused(t146, t257, t235 * T::fused(-k(0.3333333333333333), t255, t258)),
             );
-            let t262 = k(0.2) * t133;
-            let t263 = k(0.006666666666666667) * t67;
-            let t264 = T::fused(k(0.03), t165, -T::fused(-k(0.3), t172, k(0.02) * t173))
-                + (t263 - (t262 + t261) - t252);
-            let t265 = k(0.005) * block_wz;
-            let t266 = block_wy * block_wy;
-            let t267 = block_wz * block_wz;
-            let t268 = k(0.001) * block_wz;
-            let t269 = k(0.002) * block_wy;
-            let t270 = T::fused(
+            let t260 = k(0.2) * t131;
+            let t261 = k(0.006666666666666667) * t65;
+            let t262 = T::fused(k(0.03), t163, -T::fused(-k(0.3), t170, k(0.02) * t171))
+                + (t261 - (t260 + t259) - t250);
+            let t263 = k(0.005) * block_wz;
+            let t264 = block_wy * block_wy;
+            let t265 = block_wz * block_wz;
+            let t266 = k(0.001) * block_wz;
+            let t267 = k(0.002) * block_wy;
+            let t268 = T::fused(
                 block_wx,
-                t269 - t268,
-                T::fused(-block_wy, t265, k(0.003) * (t267 - t266)),
+                t267 - t266,
+                T::fused(-block_wy, t263, k(0.003) * (t265 - t264)),
             );
-            let t271 = T::fused(t74, t56, T::fused(-t98, t52, t86 * t54));
-            let t272 = T::fused(t73, t56, T::fused(t97, t52, t85 * t54));
-            let t273 = T::fused(-k(0.05), t271, k(0.1) * t272);
-            let t274 = T::fused(t74, t43, -T::fused(-t98, t19, t86 * t33));
-            let t275 = T::fused(t73, t43, -T::fused(t97, t19, t85 * t33));
+            let t269 = T::fused(t72, t56, T::fused(-t96, t52, t84 * t54));
+            let t270 = T::fused(t71, t56, T::fused(t95, t52, t83 * t54));
+            let t271 = T::fused(-k(0.05), t269, k(0.1) * t270);
+            let t272 = T::fused(t72, t43, -T::fused(-t96, t19, t84 * t33));
+            let t273 = T::fused(t71, t43, -T::fused(t95, t19, t83 * t33));
+            let t274 = T::fused(
+                t145,
+                t271,
+                T::fused(t146, t271, t235 * T::fused(-k(0.05), t272, k(0.1) * t273)),
+            );
+            let t275 = T::fused(k(0.002), t218, T::fused(k(0.02), t225, k(0.001) * t215))
+                - (t261 - (t260 + t274) - t268);
             let t276 = T::fused(
-                t147,
-                t273,
-                T::fused(t148, t273, t237 * T::fused(-k(0.05), t274, k(0.1) * t275)),
-            );
-            let t277 = T::fused(k(0.002), t220, T::fused(k(0.02), t227, k(0.001) * t217))
-                - (t263 - (t262 + t276) - t270);
-            let t278 = T::fused(
                 -T::fused(-k(0.2), t27, k(0.1) * t30),
-                t242,
-                T::fused(k(0.2), t13, k(0.1) * t16) * t239,
+                t240,
+                T::fused(k(0.2), t13, k(0.1) * t16) * t237,
             );
-            let t279 = T::fused(-T::fused(-k(0.2), t39, k(0.1) * t40), t245, t278)
-                + t277;
-            let t280 = block_wx * block_wx;
-            let t281 = k(0.003) * block_wx;
-            let t282 = T::fused(
+            let t277 = T::fused(-T::fused(-k(0.2), t39, k(0.1) * t40), t243, t276)
+                + t275;
+            let t278 = block_wx * block_wx;
+            let t279 = k(0.003) * block_wx;
+            let t280 = T::fused(
                 block_wy,
-                t268 + t281,
-                T::fused(-block_wx, t265, k(0.002) * (t267 - t280)),
+                t266 + t279,
+                T::fused(-block_wx, t263, k(0.002) * (t265 - t278)),
             );
-            let t283 = T::fused(t72, t56, -T::fused(t96, t52, t84 * t54));
-            let t284 = T::fused(-k(0.1), t283, k(0.03) * t271);
-            let t285 = T::fused(t72, t43, T::fused(t96, t19, t84 * t33));
-            let t286 = T::fused(
-                t147,
-                t284,
-                T::fused(t148, t284, t237 * T::fused(-k(0.1), t285, k(0.03) * t274)),
+            let t281 = T::fused(t70, t56, -T::fused(t94, t52, t82 * t54));
+            let t282 = T::fused(-k(0.1), t281, k(0.03) * t269);
+            let t283 = T::fused(t70, t43, T::fused(t94, t19, t82 * t33));
+            let t284 = T::fused(
+                t145,
+                t282,
+                T::fused(t146, t282, t235 * T::fused(-k(0.1), t283, k(0.03) * t272)),
             );
-            let t287 = k(0.4) * t133;
-            let t288 = k(0.013333333333333334) * t67;
-            let t289 = T::fused(k(0.003), t220, -T::fused(k(0.001), t227, t232))
-                + (t288 - (t287 + t286) - t282);
-            let t290 = T::fused(
+            let t285 = k(0.4) * t131;
+            let t286 = k(0.013333333333333334) * t65;
+            let t287 = T::fused(k(0.003), t218, -T::fused(k(0.001), t225, t230))
+                + (t286 - (t285 + t284) - t280);
+            let t288 = T::fused(
                 -T::fused(k(0.2), t26, k(0.06) * t30),
-                t242,
-                T::fused(-k(0.2), t10, k(0.06) * t16) * t239,
+                t240,
+                T::fused(-k(0.2), t10, k(0.06) * t16) * t237,
             );
-            let t291 = T::fused(-T::fused(-k(0.2), t38, k(0.06) * t40), t245, t290)
-                + t289;
+            let t289 = T::fused(-T::fused(-k(0.2), t38, k(0.06) * t40), t243, t288)
+                + t287;
+            let t290 = T::fused(
+                T::fused(k(0.06), t27, k(0.1) * t26),
+                t240,
+                T::fused(k(0.06), t13, k(0.1) * t10) * t237,
+            );
+            let t291 = T::fused(-k(0.03), t270, k(0.05) * t281);
             let t292 = T::fused(
-                T::fused(k(0.1), t26, k(0.06) * t27),
-                t242,
-                T::fused(k(0.1), t10, k(0.06) * t13) * t239,
+                t291,
+                t145,
+                T::fused(t291, t146, T::fused(-k(0.03), t273, k(0.05) * t283) * t235),
             );
-            let t293 = T::fused(-k(0.03), t272, k(0.05) * t283);
-            let t294 = T::fused(
-                t293,
-                t147,
-                T::fused(t293, t148, T::fused(-k(0.03), t275, k(0.05) * t285) * t237),
-            );
-            let t295 = T::fused(
+            let t293 = T::fused(
                 block_wz,
-                t269 + t281,
-                -T::fused(-k(0.001), t266 - t280, k(0.01) * (block_wx * block_wy)),
+                t267 + t279,
+                -T::fused(-k(0.001), t264 - t278, k(0.01) * (block_wx * block_wy)),
             );
-            let t296 = t295 + (t288 - (t287 - t294))
-                - T::fused(k(0.025), t220, -T::fused(-k(0.002), t227, k(0.003) * t217));
-            let t297 = t296
-                - T::fused(T::fused(-k(0.1), t38, k(0.06) * t39), t245, t292);
-            let t298 = T::fused(t188, t297, T::fused(-t183, t279, t190 * t291));
-            let t299 = T::fused(
-                -T::fused(-t89, t179, t91 * t181),
-                t242,
-                T::fused(t101, t179, t103 * t181) * t239,
+            let t294 = t293 + (t286 - (t285 - t292))
+                - T::fused(k(0.025), t218, -T::fused(-k(0.002), t225, k(0.003) * t215));
+            let t295 = t294
+                - T::fused(-T::fused(-k(0.06), t39, k(0.1) * t38), t243, t290);
+            let t296 = T::fused(t186, t295, T::fused(-t181, t277, t188 * t289));
+            let t297 = T::fused(
+                -T::fused(-t87, t177, t89 * t179),
+                t240,
+                T::fused(t99, t177, t101 * t179) * t237,
             );
-            let t300 = T::fused(-T::fused(-t77, t179, t79 * t181), t245, t299) - t298
-                + t264;
-            let t301 = T::fused(-t37, t246, T::fused(-t25, t243, t8 * t240)) + t300;
-            let t302 = T::fused(k(0.5555555555555556), t63, k(0.4444444444444444));
-            let t303 = T::fused(t218, t297, T::fused(-t188, t279, t207 * t291));
-            let t304 = T::fused(
-                -T::fused(-t88, t179, t91 * t184),
-                t242,
-                T::fused(t100, t179, t103 * t184) * t239,
+            let t298 = T::fused(-T::fused(-t75, t177, t77 * t179), t243, t297) - t296
+                + t262;
+            let t299 = T::fused(-t37, t244, T::fused(-t25, t241, t8 * t238)) + t298;
+            let t300 = T::fused(k(0.5555555555555556), t61, k(0.4444444444444444));
+            let t301 = T::fused(t216, t295, T::fused(-t186, t277, t205 * t289));
+            let t302 = T::fused(
+                -T::fused(-t86, t177, t89 * t182),
+                t240,
+                T::fused(t98, t177, t101 * t182) * t237,
             );
-            let t305 = T::fused(t76, t255, T::fused(-t100, t253, t88 * t254));
-            let t306 = k(0.6666666666666666) * (t256 - t305);
-            let t307 = k(0.3333333333333333) * t305;
-            let t308 = t287
-                + T::fused(t147, t306, T::fused(t148, t306, t237 * (t307 + t260)));
-            let t309 = arm_wx * arm_wx;
-            let t310 = k(0.01) * arm_wx;
-            let t311 = T::fused(
+            let t303 = T::fused(t74, t253, T::fused(-t98, t251, t86 * t252));
+            let t304 = k(0.6666666666666666) * (t254 - t303);
+            let t305 = k(0.3333333333333333) * t303;
+            let t306 = t285
+                + T::fused(t145, t304, T::fused(t146, t304, t235 * (t305 + t258)));
+            let t307 = arm_wx * arm_wx;
+            let t308 = k(0.01) * arm_wx;
+            let t309 = T::fused(
                 arm_wy,
-                t250 - t310,
-                T::fused(-k(0.03), t249 - t309, k(0.1) * (arm_wx * arm_wz)),
+                t248 - t308,
+                T::fused(-k(0.03), t247 - t307, k(0.1) * (arm_wx * arm_wz)),
             );
-            let t312 = t311 + (t288 - t308)
-                - T::fused(k(0.01), t165, T::fused(-k(0.02), t172, k(0.25) * t173));
-            let t313 = t312
-                + (T::fused(-T::fused(t76, t179, t79 * t184), t245, t304) - t303);
-            let t314 = T::fused(
+            let t310 = t309 + (t286 - t306)
+                - T::fused(k(0.01), t163, T::fused(-k(0.02), t170, k(0.25) * t171));
+            let t311 = t310
+                + (T::fused(-T::fused(t74, t177, t77 * t182), t243, t302) - t301);
+            let t312 = T::fused(
                 -(k(0.4) * t36),
-                t246,
-                T::fused(-(k(0.4) * t24), t243, k(0.4) * t7 * t240),
+                t244,
+                T::fused(-(k(0.4) * t24), t241, k(0.4) * t7 * t238),
             );
-            let t315 = t314 + t313;
-            let t316 = k(0.6666666666666666) * t65;
-            let t317 = T::fused(-k(0.2222222222222222), t63, k(0.2222222222222222));
-            let t318 = t317 + t316;
-            let t319 = T::fused(
+            let t313 = t312 + t311;
+            let t314 = k(0.6666666666666666) * t63;
+            let t315 = T::fused(-k(0.2222222222222222), t61, k(0.2222222222222222));
+            let t316 = t315 + t314;
+            let t317 = T::fused(
                 arm_wz,
-                t251 + t310,
-                -T::fused(arm_wx, t247, k(0.02) * (t248 - t309)),
+                t249 + t308,
+                -T::fused(arm_wx, t245, k(0.02) * (t246 - t307)),
             );
-            let t320 = t307 - t258;
-            let t321 = T::fused(
-                t147,
-                t320,
-                -T::fused(-t148, t320, t237 * (k(0.6666666666666666) * (t257 + t305))),
-            );
-            let t322 = t169 + T::fused(k(0.03), t172, k(0.01) * t173)
-                - (t288 - (t287 - t321) + t319);
-            let t323 = T::fused(t207, t297, T::fused(-t190, t279, t210 * t291));
-            let t324 = T::fused(
-                T::fused(-t88, t181, t89 * t184),
-                t242,
-                T::fused(-t100, t181, t101 * t184) * t239,
-            );
-            let t325 = T::fused(T::fused(t76, t181, t77 * t184), t245, t324) + t323
-                + t322;
-            let t326 = T::fused(
-                T::fused(-k(0.2), t20, k(0.4) * t21),
-                t243,
-                T::fused(-k(0.2), t1, k(0.4) * t4) * t240,
-            );
-            let t327 = T::fused(T::fused(k(0.2), t34, k(0.4) * t35), t246, t326) + t325;
-            let t328 = k(0.3333333333333333) * t65;
-            let t329 = T::fused(-k(0.4444444444444444), t63, k(0.4444444444444444));
-            let t330 = T::fused(t329 - t328, t327, T::fused(-t302, t301, t318 * t315));
-            let t331 = t317 - t316;
-            let t332 = T::fused(
+            let t318 = t305 - t256;
+            let t319 = T::fused(
+                t145,
                 t318,
-                t327,
+                -T::fused(-t146, t318, t235 * (k(0.6666666666666666) * (t255 + t303))),
+            );
+            let t320 = t167 + T::fused(k(0.03), t170, k(0.01) * t171)
+                - (t286 - (t285 - t319) + t317);
+            let t321 = T::fused(t205, t295, T::fused(-t188, t277, t208 * t289));
+            let t322 = T::fused(
+                T::fused(-t86, t179, t87 * t182),
+                t240,
+                T::fused(-t98, t179, t99 * t182) * t237,
+            );
+            let t323 = T::fused(T::fused(t74, t179, t75 * t182), t243, t322) + t321
+                + t320;
+            let t324 = T::fused(
+                T::fused(-k(0.2), t20, k(0.4) * t21),
+                t241,
+                T::fused(-k(0.2), t1, k(0.4) * t4) * t238,
+            );
+            let t325 = T::fused(T::fused(k(0.2), t34, k(0.4) * t35), t244, t324) + t323;
+            let t326 = k(0.3333333333333333) * t63;
+            let t327 = T::fused(-k(0.4444444444444444), t61, k(0.4444444444444444));
+            let t328 = T::fused(t327 - t326, t325, T::fused(-t300, t299, t316 * t313));
+            let t329 = t315 - t314;
+            let t330 = T::fused(
+                t316,
+                t325,
                 T::fused(
-                    -t331,
-                    t301,
-                    T::fused(k(0.8888888888888888), t63, k(0.1111111111111111)) * t315,
+                    -t329,
+                    t299,
+                    T::fused(k(0.8888888888888888), t61, k(0.1111111111111111)) * t313,
                 ),
             );
-            let t333 = T::fused(
+            let t331 = T::fused(
                 k(0.7453559924999299),
-                T::fused(t302, t327, T::fused(-(t329 + t328), t301, t331 * t315)),
-                -T::fused(k(0.5962847939999439), t330, k(0.29814239699997197) * t332),
+                T::fused(t300, t325, T::fused(-(t327 + t326), t299, t329 * t313)),
+                -T::fused(k(0.5962847939999439), t328, k(0.29814239699997197) * t330),
             );
-            let t334 = T::fused(
+            let t332 = T::fused(
                 -(t53
                     - T::fused(
                         -k(0.6666666666666666),
                         t20,
                         k(1.3333333333333333) * t21,
                     )),
-                t242,
+                t240,
                 (t51 + T::fused(-k(0.6666666666666666), t1, k(1.3333333333333333) * t4))
-                    * t239,
+                    * t237,
             );
             (
-                t217,
-                t220,
-                t227,
+                t215,
+                t218,
+                t225,
+                t232,
+                t233,
                 t234,
-                t235,
-                t236,
-                t240,
+                t238,
+                t241,
                 t243,
-                t245,
-                t246,
-                t298,
-                t303,
-                t323,
+                t244,
+                t296,
+                t301,
+                t321,
+                t328,
                 t330,
+                t331,
                 t332,
-                t333,
-                t334,
             )
         };
         *out = [
-            t175,
-            t176,
-            -t177,
-            t172,
-            -t173,
-            -t165,
-            t234,
-            t235,
-            -t236,
-            t227,
-            t217,
-            t220,
-            t240,
-            -t243,
-            t246,
-            t333,
-            T::fused(-k(0.4472135954999579), t330, k(0.8944271909999159) * t332),
+            t173,
+            t174,
+            -t175,
+            t170,
+            -t171,
+            -t163,
+            t232,
+            t233,
+            -t234,
+            t225,
+            t215,
+            t218,
+            t238,
+            -t241,
+            t244,
+            t331,
+            T::fused(-k(0.4472135954999579), t328, k(0.8944271909999159) * t330),
             T::fused(
                 -(t55
                     - T::fused(k(0.6666666666666666), t34, k(1.3333333333333333) * t35)),
-                t245,
-                t334,
+                t243,
+                t332,
             ),
             T::fused(
                 -k(0.3333333333333333),
-                t323,
-                k(0.6666666666666666) * (t303 - t298),
+                t321,
+                k(0.6666666666666666) * (t301 - t296),
             ),
             T::fused(
                 k(0.6666666666666666),
-                t323,
-                -T::fused(k(0.6666666666666666), t298, k(0.3333333333333333) * t303),
+                t321,
+                -T::fused(k(0.6666666666666666), t296, k(0.3333333333333333) * t301),
             ),
         ];
     }
@@ -10273,7 +9139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1650 operations (732 ±, 915 ×, 3 ÷) and 8 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1653 operations (735 ±, 915 ×, 3 ÷) and 8 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -10788,8 +9654,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             let t195 = t192.cos();
             let t196 = t195 * t194;
             let t197 = k(0.6666666666666666) * t196;
-            let t198 = T::fused(-t193, t194, k(1.0));
-            let t199 = T::fused(-k(0.2222222222222222), t198, k(0.2222222222222222));
+            let t198 = t193 + t195;
+            let t199 = t193 - t195;
             (
                 t16,
                 t17,
@@ -10836,64 +9702,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             )
         };
         let (
-            t200,
-            t201,
+            t202,
             t203,
-            t204,
-            t207,
+            t205,
+            t206,
             t209,
-            t210,
+            t211,
             t212,
             t214,
-            t215,
             t216,
-            t219,
-            t229,
-            t230,
+            t217,
+            t218,
+            t221,
             t231,
             t232,
-            t236,
-            t237,
+            t233,
+            t234,
             t238,
-            t241,
-            t248,
-            t249,
+            t239,
+            t240,
+            t243,
+            t250,
             t251,
-            t255,
-            t256,
+            t253,
             t257,
-            t261,
-            t262,
-            t265,
-            t289,
+            t258,
+            t259,
+            t263,
+            t264,
+            t267,
             t291,
             t293,
-            t296,
+            t295,
             t298,
+            t300,
+            t308,
             t317,
             t319,
             t321,
-            t324,
-            t340,
+            t323,
+            t326,
             t341,
             t342,
+            t343,
             t344,
-            t345,
             t346,
-            t349,
+            t347,
+            t348,
             t351,
-            t352,
             t353,
-            t356,
+            t354,
+            t355,
             t358,
-            t363,
-            t368,
-            t369,
-            t373,
+            t360,
+            t365,
+            t370,
+            t371,
             t375,
             t377,
             t379,
-            t380,
             t381,
             t382,
             t383,
@@ -10901,360 +9768,361 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             t385,
             t386,
             t387,
+            t388,
             t389,
-            t390,
             t391,
             t392,
             t393,
+            t394,
             t395,
-            t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = t199 - t197;
-            let t201 = k(0.6666666666666666) * u0;
-            let t202 = t201 * t200;
-            let t203 = T::fused(k(0.5555555555555556), t198, k(0.4444444444444444));
-            let t204 = k(0.3333333333333333) * u0;
-            let t205 = k(0.3333333333333333) * t196;
-            let t206 = T::fused(-k(0.4444444444444444), t198, k(0.4444444444444444));
-            let t207 = t206 + t205;
-            let t208 = k(0.6666666666666666) * u3;
-            let t209 = t208 + T::fused(t201, t207, -T::fused(t204, t203, -t202));
-            let t210 = k(0.6666666666666666) * t193;
-            let t211 = k(0.5) * x0;
-            let t212 = t211.cos();
-            let t213 = t212 * t210;
-            let t214 = k(0.3333333333333333) * t193;
-            let t215 = t211.sin();
-            let t216 = k(0.6666666666666666) * t215;
-            let t217 = t216 * t214;
-            let t218 = t216 * t210;
-            let t219 = k(0.3333333333333333) * t215;
-            let t220 = T::fused(t219, t195, t218 - (t217 + t213));
-            let t221 = t219 * t210;
-            let t222 = T::fused(t212, t195, -(t217 - t221 + t218));
-            let t223 = t222 * t220;
-            let t224 = t216 * t195;
-            let t225 = t224 + (t213 + T::fused(t219, t214, t218));
-            let t226 = t224 - (t221 + T::fused(-t212, t214, t218));
-            let t227 = t226 * t225;
-            let t228 = t227 + t223;
-            let t229 = k(2.0) * t228;
-            let t230 = T::fused(k(0.8888888888888888), t198, k(0.1111111111111111));
-            let t231 = t199 + t197;
-            let t232 = T::fused(
+            let t200 = t199 * t198;
+            let t201 = T::fused(k(0.2222222222222222), t200, k(0.2222222222222222));
+            let t202 = t201 - t197;
+            let t203 = k(0.6666666666666666) * u0;
+            let t204 = t203 * t202;
+            let t205 = T::fused(-k(0.5555555555555556), t200, k(0.4444444444444444));
+            let t206 = k(0.3333333333333333) * u0;
+            let t207 = k(0.3333333333333333) * t196;
+            let t208 = T::fused(k(0.4444444444444444), t200, k(0.4444444444444444));
+            let t209 = t208 + t207;
+            let t210 = k(0.6666666666666666) * u3;
+            let t211 = t210 + T::fused(t203, t209, -T::fused(t206, t205, -t204));
+            let t212 = k(0.6666666666666666) * t193;
+            let t213 = k(0.5) * x0;
+            let t214 = t213.cos();
+            let t215 = t214 * t212;
+            let t216 = k(0.3333333333333333) * t193;
+            let t217 = t213.sin();
+            let t218 = k(0.6666666666666666) * t217;
+            let t219 = t218 * t216;
+            let t220 = t218 * t212;
+            let t221 = k(0.3333333333333333) * t217;
+            let t222 = T::fused(t221, t195, t220 - (t219 + t215));
+            let t223 = t221 * t212;
+            let t224 = T::fused(t214, t195, -(t219 - t223 + t220));
+            let t225 = t224 * t222;
+            let t226 = t218 * t195;
+            let t227 = t226 + (t215 + T::fused(t221, t216, t220));
+            let t228 = t226 - (t223 + T::fused(-t214, t216, t220));
+            let t229 = t228 * t227;
+            let t230 = t229 + t225;
+            let t231 = k(2.0) * t230;
+            let t232 = T::fused(-k(0.8888888888888888), t200, k(0.1111111111111111));
+            let t233 = t201 + t197;
+            let t234 = T::fused(
                 k(0.3333333333333333),
                 u3,
-                t202 - T::fused(-t201, t230, t204 * t231),
+                t204 - T::fused(-t203, t232, t206 * t233),
             );
-            let t233 = t222 * t226;
-            let t234 = t220 * t225;
-            let t235 = t234 - t233;
-            let t236 = k(2.0) * t235;
-            let t237 = t206 - t205;
-            let t238 = t208 + T::fused(t201, t203, -T::fused(-t201, t231, t204 * t237));
-            let t239 = t222 * t222;
-            let t240 = k(0.5) - T::fused(t225, t225, t239);
-            let t241 = k(2.0) * t240;
-            let t242 = T::fused(
+            let t235 = t224 * t228;
+            let t236 = t222 * t227;
+            let t237 = t236 - t235;
+            let t238 = k(2.0) * t237;
+            let t239 = t208 - t207;
+            let t240 = t210 + T::fused(t203, t205, -T::fused(-t203, t233, t206 * t239));
+            let t241 = t224 * t224;
+            let t242 = k(0.5) - T::fused(t227, t227, t241);
+            let t243 = k(2.0) * t242;
+            let t244 = T::fused(
                 -k(0.05),
-                T::fused(t229, t238, t241 * t232),
-                k(0.03) * T::fused(-t236, t238, t241 * t209),
+                T::fused(t231, t240, t243 * t234),
+                k(0.03) * T::fused(-t238, t240, t243 * t211),
             );
-            let t243 = T::fused(k(0.1), t209, k(0.05) * t238);
-            let t244 = T::fused(k(0.03), t238, k(0.1) * t232);
-            let t245 = T::fused(-k(0.05), t232, k(0.03) * t209);
-            let t246 = k(0.6666666666666666) * x2;
-            let t247 = k(0.6666666666666666) * x1;
-            let t248 = k(0.2) + t247 - t246;
-            let t249 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t246;
-            let t250 = t249 * t201;
-            let t251 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
-                - T::fused(t248, t204, t250);
-            let t252 = t216 * t216;
-            let t253 = t212 * t212;
-            let t254 = k(0.5) - (t253 + t252);
-            let t255 = k(2.0) * t254;
-            let t256 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t247);
-            let t257 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
-                + T::fused(-t256, t201, t248 * t201);
-            let t258 = t212 * t216;
-            let t259 = t216 * t219;
-            let t260 = t259 - t258;
-            let t261 = k(2.0) * t260;
-            let t262 = T::fused(
+            let t245 = T::fused(k(0.1), t211, k(0.05) * t240);
+            let t246 = T::fused(k(0.03), t240, k(0.1) * t234);
+            let t247 = T::fused(-k(0.05), t234, k(0.03) * t211);
+            let t248 = k(0.6666666666666666) * x2;
+            let t249 = k(0.6666666666666666) * x1;
+            let t250 = k(0.2) + t249 - t248;
+            let t251 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t248;
+            let t252 = t251 * t203;
+            let t253 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
+                - T::fused(t250, t206, t252);
+            let t254 = t218 * t218;
+            let t255 = t214 * t214;
+            let t256 = k(0.5) - (t255 + t254);
+            let t257 = k(2.0) * t256;
+            let t258 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t249);
+            let t259 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
+                + T::fused(-t258, t203, t250 * t203);
+            let t260 = t214 * t218;
+            let t261 = t218 * t221;
+            let t262 = t261 - t260;
+            let t263 = k(2.0) * t262;
+            let t264 = T::fused(
                 k(0.6666666666666666),
                 u1 - u2,
-                -T::fused(t256, t204, t250),
+                -T::fused(t258, t206, t252),
             );
-            let t263 = t212 * t219;
-            let t264 = t252 + t263;
-            let t265 = k(2.0) * t264;
-            let t266 = k(0.13333333333333333) * u0;
-            let t267 = k(0.06666666666666667) * u0;
-            let t268 = T::fused(-t261, t266, t265 * t267);
-            let t269 = t268 + T::fused(t255, t251, T::fused(-t261, t257, t265 * t262))
-                - T::fused(t241, t245, -T::fused(t229, t243, t236 * t244));
-            let t270 = t201 * t261;
-            let t271 = T::fused(-t204, t265, t270);
-            let t272 = t201 * t255;
-            let t273 = T::fused(t201, t265, t272);
-            let t274 = t204 * t255;
-            let t275 = t274 + t270;
-            let t276 = t268
-                - T::fused(-k(0.1), t271, T::fused(k(0.1), t273, k(0.2) * t275))
-                - (t269 + T::fused(-k(0.1), T::fused(t229, t209, t236 * t232), t242));
-            let t277 = k(1.3333333333333333) * t254;
-            let t278 = t277
-                - T::fused(-k(1.3333333333333333), t264, k(0.6666666666666666) * t260);
-            let t279 = k(0.2) * t260;
-            let t280 = k(0.4) * t264;
-            let t281 = k(0.2) + (t280 + t279);
-            let t282 = T::fused(k(0.2), t240, T::fused(-k(0.1), t235, k(0.06) * t228));
-            let t283 = t282
-                - (t281 + T::fused(-t256, t255, T::fused(-t249, t261, t248 * t265)));
-            let t284 = t282 - t283 - (t281 - T::fused(k(0.2), t254, -(t280 - t279)));
-            let t285 = T::fused(
+            let t265 = t214 * t221;
+            let t266 = t254 + t265;
+            let t267 = k(2.0) * t266;
+            let t268 = k(0.13333333333333333) * u0;
+            let t269 = k(0.06666666666666667) * u0;
+            let t270 = T::fused(-t263, t268, t267 * t269);
+            let t271 = t270 + T::fused(t257, t253, T::fused(-t263, t259, t267 * t264))
+                - T::fused(t243, t247, -T::fused(t231, t245, t238 * t246));
+            let t272 = t203 * t263;
+            let t273 = T::fused(-t206, t267, t272);
+            let t274 = t203 * t257;
+            let t275 = T::fused(t203, t267, t274);
+            let t276 = t206 * t257;
+            let t277 = t276 + t272;
+            let t278 = t270
+                - T::fused(-k(0.1), t273, T::fused(k(0.1), t275, k(0.2) * t277))
+                - (t271 + T::fused(-k(0.1), T::fused(t231, t211, t238 * t234), t244));
+            let t279 = k(1.3333333333333333) * t256;
+            let t280 = t279
+                - T::fused(-k(1.3333333333333333), t266, k(0.6666666666666666) * t262);
+            let t281 = k(0.2) * t262;
+            let t282 = k(0.4) * t266;
+            let t283 = k(0.2) + (t282 + t281);
+            let t284 = T::fused(k(0.2), t242, T::fused(-k(0.1), t237, k(0.06) * t230));
+            let t285 = t284
+                - (t283 + T::fused(-t258, t257, T::fused(-t251, t263, t250 * t267)));
+            let t286 = t284 - t285 - (t283 - T::fused(k(0.2), t256, -(t282 - t281)));
+            let t287 = T::fused(
                 k(0.6666666666666666),
-                t271,
-                T::fused(k(0.3333333333333333), t273, k(0.6666666666666666) * t275),
+                t273,
+                T::fused(k(0.3333333333333333), t275, k(0.6666666666666666) * t277),
             );
-            let t286 = t222 * t225;
-            let t287 = t226 * t220;
-            let t288 = t287 - t286;
-            let t289 = k(2.0) * t288;
-            let t290 = k(0.5) - T::fused(t220, t220, t239);
+            let t288 = t224 * t227;
+            let t289 = t228 * t222;
+            let t290 = t289 - t288;
             let t291 = k(2.0) * t290;
-            let t292 = t234 + t233;
+            let t292 = k(0.5) - T::fused(t222, t222, t241);
             let t293 = k(2.0) * t292;
-            let t294 = T::fused(
+            let t294 = t236 + t235;
+            let t295 = k(2.0) * t294;
+            let t296 = T::fused(
                 -k(0.05),
-                T::fused(-t289, t238, t293 * t232),
-                k(0.03) * T::fused(-t291, t238, t293 * t209),
+                T::fused(-t291, t240, t295 * t234),
+                k(0.03) * T::fused(-t293, t240, t295 * t211),
             );
-            let t295 = t259 + t258;
-            let t296 = k(2.0) * t295;
-            let t297 = k(0.5) - T::fused(t219, t219, t253);
+            let t297 = t261 + t260;
             let t298 = k(2.0) * t297;
-            let t299 = T::fused(t298, t266, t261 * t267);
-            let t300 = t299 + T::fused(-t296, t251, T::fused(t298, t257, t261 * t262))
-                + T::fused(t293, t245, -T::fused(-t289, t243, t291 * t244));
-            let t301 = t201 * t298;
-            let t302 = T::fused(t204, t261, t301);
-            let t303 = t201 * t296;
-            let t304 = t303 - t270;
-            let t305 = T::fused(t204, t296, t301);
-            let t306 = t299
-                + T::fused(-k(0.1), t302, T::fused(k(0.1), t304, k(0.2) * t305))
-                - (t300 - T::fused(-k(0.1), T::fused(-t289, t209, t291 * t232), t294));
-            let t307 = T::fused(
+            let t299 = k(0.5) - T::fused(t221, t221, t255);
+            let t300 = k(2.0) * t299;
+            let t301 = T::fused(t300, t268, t263 * t269);
+            let t302 = t301 + T::fused(-t298, t253, T::fused(t300, t259, t263 * t264))
+                + T::fused(t295, t247, -T::fused(-t291, t245, t293 * t246));
+            let t303 = t203 * t300;
+            let t304 = T::fused(t206, t263, t303);
+            let t305 = t203 * t298;
+            let t306 = t305 - t272;
+            let t307 = T::fused(t206, t298, t303);
+            let t308 = t301
+                + T::fused(-k(0.1), t304, T::fused(k(0.1), t306, k(0.2) * t307))
+                - (t302 - T::fused(-k(0.1), T::fused(-t291, t211, t293 * t234), t296));
+            let t309 = T::fused(
                 -k(1.3333333333333333),
-                t295,
-                T::fused(k(1.3333333333333333), t260, k(0.6666666666666666) * t297),
+                t297,
+                T::fused(k(1.3333333333333333), t262, k(0.6666666666666666) * t299),
             );
-            let t308 = k(0.2) * t297;
-            let t309 = k(0.4) * t260;
-            let t310 = k(0.2) * t295;
-            let t311 = t309 - t308;
-            let t312 = T::fused(-k(0.2), t292, T::fused(k(0.1), t290, k(0.06) * t288));
-            let t313 = t312
-                - (t311 + T::fused(t256, t296, T::fused(t249, t298, t248 * t261)));
-            let t314 = t312 - t313 - (t311 + (t310 + (t309 + t308)));
-            let t315 = T::fused(
+            let t310 = k(0.2) * t299;
+            let t311 = k(0.4) * t262;
+            let t312 = k(0.2) * t297;
+            let t313 = t311 - t310;
+            let t314 = T::fused(-k(0.2), t294, T::fused(k(0.1), t292, k(0.06) * t290));
+            let t315 = t314
+                - (t313 + T::fused(t258, t298, T::fused(t251, t300, t250 * t263)));
+            let t316 = t314 - t315 - (t313 + (t312 + (t311 + t310)));
+            let t317 = T::fused(
                 k(0.6666666666666666),
-                t302,
-                T::fused(k(0.3333333333333333), t304, k(0.6666666666666666) * t305),
+                t304,
+                T::fused(k(0.3333333333333333), t306, k(0.6666666666666666) * t307),
             );
-            let t316 = k(0.5) - T::fused(t226, t226, t239);
-            let t317 = k(2.0) * t316;
-            let t318 = t287 + t286;
+            let t318 = k(0.5) - T::fused(t228, t228, t241);
             let t319 = k(2.0) * t318;
-            let t320 = t227 - t223;
+            let t320 = t289 + t288;
             let t321 = k(2.0) * t320;
-            let t322 = T::fused(
+            let t322 = t229 - t225;
+            let t323 = k(2.0) * t322;
+            let t324 = T::fused(
                 -k(0.05),
-                T::fused(t317, t238, t321 * t232),
-                k(0.03) * T::fused(t319, t238, t321 * t209),
+                T::fused(t319, t240, t323 * t234),
+                k(0.03) * T::fused(t321, t240, t323 * t211),
             );
-            let t323 = t252 - t263;
-            let t324 = k(2.0) * t323;
-            let t325 = T::fused(t296, t266, t255 * t267);
-            let t326 = t325 + T::fused(t324, t251, T::fused(t296, t257, t255 * t262))
-                - T::fused(t321, t245, T::fused(-t317, t243, t319 * t244));
-            let t327 = t303 + t274;
-            let t328 = T::fused(t201, t324, t272);
-            let t329 = T::fused(t204, t324, -t303);
-            let t330 = t325
-                - T::fused(k(0.1), t327, T::fused(k(0.1), t328, k(0.2) * t329))
-                - (t326 + T::fused(k(0.1), T::fused(-t317, t209, t319 * t232), t322));
-            let t331 = T::fused(
+            let t325 = t254 - t265;
+            let t326 = k(2.0) * t325;
+            let t327 = T::fused(t298, t268, t257 * t269);
+            let t328 = t327 + T::fused(t326, t253, T::fused(t298, t259, t257 * t264))
+                - T::fused(t323, t247, T::fused(-t319, t245, t321 * t246));
+            let t329 = t305 + t276;
+            let t330 = T::fused(t203, t326, t274);
+            let t331 = T::fused(t206, t326, -t305);
+            let t332 = t327
+                - T::fused(k(0.1), t329, T::fused(k(0.1), t330, k(0.2) * t331))
+                - (t328 + T::fused(k(0.1), T::fused(-t319, t211, t321 * t234), t324));
+            let t333 = T::fused(
                 k(1.3333333333333333),
-                t323,
-                T::fused(k(0.6666666666666666), t295, t277),
+                t325,
+                T::fused(k(0.6666666666666666), t297, t279),
             );
-            let t332 = k(0.4) * t254;
-            let t333 = k(0.1) - (t332 - t310);
-            let t334 = T::fused(k(0.2), t320, T::fused(k(0.1), t318, k(0.06) * t316));
-            let t335 = t334
-                + (t333 - T::fused(-t256, t324, T::fused(t249, t296, t248 * t255)));
-            let t336 = t334 - t335 + (t333 + T::fused(k(0.2), t323, -(t332 + t310)));
-            let t337 = T::fused(
+            let t334 = k(0.4) * t256;
+            let t335 = k(0.1) - (t334 - t312);
+            let t336 = T::fused(k(0.2), t322, T::fused(k(0.1), t320, k(0.06) * t318));
+            let t337 = t336
+                + (t335 - T::fused(-t258, t326, T::fused(t251, t298, t250 * t257)));
+            let t338 = t336 - t337 + (t335 + T::fused(k(0.2), t325, -(t334 + t312)));
+            let t339 = T::fused(
                 -k(0.6666666666666666),
-                t327,
-                T::fused(k(0.3333333333333333), t328, k(0.6666666666666666) * t329),
+                t329,
+                T::fused(k(0.3333333333333333), t330, k(0.6666666666666666) * t331),
             );
-            let t338 = T::fused(t331, t330, t337 * t336)
-                - T::fused(-t307, t306, t315 * t314);
-            let t339 = k(1.6) * (t338 + T::fused(t278, t276, t285 * t284));
-            let t340 = t278 * t339;
-            let t341 = k(0.1) * t340;
-            let t342 = k(0.05) * t340;
-            let t343 = T::fused(-t209, t341, T::fused(-t238, t342, t243 * t340));
-            let t344 = t331 * t339;
-            let t345 = k(0.05) * t344;
-            let t346 = k(0.03) * t344;
-            let t347 = T::fused(t232, t345, T::fused(-t209, t346, t245 * t344));
-            let t348 = k(2.0) * (t347 + t343);
-            let t349 = k(0.03) * t340;
-            let t350 = T::fused(-t232, t341, T::fused(-t238, t349, t244 * t340));
-            let t351 = t307 * t339;
-            let t352 = k(0.05) * t351;
-            let t353 = k(0.03) * t351;
-            let t354 = T::fused(t232, t352, T::fused(-t209, t353, t245 * t351));
-            let t355 = k(2.0) * (t354 + t350);
-            let t356 = k(0.1) * t351;
-            let t357 = T::fused(-t209, t356, T::fused(-t238, t352, t243 * t351));
-            let t358 = k(0.1) * t344;
-            let t359 = T::fused(-t232, t358, T::fused(-t238, t346, t244 * t344));
-            let t360 = k(2.0) * (t359 - t357);
-            let t361 = T::fused(-t232, t356, T::fused(-t238, t353, t244 * t351));
-            let t362 = T::fused(
-                t225,
-                t355,
-                T::fused(-t226, t360, k(2.0) * (t220 * (k(2.0) * t361))),
+            let t340 = T::fused(t333, t332, t339 * t338)
+                - T::fused(-t309, t308, t317 * t316);
+            let t341 = k(1.6) * (t340 + T::fused(t280, t278, t287 * t286));
+            let t342 = t280 * t341;
+            let t343 = k(0.1) * t342;
+            let t344 = k(0.05) * t342;
+            let t345 = T::fused(-t211, t343, T::fused(-t240, t344, t245 * t342));
+            let t346 = t333 * t341;
+            let t347 = k(0.05) * t346;
+            let t348 = k(0.03) * t346;
+            let t349 = T::fused(t234, t347, T::fused(-t211, t348, t247 * t346));
+            let t350 = k(2.0) * (t349 + t345);
+            let t351 = k(0.03) * t342;
+            let t352 = T::fused(-t234, t343, T::fused(-t240, t351, t246 * t342));
+            let t353 = t309 * t341;
+            let t354 = k(0.05) * t353;
+            let t355 = k(0.03) * t353;
+            let t356 = T::fused(t234, t354, T::fused(-t211, t355, t247 * t353));
+            let t357 = k(2.0) * (t356 + t352);
+            let t358 = k(0.1) * t353;
+            let t359 = T::fused(-t211, t358, T::fused(-t240, t354, t245 * t353));
+            let t360 = k(0.1) * t346;
+            let t361 = T::fused(-t234, t360, T::fused(-t240, t348, t246 * t346));
+            let t362 = k(2.0) * (t361 - t359);
+            let t363 = T::fused(-t234, t358, T::fused(-t240, t355, t246 * t353));
+            let t364 = T::fused(
+                t227,
+                t357,
+                T::fused(-t228, t362, k(2.0) * (t222 * (k(2.0) * t363))),
             );
-            let t363 = T::fused(t222, t348, t362);
-            let t364 = k(2.0) * (t347 - t343);
-            let t365 = T::fused(t232, t342, T::fused(-t209, t349, t245 * t340));
-            let t366 = t225 * (k(2.0) * t365);
-            let t367 = k(2.0) * (t359 + t357);
-            let t368 = T::fused(
-                -t226,
-                t364,
-                T::fused(t220, t355, t366 - T::fused(t222, t367, -t366)),
+            let t365 = T::fused(t224, t350, t364);
+            let t366 = k(2.0) * (t349 - t345);
+            let t367 = T::fused(t234, t344, T::fused(-t211, t351, t247 * t342));
+            let t368 = t227 * (k(2.0) * t367);
+            let t369 = k(2.0) * (t361 + t359);
+            let t370 = T::fused(
+                -t228,
+                t366,
+                T::fused(t222, t357, t368 - T::fused(t224, t369, -t368)),
             );
-            let t369 = t368 - t363;
-            let t370 = k(2.0) * (t354 - t350);
-            let t371 = T::fused(-t209, t358, T::fused(-t238, t345, t243 * t344));
-            let t372 = t222 * (k(2.0) * (t371 - t361 - t365));
-            let t373 = T::fused(
-                -t220,
-                t348,
-                T::fused(-t226, t370, t372 + T::fused(t225, t367, t372)),
-            );
-            let t374 = T::fused(
+            let t371 = t370 - t365;
+            let t372 = k(2.0) * (t356 - t352);
+            let t373 = T::fused(-t211, t360, T::fused(-t240, t347, t245 * t346));
+            let t374 = t224 * (k(2.0) * (t373 - t363 - t367));
+            let t375 = T::fused(
                 -t222,
-                t370,
-                T::fused(t220, t360, k(2.0) * (t226 * (k(2.0) * t371))),
+                t350,
+                T::fused(-t228, t372, t374 + T::fused(t227, t369, t374)),
             );
-            let t375 = T::fused(t225, t364, t374);
-            let t376 = t284 * t339;
-            let t377 = T::fused(k(0.3333333333333333), t376, -t341);
-            let t378 = t336 * t339;
-            let t379 = T::fused(k(0.3333333333333333), t378, -t358);
-            let t380 = t379 + t377;
-            let t381 = k(0.6666666666666666) * t376;
-            let t382 = T::fused(-k(0.2), t340, t381);
+            let t376 = T::fused(
+                -t224,
+                t372,
+                T::fused(t222, t362, k(2.0) * (t228 * (k(2.0) * t373))),
+            );
+            let t377 = T::fused(t227, t366, t376);
+            let t378 = t286 * t341;
+            let t379 = T::fused(k(0.3333333333333333), t378, -t343);
+            let t380 = t338 * t341;
+            let t381 = T::fused(k(0.3333333333333333), t380, -t360);
+            let t382 = t381 + t379;
             let t383 = k(0.6666666666666666) * t378;
-            let t384 = t383 + t358;
-            let t385 = t384 - t382;
-            let t386 = t285 * t339;
-            let t387 = t337 * t339;
-            let t388 = T::fused(
-                -t204,
-                t385,
-                T::fused(-t256, t386, T::fused(-t262, t344, t248 * t387)),
+            let t384 = T::fused(-k(0.2), t342, t383);
+            let t385 = k(0.6666666666666666) * t380;
+            let t386 = t385 + t360;
+            let t387 = t386 - t384;
+            let t388 = t287 * t341;
+            let t389 = t339 * t341;
+            let t390 = T::fused(
+                -t206,
+                t387,
+                T::fused(-t258, t388, T::fused(-t264, t346, t250 * t389)),
             );
-            let t389 = t276 * t339;
-            let t390 = t330 * t339;
-            let t391 = k(0.2) * t386;
-            let t392 = T::fused(
+            let t391 = t278 * t341;
+            let t392 = t332 * t341;
+            let t393 = k(0.2) * t388;
+            let t394 = T::fused(
                 -k(2.0),
-                T::fused(-t251, t340, T::fused(t201, t380, t388)),
+                T::fused(-t253, t342, T::fused(t203, t382, t390)),
                 T::fused(
                     -k(1.3333333333333333),
-                    t390 + t389,
-                    T::fused(k(0.4), t387, -t391),
+                    t392 + t391,
+                    T::fused(k(0.4), t389, -t393),
                 ),
             );
-            let t393 = t314 * t339;
-            let t394 = k(0.6666666666666666) * t393;
-            let t395 = t394 + t356;
-            let t396 = T::fused(-k(0.2), t351, t394);
-            let t397 = t396 + t395;
-            let t398 = t315 * t339;
-            let t399 = t306 * t339;
+            let t395 = t316 * t341;
+            let t396 = k(0.6666666666666666) * t395;
+            let t397 = t396 + t358;
+            let t398 = T::fused(-k(0.2), t353, t396);
+            let t399 = t398 + t397;
             (
-                t200,
-                t201,
+                t202,
                 t203,
-                t204,
-                t207,
+                t205,
+                t206,
                 t209,
-                t210,
+                t211,
                 t212,
                 t214,
-                t215,
                 t216,
-                t219,
-                t229,
-                t230,
+                t217,
+                t218,
+                t221,
                 t231,
                 t232,
-                t236,
-                t237,
+                t233,
+                t234,
                 t238,
-                t241,
-                t248,
-                t249,
+                t239,
+                t240,
+                t243,
+                t250,
                 t251,
-                t255,
-                t256,
+                t253,
                 t257,
-                t261,
-                t262,
-                t265,
-                t289,
+                t258,
+                t259,
+                t263,
+                t264,
+                t267,
                 t291,
                 t293,
-                t296,
+                t295,
                 t298,
+                t300,
+                t308,
                 t317,
                 t319,
                 t321,
-                t324,
-                t340,
+                t323,
+                t326,
                 t341,
                 t342,
+                t343,
                 t344,
-                t345,
                 t346,
-                t349,
+                t347,
+                t348,
                 t351,
-                t352,
                 t353,
-                t356,
+                t354,
+                t355,
                 t358,
-                t363,
-                t368,
-                t369,
-                t373,
+                t360,
+                t365,
+                t370,
+                t371,
                 t375,
                 t377,
                 t379,
-                t380,
                 t381,
                 t382,
                 t383,
@@ -11262,288 +10130,287 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                 t385,
                 t386,
                 t387,
+                t388,
                 t389,
-                t390,
                 t391,
                 t392,
                 t393,
+                t394,
                 t395,
-                t396,
                 t397,
                 t398,
                 t399,
             )
         };
         let (
-            t428,
-            t429,
             t430,
+            t431,
             t432,
-            t433,
+            t434,
             t435,
             t437,
-            t443,
-            t447,
-            t448,
-            t451,
-            t460,
-            t461,
-            t464,
-            t467,
+            t439,
+            t445,
+            t449,
+            t450,
+            t453,
+            t465,
+            t468,
+            t471,
         ) = {
-            let t400 = T::fused(
+            let t400 = t317 * t341;
+            let t401 = t308 * t341;
+            let t402 = T::fused(
                 -k(2.0),
-                T::fused(t257, t351, T::fused(t201, t397, t249 * t398)),
-                T::fused(k(0.6666666666666666), t399, k(0.2) * t398),
+                T::fused(t259, t353, T::fused(t203, t399, t251 * t400)),
+                T::fused(k(0.6666666666666666), t401, k(0.2) * t400),
             );
-            let t401 = t212 * (t400 - t392);
-            let t402 = t381 + t341;
-            let t403 = T::fused(k(0.3333333333333333), t393, -t356);
-            let t404 = t403 + t382 + t402;
-            let t405 = T::fused(
-                t249,
-                t386,
-                T::fused(t262, t351, T::fused(t204, t395, t248 * t398)),
-            );
-            let t406 = k(1.3333333333333333) * t399;
+            let t403 = t214 * (t402 - t394);
+            let t404 = t383 + t343;
+            let t405 = T::fused(k(0.3333333333333333), t395, -t358);
+            let t406 = t405 + t384 + t404;
             let t407 = T::fused(
+                t251,
+                t388,
+                T::fused(t264, t353, T::fused(t206, t397, t250 * t400)),
+            );
+            let t408 = k(1.3333333333333333) * t401;
+            let t409 = T::fused(
                 -k(2.0),
-                T::fused(-t257, t340, T::fused(-t201, t404, t405)),
+                T::fused(-t259, t342, T::fused(-t203, t406, t407)),
                 T::fused(
                     -k(0.6666666666666666),
-                    t389,
-                    T::fused(k(0.4), t398, t406) + t391,
+                    t391,
+                    T::fused(k(0.4), t400, t408) + t393,
                 ),
             );
-            let t408 = T::fused(-k(0.2), t344, t383);
-            let t409 = t408 + t384 + t403;
-            let t410 = T::fused(
-                -t204,
-                t396,
-                T::fused(-t256, t398, T::fused(-t257, t344, t249 * t387)),
+            let t410 = T::fused(-k(0.2), t346, t385);
+            let t411 = t410 + t386 + t405;
+            let t412 = T::fused(
+                -t206,
+                t398,
+                T::fused(-t258, t400, T::fused(-t259, t346, t251 * t389)),
             );
-            let t411 = T::fused(
-                k(2.0),
-                T::fused(t251, t351, T::fused(-t201, t409, t410)),
-                T::fused(-k(0.2), t387 - t398, k(0.6666666666666666) * t390) - t406,
-            );
-            let t412 = t411 - t407;
             let t413 = T::fused(
-                -t262,
-                t340,
-                T::fused(-t204, t402, T::fused(t201, t377, t248 * t386)),
+                k(2.0),
+                T::fused(t253, t353, T::fused(-t203, t411, t412)),
+                T::fused(-k(0.2), t389 - t400, k(0.6666666666666666) * t392) - t408,
             );
-            let t414 = T::fused(
-                -k(2.0),
-                t413,
-                T::fused(-k(1.3333333333333333), t389, k(0.4) * t386),
-            );
+            let t414 = t413 - t409;
             let t415 = T::fused(
-                t251,
-                t344,
-                T::fused(-t201, t379, T::fused(-t204, t408, t256 * t387)),
+                -t264,
+                t342,
+                T::fused(-t206, t404, T::fused(t203, t379, t250 * t388)),
             );
             let t416 = T::fused(
                 -k(2.0),
                 t415,
-                T::fused(k(1.3333333333333333), t390, k(0.2) * t387),
+                T::fused(-k(1.3333333333333333), t391, k(0.4) * t388),
             );
-            let t417 = t416 + t414;
+            let t417 = T::fused(
+                t253,
+                t346,
+                T::fused(-t203, t381, T::fused(-t206, t410, t258 * t389)),
+            );
             let t418 = T::fused(
-                -t214,
-                t375,
-                t401 + (T::fused(-t216, t412, t219 * t417) + t401),
+                -k(2.0),
+                t417,
+                T::fused(k(1.3333333333333333), t392, k(0.2) * t389),
             );
-            let t419 = t373 - t363;
-            let t420 = t363 + (t375 + t368 + t373);
-            let t421 = t375 - t368;
-            let t422 = t216 * (t416 - t414 + t392);
-            let t423 = t411 + t407;
-            let t424 = T::fused(
-                t195,
-                t421,
-                t422 + (T::fused(t212, t412, t219 * t423) + t422),
+            let t419 = t418 + t416;
+            let t420 = T::fused(
+                -t216,
+                t377,
+                t403 + (T::fused(-t218, t414, t221 * t419) + t403),
             );
-            let t425 = t375 - t373;
+            let t421 = t375 - t365;
+            let t422 = t365 + (t377 + t370 + t375);
+            let t423 = t377 - t370;
+            let t424 = t218 * (t418 - t416 + t394);
+            let t425 = t413 + t409;
             let t426 = T::fused(
-                t214,
-                t368,
-                T::fused(-t216, t423, T::fused(t212, t417, k(2.0) * (t219 * t400))),
+                t195,
+                t423,
+                t424 + (T::fused(t214, t414, t221 * t425) + t424),
             );
-            let t427 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t214, t419, T::fused(-t210, t420, t424)),
-                k(0.3333333333333333) * T::fused(t195, t363, T::fused(t210, t425, t426)),
-            );
+            let t427 = t377 - t375;
             let t428 = T::fused(
-                -t215,
-                T::fused(t210, t369, T::fused(-t195, t373, t418)),
-                t212 * t427,
+                t216,
+                t370,
+                T::fused(-t218, t425, T::fused(t214, t419, k(2.0) * (t221 * t402))),
             );
-            let t429 = T::fused(t255, t340, T::fused(-t296, t351, t324 * t344));
-            let t430 = T::fused(-t261, t340, T::fused(t298, t351, t296 * t344));
-            let t431 = t201 * t430;
-            let t432 = T::fused(
-                t204,
-                t429,
-                T::fused(t265, t386, T::fused(-t261, t398, t255 * t387)) - t431,
+            let t429 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(-t216, t421, T::fused(-t212, t422, t426)),
+                k(0.3333333333333333) * T::fused(t195, t365, T::fused(t212, t427, t428)),
             );
-            let t433 = T::fused(t265, t340, T::fused(t261, t351, t255 * t344));
+            let t430 = T::fused(
+                -t217,
+                T::fused(t212, t371, T::fused(-t195, t375, t420)),
+                t214 * t429,
+            );
+            let t431 = T::fused(t257, t342, T::fused(-t298, t353, t326 * t346));
+            let t432 = T::fused(-t263, t342, T::fused(t300, t353, t298 * t346));
+            let t433 = t203 * t432;
             let t434 = T::fused(
-                -t204,
-                t433,
-                T::fused(t255, t386, T::fused(t296, t398, t324 * t387)),
+                t206,
+                t431,
+                T::fused(t267, t388, T::fused(-t263, t400, t257 * t389)) - t433,
             );
-            let t435 = t434 - t431;
-            let t436 = t433 + t429;
-            let t437 = T::fused(
-                t201,
-                t436,
-                T::fused(-t261, t386, T::fused(-t298, t398, t296 * t387)),
+            let t435 = T::fused(t267, t342, T::fused(t263, t353, t257 * t346));
+            let t436 = T::fused(
+                -t206,
+                t435,
+                T::fused(t257, t388, T::fused(t298, t400, t326 * t389)),
             );
-            let t438 = T::fused(t229, t340, T::fused(t289, t351, t317 * t344));
-            let t439 = T::fused(t241, t340, T::fused(-t293, t351, t321 * t344));
-            let t440 = T::fused(
+            let t437 = t436 - t433;
+            let t438 = t435 + t431;
+            let t439 = T::fused(
+                t203,
+                t438,
+                T::fused(-t263, t388, T::fused(-t300, t400, t298 * t389)),
+            );
+            let t440 = T::fused(t231, t342, T::fused(t291, t353, t319 * t346));
+            let t441 = T::fused(t243, t342, T::fused(-t295, t353, t323 * t346));
+            let t442 = T::fused(
                 -k(0.4444444444444444),
                 u0,
                 T::fused(
                     k(0.6666666666666666),
-                    t238,
-                    T::fused(k(0.3333333333333333), t232, k(0.6666666666666666) * t209),
+                    t240,
+                    T::fused(k(0.3333333333333333), t234, k(0.6666666666666666) * t211),
                 ),
             );
-            let t441 = k(0.02666666666666667) * t440;
-            let t442 = T::fused(
-                t289,
-                t356,
-                T::fused(t293, t353, T::fused(t317, t358, T::fused(-t321, t346, t441))),
+            let t443 = k(0.02666666666666667) * t442;
+            let t444 = T::fused(
+                t291,
+                t358,
+                T::fused(t295, t355, T::fused(t319, t360, T::fused(-t323, t348, t443))),
             );
-            let t443 = T::fused(
-                t229,
-                t341,
-                T::fused(
-                    -t241,
-                    t349,
-                    T::fused(-k(0.1), t438, T::fused(k(0.03), t439, t442)),
-                ),
-            );
-            let t444 = T::fused(-t236, t340, T::fused(t291, t351, t319 * t344));
             let t445 = T::fused(
-                -t293,
-                t352,
+                t231,
+                t343,
                 T::fused(
-                    -t319,
-                    t358,
-                    T::fused(t321, t345, k(0.013333333333333334) * t440),
+                    -t243,
+                    t351,
+                    T::fused(-k(0.1), t440, T::fused(k(0.03), t441, t444)),
                 ),
             );
-            let t446 = T::fused(
-                t241,
-                t342,
+            let t446 = T::fused(-t238, t342, T::fused(t293, t353, t321 * t346));
+            let t447 = T::fused(
+                -t295,
+                t354,
+                T::fused(
+                    -t321,
+                    t360,
+                    T::fused(t323, t347, k(0.013333333333333334) * t442),
+                ),
+            );
+            let t448 = T::fused(
+                t243,
+                t344,
                 T::fused(
                     k(0.1),
-                    t444,
-                    T::fused(-k(0.05), t439, T::fused(-t291, t356, t445)),
+                    t446,
+                    T::fused(-k(0.05), t441, T::fused(-t293, t358, t447)),
                 ),
             );
-            let t447 = T::fused(t236, t341, t446);
-            let t448 = t447 + t443;
-            let t449 = t201 * t448;
-            let t450 = T::fused(
-                t289,
-                t352,
-                T::fused(-t291, t353, T::fused(t317, t345, T::fused(-t319, t346, t441))),
+            let t449 = T::fused(t238, t343, t448);
+            let t450 = t449 + t445;
+            let t451 = t203 * t450;
+            let t452 = T::fused(
+                t291,
+                t354,
+                T::fused(-t293, t355, T::fused(t319, t347, T::fused(-t321, t348, t443))),
             );
-            let t451 = T::fused(
-                t229,
-                t342,
+            let t453 = T::fused(
+                t231,
+                t344,
                 T::fused(
-                    t236,
-                    t349,
-                    T::fused(-k(0.05), t438, T::fused(k(0.03), t444, t450)),
+                    t238,
+                    t351,
+                    T::fused(-k(0.05), t440, T::fused(k(0.03), t446, t452)),
                 ),
             );
-            let t452 = t201 * t451;
-            let t453 = T::fused(-t204, t447, t452);
-            let t454 = t201 * t443;
-            let t455 = t204 * t451;
-            let t456 = T::fused(
+            let t454 = t203 * t453;
+            let t455 = T::fused(-t206, t449, t454);
+            let t456 = t203 * t445;
+            let t457 = t206 * t453;
+            let t458 = T::fused(
                 k(0.6666666666666666),
-                t453 - t449,
-                k(0.3333333333333333) * (t455 + t454),
+                t455 - t451,
+                k(0.3333333333333333) * (t457 + t456),
             );
-            let t457 = T::fused(
+            let t459 = T::fused(
                 k(0.5555555555555556),
-                T::fused(-t204, t443, t452),
+                T::fused(-t206, t445, t454),
                 T::fused(
                     k(0.4444444444444444),
-                    t455 - t454,
-                    k(0.8888888888888888) * (t201 * t447),
+                    t457 - t456,
+                    k(0.8888888888888888) * (t203 * t449),
                 ),
             );
-            let t458 = T::fused(-k(0.2222222222222222), t453 + t449, t457);
-            let t459 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t212, t369, T::fused(t216, t420, t219 * t425)),
-                k(0.3333333333333333)
-                    * T::fused(-t216, t419, T::fused(-t219, t368, t212 * t375)),
-            );
-            let t460 = T::fused(
-                -k(2.0),
-                T::fused(-t195, t456, t193 * t458),
-                T::fused(-t194, t458, t459),
-            );
-            let t461 = T::fused(
-                t194,
-                t456,
-                T::fused(-t219, t363, T::fused(t212, t373, t216 * t421)),
-            );
+            let t460 = T::fused(-k(0.2222222222222222), t455 + t451, t459);
+            let t461 = t198 * t460;
             let t462 = T::fused(
-                t255,
-                t380,
-                T::fused(-t298, t397, T::fused(-t296, t409, t324 * t379)),
+                -k(0.6666666666666666),
+                T::fused(t214, t371, T::fused(t218, t422, t221 * t427)),
+                k(0.3333333333333333)
+                    * T::fused(-t218, t421, T::fused(-t221, t370, t214 * t377)),
             );
-            let t463 = T::fused(
-                t256,
-                t430,
-                T::fused(-t248, t430, T::fused(t261, t404, T::fused(t265, t377, t462))),
-            );
-            let t464 = T::fused(
-                t230,
-                t447,
-                T::fused(t231, t451, T::fused(t203, t451, T::fused(t249, t436, t463))),
-            );
+            let t463 = t199 * t460;
+            let t464 = t463
+                - (T::fused(-t221, t365, T::fused(t214, t375, t218 * t423)) + t461);
             let t465 = T::fused(
-                -t255,
-                t385,
-                T::fused(-t261, t395, T::fused(-t296, t396, t324 * t408)),
+                -t195,
+                T::fused(-k(2.0), t195 * t458, t463 - (t462 - t461)),
+                t193 * T::fused(-t194, t458, t464),
             );
             let t466 = T::fused(
-                -t237,
-                t451,
-                T::fused(t248, t429, T::fused(t256, t433, T::fused(-t265, t402, t465))),
+                t257,
+                t382,
+                T::fused(-t300, t399, T::fused(-t298, t411, t326 * t381)),
             );
             let t467 = T::fused(
+                t258,
+                t432,
+                T::fused(-t250, t432, T::fused(t263, t406, T::fused(t267, t379, t466))),
+            );
+            let t468 = T::fused(
+                t232,
+                t449,
+                T::fused(t233, t453, T::fused(t205, t453, T::fused(t251, t438, t467))),
+            );
+            let t469 = T::fused(
+                -t257,
+                t387,
+                T::fused(-t263, t397, T::fused(-t298, t398, t326 * t410)),
+            );
+            let t470 = T::fused(
+                -t239,
+                t453,
+                T::fused(t250, t431, T::fused(t258, t435, T::fused(-t267, t404, t469))),
+            );
+            let t471 = T::fused(
                 -k(0.3333333333333333),
-                T::fused(-t203, t443, T::fused(-t231, t447, t466)),
-                k(0.017777777777777778) * t440,
+                T::fused(-t205, t445, T::fused(-t233, t449, t470)),
+                k(0.017777777777777778) * t442,
             );
             (
-                t428,
-                t429,
                 t430,
+                t431,
                 t432,
-                t433,
+                t434,
                 t435,
                 t437,
-                t443,
-                t447,
-                t448,
-                t451,
-                t460,
-                t461,
-                t464,
-                t467,
+                t439,
+                t445,
+                t449,
+                t450,
+                t453,
+                t465,
+                t468,
+                t471,
             )
         };
         *dfdx = [
@@ -11623,22 +10490,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                 -T::fused(-t31, t173, T::fused(t16, t164, k(0.6052047609441195))),
             ),
             k(0.0),
-            k(0.5) * t428,
-            -T::fused(k(0.6666666666666666), t435 + t432, k(0.3333333333333333) * t437),
-            -T::fused(k(0.6666666666666666), t437 - t432, k(0.3333333333333333) * t435),
-            k(0.5) * T::fused(-t195, t460, t193 * t461),
+            k(0.5) * t430,
+            -T::fused(k(0.6666666666666666), t437 + t434, k(0.3333333333333333) * t439),
+            -T::fused(k(0.6666666666666666), t439 - t434, k(0.3333333333333333) * t437),
+            -(k(0.5) * t465),
             T::fused(
                 -k(0.6666666666666666),
-                T::fused(t200, t448, T::fused(t207, t443, t464)),
-                t467,
+                T::fused(t202, t450, T::fused(t209, t445, t468)),
+                t471,
             ),
             T::fused(
                 k(0.6666666666666666),
-                t429,
-                T::fused(k(0.3333333333333333), t430, k(0.6666666666666666) * t433),
+                t431,
+                T::fused(k(0.3333333333333333), t432, k(0.6666666666666666) * t435),
             ),
-            T::fused(-k(0.6666666666666666), t433 - t430, k(0.3333333333333333) * t429),
-            -T::fused(k(0.6666666666666666), t451 + t443, k(0.3333333333333333) * t447),
+            T::fused(-k(0.6666666666666666), t435 - t432, k(0.3333333333333333) * t431),
+            -T::fused(k(0.6666666666666666), t453 + t445, k(0.3333333333333333) * t449),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
@@ -11655,7 +10522,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 12]
     }
-    /// Writes the outputs: 1058 operations (471 ±, 585 ×, 2 ÷) and 3 functions.
+    /// Writes the outputs: 1020 operations (460 ±, 558 ×, 2 ÷) and 3 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -11700,800 +10567,797 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
         let block_dwy = accelerations[10];
         let block_dwz = accelerations[11];
         let (
-            t4,
+            t1,
+            t2,
+            t5,
             t8,
-            t10,
-            t16,
+            t9,
+            t11,
+            t14,
+            t17,
+            t19,
             t20,
-            t23,
+            t21,
+            t22,
+            t25,
+            t26,
             t27,
             t28,
-            t29,
-            t30,
             t31,
-            t32,
+            t33,
+            t34,
+            t35,
+            t36,
             t37,
             t38,
             t39,
+            t40,
+            t41,
             t43,
-            t44,
             t46,
-            t50,
-            t51,
-            t52,
-            t53,
-            t54,
-            t55,
-            t58,
-            t59,
-            t60,
-            t62,
-            t63,
-            t65,
-            t69,
+            t47,
+            t48,
             t70,
             t71,
-            t72,
             t73,
             t74,
+            t75,
             t77,
+            t78,
             t79,
+            t80,
             t81,
-            t83,
-            t84,
-            t85,
-            t87,
-            t88,
+            t89,
             t90,
             t91,
-            t93,
+            t92,
             t94,
-            t107,
-            t108,
-            t109,
-            t110,
-            t111,
-            t113,
-            t114,
-            t115,
-            t116,
+            t95,
+            t96,
+            t97,
+            t99,
+            t100,
+            t101,
+            t102,
             t117,
+            t119,
             t120,
             t121,
-            t122,
-            t123,
-            t131,
+            t130,
+            t132,
             t133,
-            t135,
-            t136,
-            t137,
-            t138,
-            t146,
+            t134,
+            t140,
             t147,
-            t149,
-            t150,
-            t151,
-            t152,
-            t157,
             t158,
-            t159,
-            t160,
             t161,
             t162,
             t163,
             t164,
             t165,
-            t168,
+            t166,
             t169,
             t170,
             t171,
             t172,
+            t173,
             t174,
             t175,
-            t180,
             t181,
-            t184,
-            t185,
-            t190,
-            t192,
+            t191,
             t193,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
             t199,
         ) = {
-            let t0 = k(2.0) * block_e0;
-            let t1 = block_e2 * t0;
-            let t2 = k(2.0) * block_e1;
-            let t3 = block_e3 * t2;
-            let t4 = t3 - t1;
-            let t5 = block_e1 * t0;
-            let t6 = k(2.0) * block_e2;
-            let t7 = block_e3 * t6;
-            let t8 = t7 + t5;
-            let t9 = T::fused(-block_e0, t0, k(1.0));
-            let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
-            let t11 = T::fused(
-                -k(0.05),
-                T::fused(block_wz, t4, block_wx * t10),
-                k(0.03) * T::fused(block_wz, t8, block_wy * t10),
-            );
-            let t12 = k(2.0) * arm_e0;
-            let t13 = arm_e2 * t12;
-            let t14 = k(2.0) * arm_e1;
-            let t15 = arm_e3 * t14;
-            let t16 = t15 - t13;
-            let t17 = arm_e1 * t12;
-            let t18 = k(2.0) * arm_e2;
-            let t19 = arm_e3 * t18;
-            let t20 = t19 + t17;
-            let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
-            let t22 = T::fused(-arm_e0, t12, k(1.0));
-            let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
-            let t24 = T::fused(arm_wz, t16, arm_wx * t23);
-            let t25 = T::fused(arm_wz, t20, arm_wy * t23);
-            let t26 = arm_sz
-                + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
-                - (block_sz
-                    + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
-            let t27 = k(0.6666666666666666) * t23;
-            let t28 = T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20)
-                + t27;
-            let t29 = k(0.2) * t16;
-            let t30 = k(0.1) * t20;
-            let t31 = k(0.1) * t23;
-            let t32 = block_rz
-                + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8));
-            let t33 = t32 - (arm_rz - (t31 - (t30 + t29)));
-            let t34 = T::fused(
-                -t28,
-                t26,
-                t33
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t21,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t24,
-                            k(0.6666666666666666) * t25,
-                        ),
-                    ),
-            );
-            let t35 = block_e3 * t0;
-            let t36 = block_e2 * t2;
-            let t37 = t36 + t35;
-            let t38 = T::fused(-block_e2, t6, t9);
-            let t39 = t7 - t5;
-            let t40 = T::fused(
-                -k(0.05),
-                T::fused(-block_wz, t37, block_wx * t39),
-                k(0.03) * T::fused(block_wz, t38, block_wy * t39),
-            );
-            let t41 = arm_e3 * t12;
-            let t42 = arm_e2 * t14;
-            let t43 = t42 + t41;
-            let t44 = T::fused(-arm_e2, t18, t22);
-            let t45 = T::fused(arm_wy, t43, arm_wx * t44);
-            let t46 = t19 - t17;
-            let t47 = T::fused(-arm_wz, t43, arm_wx * t46);
-            let t48 = T::fused(arm_wz, t44, arm_wy * t46);
-            let t49 = arm_sy
-                - T::fused(-k(0.1), t45, T::fused(-k(0.1), t47, k(0.2) * t48))
-                - (block_sy
-                    - T::fused(k(0.1), T::fused(block_wy, t37, block_wx * t38), t40));
-            let t50 = k(0.6666666666666666) * t46;
-            let t51 = T::fused(-k(0.6666666666666666), t43, k(0.3333333333333333) * t44)
-                + t50;
-            let t52 = k(0.2) * t43;
-            let t53 = k(0.1) * t44;
-            let t54 = k(0.1) * t46;
-            let t55 = block_ry
-                - T::fused(k(0.1), t39, T::fused(-k(0.03), t37, k(0.05) * t38));
-            let t56 = t55 - (arm_ry + (t54 - (t53 - t52)));
-            let t57 = T::fused(
-                -t51,
-                t49,
-                t56
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t45,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t47,
-                            k(0.6666666666666666) * t48,
-                        ),
-                    ),
-            );
-            let t58 = T::fused(-block_e1, t2, t9);
-            let t59 = t36 - t35;
-            let t60 = t3 + t1;
-            let t61 = T::fused(
-                -k(0.05),
-                T::fused(block_wz, t58, block_wx * t60),
-                k(0.03) * T::fused(-block_wz, t59, block_wy * t60),
-            );
-            let t62 = T::fused(-arm_e1, t14, t22);
-            let t63 = t42 - t41;
-            let t64 = T::fused(arm_wy, t62, arm_wx * t63);
-            let t65 = t15 + t13;
-            let t66 = T::fused(arm_wz, t62, arm_wx * t65);
-            let t67 = T::fused(-arm_wz, t63, arm_wy * t65);
-            let t68 = arm_sx
-                - T::fused(k(0.1), t64, T::fused(-k(0.1), t66, k(0.2) * t67))
-                - (block_sx
-                    - T::fused(-k(0.1), T::fused(block_wy, t58, block_wx * t59), t61));
-            let t69 = k(0.6666666666666666) * t65;
-            let t70 = T::fused(-k(0.6666666666666666), t62, k(0.3333333333333333) * t63)
-                - t69;
-            let t71 = k(0.2) * t62;
-            let t72 = k(0.1) * t63;
-            let t73 = k(0.1) * t65;
-            let t74 = block_rx
-                - T::fused(k(0.1), t60, -T::fused(-k(0.03), t58, k(0.05) * t59));
-            let t75 = t74 - (arm_rx + (t73 + (t72 - t71)));
-            let t76 = T::fused(
-                -t70,
-                t68,
-                t75
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t64,
-                        -T::fused(
-                            -k(0.3333333333333333),
-                            t66,
-                            k(0.6666666666666666) * t67,
-                        ),
-                    ),
-            );
-            let t77 = k(0.8) * (t76 - t57 + t34);
-            let t78 = k(0.3333333333333333) * t65;
-            let t79 = T::fused(k(0.6666666666666666), t62 + t63, -t78);
-            let t80 = k(0.3333333333333333) * t46;
-            let t81 = T::fused(k(0.6666666666666666), t43 + t44, t80);
-            let t82 = k(0.3333333333333333) * t23;
-            let t83 = T::fused(k(0.6666666666666666), t16 - t20, -t82);
-            let t84 = k(40.0)
-                * (k(0.05) + T::fused(t83, t33, T::fused(-t79, t75, t81 * t56)));
-            let t85 = k(25.0) * T::fused(t28, t33, -T::fused(-t70, t75, t51 * t56));
-            let t86 = T::fused(t70, t85, -T::fused(-t70, t77, t79 * t84));
-            let t87 = T::fused(k(0.6), block_dsx, -(k(0.6) - t86));
-            let t88 = t87 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t86));
-            let t89 = T::fused(t51, t85, -T::fused(-t51, t77, t81 * t84));
-            let t90 = T::fused(k(0.6), block_dsy, k(5.4) - t89);
-            let t91 = t90 + T::fused(k(1.5), arm_dsy, k(13.5) + t89);
-            let t92 = T::fused(t28, t85, T::fused(t28, t77, t83 * t84));
-            let t93 = T::fused(k(0.6), block_dsz, -(k(1.8) - t92));
-            let t94 = t93 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t92));
-            let t95 = k(0.005) * block_wz;
-            let t96 = block_wx * block_wx;
-            let t97 = block_wz * block_wz;
-            let t98 = k(0.003) * block_wx;
-            let t99 = k(0.001) * block_wz;
-            let t100 = T::fused(
-                block_wy,
-                t99 + t98,
-                T::fused(-block_wx, t95, k(0.002) * (t97 - t96)),
-            );
-            let t101 = T::fused(t4, t28, -T::fused(t58, t70, t37 * t51));
-            let t102 = T::fused(t10, t28, T::fused(-t60, t70, t39 * t51));
-            let t103 = T::fused(-k(0.1), t101, k(0.03) * t102);
-            let t104 = T::fused(t4, t83, T::fused(t58, t79, t37 * t81));
-            let t105 = T::fused(t10, t83, -T::fused(-t60, t79, t39 * t81));
-            let t106 = T::fused(
-                t85,
-                t103,
-                T::fused(t77, t103, t84 * T::fused(-k(0.1), t104, k(0.03) * t105)),
-            );
-            let t107 = T::fused(t16, t4, T::fused(t62, t58, t43 * t37));
-            let t108 = k(0.6666666666666666) * t107;
-            let t109 = T::fused(t16, t8, -T::fused(t62, t59, t43 * t38));
-            let t110 = k(0.3333333333333333) * t109;
-            let t111 = T::fused(t16, t10, -T::fused(-t62, t60, t43 * t39));
-            let t112 = T::fused(k(0.6666666666666666), t111, t110 + t108);
-            let t113 = T::fused(t20, t4, -T::fused(t63, t58, t44 * t37));
-            let t114 = k(0.6666666666666666) * t113;
-            let t115 = T::fused(t20, t8, T::fused(t63, t59, t44 * t38));
-            let t116 = k(0.3333333333333333) * t115;
-            let t117 = T::fused(t20, t10, T::fused(-t63, t60, t44 * t39));
-            let t118 = T::fused(k(0.6666666666666666), t117, t116 + t114);
-            let t119 = T::fused(t23, t4, -T::fused(-t65, t58, t46 * t37));
-            let t120 = k(0.6666666666666666) * t119;
-            let t121 = T::fused(t23, t8, T::fused(-t65, t59, t46 * t38));
-            let t122 = k(0.3333333333333333) * t121;
-            let t123 = T::fused(t23, t10, T::fused(t65, t60, t46 * t39));
-            let t124 = T::fused(k(0.6666666666666666), t123, t122 + t120);
-            let t125 = T::fused(
-                k(0.6666666666666666),
-                t124,
-                T::fused(k(0.6666666666666666), t112, k(0.3333333333333333) * t118),
-            );
-            let t126 = turn0.cos();
-            let t127 = T::fused(
-                k(0.6666666666666666),
-                t118 - t112,
-                k(0.3333333333333333) * t124,
-            );
-            let t128 = turn0.sin();
-            let t129 = T::fused(-t128, t125, t126 * t127)
-                .atan2(T::fused(t126, t125, t128 * t127));
-            let t130 = turn0 + t129;
-            let t131 = k(0.4) * t130;
-            let t132 = T::fused(
-                k(0.6666666666666666),
-                arm_wz,
-                T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
-            )
-                - T::fused(
-                    k(0.6666666666666666),
-                    block_wz,
-                    T::fused(
-                        k(0.6666666666666666),
-                        block_wy,
-                        k(0.3333333333333333) * block_wx,
-                    ),
+            let t0 = T::fused(-block_e0, block_e0, k(0.5));
+            let t1 = T::fused(block_e3, block_e3, -t0);
+            let t2 = k(16.666666666666668) * block_rz;
+            let t3 = block_e0 * block_e1;
+            let t4 = block_e2 * block_e3;
+            let t5 = t4 + t3;
+            let t6 = block_e0 * block_e2;
+            let t7 = block_e1 * block_e3;
+            let t8 = t7 - t6;
+            let t9 = t8
+                + T::fused(
+                    k(1.6666666666666667),
+                    t5,
+                    T::fused(-k(3.3333333333333335), t1, t2),
                 );
-            let t133 = k(0.013333333333333334) * t132;
-            let t134 = T::fused(
-                -k(0.003),
-                block_dwz,
-                T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
-            ) - (t133 - (t131 + t106) - t100);
-            let t135 = T::fused(-k(0.1), t58, k(0.03) * t60);
-            let t136 = T::fused(k(0.1), t37, k(0.03) * t39);
-            let t137 = T::fused(-k(0.1), t4, k(0.03) * t10);
-            let t138 = T::fused(t137, t93, -T::fused(t135, t87, t136 * t90)) - t134;
-            let t139 = block_wy * block_wy;
-            let t140 = k(0.002) * block_wy;
-            let t141 = T::fused(
-                block_wx,
-                t140 - t99,
-                T::fused(-block_wy, t95, k(0.003) * (t97 - t139)),
+            let t10 = T::fused(-arm_e0, arm_e0, k(0.5));
+            let t11 = T::fused(arm_e3, arm_e3, -t10);
+            let t12 = arm_e0 * arm_e1;
+            let t13 = arm_e2 * arm_e3;
+            let t14 = t13 + t12;
+            let t15 = arm_e0 * arm_e2;
+            let t16 = arm_e1 * arm_e3;
+            let t17 = t16 - t15;
+            let t18 = T::fused(
+                k(2.0),
+                t17,
+                t14 + (t11 + T::fused(-k(0.3), t9, k(5.0) * arm_rz)),
             );
-            let t142 = T::fused(t8, t28, T::fused(t59, t70, t38 * t51));
-            let t143 = T::fused(-k(0.05), t102, k(0.1) * t142);
-            let t144 = T::fused(t8, t83, -T::fused(t59, t79, t38 * t81));
-            let t145 = T::fused(
-                t85,
-                t143,
-                T::fused(t77, t143, t84 * T::fused(-k(0.05), t105, k(0.1) * t144)),
+            let t19 = T::fused(k(2.0), t17 - t14, t11);
+            let t20 = k(16.666666666666668) * block_ry;
+            let t21 = t4 - t3;
+            let t22 = T::fused(block_e2, block_e2, -t0);
+            let t23 = block_e0 * block_e3;
+            let t24 = block_e1 * block_e2;
+            let t25 = t24 + t23;
+            let t26 = t25
+                + T::fused(
+                    k(1.6666666666666667),
+                    t22,
+                    -T::fused(k(3.3333333333333335), t21, -t20),
+                );
+            let t27 = t13 - t12;
+            let t28 = T::fused(arm_e2, arm_e2, -t10);
+            let t29 = arm_e0 * arm_e3;
+            let t30 = arm_e1 * arm_e2;
+            let t31 = t30 + t29;
+            let t32 = T::fused(
+                k(2.0),
+                t31,
+                t28 + (t27 + T::fused(-k(0.3), t26, k(5.0) * arm_ry)),
             );
-            let t146 = k(0.2) * t130;
-            let t147 = k(0.006666666666666667) * t132;
+            let t33 = T::fused(k(2.0), t31 - t28, t27);
+            let t34 = k(16.666666666666668) * block_rx;
+            let t35 = t7 + t6;
+            let t36 = t24 - t23;
+            let t37 = T::fused(block_e1, block_e1, -t0);
+            let t38 = t37
+                + T::fused(
+                    k(1.6666666666666667),
+                    t36,
+                    -T::fused(k(3.3333333333333335), t35, -t34),
+                );
+            let t39 = t16 + t15;
+            let t40 = t30 - t29;
+            let t41 = T::fused(arm_e1, arm_e1, -t10);
+            let t42 = T::fused(
+                k(2.0),
+                t41,
+                t40 + (t39 + T::fused(-k(0.3), t38, k(5.0) * arm_rx)),
+            );
+            let t43 = T::fused(-k(2.0), t40 - t41, t39);
+            let t44 = k(0.375) - T::fused(t43, t42, T::fused(t19, t18, t33 * t32));
+            let t45 = k(12.5) * t44;
+            let t46 = T::fused(k(0.5), t14, t17) - t11;
+            let t47 = t27 - T::fused(k(0.5), t28, t31);
+            let t48 = t39 - T::fused(k(0.5), t40, t41);
+            let t49 = T::fused(t48, t42, T::fused(-t46, t18, t47 * t32));
+            let t50 = k(31.25) * t49;
+            let t51 = T::fused(-arm_wy, t41, t40 * arm_wx);
+            let t52 = T::fused(-t39, arm_wy, t40 * arm_wz);
+            let t53 = T::fused(-arm_wz, t41, t39 * arm_wx);
+            let t54 = T::fused(
+                k(5.0),
+                block_sx,
+                t51 - (T::fused(k(5.0), arm_sx, k(2.0) * t52) + t53),
+            );
+            let t55 = T::fused(
+                k(0.5),
+                T::fused(-block_wz, t37, t35 * block_wx),
+                T::fused(k(0.3), T::fused(-t35, block_wy, t36 * block_wz), t54),
+            );
+            let t56 = T::fused(
+                T::fused(k(0.5), t53, t52 + t51),
+                t42,
+                t48 * (T::fused(-block_wy, t37, t36 * block_wx) + t55),
+            );
+            let t57 = T::fused(-arm_wz, t28, t27 * arm_wy);
+            let t58 = T::fused(-arm_wx, t28, t31 * arm_wy);
+            let t59 = T::fused(-t27, arm_wx, t31 * arm_wz);
+            let t60 = T::fused(
+                k(5.0),
+                block_sy,
+                -(t58 - (t59 - T::fused(-k(2.0), t57, k(5.0) * arm_sy))),
+            );
+            let t61 = T::fused(
+                k(0.5),
+                T::fused(-t21, block_wx, t25 * block_wz),
+                -T::fused(-k(0.3), T::fused(-block_wz, t22, t21 * block_wy), t60),
+            );
+            let t62 = T::fused(
+                t47,
+                T::fused(-block_wx, t22, t25 * block_wy) + t61,
+                T::fused(T::fused(k(0.5), t59, t58 + t57), t32, -t56),
+            );
+            let t63 = T::fused(-arm_wy, t11, t14 * arm_wz);
+            let t64 = T::fused(-t14, arm_wx, t17 * arm_wy);
+            let t65 = T::fused(-arm_wx, t11, t17 * arm_wz);
+            let t66 = T::fused(
+                k(5.0),
+                block_sz,
+                -(t64 - (t65 - T::fused(k(2.0), t63, k(5.0) * arm_sz))),
+            );
+            let t67 = T::fused(
+                -k(0.5),
+                T::fused(-block_wx, t1, t8 * block_wz),
+                T::fused(k(0.3), T::fused(-block_wy, t1, t5 * block_wz), t66),
+            );
+            let t68 = T::fused(
+                t46,
+                T::fused(-t5, block_wx, t8 * block_wy) - t67,
+                -T::fused(T::fused(k(0.5), t65, t64 - t63), t18, t62),
+            );
+            let t69 = T::fused(t48, t68, -T::fused(-t43, t45, t48 * t50));
+            let t70 = k(2.109375) - T::fused(k(2.109375), block_dsx, t69);
+            let t71 = k(5.2734375) + (t69 - T::fused(k(5.2734375), arm_dsx, -t70));
+            let t72 = T::fused(t47, t68, -T::fused(-t33, t45, t47 * t50));
+            let t73 = k(18.984375) + T::fused(k(2.109375), block_dsy, t72);
+            let t74 = k(47.4609375) - (t72 - T::fused(k(5.2734375), arm_dsy, t73));
+            let t75 = k(0.5) * t74;
+            let t76 = T::fused(t46, t68, -T::fused(t19, t45, t46 * t50));
+            let t77 = k(6.328125) + T::fused(-k(2.109375), block_dsz, t76);
+            let t78 = k(15.8203125) - (t76 + T::fused(k(5.2734375), arm_dsz, -t77));
+            let t79 = T::fused(k(0.5), t35, t36);
+            let t80 = T::fused(k(0.5), t21, t22);
+            let t81 = T::fused(k(0.5), t1, t5);
+            let t82 = T::fused(
+                k(0.3515625),
+                block_dwx,
+                T::fused(t79, t70, T::fused(-t80, t73, t81 * t77)),
+            );
+            let t83 = T::fused(
+                k(0.017578125),
+                block_wx * T::fused(-k(2.0), block_wy, block_wz),
+                -T::fused(
+                    k(0.03515625),
+                    block_dwz,
+                    T::fused(k(0.017578125), block_dwy, t82),
+                ),
+            );
+            let t84 = k(0.087890625) * block_wz;
+            let t85 = block_wy * block_wy;
+            let t86 = block_wz * block_wz;
+            let t87 = block_wz
+                + (block_wy
+                    + T::fused(
+                        k(0.5),
+                        block_wx,
+                        -(arm_wz + T::fused(k(0.5), arm_wx, arm_wy)),
+                    ));
+            let t88 = T::fused(
+                k(0.078125),
+                t87,
+                T::fused(k(0.052734375), t86 - t85, -T::fused(block_wy, t84, t83)),
+            );
+            let t89 = T::fused(t39, t36, T::fused(t5, t11, t27 * t22));
+            let t90 = k(0.5) * t89;
+            let t91 = T::fused(t39, t35, T::fused(t11, t1, t27 * t21));
+            let t92 = T::fused(t39, t37, T::fused(t8, t11, t27 * t25));
+            let t93 = t92 - (t91 - t90);
+            let t94 = T::fused(t40, t36, T::fused(t28, t22, t14 * t5));
+            let t95 = k(0.5) * t94;
+            let t96 = T::fused(t40, t35, T::fused(t14, t1, t21 * t28));
+            let t97 = T::fused(t40, t37, T::fused(t25, t28, t14 * t8));
+            let t98 = t97 - (t96 - t95);
+            let t99 = T::fused(t36, t41, T::fused(t31, t22, t17 * t5));
+            let t100 = k(0.5) * t99;
+            let t101 = T::fused(t35, t41, T::fused(t17, t1, t31 * t21));
+            let t102 = T::fused(t41, t37, T::fused(t17, t8, t31 * t25));
+            let t103 = t102 - (t101 - t100);
+            let t104 = T::fused(k(0.5), t93, t103 - t98);
+            let t105 = turn0.sin();
+            let t106 = t103 - T::fused(-k(0.5), t98, t93);
+            let t107 = turn0.cos();
+            let t108 = -(k(1.7777777777777777) * T::fused(t107, t104, t105 * t106))
+                .atan2(k(1.7777777777777777) * T::fused(-t105, t104, t107 * t106));
+            let t109 = turn0 + t108;
+            let t110 = T::fused(t36, t48, T::fused(-t5, t46, t22 * t47));
+            let t111 = T::fused(t35, t48, T::fused(-t1, t46, t21 * t47));
+            let t112 = T::fused(k(2.0), t110, t111);
+            let t113 = k(6.25) * t44;
+            let t114 = T::fused(t36, t43, T::fused(t5, t19, t22 * t33));
+            let t115 = T::fused(t35, t43, T::fused(t1, t19, t21 * t33));
+            let t116 = T::fused(
+                T::fused(k(2.0), t114, t115),
+                t113,
+                -T::fused(k(15.625), t112 * t49, -T::fused(k(3.515625), t109, t88)),
+            );
+            let t117 = T::fused(k(0.5), t112 * t68, t116);
+            let t118 = k(3.3333333333333335) * t117;
+            let t119 = T::fused(k(0.3), t35, t37);
+            let t120 = T::fused(k(0.3), t21, t25);
+            let t121 = T::fused(k(0.3), t1, t8);
+            let t122 = T::fused(
+                k(0.017578125),
+                block_dwx,
+                -T::fused(t119, t70, T::fused(-t120, t73, t121 * t77)),
+            );
+            let t123 = T::fused(
+                k(0.052734375),
+                block_wy * T::fused(k(0.3333333333333333), block_wz, block_wx),
+                -T::fused(
+                    k(0.052734375),
+                    block_dwz,
+                    -T::fused(k(0.52734375), block_dwy, t122),
+                ),
+            );
+            let t124 = block_wx * block_wx;
+            let t125 = T::fused(
+                k(0.15625),
+                t87,
+                T::fused(k(0.03515625), t86 - t124, -T::fused(block_wx, t84, -t123)),
+            );
+            let t126 = T::fused(t48, t37, T::fused(-t8, t46, t25 * t47));
+            let t127 = T::fused(k(0.3), t111, t126);
+            let t128 = T::fused(t37, t43, T::fused(t8, t19, t25 * t33));
+            let t129 = T::fused(
+                T::fused(k(0.3), t115, t128),
+                t45,
+                -T::fused(t127, t50, T::fused(k(7.03125), t109, t125)),
+            );
+            let t130 = T::fused(t127, t68, t129);
+            let t131 = k(3.3333333333333335) * t130;
+            let t132 = T::fused(k(0.6), t36, -t37);
+            let t133 = T::fused(-k(0.6), t22, t25);
+            let t134 = T::fused(-k(0.6), t5, t8);
+            let t135 = T::fused(
+                k(0.0703125),
+                block_dwx,
+                -T::fused(-t132, t70, T::fused(-t133, t73, t134 * t77)),
+            );
+            let t136 = T::fused(
+                k(0.10546875),
+                block_wz * T::fused(k(0.6666666666666666), block_wy, block_wx),
+                -T::fused(
+                    k(0.87890625),
+                    block_dwz,
+                    -T::fused(k(0.10546875), block_dwy, -t135),
+                ),
+            );
+            let t137 = T::fused(
+                k(0.3125),
+                t87,
+                -T::fused(
+                    k(0.03515625),
+                    t85 - t124,
+                    -T::fused(k(0.3515625), block_wx * block_wy, -t136),
+                ),
+            );
+            let t138 = T::fused(-k(1.6666666666666667), t126, t110);
+            let t139 = T::fused(
+                k(7.5),
+                T::fused(-k(1.6666666666666667), t128, t114) * t44,
+                -T::fused(k(18.75), t138 * t49, -T::fused(k(14.0625), t109, t137)),
+            );
+            let t140 = T::fused(k(0.6), t138 * t68, t139);
+            let t141 = k(1.6666666666666667) * t140;
+            let t142 = T::fused(k(16.666666666666668), arm_rz, -t9);
+            let t143 = T::fused(k(16.666666666666668), arm_ry, -t26);
+            let t144 = T::fused(k(16.666666666666668), arm_rx, -t38);
+            let t145 = T::fused(t40, t144, T::fused(t14, t142, t28 * t143));
+            let t146 = T::fused(t39, t144, T::fused(t11, t142, t27 * t143));
+            let t147 = T::fused(t39, t71, T::fused(-t27, t74, t11 * t78));
             let t148 = T::fused(
-                k(0.002),
-                block_dwz,
-                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
-            ) - (t147 - (t146 + t145) - t141);
-            let t149 = T::fused(k(0.1), t59, k(0.05) * t60);
-            let t150 = T::fused(-k(0.1), t38, k(0.05) * t39);
-            let t151 = T::fused(-k(0.1), t8, k(0.05) * t10);
-            let t152 = T::fused(t151, t93, -T::fused(t149, t87, t150 * t90)) + t148;
-            let t153 = T::fused(-k(0.03), t142, k(0.05) * t101);
-            let t154 = T::fused(
-                t153,
-                t85,
-                T::fused(t153, t77, T::fused(-k(0.03), t144, k(0.05) * t104) * t84),
+                T::fused(-t27, t145, t28 * t146),
+                t73,
+                T::fused(
+                    -T::fused(-t11, t145, t14 * t146),
+                    t77,
+                    k(0.8333333333333334) * t147,
+                ),
             );
+            let t149 = T::fused(
+                t101,
+                t141,
+                T::fused(-T::fused(-t39, t145, t40 * t146), t70, t148),
+            );
+            let t150 = T::fused(
+                k(0.29296875),
+                arm_dwy,
+                T::fused(
+                    k(4.39453125),
+                    arm_dwx,
+                    T::fused(t102, t118, T::fused(-t99, t131, t149)),
+                ),
+            );
+            let t151 = T::fused(
+                k(0.29296875),
+                arm_wx * T::fused(k(1.5), arm_wy, arm_wz),
+                T::fused(k(0.439453125), arm_dwz, -t150),
+            );
+            let t152 = k(0.732421875) * arm_wy;
+            let t153 = arm_wy * arm_wy;
+            let t154 = arm_wz * arm_wz;
             let t155 = T::fused(
-                block_wz,
-                t140 + t98,
-                -T::fused(-k(0.001), t139 - t96, k(0.01) * (block_wx * block_wy)),
+                k(0.06510416666666667),
+                t87,
+                T::fused(k(0.146484375), t154 - t153, T::fused(arm_wz, t152, t151)),
             );
-            let t156 = T::fused(
-                k(0.025),
-                block_dwz,
-                T::fused(-k(0.003), block_dwy, k(0.002) * block_dwx),
-            ) - (t155 + (t133 - (t131 - t154)));
-            let t157 = T::fused(k(0.05), t58, k(0.03) * t59);
-            let t158 = T::fused(k(0.05), t37, k(0.03) * t38);
-            let t159 = T::fused(-k(0.05), t4, k(0.03) * t8);
-            let t160 = T::fused(t159, t93, -T::fused(-t157, t87, t158 * t90)) - t156;
-            let t161 = arm_rx - t74;
-            let t162 = arm_ry - t55;
-            let t163 = arm_rz - t32;
-            let t164 = T::fused(t20, t163, -T::fused(-t63, t161, t44 * t162));
-            let t165 = T::fused(t16, t163, T::fused(-t62, t161, t43 * t162));
-            let t166 = T::fused(
-                -t87,
-                T::fused(t62, t164, t63 * t165),
-                t90 * T::fused(t43, t164, t44 * t165),
+            let t156 = T::fused(k(2.0), t145, t146);
+            let t157 = T::fused(
+                k(3.125),
+                t44 * T::fused(k(2.0), t146, t145),
+                -T::fused(k(3.90625), t49 * t156, T::fused(k(2.9296875), t109, t155)),
             );
-            let t167 = T::fused(t93, T::fused(-t16, t164, t20 * t165), -t166)
-                + T::fused(t123, t160, T::fused(-t121, t138, t119 * t152));
-            let t168 = k(0.05) * arm_wy;
-            let t169 = arm_wx * arm_wx;
-            let t170 = arm_wy * arm_wy;
-            let t171 = k(0.01) * arm_wx;
-            let t172 = k(0.03) * arm_wy;
-            let t173 = T::fused(
-                arm_wz,
-                t172 + t171,
-                -T::fused(arm_wx, t168, k(0.02) * (t170 - t169)),
+            let t158 = T::fused(k(0.125), t68 * t156, t157);
+            let t159 = t39 - t41;
+            let t160 = t31 - t27;
+            let t161 = t17 - t11 + T::fused(k(0.8), t159, k(0.4) * t160);
+            let t162 = T::fused(k(2.0), t28, t31);
+            let t163 = T::fused(k(2.0), t40, t41);
+            let t164 = T::fused(k(2.0), t14, t17);
+            let t165 = t164 - T::fused(-k(0.4), t162, k(0.8) * t163);
+            let t166 = T::fused(k(4.0), t161, t165);
+            let t167 = T::fused(k(0.5), t27, t28);
+            let t168 = T::fused(k(0.5), t39, t40);
+            let t169 = T::fused(k(0.5), t168, t167);
+            let t170 = T::fused(k(0.5), t11, t14)
+                - T::fused(-k(0.4), t167, k(0.8) * t168);
+            let t171 = T::fused(-k(0.5), t170, t161);
+            let t172 = T::fused(k(0.5), t163, t162);
+            let t173 = T::fused(k(2.0), t170, t165);
+            let t174 = T::fused(-k(0.5), t159, t160);
+            let t175 = k(1.0)
+                / T::fused(-k(0.5), t169 * t166, T::fused(-t172, t171, t174 * t173));
+            let t176 = k(0.25) * t68;
+            let t177 = T::fused(t41, t144, T::fused(t17, t142, t31 * t143));
+            let t178 = k(0.5) * t177;
+            let t179 = t145 - t178;
+            let t180 = k(7.8125) * t49;
+            let t181 = T::fused(t163, t71, T::fused(-t162, t74, t164 * t78));
+            let t182 = T::fused(
+                -T::fused(-t28, t177, t31 * t145),
+                t73,
+                T::fused(
+                    T::fused(-t14, t177, t17 * t145),
+                    t77,
+                    k(0.8333333333333334) * t181,
+                ),
             );
-            let t174 = k(0.6666666666666666) * t164;
-            let t175 = k(0.3333333333333333) * t165;
-            let t176 = t175 - t174;
-            let t177 = T::fused(
-                t85,
-                t176,
-                -T::fused(-t77, t176, t84 * (k(0.6666666666666666) * (t164 + t165))),
+            let t183 = T::fused(
+                -t91,
+                t141,
+                T::fused(T::fused(-t40, t177, t41 * t145), t70, t182),
             );
-            let t178 = T::fused(
-                -k(0.2),
-                arm_dwz,
-                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
-            ) - (t133 - (t131 - t177) + t173);
-            let t179 = T::fused(
-                -T::fused(-k(0.1), t62, k(0.2) * t63),
-                t88,
-                T::fused(-k(0.1), t43, k(0.2) * t44) * t91,
-            );
-            let t180 = T::fused(T::fused(k(0.1), t16, k(0.2) * t20), t94, -t179);
-            let t181 = t180 - (t178 + t167);
-            let t182 = t43 - t46;
-            let t183 = t62 + t65;
             let t184 = T::fused(
-                -k(0.5962847939999439),
-                t182,
-                k(0.29814239699997197) * t183,
+                k(0.146484375),
+                arm_dwy,
+                -T::fused(
+                    k(0.439453125),
+                    arm_dwx,
+                    T::fused(-t92, t118, T::fused(t89, t131, t183)),
+                ),
             );
-            let t185 = k(0.6666666666666666) * t184;
-            let t186 = k(0.6666666666666666) * t44;
-            let t187 = t80 - t186;
-            let t188 = k(0.6666666666666666) * t63;
-            let t189 = t78 + t188;
+            let t185 = T::fused(
+                k(0.146484375),
+                arm_wz * T::fused(k(3.0), arm_wy, arm_wx),
+                T::fused(k(2.9296875), arm_dwz, t184),
+            );
+            let t186 = arm_wx * arm_wx;
+            let t187 = k(0.13020833333333334) * t87;
+            let t188 = k(5.859375) * t109;
+            let t189 = t188
+                + (t187
+                    + T::fused(
+                        k(0.29296875),
+                        t153 - t186,
+                        T::fused(arm_wx, t152, -t185),
+                    ));
             let t190 = T::fused(
-                k(0.8944271909999159),
-                t187,
-                k(0.4472135954999579) * t189,
+                -t179,
+                t176,
+                T::fused(t145 + t177, t113, T::fused(t179, t180, t189)),
             );
-            let t191 = k(0.6666666666666666) * t20;
-            let t192 = T::fused(k(0.3333333333333333), t16, t191);
-            let t193 = T::fused(-k(0.3333333333333333), t43, t186);
-            let t194 = T::fused(-k(0.3333333333333333), t62, t188);
+            let t191 = k(4.0) * t190;
+            let t192 = t146 + t177;
+            let t193 = k(1.6666666666666667) * t147;
+            let t194 = T::fused(
+                -T::fused(-t27, t177, t31 * t146),
+                t73,
+                T::fused(T::fused(-t11, t177, t17 * t146), t77, t193),
+            );
             let t195 = T::fused(
-                -k(0.7453559924999299),
-                t192,
-                T::fused(k(0.29814239699997197), t193, k(0.5962847939999439) * t194),
+                t96,
+                t141,
+                T::fused(T::fused(-t39, t177, t41 * t146), t70, t194),
             );
             let t196 = T::fused(
-                k(0.49690399499995325),
-                t16 + t23,
-                T::fused(k(0.1987615979999813), t182, k(0.3975231959999626) * t183),
+                k(3.662109375),
+                arm_dwy,
+                T::fused(
+                    k(0.29296875),
+                    arm_dwx,
+                    T::fused(t97, t118, T::fused(-t94, t131, t195)),
+                ),
             );
-            let t197 = k(0.6666666666666666) * t196;
-            let t198 = T::fused(-k(0.3333333333333333), t195, t197);
+            let t197 = T::fused(
+                k(0.146484375),
+                arm_wy * T::fused(-k(2.0), arm_wz, arm_wx),
+                -T::fused(k(0.146484375), arm_dwz, t196),
+            );
+            let t198 = t187
+                + T::fused(
+                    k(0.439453125),
+                    t154 - t186,
+                    -T::fused(k(1.46484375), arm_wx * arm_wz, -t197),
+                );
             let t199 = T::fused(
-                k(0.7453559924999299),
-                t82 - t191,
-                T::fused(-k(0.29814239699997197), t187, k(0.5962847939999439) * t189),
+                t192,
+                t176,
+                T::fused(-(t146 - t178), t113, T::fused(-t192, t180, t188 + t198)),
             );
             (
-                t4,
+                t1,
+                t2,
+                t5,
                 t8,
-                t10,
-                t16,
+                t9,
+                t11,
+                t14,
+                t17,
+                t19,
                 t20,
-                t23,
+                t21,
+                t22,
+                t25,
+                t26,
                 t27,
                 t28,
-                t29,
-                t30,
                 t31,
-                t32,
+                t33,
+                t34,
+                t35,
+                t36,
                 t37,
                 t38,
                 t39,
+                t40,
+                t41,
                 t43,
-                t44,
                 t46,
-                t50,
-                t51,
-                t52,
-                t53,
-                t54,
-                t55,
-                t58,
-                t59,
-                t60,
-                t62,
-                t63,
-                t65,
-                t69,
+                t47,
+                t48,
                 t70,
                 t71,
-                t72,
                 t73,
                 t74,
+                t75,
                 t77,
+                t78,
                 t79,
+                t80,
                 t81,
-                t83,
-                t84,
-                t85,
-                t87,
-                t88,
+                t89,
                 t90,
                 t91,
-                t93,
+                t92,
                 t94,
-                t107,
-                t108,
-                t109,
-                t110,
-                t111,
-                t113,
-                t114,
-                t115,
-                t116,
+                t95,
+                t96,
+                t97,
+                t99,
+                t100,
+                t101,
+                t102,
                 t117,
+                t119,
                 t120,
                 t121,
-                t122,
-                t123,
-                t131,
+                t130,
+                t132,
                 t133,
-                t135,
-                t136,
-                t137,
-                t138,
-                t146,
+                t134,
+                t140,
                 t147,
-                t149,
-                t150,
-                t151,
-                t152,
-                t157,
                 t158,
-                t159,
-                t160,
                 t161,
                 t162,
                 t163,
                 t164,
                 t165,
-                t168,
+                t166,
                 t169,
                 t170,
                 t171,
                 t172,
+                t173,
                 t174,
                 t175,
-                t180,
                 t181,
-                t184,
-                t185,
-                t190,
-                t192,
+                t191,
                 t193,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
                 t199,
             )
         };
-        let (t232, t234, t235, t236, t237, t238, t240, t241, t242, t275, t277, t278) = {
-            let t200 = k(0.6666666666666666) * (t199 + t195);
-            let t201 = T::fused(k(0.3333333333333333), t199, t197);
+        let (
+            t210,
+            t213,
+            t214,
+            t216,
+            t217,
+            t218,
+            t219,
+            t221,
+            t222,
+            t223,
+            t254,
+            t257,
+            t259,
+        ) = {
+            let t200 = k(2.0) * t199;
+            let t201 = T::fused(
+                -(t166 * t175),
+                t158,
+                T::fused(-(t171 * t175), t191, t173 * t175 * t200),
+            );
             let t202 = T::fused(
-                -k(0.8944271909999159),
-                t193,
-                k(0.4472135954999579) * t194,
+                -(t175 * T::fused(-k(0.5), t169, t174)),
+                t191,
+                t175 * T::fused(k(2.0), t169, t172) * t200,
             );
-            let t203 = k(1.0)
-                / T::fused(t202, t201, -T::fused(-t190, t198, t184 * t200));
-            let t204 = T::fused(t23, t163, -T::fused(t65, t161, t46 * t162));
+            let t203 = T::fused(-(T::fused(k(4.0), t174, t172) * t175), t158, t202);
+            let t204 = T::fused(-t169, t201, T::fused(t170, t203, t193));
             let t205 = T::fused(
-                t87,
-                T::fused(-t62, t204, t65 * t165),
-                t90 * T::fused(t43, t204, t46 * t165),
+                -t174,
+                t201,
+                T::fused(-k(3.3333333333333335), t147, t161 * t203),
             );
-            let t206 = T::fused(t93, T::fused(-t16, t204, t23 * t165), -t205)
-                - T::fused(t117, t160, T::fused(-t115, t138, t113 * t152));
-            let t207 = k(0.6666666666666666) * (t204 - t165);
-            let t208 = k(0.6666666666666666) * t204;
-            let t209 = t131
-                + T::fused(t85, t207, T::fused(t77, t207, t84 * (t175 + t208)));
-            let t210 = arm_wz * arm_wz;
-            let t211 = k(0.02) * arm_wz;
+            let t206 = k(0.5)
+                * T::fused(
+                    -t172,
+                    t201,
+                    T::fused(k(3.3333333333333335), t181, t165 * t203),
+                );
+            let t207 = T::fused(-k(0.2), t28, k(0.4) * t31);
+            let t208 = T::fused(-k(0.4), t17, k(0.2) * t14);
+            let t209 = T::fused(
+                t40,
+                t205,
+                T::fused(
+                    t39,
+                    t206,
+                    k(4.166666666666667) * T::fused(-t207, t78, t208 * t74),
+                ),
+            );
+            let t210 = T::fused(-t41, t204, t209);
+            let t211 = T::fused(-k(0.4), t41, k(0.2) * t40);
             let t212 = T::fused(
-                arm_wy,
-                t211 - t171,
-                T::fused(-k(0.03), t210 - t169, k(0.1) * (arm_wx * arm_wz)),
+                -t28,
+                t205,
+                T::fused(
+                    -t27,
+                    t206,
+                    k(4.166666666666667) * T::fused(-t208, t71, t211 * t78),
+                ),
             );
-            let t213 = T::fused(
-                k(0.01),
-                arm_dwz,
-                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
-            ) + (t212 + (t133 - t209));
-            let t214 = T::fused(
-                k(0.2) * t23,
-                t94,
-                -T::fused(k(0.2) * t65, t88, k(0.2) * t46 * t91),
+            let t213 = T::fused(t31, t204, t212);
+            let t214 = k(0.5) * t213;
+            let t215 = T::fused(
+                t14,
+                t205,
+                T::fused(
+                    t11,
+                    t206,
+                    k(4.166666666666667) * T::fused(-t211, t74, t207 * t71),
+                ),
             );
-            let t215 = t214 + (t213 - t206);
-            let t216 = T::fused(
-                t87,
-                T::fused(t63, t204, t65 * t164),
-                t90 * T::fused(-t44, t204, t46 * t164),
-            );
-            let t217 = T::fused(t93, T::fused(-t20, t204, t23 * t164), -t216)
-                + T::fused(t111, t160, T::fused(-t109, t138, t107 * t152));
-            let t218 = T::fused(
-                arm_wx,
-                t172 + t211,
-                T::fused(arm_wz, t168, k(0.01) * (t210 - t170)),
-            );
-            let t219 = T::fused(-k(0.3333333333333333), t204, t174);
-            let t220 = T::fused(
-                t85,
-                t219,
-                T::fused(t77, t219, t84 * T::fused(-k(0.3333333333333333), t164, t208)),
-            );
-            let t221 = T::fused(
-                -k(0.03),
-                arm_dwz,
-                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
-            ) + (t147 - (t146 + t220) - t218);
-            let t222 = T::fused(t31, t94, -T::fused(t73, t88, t54 * t91));
-            let t223 = t222 + (t221 + t217);
-            let t224 = T::fused(
-                -(t203 * (k(0.6666666666666666) * (t190 + t202))),
-                t215,
-                t203 * T::fused(-k(0.3333333333333333), t202, t185) * t223,
-            );
-            let t225 = T::fused(
-                -(t203 * T::fused(k(0.3333333333333333), t190, t185)),
-                t181,
-                t224,
-            );
-            let t226 = T::fused(
-                -(t201 * t203),
-                t181,
-                T::fused(-(t200 * t203), t215, t198 * t203 * t223),
-            );
-            let t227 = T::fused(-t195, t225, T::fused(t202, t226, t180));
-            let t228 = T::fused(t196, t225, T::fused(-t184, t226, t214));
-            let t229 = T::fused(t199, t225, T::fused(-t190, t226, t222));
-            let t230 = arm_rz - (arm_rz + (t30 - t29));
-            let t231 = arm_rx - (arm_rx + (t72 + t71));
-            let t232 = T::fused(-t88, t230, t94 * t231)
-                + T::fused(t46, t227, T::fused(-t44, t228, t43 * t229));
-            let t233 = arm_ry - (arm_ry - (t53 + t52));
-            let t234 = T::fused(-t94, t233, t91 * t230)
-                - T::fused(-t65, t227, T::fused(-t63, t228, t62 * t229));
-            let t235 = T::fused(-t91, t231, t88 * t233)
-                + T::fused(-t23, t227, T::fused(t20, t228, t16 * t229));
-            let t236 = t69 + t194;
-            let t237 = t50 - t193;
-            let t238 = t27 - t192;
-            let t239 = T::fused(t238, t93, -T::fused(t236, t87, t237 * t90));
-            let t240 = t236 * t239;
-            let t241 = t237 * t239;
-            let t242 = t238 * t239;
-            let t243 = t122 - t120;
-            let t244 = t116 - t114;
-            let t245 = t110 - t108;
-            let t246 = T::fused(
-                k(0.6666666666666666),
+            let t216 = T::fused(-t17, t204, t215);
+            let t217 = T::fused(k(2.0), t39, t163);
+            let t218 = T::fused(k(2.0), t27, t162);
+            let t219 = T::fused(k(2.0), t11, t164);
+            let t220 = T::fused(t217, t70, T::fused(-t218, t73, t219 * t77));
+            let t221 = t217 * t220;
+            let t222 = t218 * t220;
+            let t223 = t219 * t220;
+            let t224 = T::fused(k(2.0), t102, -t101);
+            let t225 = T::fused(k(2.0), t97, -t96);
+            let t226 = T::fused(k(2.0), t92, -t91);
+            let t227 = T::fused(-k(2.0), t225 - t224, t226);
+            let t228 = t99 - t101;
+            let t229 = t94 - t96;
+            let t230 = t89 - t91;
+            let t231 = T::fused(-k(2.0), t229 - t228, t230);
+            let t232 = T::fused(k(0.25), t227, t231);
+            let t233 = t97 - t95;
+            let t234 = t102 - t100;
+            let t235 = t92 - t90;
+            let t236 = t235 - T::fused(k(0.5), t233, t234);
+            let t237 = T::fused(-k(2.0), t233 - t234, t235);
+            let t238 = T::fused(-k(2.0), t231, t237);
+            let t239 = t226 - T::fused(k(0.5), t225, t224);
+            let t240 = T::fused(k(0.5), t227, t237);
+            let t241 = t230 - T::fused(k(0.5), t229, t228);
+            let t242 = k(1.0)
+                / T::fused(t241, t240, T::fused(-t236, t232, k(0.25) * (t239 * t238)));
+            let t243 = k(2.0) * t117;
+            let t244 = T::fused(
+                t240 * t242,
                 t243,
-                T::fused(k(0.3333333333333333), t244, k(0.6666666666666666) * t245),
+                -T::fused(-(t238 * t242), t130, t232 * t242 * t140),
             );
-            let t247 = t123 + t121;
-            let t248 = t117 + t115;
-            let t249 = t111 + t109;
+            let t245 = T::fused(
+                -(t242 * T::fused(-k(2.0), t241, t236)),
+                t130,
+                t242 * T::fused(k(0.25), t239, t241) * t140,
+            );
+            let t246 = T::fused(T::fused(k(0.5), t239, t236) * t242, t243, -t245);
+            let t247 = T::fused(
+                k(0.8888888888888888),
+                T::fused(t219, t81, T::fused(t79, t217, t218 * t80)) * t220,
+                T::fused(-t241, t244, t231 * t246),
+            );
+            let t248 = T::fused(
+                k(1.7777777777777777),
+                T::fused(t219, t121, T::fused(t217, t119, t120 * t218)) * t220,
+                T::fused(-t239, t244, t227 * t246),
+            );
+            let t249 = k(0.5) * t248;
             let t250 = T::fused(
                 k(0.4444444444444444),
-                t247,
-                T::fused(k(0.2222222222222222), t248, k(0.4444444444444444) * t249),
+                T::fused(t134, t219, T::fused(-t217, t132, t218 * t133)) * t220,
+                -T::fused(-t236, t244, t237 * t246),
             );
-            let t251 = k(0.6666666666666666) * t250;
-            let t252 = T::fused(
-                -k(0.3333333333333333),
-                t243,
-                k(0.6666666666666666) * (t245 - t244),
+            let t251 = t20 - t26;
+            let t252 = t2 - t9;
+            let t253 = T::fused(
+                t36,
+                t249,
+                T::fused(
+                    t35,
+                    t250,
+                    k(0.13333333333333333) * T::fused(-t251, t223, t252 * t222),
+                ),
             );
-            let t253 = T::fused(k(0.3333333333333333), t123, t120);
-            let t254 = T::fused(k(0.3333333333333333), t117, t114);
-            let t255 = T::fused(k(0.3333333333333333), t111, t108);
+            let t254 = T::fused(-t37, t247, t253);
+            let t255 = t34 - t38;
             let t256 = T::fused(
-                -k(0.3333333333333333),
-                t253,
-                k(0.6666666666666666) * (t255 - t254),
+                t22,
+                t249,
+                T::fused(
+                    t21,
+                    t250,
+                    k(0.13333333333333333) * T::fused(-t252, t221, t255 * t223),
+                ),
             );
-            let t257 = k(0.6666666666666666) * (t256 - t252);
+            let t257 = T::fused(-t25, t247, t256);
             let t258 = T::fused(
-                -k(0.2222222222222222),
-                t247,
-                k(0.4444444444444444) * (t249 - t248),
+                t5,
+                t249,
+                T::fused(
+                    t1,
+                    t250,
+                    k(0.13333333333333333) * T::fused(-t255, t222, t251 * t221),
+                ),
             );
-            let t259 = k(0.6666666666666666) * t258;
-            let t260 = T::fused(k(0.3333333333333333), t252, t259);
-            let t261 = T::fused(
-                k(0.6666666666666666),
-                t253,
-                T::fused(k(0.3333333333333333), t254, k(0.6666666666666666) * t255),
-            );
-            let t262 = T::fused(k(0.3333333333333333), t256, t259);
-            let t263 = k(1.0)
-                / T::fused(t246, t262, -T::fused(-t250, t257, t261 * t260));
-            let t264 = T::fused(
-                -(t263 * T::fused(k(0.3333333333333333), t246, t251)),
-                t138,
-                t263 * (k(0.6666666666666666) * (t261 - t246)) * t152,
-            );
-            let t265 = T::fused(
-                t263 * T::fused(k(0.3333333333333333), t261, t251),
-                t160,
-                t264,
-            );
-            let t266 = T::fused(
-                t262 * t263,
-                t160,
-                T::fused(-(t260 * t263), t138, t257 * t263 * t152),
-            );
-            let t267 = T::fused(
-                t246,
-                t266,
-                T::fused(-t238, t159, T::fused(-t237, t158, t236 * t157)) * t239,
-            );
-            let t268 = T::fused(-t252, t265, t267);
-            let t269 = T::fused(
-                -t261,
-                t266,
-                T::fused(t238, t137, T::fused(t237, t136, t236 * t135)) * t239,
-            );
-            let t270 = T::fused(t256, t265, t269);
-            let t271 = T::fused(
-                -t250,
-                t266,
-                T::fused(t238, t151, T::fused(t237, t150, t236 * t149)) * t239,
-            );
-            let t272 = T::fused(t258, t265, t271);
-            let t273 = block_rx - t74;
-            let t274 = block_ry - t55;
-            let t275 = T::fused(-t241, t273, t240 * t274)
-                - T::fused(-t10, t268, T::fused(-t8, t270, t4 * t272));
-            let t276 = block_rz - t32;
-            let t277 = T::fused(t240, t276, t242 * t273)
-                + T::fused(t39, t268, T::fused(t38, t270, t37 * t272));
-            let t278 = T::fused(t242, t274, t241 * t276)
-                + T::fused(-t60, t268, T::fused(t59, t270, t58 * t272));
-            (t232, t234, t235, t236, t237, t238, t240, t241, t242, t275, t277, t278)
+            let t259 = T::fused(-t8, t247, t258);
+            (
+                t210,
+                t213,
+                t214,
+                t216,
+                t217,
+                t218,
+                t219,
+                t221,
+                t222,
+                t223,
+                t254,
+                t257,
+                t259,
+            )
         };
         *out = [
-            T::fused(k(0.4472135954999579), t88, k(0.8944271909999159) * t91),
-            T::fused(
-                k(0.7453559924999299),
-                t94,
-                T::fused(-k(0.5962847939999439), t88, k(0.29814239699997197) * t91),
-            ),
-            T::fused(
-                k(0.6666666666666666),
-                t94,
-                -T::fused(-k(0.6666666666666666), t88, k(0.3333333333333333) * t91),
-            ),
-            -T::fused(k(0.8944271909999159), t232, k(0.4472135954999579) * t234),
-            T::fused(
-                -k(0.7453559924999299),
-                t235,
-                T::fused(-k(0.29814239699997197), t232, k(0.5962847939999439) * t234),
-            ),
-            -T::fused(
-                k(0.6666666666666666),
-                t235,
-                T::fused(-k(0.3333333333333333), t232, k(0.6666666666666666) * t234),
-            ),
-            T::fused(t28, t242, T::fused(-t70, t240, t51 * t241)),
-            T::fused(-t83, t242, T::fused(-t79, t240, t81 * t241)),
-            -T::fused(t238, t242, T::fused(t236, t240, t237 * t241)),
-            T::fused(t28, t275, T::fused(t51, t277, t70 * t278)),
-            T::fused(-t83, t275, T::fused(t81, t277, t79 * t278)),
-            T::fused(-t238, t275, T::fused(-t237, t277, t236 * t278)),
+            k(0.12720742271998803) * T::fused(k(2.0), t74, -t71),
+            k(0.16960989695998405) * (t71 - T::fused(k(1.25), t78, -t75)),
+            -(k(0.18962962962962962) * (t71 + (t78 + t75))),
+            -(k(0.03052978145279713) * T::fused(k(2.0), t213, -t210)),
+            -(k(0.040706375270396174) * (t210 - T::fused(k(1.25), t216, -t214))),
+            k(0.04551111111111111) * (t210 + (t216 + t214)),
+            -(k(0.16855967078189302)
+                * T::fused(-t48, t221, T::fused(-t47, t222, t46 * t223))),
+            k(0.08427983539094651)
+                * T::fused(t43, t221, T::fused(t33, t222, t19 * t223)),
+            -(k(0.08427983539094651)
+                * T::fused(t217, t221, T::fused(t218, t222, t219 * t223))),
+            k(0.07585185185185185)
+                * T::fused(-t48, t254, T::fused(-t47, t257, t46 * t259)),
+            -(k(0.037925925925925925)
+                * T::fused(t43, t254, T::fused(t33, t257, t19 * t259))),
+            k(0.037925925925925925)
+                * T::fused(t217, t254, T::fused(t218, t257, t219 * t259)),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -11,11 +11,11 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 141 operations by rotations of the bodies, doubled; 141 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 112 operations by rotations of the bodies; 112 operations by rotations of the bodies, doubled; 2 more compared
+//! * accelerations: 113 operations by rotations of the bodies, doubled; 113 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 78 operations by rotations of the bodies, doubled; 78 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 0 operations by recursion; 0 operations by normal form; 1 more compared
 //! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 3 more compared
-//! * corrected_accelerations: 69 operations by recursion in the bodies' frames; 69 operations by normal form in the bodies' frames; 9 more compared
+//! * corrected_accelerations: 59 operations by recursion in the bodies' frames; 59 operations by normal form in the bodies' frames; 9 more compared
 //! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -24,26 +24,26 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 15 | 16 | 0 | 31 | 0 of 5 | 38 | 31 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 20 | 0 | 26 | 0 of 20 | 30 | 26 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 10 | 21 | 0 | 31 | 0 of 12 | 54 | 31 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 9 | 21 | 0 | 30 | 0 of 12 | 54 | 30 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
-//! | gamma | γ | 24 | 42 | 0 | 66 | 0 of 4 | 164 | 66 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 30 | 0 | 47 | 0 of 4 | 92 | 47 |
+//! | gamma | γ | 24 | 39 | 0 | 63 | 0 of 4 | 128 | 63 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 27 | 0 | 44 | 0 of 4 | 68 | 44 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 50 | 89 | 2 | 141 | 0 of 6 | 4106 | 143 |
-//! | multipliers | λ, the accelerations being known | 28 | 58 | 1 | 87 | 0 of 4 | 485 | 87 |
-//! | project | (δr, δπ') that changes the rows as given | 37 | 73 | 2 | 112 | 0 of 6 | 5297 | 113 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 48 | 63 | 2 | 113 | 0 of 6 | 2769 | 115 |
+//! | multipliers | λ, the accelerations being known | 25 | 41 | 1 | 67 | 0 of 4 | 317 | 67 |
+//! | project | (δr, δπ') that changes the rows as given | 30 | 46 | 2 | 78 | 1 of 6 | 2146 | 79 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
-//! | read_joints | joint coordinates and rates | 15 | 20 | 0 | 35 | 0 of 5 | 40 | 35 |
-//! | outputs | outputs, the accelerations being known | 48 | 84 | 1 | 133 | 1 of 6 | 6050 | 133 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
+//! | read_joints | joint coordinates and rates | 15 | 18 | 0 | 33 | 0 of 5 | 38 | 33 |
+//! | outputs | outputs, the accelerations being known | 41 | 64 | 1 | 106 | 1 of 6 | 3083 | 106 |
 //! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 1 of 2 | 0 | 0 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 2 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 17 | 34 | 0 | 51 | 1 of 13 | 138 | 51 |
-//! | to_joints | (x, u) of a maximal state | 18 | 24 | 0 | 42 | 0 of 4 | 65 | 42 |
+//! | to_maximal | (q, v) of a joint state | 9 | 24 | 0 | 33 | 1 of 13 | 67 | 33 |
+//! | to_joints | (x, u) of a maximal state | 18 | 22 | 0 | 40 | 0 of 4 | 63 | 40 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 1 of 2 | 0 | 0 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 44 | 0 | 69 | 0 of 6 | 150 | 69 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 24 | 45 | 0 | 69 | 0 of 4 | 165 | 69 |
-//! | corrected_solution | both | 41 | 80 | 0 | 121 | 0 of 10 | 959 | 121 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 34 | 0 | 59 | 0 of 6 | 116 | 59 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 25 | 37 | 0 | 62 | 0 of 4 | 150 | 62 |
+//! | corrected_solution | both | 42 | 61 | 0 | 103 | 0 of 10 | 742 | 103 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 18 of 20 | 0 | 0 |
 //!
 //! # Proof
@@ -256,7 +256,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
             T::fused(spindle_e3, spindle_e3, t1 + t5) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 47 operations (17 ±, 30 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (17 ±, 27 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -268,36 +268,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = k(2.0) * spindle_e0;
-        let t1 = spindle_e3 * t0;
-        let t2 = k(2.0) * spindle_e1;
-        let t3 = spindle_e2 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(spindle_e2, t0, spindle_e3 * t2);
-        let t6 = k(2.0) * spindle_e2;
-        let t7 = T::fused(-spindle_e0, t0, k(1.0));
-        let t8 = T::fused(-spindle_e2, t6, t7);
-        let t9 = T::fused(-spindle_e1, t0, spindle_e3 * t6);
-        let t10 = T::fused(-spindle_e1, t2, t7);
-        let t11 = T::fused(
-            -k(0.8),
-            T::fused(spindle_wy, t10, spindle_wx * t4),
-            k(0.6) * T::fused(spindle_wz, t10, spindle_wx * t5),
+        let t0 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t1 = spindle_e0 * spindle_e3;
+        let t2 = spindle_e1 * spindle_e2;
+        let t3 = t2 - t1;
+        let t4 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t5 = T::fused(spindle_e2, spindle_e2, -t4);
+        let t6 = T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
+        let t7 = T::fused(spindle_e1, spindle_e1, -t4);
+        let t8 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(-spindle_wy, t7, t3 * spindle_wx),
+            T::fused(-spindle_wz, t7, t0 * spindle_wx),
         );
-        let t12 = t3 + t1;
-        let t13 = T::fused(
-            k(0.8),
-            T::fused(spindle_wy, t12, spindle_wx * t8),
-            k(0.6) * T::fused(-spindle_wz, t12, spindle_wx * t9),
+        let t9 = t2 + t1;
+        let t10 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(-spindle_wx, t5, t9 * spindle_wy),
+            T::fused(-t6, spindle_wx, t9 * spindle_wz),
         );
         *out = [
-            T::fused(k(0.15), T::fused(-spindle_wz, t4, spindle_wy * t5), spindle_sx),
-            T::fused(k(0.15), T::fused(spindle_wz, t8, spindle_wy * t9), spindle_sy),
-            t11,
-            t13,
+            T::fused(-k(0.3), T::fused(-t0, spindle_wy, t3 * spindle_wz), spindle_sx),
+            T::fused(k(0.3), T::fused(-spindle_wz, t5, t6 * spindle_wy), spindle_sy),
+            k(1.2) * t8,
+            -(k(1.2) * t10),
         ];
     }
-    /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
+    /// Kinetic and potential energy: 15 operations (5 ±, 10 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let spindle_rz = y[2];
@@ -308,29 +305,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_wy = y[11];
         let spindle_wz = y[12];
         let t0 = T::fused(
-            spindle_wz,
-            k(0.02) * spindle_wz,
-            T::fused(
-                spindle_wy,
-                k(0.02) * spindle_wy,
-                spindle_wx * (k(0.01) * spindle_wx),
-            ),
-        );
-        let t1 = T::fused(
-            k(0.8),
+            k(40.0),
             T::fused(
                 spindle_sz,
                 spindle_sz,
                 T::fused(spindle_sy, spindle_sy, spindle_sx * spindle_sx),
             ),
-            t0,
+            T::fused(
+                spindle_wz,
+                spindle_wz,
+                T::fused(k(0.5), spindle_wx * spindle_wx, spindle_wy * spindle_wy),
+            ),
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
+            kinetic: k(0.01) * t0,
             potential: k(7.848) * spindle_rz,
         }
     }
-    /// Writes the joint readings: 35 operations (15 ±, 20 ×, 0 ÷).
+    /// Writes the joint readings: 33 operations (15 ±, 18 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let spindle_rz = y[2];
@@ -341,29 +333,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_sz = y[9];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = spindle_e0 * spindle_e0;
-        let t1 = T::fused(spindle_e1, spindle_e1, t0);
-        let t2 = spindle_e3 * spindle_e3;
-        let t3 = T::fused(
-            k(2.0),
-            k(0.5) - t1,
-            -(k(1.0) - (t2 + T::fused(spindle_e2, spindle_e2, t1))),
-        );
+        let t0 = spindle_e3 * spindle_e3;
+        let t1 = spindle_e0 * spindle_e0;
+        let t2 = T::fused(spindle_e1, spindle_e1, t1);
+        let t3 = k(1.0)
+            - T::fused(spindle_e2, spindle_e2, t2 + T::fused(k(2.0), k(0.5) - t2, t0));
         let t4 = T::fused(
-            k(2.0) * T::fused(spindle_e0, spindle_e1, spindle_e2 * spindle_e3),
-            spindle_wz,
-            k(2.0) * (k(0.5) - (t0 + t2)) * spindle_wy,
+            k(0.5) - (t1 + t0),
+            spindle_wy,
+            T::fused(spindle_e0, spindle_e1, spindle_e2 * spindle_e3) * spindle_wz,
         );
         *out = [
             k(2.0) * T::fused(spindle_e0, spindle_e3, spindle_e1 * spindle_e2),
-            -t3,
-            T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy),
+            t3,
+            k(0.6) * T::fused(k(1.3333333333333333), spindle_wz, spindle_wy),
             T::fused(
                 -k(0.3),
                 T::fused(-spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
                 spindle_rz,
             ),
-            T::fused(-k(0.15), t4, spindle_sz),
+            T::fused(-k(0.3), t4, spindle_sz),
         ];
     }
     fn n_bodies(&self) -> usize {
@@ -549,7 +538,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
             k(2.0) * spindle_e3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 31 operations (10 ±, 21 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 30 operations (9 ±, 21 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -561,9 +550,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t2 = spindle_e1 * spindle_e2;
         let t3 = t2 - t1;
         let t4 = T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
-        let t5 = spindle_e0 * spindle_e0;
-        let t6 = k(0.5) - T::fused(spindle_e2, spindle_e2, t5);
-        let t7 = k(0.5) - T::fused(spindle_e1, spindle_e1, t5);
+        let t5 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t6 = T::fused(spindle_e2, spindle_e2, -t5);
+        let t7 = T::fused(spindle_e1, spindle_e1, -t5);
         let t8 = t2 + t1;
         *out = [
             k(1.0),
@@ -571,11 +560,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
             -(k(0.3) * t3),
             k(1.0),
             k(0.3) * t4,
-            k(0.3) * t6,
-            T::fused(-k(1.6), t3, k(1.2) * t0),
-            -(k(1.6) * t7),
-            k(1.2) * t7,
-            T::fused(k(1.6), t6, k(1.2) * t4),
+            -(k(0.3) * t6),
+            k(1.2) * T::fused(-k(1.3333333333333333), t3, t0),
+            k(1.6) * t7,
+            -(k(1.2) * t7),
+            k(1.2) * T::fused(-k(1.3333333333333333), t6, t4),
             k(1.6) * t8,
             -(k(1.2) * t8),
         ];
@@ -585,7 +574,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 66 operations (24 ±, 42 ×, 0 ÷).
+    /// Writes γ: 63 operations (24 ±, 39 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -595,42 +584,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = k(2.0) * spindle_e1;
-        let t1 = k(2.0) * spindle_e0;
-        let t2 = T::fused(-spindle_e0, t1, k(1.0));
-        let t3 = T::fused(-spindle_e1, t0, t2);
-        let t4 = spindle_wy * spindle_wy;
-        let t5 = spindle_wz * spindle_wz;
-        let t6 = t5 + t4;
-        let t7 = spindle_e3 * t1;
-        let t8 = spindle_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = spindle_wx * spindle_wy;
-        let t11 = T::fused(spindle_e2, t1, spindle_e3 * t0);
-        let t12 = spindle_wx * spindle_wz;
-        let t13 = t8 + t7;
-        let t14 = k(2.0) * spindle_e2;
-        let t15 = T::fused(-spindle_e2, t14, t2);
-        let t16 = T::fused(-spindle_e1, t1, spindle_e3 * t14);
-        let t17 = spindle_wx * spindle_wx;
-        let t18 = t5 + t17;
-        let t19 = spindle_wy * spindle_wz;
-        let t20 = t4 + t17;
-        let t21 = T::fused(
-            -k(0.6),
-            T::fused(t19, t11, -T::fused(t10, t3, t18 * t9)),
-            k(0.8) * T::fused(t20, t11, -T::fused(-t12, t3, t19 * t9)),
+        let t0 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t1 = T::fused(spindle_e1, spindle_e1, -t0);
+        let t2 = spindle_wy * spindle_wy;
+        let t3 = spindle_wz * spindle_wz;
+        let t4 = t3 + t2;
+        let t5 = spindle_wx * spindle_wz;
+        let t6 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t7 = spindle_wx * spindle_wy;
+        let t8 = spindle_e0 * spindle_e3;
+        let t9 = spindle_e1 * spindle_e2;
+        let t10 = t9 - t8;
+        let t11 = T::fused(spindle_e2, spindle_e2, -t0);
+        let t12 = T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
+        let t13 = t9 + t8;
+        let t14 = spindle_wy * spindle_wz;
+        let t15 = spindle_wx * spindle_wx;
+        let t16 = t3 + t15;
+        let t17 = t2 + t15;
+        let t18 = T::fused(
+            -k(0.75),
+            T::fused(-t7, t1, T::fused(-t6, t14, t10 * t16)),
+            T::fused(t5, t1, T::fused(-t6, t17, t10 * t14)),
         );
-        let t22 = T::fused(
-            -k(0.6),
-            T::fused(t19, t16, T::fused(t10, t13, t18 * t15)),
-            k(0.8) * T::fused(t20, t16, T::fused(-t12, t13, t19 * t15)),
+        let t19 = T::fused(
+            k(0.75),
+            T::fused(t13, t7, T::fused(-t16, t11, t12 * t14)),
+            T::fused(t13, t5, -T::fused(-t14, t11, t12 * t17)),
         );
         *out = [
-            k(0.15) * T::fused(t12, t11, T::fused(t6, t3, t10 * t9)),
-            k(0.15) * T::fused(t12, t16, -T::fused(t6, t13, t10 * t15)),
-            t21,
-            t22,
+            k(0.3) * T::fused(-t4, t1, T::fused(t6, t5, t10 * t7)),
+            -(k(0.3) * T::fused(t13, t4, -T::fused(t7, t11, t12 * t5))),
+            -(k(1.6) * t18),
+            -(k(1.6) * t19),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
@@ -642,7 +628,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t0 = k(0.01) * spindle_wx;
         *out = [k(0.0), k(0.0), k(-7.848), k(0.0), spindle_wz * t0, -(spindle_wy * t0)];
     }
-    /// Solves eq. (17): 141 operations (50 ±, 89 ×, 2 ÷).
+    /// Solves eq. (17): 113 operations (48 ±, 63 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -652,79 +638,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = k(2.0) * spindle_e0;
-        let t1 = spindle_e2 * t0;
-        let t2 = k(2.0) * spindle_e1;
-        let t3 = spindle_e3 * t2;
-        let t4 = t3 + t1;
-        let t5 = T::fused(-spindle_e0, t0, k(1.0));
-        let t6 = T::fused(-spindle_e3, k(2.0) * spindle_e3, t5);
-        let t7 = k(0.12) * t6;
-        let t8 = k(0.15) * t6;
-        let t9 = spindle_e1 * t0;
-        let t10 = k(2.0) * spindle_e2;
-        let t11 = spindle_e3 * t10;
-        let t12 = t11 + t9;
-        let t13 = k(0.12) * t12;
-        let t14 = t13 * t8;
-        let t15 = T::fused(-k(0.6), T::fused(-t8, t7, k(0.038)), k(0.8) * t14);
-        let t16 = k(0.15) * t12;
-        let t17 = T::fused(-k(0.6), t14, k(0.8) * T::fused(-t13, t16, k(0.038)));
-        let t18 = k(1.1772) * t6;
-        let t19 = spindle_wx * spindle_wz;
-        let t20 = k(1.1772) * t12;
-        let t21 = spindle_wx * spindle_wy;
-        let t22 = T::fused(
-            k(0.6),
-            t18 + T::fused(k(0.01), t19, -t18),
-            k(0.8) * (t20 - T::fused(k(0.01), t21, t20)),
+        let t0 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t1 = T::fused(spindle_e3, spindle_e3, -t0);
+        let t2 = spindle_wx * spindle_wz;
+        let t3 = spindle_e0 * spindle_e1;
+        let t4 = spindle_e2 * spindle_e3;
+        let t5 = t4 + t3;
+        let t6 = spindle_wx * spindle_wx;
+        let t7 = T::fused(-k(0.75), spindle_wz, spindle_wy);
+        let t8 = T::fused(k(0.5625), t6, T::fused(t7, t7, t6))
+            / T::fused(k(0.75), t5, t1);
+        let t9 = spindle_e0 * spindle_e2;
+        let t10 = spindle_e1 * spindle_e3;
+        let t11 = T::fused(k(1.3333333333333333), spindle_wz, spindle_wy);
+        let t12 = T::fused(k(1.3333333333333333), (t10 - t9) * t8, spindle_wx * t11);
+        let t13 = t5 * t1;
+        let t14 = T::fused(k(0.75), T::fused(-t1, t1, k(0.5277777777777778)), t13);
+        let t15 = T::fused(k(0.75), t13, T::fused(-t5, t5, k(0.5277777777777778)));
+        let t16 = T::fused(spindle_e2, spindle_e2, -t0);
+        let t17 = t4 - t3;
+        let t18 = spindle_wx * spindle_wy;
+        let t19 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
+        let t20 = spindle_e0 * spindle_e3;
+        let t21 = spindle_e1 * spindle_e2;
+        let t22 = T::fused(t21 + t20, t19, -T::fused(t18, t16, t17 * t2));
+        let t23 = T::fused(
+            t22,
+            T::fused(k(0.75), t17, -t16),
+            T::fused(-k(0.48), t14 * t12, k(0.36) * (t15 * t12)),
         );
-        let t23 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
-        let t24 = spindle_e3 * t0;
-        let t25 = spindle_e2 * t2;
-        let t26 = t25 - t24;
+        let t24 = t10 + t9;
+        let t25 = t21 - t20;
+        let t26 = T::fused(
+            -t19,
+            T::fused(spindle_e1, spindle_e1, -t0),
+            T::fused(t24, t2, t25 * t18),
+        );
         let t27 = T::fused(
-            t19,
-            t4,
-            T::fused(t23, T::fused(-spindle_e1, t2, t5), t21 * t26),
+            k(32.7),
+            t5 - T::fused(-k(0.004247366632687734), t18, t5),
+            T::fused(T::fused(-k(0.75), t24, t25), t26, t23),
         );
-        let t28 = k(0.15) * t27;
-        let t29 = T::fused(-spindle_e2, t10, t5);
-        let t30 = t11 - t9;
-        let t31 = k(0.15) * T::fused(t19, t30, -T::fused(t23, t25 + t24, t21 * t29));
-        let t32 = T::fused(
-            -T::fused(-k(0.072), t4, k(0.096) * t26),
-            t28,
-            T::fused(k(0.072), t30, k(0.096) * t29) * t31,
-        );
-        let t33 = t3 - t1;
-        let t34 = k(0.6) * spindle_wx;
-        let t35 = k(0.8) * spindle_wx;
-        let t36 = T::fused(-k(0.6), spindle_wz, k(0.8) * spindle_wy);
-        let t37 = T::fused(t34, t34, T::fused(t35, t35, t36 * t36))
-            / T::fused(-k(0.6), t12, k(0.8) * t6);
-        let t38 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
-        let t39 = T::fused(-t37, k(0.8) * t33, t35 * t38);
-        let t40 = T::fused(-(k(0.6) * t33), t37, t34 * t38);
-        let t41 = (T::fused(t15, t39, t17 * t40) - t32 - t22)
-            / T::fused(-k(0.6), t15, k(0.8) * t17);
-        let t42 = T::fused(k(0.6), t41, t39);
-        let t43 = T::fused(-k(0.8), t41, t40);
-        let t44 = T::fused(
-            -k(1.25),
-            k(7.848) + T::fused(-t7, t42, t13 * t43),
-            T::fused(-t8, t42, t16 * t43),
-        );
+        let t28 = T::fused(
+            -k(24.525),
+            t1 + T::fused(k(0.004247366632687734), t2, -t1),
+            t27,
+        ) / T::fused(k(0.75), t14, t15);
+        let t29 = k(0.48) * T::fused(k(1.5625), t28, t12);
+        let t30 = T::fused(-k(0.36), t12, t28);
+        let t31 = T::fused(-t1, t29, t5 * t30);
         *out = [
-            t28 + T::fused(t42, k(0.15) * t4, t43 * (k(0.15) * t26)),
-            t31 - T::fused(-t42, k(0.15) * t30, t43 * (k(0.15) * t29)),
-            t44,
-            T::fused(-t37, T::fused(k(0.8), t12, k(0.6) * t6), t36 * t38),
-            -t42,
-            t43,
+            k(0.3) * T::fused(t24, t29, T::fused(-t25, t30, t26)),
+            -(k(0.3) * T::fused(-t17, t29, T::fused(t16, t30, t22))),
+            -(k(0.3) * (t31 + (k(32.7) - t31))),
+            k(0.48) * T::fused(t8, T::fused(k(1.3333333333333333), t5, -t1), t7 * t11),
+            -t29,
+            -t30,
         ];
     }
-    /// Writes λ: 87 operations (28 ±, 58 ×, 1 ÷).
+    /// Writes λ: 67 operations (25 ±, 41 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -746,51 +718,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_dwx = accelerations[3];
         let spindle_dwy = accelerations[4];
         let spindle_dwz = accelerations[5];
-        let t0 = k(0.8) * spindle_dsx;
-        let t1 = k(0.8) * spindle_dsy;
-        let t2 = k(0.01) * spindle_wx;
-        let t3 = spindle_e0 * spindle_e3;
-        let t4 = spindle_e1 * spindle_e2;
-        let t5 = t4 - t3;
-        let t6 = spindle_e0 * spindle_e0;
-        let t7 = k(0.5) - T::fused(spindle_e2, spindle_e2, t6);
-        let t8 = spindle_e0 * spindle_e1;
-        let t9 = spindle_e2 * spindle_e3;
-        let t10 = T::fused(k(0.8), spindle_dsz, k(7.848));
-        let t11 = T::fused(
-            t10,
-            k(0.3) * (t9 + t8),
-            -T::fused(-t0, k(0.3) * t5, t1 * (k(0.3) * t7)),
+        let t0 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t1 = T::fused(spindle_e2, spindle_e2, -t0);
+        let t2 = k(0.041666666666666664) * spindle_wx;
+        let t3 = k(9.81) + spindle_dsz;
+        let t4 = spindle_e0 * spindle_e1;
+        let t5 = spindle_e2 * spindle_e3;
+        let t6 = T::fused(
+            spindle_dsy,
+            t1,
+            T::fused(
+                t5 + t4,
+                t3,
+                T::fused(spindle_wy, t2, k(0.08333333333333333) * spindle_dwz),
+            ),
         );
-        let t12 = t11 + T::fused(spindle_wy, t2, k(0.02) * spindle_dwz);
-        let t13 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
-        let t14 = T::fused(-k(1.6), t5, k(1.2) * t13);
-        let t15 = k(2.0) * (t4 + t3);
-        let t16 = t9 - t8;
-        let t17 = T::fused(k(1.6), t7, k(1.2) * t16);
-        let t18 = k(0.8) * t17;
-        let t19 = k(0.5) - T::fused(spindle_e1, spindle_e1, t6);
-        let t20 = k(0.6) * t17;
-        let t21 = T::fused(k(1.2) * t19, t20, T::fused(t15, t14, k(1.6) * t19 * t18));
-        let t22 = k(1.0) / t21;
-        let t23 = T::fused(
-            t10,
-            k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t6)),
-            -T::fused(t0, k(0.3) * t13, t1 * (k(0.3) * t16)),
+        let t7 = spindle_e0 * spindle_e3;
+        let t8 = spindle_e1 * spindle_e2;
+        let t9 = t8 - t7;
+        let t10 = T::fused(t9, spindle_dsx, t6);
+        let t11 = t5 - t4;
+        let t12 = T::fused(-k(1.3333333333333333), t1, t11);
+        let t13 = T::fused(spindle_e1, spindle_e1, -t0);
+        let t14 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t15 = T::fused(-k(1.3333333333333333), t9, t14);
+        let t16 = t8 + t7;
+        let t17 = k(1.0) / T::fused(-t13, t12, t16 * t15);
+        let t18 = t12 * t17;
+        let t19 = T::fused(
+            -T::fused(spindle_e3, spindle_e3, -t0),
+            t3,
+            T::fused(-spindle_wz, t2, k(0.08333333333333333) * spindle_dwy),
         );
-        let t24 = t23 + T::fused(-spindle_wz, t2, k(0.02) * spindle_dwy);
-        let t25 = k(0.01) * spindle_dwx;
-        let t26 = T::fused(
-            t20 * t22,
-            t12,
-            T::fused(-(t18 * t22), t24, t25 * (t15 * t22)),
-        );
-        let t27 = T::fused(t22 * (k(0.8) * t14), t24, t25 * (k(2.0) * t19 * t22));
-        *lambda = [-t0, -t1, -t26, T::fused(t22 * (k(0.6) * t14), t12, -t27)];
+        let t20 = k(1.3333333333333333)
+            * T::fused(t14, spindle_dsx, T::fused(t11, spindle_dsy, -t19));
+        let t21 = k(0.11574074074074074) * spindle_dwx;
+        let t22 = k(0.072) * T::fused(t16 * t17, t21, T::fused(t18, t10, t18 * t20));
+        let t23 = t15 * t17;
+        let t24 = k(0.072) * T::fused(t13 * t17, t21, T::fused(t23, t10, t23 * t20));
+        *lambda = [-(k(0.8) * spindle_dsx), -(k(0.8) * spindle_dsy), -t22, t24];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cylindrical<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 112 operations (37 ±, 73 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 78 operations (30 ±, 46 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -807,55 +777,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cylindrical<T> {
         let row1 = rows[1];
         let row2 = rows[2];
         let row3 = rows[3];
-        let t0 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
-        let t1 = spindle_e0 * spindle_e3;
-        let t2 = spindle_e1 * spindle_e2;
-        let t3 = t2 - t1;
-        let t4 = spindle_e0 * spindle_e1;
-        let t5 = spindle_e2 * spindle_e3;
-        let t6 = t5 - t4;
-        let t7 = spindle_e0 * spindle_e0;
-        let t8 = k(0.5) - T::fused(spindle_e2, spindle_e2, t7);
-        let t9 = T::fused(
-            -T::fused(-k(0.144), t0, k(0.192) * t3),
-            row0,
-            T::fused(k(0.144), t6, k(0.192) * t8) * row1,
+        let t0 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t1 = T::fused(spindle_e2, spindle_e2, -t0);
+        let t2 = spindle_e0 * spindle_e1;
+        let t3 = spindle_e2 * spindle_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(k(0.75), t4, -t1);
+        let t6 = T::fused(spindle_e1, spindle_e1, -t0);
+        let t7 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t8 = spindle_e0 * spindle_e3;
+        let t9 = spindle_e1 * spindle_e2;
+        let t10 = t9 - t8;
+        let t11 = T::fused(-k(0.75), t7, t10);
+        let t12 = t9 + t8;
+        let t13 = k(1.0) / T::fused(t6, t5, t12 * t11);
+        let t14 = T::fused(row3, t11 * t13, row2 * (t5 * t13));
+        let t15 = T::fused(spindle_e3, spindle_e3, -t0);
+        let t16 = t3 + t2;
+        let t17 = t16 * t15;
+        let t18 = T::fused(
+            k(1.3333333333333333),
+            t17,
+            T::fused(-t15, t15, k(0.5277777777777778)),
         );
-        let t10 = T::fused(-k(1.6), t3, k(1.2) * t0);
-        let t11 = k(2.0) * (t2 + t1);
-        let t12 = T::fused(k(1.6), t8, k(1.2) * t6);
-        let t13 = k(0.8) * t12;
-        let t14 = k(0.5) - T::fused(spindle_e1, spindle_e1, t7);
-        let t15 = k(0.6) * t12;
-        let t16 = T::fused(k(1.2) * t14, t15, T::fused(t11, t10, k(1.6) * t14 * t13));
-        let t17 = k(1.0) / t16;
-        let t18 = T::fused(-row2, t13 * t17, row3 * (t17 * (k(0.8) * t10)));
-        let t19 = k(0.5) - T::fused(spindle_e3, spindle_e3, t7);
-        let t20 = k(0.24) * t19;
-        let t21 = k(0.3) * t19;
-        let t22 = t5 + t4;
-        let t23 = k(0.24) * t22;
-        let t24 = t23 * t21;
-        let t25 = T::fused(-k(0.6), T::fused(-t21, t20, k(0.038)), k(0.8) * t24);
-        let t26 = T::fused(-row2, t15 * t17, row3 * (t17 * (k(0.6) * t10)));
-        let t27 = k(0.3) * t22;
-        let t28 = T::fused(-k(0.6), t24, k(0.8) * T::fused(-t23, t27, k(0.038)));
-        let t29 = (T::fused(t25, t18, t28 * t26) + t9)
-            / T::fused(-k(0.6), t25, k(0.8) * t28);
-        let t30 = T::fused(k(0.6), t29, t18);
-        let t31 = T::fused(-k(0.8), t29, t26);
-        let t32 = T::fused(
-            -k(1.25),
-            T::fused(-t20, t30, t23 * t31),
-            T::fused(-t21, t30, t27 * t31),
+        let t19 = T::fused(
+            k(1.3333333333333333),
+            T::fused(-t16, t16, k(0.5277777777777778)),
+            t17,
         );
+        let t20 = T::fused(
+            T::fused(-k(1.3333333333333333), t1, t4),
+            row1,
+            T::fused(-k(0.12), t18 * t14, k(0.09) * (t19 * t14)),
+        );
+        let t21 = T::fused(T::fused(-k(1.3333333333333333), t10, t7), row0, t20)
+            / T::fused(k(1.3333333333333333), t19, t18);
+        let t22 = T::fused(-k(0.0675), t14, t21);
+        let t23 = k(1.3333333333333333) * t22;
+        let t24 = T::fused(k(0.12), t14, t21);
         *out = [
-            row0 - T::fused(k(0.3) * t0, t30, k(0.3) * t3 * t31),
-            row1 + T::fused(-(k(0.3) * t6), t30, k(0.3) * t8 * t31),
-            -t32,
-            T::fused(row2, t11 * t17, row3 * (k(2.0) * t14 * t17)),
-            t30,
-            -t31,
+            T::fused(-t7, t24, T::fused(t10, t23, row0)),
+            T::fused(-t4, t24, T::fused(t1, t23, row1)),
+            k(0.0),
+            -(k(0.625) * T::fused(-row3, t6 * t13, row2 * (t12 * t13))),
+            k(3.3333333333333335) * t24,
+            k(4.444444444444445) * t22,
         ];
     }
 }
@@ -886,7 +852,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let u1 = x[3];
         *dx = [u0, u1, rates[0], rates[1]];
     }
-    /// Writes the maximal state of a joint state: 51 operations (17 ±, 34 ×, 0 ÷) and 2 functions.
+    /// Writes the maximal state of a joint state: 33 operations (9 ±, 24 ×, 0 ÷) and 2 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -895,48 +861,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let u1 = x[3];
         let t0 = k(0.5) * x0;
         let t1 = t0.cos();
-        let t2 = k(0.31622776601683794) * t1;
-        let t3 = k(0.9486832980505138) * t1;
-        let t4 = t3 * t3;
-        let t5 = t0.sin();
-        let t6 = k(0.9486832980505138) * t5;
-        let t7 = t3 * t6;
-        let t8 = k(0.31622776601683794) * t5;
-        let t9 = t2 * t8;
-        let t10 = t3 * t8;
-        let t11 = t2 * t6;
-        let t12 = k(0.09) * u0;
-        let t13 = k(0.12) * u0;
-        let t14 = T::fused(-(k(2.0) * (t11 + t10)), t12, k(2.0) * (t9 - t7) * t13);
-        let t15 = t3 * t2;
-        let t16 = t8 * t6;
-        let t17 = T::fused(
-            k(2.0) * (t16 - t15),
-            t12,
-            k(2.0) * (k(0.5) - T::fused(t8, t8, t4)) * t13,
+        let t2 = t1 * t1;
+        let t3 = t0.sin();
+        let t4 = t3 * t1;
+        let t5 = t3 * t3;
+        let t6 = T::fused(
+            -k(0.25),
+            u0 * (t2 - t5),
+            u0 * (k(0.5555555555555556) - T::fused(k(0.1111111111111111), t5, t2)),
         );
-        let t18 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t6, t6, t4)),
-            t12,
-            k(2.0) * (t16 + t15) * t13,
+        let t7 = t2 + t5;
+        let t8 = T::fused(
+            k(0.162),
+            u0 * (k(0.5555555555555556) - t7),
+            T::fused(k(0.072), u0 * t7, u1),
         );
         *y = [
-            -(k(0.3) * (k(0.5) - T::fused(t2, t2, t4))),
-            k(0.3) * (t9 + t7),
-            T::fused(k(0.3), t11 - t10, x1),
-            t3,
-            t2,
+            k(0.27) * T::fused(k(1.1111111111111112), t2, -k(0.5555555555555556)),
+            k(0.3) * t4,
+            x1,
+            k(0.9486832980505138) * t1,
+            k(0.31622776601683794) * t1,
+            k(0.31622776601683794) * t3,
+            k(0.9486832980505138) * t3,
+            -(k(0.3) * (u0 * t4)),
+            -(k(0.216) * t6),
             t8,
-            t6,
-            t14,
-            -t17,
-            u1 + t18,
             k(0.0),
             k(0.6) * u0,
             k(0.8) * u0,
         ];
     }
-    /// Writes the joint state of a maximal state: 42 operations (18 ±, 24 ×, 0 ÷) and 3 functions.
+    /// Writes the joint state of a maximal state: 40 operations (18 ±, 22 ×, 0 ÷) and 3 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let spindle_rz = y[2];
@@ -948,22 +904,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_wy = y[11];
         let spindle_wz = y[12];
         let x0 = x[0];
-        let t0 = x0.sin();
-        let t1 = k(2.0) * T::fused(spindle_e0, spindle_e3, spindle_e1 * spindle_e2);
-        let t2 = x0.cos();
-        let t3 = spindle_e0 * spindle_e0;
-        let t4 = T::fused(spindle_e1, spindle_e1, t3);
-        let t5 = spindle_e3 * spindle_e3;
-        let t6 = T::fused(
-            k(2.0),
-            k(0.5) - t4,
-            -(k(1.0) - (t5 + T::fused(spindle_e2, spindle_e2, t4))),
-        );
-        let t7 = T::fused(t1, t2, t6 * t0).atan2(T::fused(-t6, t2, t1 * t0));
+        let t0 = spindle_e3 * spindle_e3;
+        let t1 = spindle_e0 * spindle_e0;
+        let t2 = T::fused(spindle_e1, spindle_e1, t1);
+        let t3 = k(1.0)
+            - T::fused(spindle_e2, spindle_e2, t2 + T::fused(k(2.0), k(0.5) - t2, t0));
+        let t4 = x0.cos();
+        let t5 = x0.sin();
+        let t6 = k(2.0) * T::fused(spindle_e0, spindle_e3, spindle_e1 * spindle_e2);
+        let t7 = T::fused(-t5, t3, t6 * t4).atan2(T::fused(t4, t3, t6 * t5));
         let t8 = T::fused(
-            k(2.0) * T::fused(spindle_e0, spindle_e1, spindle_e2 * spindle_e3),
-            spindle_wz,
-            k(2.0) * (k(0.5) - (t3 + t5)) * spindle_wy,
+            k(0.5) - (t1 + t0),
+            spindle_wy,
+            T::fused(spindle_e0, spindle_e1, spindle_e2 * spindle_e3) * spindle_wz,
         );
         x[0] = x0 + t7;
         x[1] = T::fused(
@@ -971,15 +924,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
             T::fused(-spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
             spindle_rz,
         );
-        x[2] = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
-        x[3] = T::fused(-k(0.15), t8, spindle_sz);
+        x[2] = k(0.6) * T::fused(k(1.3333333333333333), spindle_wz, spindle_wy);
+        x[3] = T::fused(-k(0.3), t8, spindle_sz);
     }
     /// Writes u̇ at a state that satisfies the constraints: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_accelerations_at(&self, _t: T, _y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         *out = [k(0.0), k(-9.81)];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 69 operations (25 ±, 44 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 59 operations (25 ±, 34 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -994,48 +947,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = k(0.15) * spindle_wz;
-        let t1 = k(0.15) * spindle_wy;
-        let t2 = T::fused(spindle_wz, t0, spindle_wy * t1);
-        let t3 = spindle_e0 * spindle_e0;
-        let t4 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
-        let t5 = k(0.6) * t4;
-        let t6 = spindle_wx * t5;
-        let t7 = T::fused(k(0.15), t6, -T::fused(-spindle_wx, t1, k(5.886)));
+        let t0 = T::fused(k(0.75), spindle_wy, spindle_wz);
+        let t1 = spindle_wx * t0;
+        let t2 = k(0.64) * t1;
+        let t3 = k(52.32) - T::fused(spindle_wx, spindle_wz, t2);
+        let t4 = spindle_e0 * spindle_e2;
+        let t5 = spindle_e1 * spindle_e3;
+        let t6 = k(0.48) * t1;
+        let t7 = k(39.24) - T::fused(spindle_wx, spindle_wy, t6);
         let t8 = spindle_e0 * spindle_e3;
         let t9 = spindle_e1 * spindle_e2;
-        let t10 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3)),
-            t2,
-            k(2.0) * (t9 - t8) * t7,
+        let t10 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
+        let t11 = spindle_e0 * spindle_e0;
+        let t12 = T::fused(
+            k(0.5) - T::fused(spindle_e1, spindle_e1, t11),
+            t10,
+            -T::fused(t5 + t4, t3, (t9 - t8) * t7),
         );
-        let t11 = k(0.8) * t4;
-        let t12 = spindle_wx * t11;
-        let t13 = T::fused(k(0.15), t12, -T::fused(-spindle_wx, t0, k(7.848)));
-        let t14 = spindle_e0 * spindle_e2;
-        let t15 = spindle_e1 * spindle_e3;
+        let t13 = spindle_e0 * spindle_e1;
+        let t14 = spindle_e2 * spindle_e3;
+        let t15 = T::fused(
+            -(t14 - t13),
+            t3,
+            (k(0.5) - T::fused(spindle_e2, spindle_e2, t11)) * t7,
+        );
         let t16 = T::fused(
-            k(2.0) * (t9 + t8),
-            t2,
-            k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3)) * t7,
+            -(k(0.5) - T::fused(spindle_e3, spindle_e3, t11)),
+            t3,
+            (t14 + t13) * t7,
         );
-        let t17 = spindle_e0 * spindle_e1;
-        let t18 = spindle_e2 * spindle_e3;
-        let t19 = T::fused(-(k(2.0) * (t15 - t14)), t2, k(2.0) * (t18 + t17) * t7);
         *out = [
-            T::fused(k(2.0) * (t15 + t14), t13, t10),
-            T::fused(k(2.0) * (t18 - t17), t13, -t16),
-            T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t3))),
-                t13,
-                t19,
-            ),
-            T::fused(-spindle_wz, t5, spindle_wy * t11),
-            -t12,
+            k(0.3) * t12,
+            -(k(0.3) * T::fused(t9 + t8, t10, -t15)),
+            -(k(0.3) * T::fused(t5 - t4, t10, t16)),
+            k(0.64) * T::fused(-k(0.75), spindle_wz * t0, spindle_wy * t0),
+            -t2,
             t6,
         ];
     }
-    /// Writes λ: 69 operations (24 ±, 45 ×, 0 ÷).
+    /// Writes λ: 62 operations (25 ±, 37 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1057,40 +1007,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_dwx = accelerations[3];
         let spindle_dwy = accelerations[4];
         let spindle_dwz = accelerations[5];
-        let t0 = k(0.8) * spindle_dsx;
-        let t1 = k(0.8) * spindle_dsy;
-        let t2 = k(0.01) * spindle_wx;
-        let t3 = spindle_e0 * spindle_e0;
-        let t4 = T::fused(
-            -t0,
-            k(0.3) * T::fused(-spindle_e0, spindle_e3, spindle_e1 * spindle_e2),
-            t1 * (k(0.3) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3))),
+        let t0 = k(0.041666666666666664) * spindle_wx;
+        let t1 = k(9.81) + spindle_dsz;
+        let t2 = spindle_e0 * spindle_e1;
+        let t3 = spindle_e2 * spindle_e3;
+        let t4 = spindle_e0 * spindle_e0;
+        let t5 = T::fused(
+            k(0.5) - T::fused(spindle_e2, spindle_e2, t4),
+            spindle_dsy,
+            -T::fused(
+                t3 + t2,
+                t1,
+                T::fused(spindle_wy, t0, k(0.08333333333333333) * spindle_dwz),
+            ),
         );
-        let t5 = spindle_e0 * spindle_e1;
-        let t6 = spindle_e2 * spindle_e3;
-        let t7 = T::fused(k(0.8), spindle_dsz, k(7.848));
-        let t8 = T::fused(t7, k(0.3) * (t6 + t5), -t4)
-            + T::fused(spindle_wy, t2, k(0.02) * spindle_dwz);
-        let t9 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
-        let t10 = k(1.8) * t9;
-        let t11 = T::fused(-t9, t10, k(1.0));
-        let t12 = T::fused(
-            t0,
-            k(0.3) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
-            t1 * (k(0.3) * (t6 - t5)),
+        let t6 = T::fused(
+            T::fused(-spindle_e0, spindle_e3, spindle_e1 * spindle_e2),
+            spindle_dsx,
+            -t5,
         );
-        let t13 = T::fused(
-            t7,
-            k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t3)),
-            -t12,
-        ) + T::fused(-spindle_wz, t2, k(0.02) * spindle_dwy);
-        let t14 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t10;
-        let t15 = k(0.01) * spindle_dwx;
-        let t16 = T::fused(-(k(0.6) * t11), t8, T::fused(k(0.8) * t11, t13, t15 * t14));
-        let t17 = T::fused(k(0.6) * t14, t8, T::fused(-(k(0.8) * t14), t13, t15 * t11));
-        *lambda = [-t0, -t1, -t16, t17];
+        let t7 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0);
+        let t8 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
+        let t9 = (t8 - t7) * (t8 + t7);
+        let t10 = T::fused(
+            k(0.5) - T::fused(spindle_e3, spindle_e3, t4),
+            t1,
+            T::fused(-spindle_wz, t0, k(0.08333333333333333) * spindle_dwy),
+        );
+        let t11 = T::fused(
+            T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
+            spindle_dsx,
+            T::fused(t3 - t2, spindle_dsy, -t10),
+        );
+        let t12 = k(1.3333333333333333) * t11;
+        let t13 = t8 * t7;
+        let t14 = k(0.1296)
+            * T::fused(
+                k(0.1388888888888889),
+                spindle_dwx * t13,
+                T::fused(t9, t6, t9 * t12),
+            );
+        let t15 = k(0.2592)
+            * T::fused(
+                k(0.034722222222222224),
+                spindle_dwx * t9,
+                -T::fused(t6, t13, t12 * t13),
+            );
+        *lambda = [-(k(0.8) * spindle_dsx), -(k(0.8) * spindle_dsy), -t14, -t15];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (41 ±, 80 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 103 operations (42 ±, 61 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -1100,74 +1065,85 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = k(0.15) * spindle_wz;
-        let t1 = k(0.15) * spindle_wy;
-        let t2 = T::fused(spindle_wz, t0, spindle_wy * t1);
-        let t3 = spindle_e0 * spindle_e0;
-        let t4 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
-        let t5 = k(0.6) * t4;
-        let t6 = spindle_wx * t5;
-        let t7 = T::fused(k(0.15), t6, -T::fused(-spindle_wx, t1, k(5.886)));
-        let t8 = spindle_e0 * spindle_e3;
-        let t9 = spindle_e1 * spindle_e2;
-        let t10 = t9 - t8;
-        let t11 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3)),
-            t2,
-            k(2.0) * t10 * t7,
-        );
-        let t12 = k(0.8) * t4;
-        let t13 = spindle_wx * t12;
-        let t14 = T::fused(k(0.15), t13, -T::fused(-spindle_wx, t0, k(7.848)));
-        let t15 = spindle_e0 * spindle_e2;
-        let t16 = spindle_e1 * spindle_e3;
-        let t17 = t16 + t15;
-        let t18 = T::fused(k(2.0) * t17, t14, t11);
-        let t19 = k(0.5) - T::fused(spindle_e2, spindle_e2, t3);
-        let t20 = spindle_e0 * spindle_e1;
-        let t21 = spindle_e2 * spindle_e3;
-        let t22 = t21 - t20;
-        let t23 = T::fused(
-            k(2.0) * t22,
+        let t0 = T::fused(k(0.75), spindle_wy, spindle_wz);
+        let t1 = spindle_wx * t0;
+        let t2 = k(0.64) * t1;
+        let t3 = spindle_wx * spindle_wz;
+        let t4 = k(52.32) - (t3 + t2);
+        let t5 = spindle_e0 * spindle_e2;
+        let t6 = spindle_e1 * spindle_e3;
+        let t7 = t6 + t5;
+        let t8 = k(0.48) * t1;
+        let t9 = spindle_wx * spindle_wy;
+        let t10 = k(39.24) - (t9 + t8);
+        let t11 = spindle_e0 * spindle_e3;
+        let t12 = spindle_e1 * spindle_e2;
+        let t13 = t12 - t11;
+        let t14 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
+        let t15 = spindle_e0 * spindle_e0;
+        let t16 = T::fused(
+            k(0.5) - T::fused(spindle_e1, spindle_e1, t15),
             t14,
-            -T::fused(k(2.0) * (t9 + t8), t2, k(2.0) * t19 * t7),
+            -T::fused(t7, t4, t13 * t10),
         );
-        let t24 = t21 + t20;
-        let t25 = k(0.5) - T::fused(spindle_e3, spindle_e3, t3);
+        let t17 = spindle_e0 * spindle_e1;
+        let t18 = spindle_e2 * spindle_e3;
+        let t19 = t18 - t17;
+        let t20 = k(0.5) - T::fused(spindle_e2, spindle_e2, t15);
+        let t21 = T::fused(t12 + t11, t14, -T::fused(-t19, t4, t20 * t10));
+        let t22 = k(0.5) - T::fused(spindle_e3, spindle_e3, t15);
+        let t23 = t18 + t17;
+        let t24 = T::fused(t6 - t5, t14, T::fused(-t22, t4, t23 * t10));
+        let t25 = T::fused(-k(0.75), spindle_wz * t0, spindle_wy * t0);
         let t26 = T::fused(
-            k(2.0) * t25,
-            t14,
-            -T::fused(-(k(2.0) * (t16 - t15)), t2, k(2.0) * t24 * t7),
+            t19,
+            t21,
+            -T::fused(
+                t7,
+                t16,
+                T::fused(k(0.17777777777777778), t1, k(0.1388888888888889) * t3),
+            ),
         );
-        let t27 = T::fused(-spindle_wy, t12, spindle_wz * t5);
-        let t28 = k(0.8) * t18;
-        let t29 = k(0.8) * t23;
-        let t30 = k(0.01) * spindle_wx;
-        let t31 = T::fused(-k(0.8), t26, k(7.848));
-        let t32 = T::fused(
-            -(k(0.3) * t25),
-            t31,
-            T::fused(k(0.3) * t22, t29, k(0.3) * t17 * t28),
+        let t27 = k(32.7) - t24;
+        let t28 = k(1.3333333333333333) * T::fused(t22, t27, t26);
+        let t29 = T::fused(k(3.0), spindle_e0, spindle_e1);
+        let t30 = T::fused(k(3.0), spindle_e3, spindle_e2);
+        let t31 = (t30 + t29) * (t30 - t29);
+        let t32 = t30 * t29;
+        let t33 = T::fused(
+            t20,
+            t21,
+            T::fused(
+                t13,
+                t16,
+                T::fused(k(0.13333333333333333), t1, k(0.1388888888888889) * t9),
+            ),
         );
-        let t33 = t32 + T::fused(spindle_wz, t30, k(0.02) * t13);
-        let t34 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
-        let t35 = k(1.8) * t34;
-        let t36 = T::fused(-t34, t35, k(1.0));
-        let t37 = k(0.01) * t27;
-        let t38 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t35;
-        let t39 = T::fused(
-            k(0.3) * t24,
-            t31,
-            T::fused(-(k(0.3) * t19), t29, k(0.3) * t10 * t28),
-        );
-        let t40 = t39 + T::fused(spindle_wy, t30, k(0.02) * t6);
-        let t41 = T::fused(k(0.6) * t36, t40, T::fused(k(0.8) * t36, t33, t38 * t37));
-        let t42 = T::fused(
-            k(0.6) * t38,
-            t40,
-            -T::fused(-(k(0.8) * t38), t33, t36 * t37),
-        );
-        *out = [t18, t23, -t26, -t27, -t13, t6, -t28, -t29, t41, t42];
+        let t34 = T::fused(t23, t27, t33);
+        let t35 = k(0.00432)
+            * T::fused(
+                t31,
+                t34,
+                T::fused(-t31, t28, k(0.2962962962962963) * (t25 * t32)),
+            );
+        let t36 = k(0.00864)
+            * T::fused(
+                t32,
+                t34,
+                -T::fused(t32, t28, k(0.07407407407407407) * (t25 * t31)),
+            );
+        *out = [
+            k(0.3) * t16,
+            -(k(0.3) * t21),
+            -(k(0.3) * t24),
+            k(0.64) * t25,
+            -t2,
+            t8,
+            -(k(0.24) * t16),
+            k(0.24) * t21,
+            -t35,
+            t36,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Cylindrical<T> {
@@ -1220,14 +1196,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 133 operations (48 ±, 84 ×, 1 ÷).
+    /// Writes the outputs: 106 operations (41 ±, 64 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
-        let spindle_rx = y[0];
-        let spindle_ry = y[1];
-        let spindle_rz = y[2];
         let spindle_e0 = y[3];
         let spindle_e1 = y[4];
         let spindle_e2 = y[5];
@@ -1241,71 +1214,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {
         let spindle_dwx = accelerations[3];
         let spindle_dwy = accelerations[4];
         let spindle_dwz = accelerations[5];
-        let t0 = k(0.8) * spindle_dsx;
-        let t1 = k(0.8) * spindle_dsy;
-        let t2 = k(0.01) * spindle_wx;
-        let t3 = k(2.0) * spindle_e0;
-        let t4 = spindle_e3 * t3;
-        let t5 = k(2.0) * spindle_e1;
-        let t6 = spindle_e2 * t5;
-        let t7 = t6 - t4;
-        let t8 = k(2.0) * spindle_e2;
-        let t9 = T::fused(-spindle_e0, t3, k(1.0));
-        let t10 = T::fused(-spindle_e2, t8, t9);
-        let t11 = T::fused(-t0, k(0.15) * t7, t1 * (k(0.15) * t10));
-        let t12 = spindle_e1 * t3;
-        let t13 = spindle_e3 * t8;
-        let t14 = t13 + t12;
-        let t15 = T::fused(k(0.8), spindle_dsz, k(7.848));
-        let t16 = T::fused(t15, k(0.15) * t14, -t11)
-            + T::fused(spindle_wy, t2, k(0.02) * spindle_dwz);
-        let t17 = spindle_e2 * t3;
-        let t18 = spindle_e3 * t5;
-        let t19 = t18 + t17;
-        let t20 = T::fused(-k(0.8), t7, k(0.6) * t19);
-        let t21 = t6 + t4;
-        let t22 = t13 - t12;
-        let t23 = T::fused(k(0.8), t10, k(0.6) * t22);
-        let t24 = k(0.8) * t23;
-        let t25 = T::fused(-spindle_e1, t5, t9);
-        let t26 = k(0.8) * t25;
-        let t27 = k(0.6) * t23;
-        let t28 = k(0.6) * t25;
-        let t29 = k(1.0) / T::fused(t28, t27, T::fused(t21, t20, t26 * t24));
-        let t30 = T::fused(t0, k(0.15) * t19, t1 * (k(0.15) * t22));
-        let t31 = T::fused(-spindle_e3, k(2.0) * spindle_e3, t9);
-        let t32 = T::fused(t15, k(0.15) * t31, -t30)
-            + T::fused(-spindle_wz, t2, k(0.02) * spindle_dwy);
-        let t33 = k(0.01) * spindle_dwx;
-        let t34 = T::fused(
-            -(t29 * (k(0.6) * t20)),
-            t16,
-            T::fused(t29 * (k(0.8) * t20), t32, t33 * (t25 * t29)),
-        );
+        let t0 = k(9.81) + spindle_dsz;
+        let t1 = T::fused(-spindle_e0, spindle_e0, k(0.5));
+        let t2 = T::fused(spindle_e3, spindle_e3, -t1);
+        let t3 = k(0.041666666666666664) * spindle_wx;
+        let t4 = spindle_e0 * spindle_e1;
+        let t5 = spindle_e2 * spindle_e3;
+        let t6 = t5 - t4;
+        let t7 = spindle_e0 * spindle_e2;
+        let t8 = spindle_e1 * spindle_e3;
+        let t9 = t8 + t7;
+        let t10 = T::fused(t6, spindle_dsy, t9 * spindle_dsx);
+        let t11 = k(15.36)
+            * (t10
+                - T::fused(
+                    -t2,
+                    t0,
+                    T::fused(-spindle_wz, t3, k(0.08333333333333333) * spindle_dwy),
+                ));
+        let t12 = T::fused(spindle_e2, spindle_e2, -t1);
+        let t13 = T::fused(k(0.75), t6, -t12);
+        let t14 = T::fused(spindle_e1, spindle_e1, -t1);
+        let t15 = spindle_e0 * spindle_e3;
+        let t16 = spindle_e1 * spindle_e2;
+        let t17 = t16 - t15;
+        let t18 = T::fused(-k(0.75), t9, t17);
+        let t19 = t16 + t15;
+        let t20 = k(1.0) / T::fused(t14, t13, t19 * t18);
+        let t21 = t13 * t20;
+        let t22 = T::fused(spindle_dsy, t12, t17 * spindle_dsx);
+        let t23 = t5 + t4;
+        let t24 = k(11.52)
+            * (T::fused(
+                t23,
+                t0,
+                T::fused(spindle_wy, t3, k(0.08333333333333333) * spindle_dwz),
+            ) + t22);
+        let t25 = T::fused(spindle_dwx, t19 * t20, T::fused(t21, t11, t21 * t24));
+        let t26 = t18 * t20;
+        let t27 = T::fused(spindle_dwx, t14 * t20, -T::fused(t26, t11, t26 * t24));
+        let t28 = T::fused(t18, t25, t13 * t27);
+        let t29 = t19 * t27;
+        let t30 = t14 * t25;
+        let t31 = t30 - T::fused(k(24.0), t10, t29);
+        let t32 = k(0.75) * (T::fused(k(32.0), t22, t29) - t30);
+        let t33 = t8 - t7;
+        let t34 = k(12.0) * t33;
         let t35 = T::fused(
-            t27 * t29,
-            t16,
-            T::fused(-(t24 * t29), t32, t33 * (t21 * t29)),
+            -t14,
+            t28,
+            T::fused(t17, t31, T::fused(t9, t32, spindle_dsy * t34)),
         );
-        let t36 = T::fused(-(k(0.6) * t21), t34, T::fused(t28, t35, t11));
-        let t37 = T::fused(k(0.8) * t21, t34, T::fused(-t26, t35, t30));
-        let t38 = T::fused(t23, t34, t20 * t35);
-        let t39 = t18 - t17;
-        let t40 = spindle_rz - T::fused(-k(0.15), t39, spindle_rz);
-        let t41 = T::fused(t1, t40, T::fused(-t19, t36, T::fused(-t7, t37, t25 * t38)));
-        let t42 = T::fused(t0, t40, T::fused(t22, t36, T::fused(-t10, t37, t21 * t38)));
-        let t43 = T::fused(
-            -t1,
-            spindle_rx - T::fused(k(0.15), t25, spindle_rx),
-            t0 * (spindle_ry - T::fused(-k(0.15), t21, spindle_ry)),
+        let t36 = T::fused(
+            t19,
+            t28,
+            T::fused(-t12, t31, T::fused(-t6, t32, spindle_dsx * t34)),
+        );
+        let t37 = T::fused(
+            t23,
+            t31,
+            T::fused(t2, t32, k(12.0) * T::fused(-spindle_dsy, t14, t19 * spindle_dsx)),
         );
         *out = [
-            t0,
-            t1,
+            k(0.8) * spindle_dsx,
+            k(0.8) * spindle_dsy,
             k(0.0),
-            -t41,
-            t42,
-            T::fused(-t31, t36, T::fused(t14, t37, t39 * t38)) - t43,
+            -(k(0.02) * t35),
+            k(0.02) * t36,
+            -(k(0.02) * T::fused(-t33, t28, t37)),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -13,12 +13,12 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 116 operations by rotations of the bodies, doubled; 116 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 71 operations by rotations of the bodies, doubled; 71 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 9 operations by recursion; 9 operations by orthogonal motions
-//! * joint_accelerations_at: 25 operations by recursion; 25 operations by recursion on the bodies' spins; 2 more compared
-//! * corrected_accelerations: 43 operations by recursion in the bodies' frames; 43 operations by recursion in the global frame; 7 more compared
-//! * joint_jacobian: 19 operations by derivatives of u̇, from its leaves; 19 operations by derivatives of u̇, from its roots
+//! * accelerations: 109 operations by rotations of the bodies, doubled; 109 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 70 operations by rotations of the bodies, doubled; 70 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 8 operations by recursion; 8 operations by orthogonal motions
+//! * joint_accelerations_at: 24 operations by recursion; 24 operations by recursion on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 39 operations by recursion in the bodies' frames; 39 operations by recursion in the global frame; 7 more compared
+//! * joint_jacobian: 18 operations by derivatives of u̇, from its leaves; 18 operations by derivatives of u̇, from its roots
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,24 +28,24 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 12 | 0 | 12 | 0 of 40 | 32 | 12 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 18 | 0 | 29 | 0 of 18 | 55 | 29 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 13 of 13 | 0 | 0 |
-//! | gamma | γ | 27 | 50 | 0 | 77 | 8 of 13 | 130 | 77 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 28 | 0 | 44 | 0 of 13 | 70 | 44 |
+//! | gamma | γ | 27 | 48 | 0 | 75 | 8 of 13 | 105 | 75 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 27 | 0 | 43 | 0 of 13 | 55 | 43 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 23 | 0 | 30 | 9 of 18 | 41 | 30 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 33 | 81 | 2 | 116 | 8 of 18 | 605 | 117 |
-//! | multipliers | λ, the accelerations being known | 23 | 65 | 2 | 90 | 0 of 13 | 522 | 90 |
-//! | project | (δr, δπ') that changes the rows as given | 19 | 50 | 2 | 71 | 5 of 18 | 483 | 71 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 59 | 0 | 87 | 0 of 23 | 87 | 87 |
-//! | energy | T and V | 23 | 43 | 0 | 66 | 0 of 2 | 100 | 66 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 33 | 74 | 2 | 109 | 8 of 18 | 446 | 110 |
+//! | multipliers | λ, the accelerations being known | 23 | 60 | 2 | 85 | 0 of 13 | 374 | 85 |
+//! | project | (δr, δπ') that changes the rows as given | 19 | 49 | 2 | 70 | 5 of 18 | 346 | 70 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 57 | 0 | 85 | 0 of 23 | 85 | 85 |
+//! | energy | T and V | 23 | 41 | 0 | 64 | 0 of 2 | 94 | 64 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 12 | 18 | 15 |
-//! | joint_accelerations | u̇ in joint coordinates | 1 | 8 | 0 | 9 | 0 of 5 | 9 | 9 |
-//! | joint_derivative | ẋ but for u̇ | 12 | 27 | 0 | 39 | 0 of 7 | 39 | 39 |
+//! | joint_accelerations | u̇ in joint coordinates | 1 | 7 | 0 | 8 | 0 of 5 | 8 | 8 |
+//! | joint_derivative | ẋ but for u̇ | 12 | 25 | 0 | 37 | 0 of 7 | 37 | 37 |
 //! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 24 of 40 | 2 | 1 |
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 11 | 43 | 22 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 7 | 18 | 0 | 25 | 0 of 5 | 34 | 25 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 11 | 32 | 0 | 43 | 9 of 18 | 54 | 43 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 7 | 22 | 0 | 29 | 0 of 13 | 42 | 29 |
-//! | corrected_solution | both | 14 | 46 | 0 | 60 | 16 of 31 | 96 | 60 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2 | 17 | 0 | 19 | 119 of 156 | 42 | 19 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 7 | 17 | 0 | 24 | 0 of 5 | 31 | 24 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 11 | 28 | 0 | 39 | 9 of 18 | 48 | 39 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 8 | 22 | 0 | 30 | 0 of 13 | 42 | 30 |
+//! | corrected_solution | both | 15 | 42 | 0 | 57 | 16 of 31 | 82 | 57 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2 | 16 | 0 | 18 | 119 of 156 | 41 | 18 |
 //!
 //! # Proof
 //!
@@ -137,7 +137,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Friction<T> {
             k(2.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 85 operations (28 ±, 57 ×, 0 ÷) and 1 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -173,14 +173,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Friction<T> {
         let carriage_wy = y[37];
         let carriage_wz = y[38];
         let t0 = T::fused(
-            ball_wz,
-            k(0.04) * ball_wz,
-            T::fused(ball_wy, k(0.04) * ball_wy, ball_wx * (k(0.04) * ball_wx)),
-        );
-        let t1 = T::fused(
-            disc_wz,
-            k(0.05) * (k(10.0) * disc_wz).tanh(),
-            T::fused(carriage_sy, k(0.5) * carriage_sy, t0),
+            k(12.5),
+            carriage_sy * carriage_sy,
+            T::fused(ball_wz, ball_wz, T::fused(ball_wx, ball_wx, ball_wy * ball_wy)),
         );
         *dy = [
             disc_sx,
@@ -282,7 +277,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Friction<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -t1,
+            -(k(0.04) * T::fused(k(1.25), disc_wz * (k(10.0) * disc_wz).tanh(), t0)),
             disc_wz,
         ];
     }
@@ -300,7 +295,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 12]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 85 operations (28 ±, 57 ×, 0 ÷) and 1 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -336,14 +331,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let carriage_wy = y[37];
         let carriage_wz = y[38];
         let t0 = T::fused(
-            ball_wz,
-            k(0.04) * ball_wz,
-            T::fused(ball_wy, k(0.04) * ball_wy, ball_wx * (k(0.04) * ball_wx)),
-        );
-        let t1 = T::fused(
-            disc_wz,
-            k(0.05) * (k(10.0) * disc_wz).tanh(),
-            T::fused(carriage_sy, k(0.5) * carriage_sy, t0),
+            k(12.5),
+            carriage_sy * carriage_sy,
+            T::fused(ball_wz, ball_wz, T::fused(ball_wx, ball_wx, ball_wy * ball_wy)),
         );
         *dy = [
             disc_sx,
@@ -445,7 +435,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -t1,
+            -(k(0.04) * T::fused(k(1.25), disc_wz * (k(10.0) * disc_wz).tanh(), t0)),
             disc_wz,
         ];
     }
@@ -510,7 +500,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
             t2 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (16 ±, 28 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 43 operations (16 ±, 27 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -534,48 +524,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let carriage_wx = y[36];
         let carriage_wy = y[37];
         let carriage_wz = y[38];
-        let t0 = k(2.0) * disc_e1;
-        let t1 = k(2.0) * disc_e0;
-        let t2 = T::fused(-disc_e0, t1, k(1.0));
-        let t3 = disc_e3 * t1;
-        let t4 = disc_e2 * t0;
-        let t5 = T::fused(
-            disc_wy,
-            t4 + t3,
-            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t2),
-        );
-        let t6 = k(2.0) * carriage_e1;
-        let t7 = k(2.0) * carriage_e0;
-        let t8 = T::fused(-carriage_e0, t7, k(1.0));
-        let t9 = T::fused(-carriage_e1, t6, t8);
-        let t10 = carriage_e2 * t7;
-        let t11 = carriage_e3 * t6;
-        let t12 = T::fused(
-            carriage_wz,
-            t11 - t10,
-            carriage_wx * T::fused(-carriage_e3, k(2.0) * carriage_e3, t8),
-        );
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = disc_e0 * disc_e3;
+        let t2 = disc_e1 * disc_e2;
+        let t3 = k(2.0)
+            * T::fused(-disc_wy, T::fused(disc_e1, disc_e1, -t0), (t2 - t1) * disc_wx);
+        let t4 = k(2.0)
+            * T::fused(-disc_wx, T::fused(disc_e2, disc_e2, -t0), (t2 + t1) * disc_wy);
+        let t5 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t6 = T::fused(carriage_e1, carriage_e1, -t5);
+        let t7 = carriage_e0 * carriage_e2;
+        let t8 = carriage_e1 * carriage_e3;
+        let t9 = k(2.0)
+            * T::fused(
+                -carriage_wx,
+                T::fused(carriage_e3, carriage_e3, -t5),
+                (t8 - t7) * carriage_wz,
+            );
+        let t10 = k(2.0)
+            * T::fused(
+                -carriage_wy,
+                t6,
+                T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
+                    * carriage_wx,
+            );
         *out = [
             disc_sx,
             disc_sy,
             disc_sz,
-            -T::fused(disc_wy, T::fused(-disc_e1, t0, t2), disc_wx * (t4 - t3)),
-            t5,
+            -t3,
+            t4,
             ball_sx,
             ball_sy,
             ball_sz,
             carriage_sx,
             -carriage_sz,
-            T::fused(carriage_wz, t9, carriage_wx * (t11 + t10)),
-            t12,
-            T::fused(
-                carriage_wy,
-                t9,
-                carriage_wx * T::fused(-carriage_e3, t7, carriage_e2 * t6),
-            ),
+            k(2.0) * T::fused(-carriage_wz, t6, (t8 + t7) * carriage_wx),
+            t9,
+            t10,
         ];
     }
-    /// Kinetic and potential energy: 66 operations (23 ±, 43 ×, 0 ÷) and 3 functions.
+    /// Kinetic and potential energy: 64 operations (23 ±, 41 ×, 0 ÷) and 3 functions.
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -602,50 +591,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let carriage_wz = y[38];
         let turn0 = y[40];
         let t0 = T::fused(
-            carriage_wz,
-            k(0.2) * carriage_wz,
-            T::fused(
-                carriage_wy,
-                k(0.2) * carriage_wy,
-                carriage_wx * (k(0.1) * carriage_wx),
-            ),
+            k(0.02),
+            disc_wz * disc_wz,
+            k(0.01) * T::fused(disc_wx, disc_wx, disc_wy * disc_wy),
         );
         let t1 = T::fused(
+            k(4.0),
+            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
+            t0,
+        );
+        let t2 = T::fused(
+            k(0.05),
+            ball_wx * ball_wx,
+            T::fused(
+                ball_sz,
+                ball_sz,
+                T::fused(ball_sy, ball_sy, T::fused(ball_sx, ball_sx, t1)),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.1),
+            carriage_wx * carriage_wx,
+            T::fused(
+                k(0.05),
+                ball_wz * ball_wz,
+                T::fused(k(0.05), ball_wy * ball_wy, t2),
+            ),
+        );
+        let t4 = T::fused(
             k(2.0),
             T::fused(
                 carriage_sz,
                 carriage_sz,
                 T::fused(carriage_sy, carriage_sy, carriage_sx * carriage_sx),
             ),
-            t0,
+            T::fused(
+                k(0.2),
+                carriage_wz * carriage_wz,
+                T::fused(k(0.2), carriage_wy * carriage_wy, t3),
+            ),
         );
-        let t2 = T::fused(
-            ball_wz,
-            k(0.05) * ball_wz,
-            T::fused(ball_wy, k(0.05) * ball_wy, ball_wx * (k(0.05) * ball_wx)),
-        );
-        let t3 = T::fused(
-            disc_wz,
-            k(0.02) * disc_wz,
-            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
-        );
-        let t4 = T::fused(
-            k(4.0),
-            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
-            t3,
-        );
-        let t5 = t4
-            + (T::fused(ball_sz, ball_sz, T::fused(ball_sy, ball_sy, ball_sx * ball_sx))
-                + t2);
-        let t6 = turn0.cos();
-        let t7 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t8 = turn0.sin();
-        let t9 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t10 = T::fused(t7, t8, t9 * t6).atan2(T::fused(-t7, t6, t9 * t8));
-        let t11 = turn0 + t10;
+        let t5 = turn0.sin();
+        let t6 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t7 = turn0.cos();
+        let t8 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t9 = (k(2.0) * T::fused(t6, t7, t8 * t5))
+            .atan2(-(k(2.0) * T::fused(-t6, t5, t8 * t7)));
+        let t10 = turn0 + t9;
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t1),
-            potential: k(0.5) * (t11 * (k(0.5) * t11)),
+            kinetic: k(0.5) * t4,
+            potential: k(0.25) * (t10 * t10),
         }
     }
     /// Writes the joint readings: 15 operations (7 ±, 8 ×, 0 ÷).
@@ -1033,7 +1028,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 77 operations (27 ±, 50 ×, 0 ÷).
+    /// Writes γ: 75 operations (27 ±, 48 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1050,61 +1045,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let carriage_wx = y[36];
         let carriage_wy = y[37];
         let carriage_wz = y[38];
-        let t0 = k(2.0) * disc_e1;
-        let t1 = k(2.0) * disc_e0;
-        let t2 = T::fused(-disc_e0, t1, k(1.0));
-        let t3 = disc_wx * disc_wz;
-        let t4 = disc_e3 * t1;
-        let t5 = disc_e2 * t0;
-        let t6 = disc_wy * disc_wz;
-        let t7 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t8 = T::fused(
-            t7,
-            T::fused(disc_e2, t1, disc_e3 * t0),
-            -T::fused(-t3, T::fused(-disc_e1, t0, t2), t6 * (t5 - t4)),
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = disc_wx * disc_wz;
+        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t3 = disc_wy * disc_wz;
+        let t4 = disc_e0 * disc_e3;
+        let t5 = disc_e1 * disc_e2;
+        let t6 = T::fused(
+            -T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            t2,
+            (t5 - t4) * t3,
         );
-        let t9 = k(2.0) * disc_e2;
-        let t10 = T::fused(
-            t7,
-            T::fused(-disc_e1, t1, disc_e3 * t9),
-            T::fused(-t3, t5 + t4, t6 * T::fused(-disc_e2, t9, t2)),
+        let t7 = T::fused(
+            -t3,
+            T::fused(disc_e2, disc_e2, -t0),
+            T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3) * t2,
         );
-        let t11 = k(2.0) * carriage_e1;
-        let t12 = k(2.0) * carriage_e0;
-        let t13 = T::fused(-carriage_e0, t12, k(1.0));
-        let t14 = T::fused(-carriage_e1, t11, t13);
-        let t15 = carriage_wx * carriage_wy;
-        let t16 = T::fused(-carriage_e3, t12, carriage_e2 * t11);
-        let t17 = carriage_wx * carriage_wx;
-        let t18 = T::fused(carriage_wz, carriage_wz, t17);
-        let t19 = carriage_e2 * t12;
-        let t20 = carriage_e3 * t11;
-        let t21 = t20 + t19;
-        let t22 = carriage_wy * carriage_wz;
-        let t23 = T::fused(
-            -t15,
-            t20 - t19,
-            t18 * T::fused(carriage_e1, t12, carriage_e3 * (k(2.0) * carriage_e2)),
+        let t8 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t9 = T::fused(carriage_e1, carriage_e1, -t8);
+        let t10 = carriage_wx * carriage_wy;
+        let t11 = carriage_wy * carriage_wz;
+        let t12 = carriage_e0 * carriage_e2;
+        let t13 = carriage_e1 * carriage_e3;
+        let t14 = t13 + t12;
+        let t15 = carriage_wx * carriage_wx;
+        let t16 = T::fused(carriage_wz, carriage_wz, t15);
+        let t17 = T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
+        let t18 = T::fused(
+            -t11,
+            T::fused(carriage_e3, carriage_e3, -t8),
+            T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t16,
         );
-        let t24 = T::fused(
-            T::fused(carriage_wy, carriage_wy, t17),
-            t21,
-            -T::fused(-(carriage_wx * carriage_wz), t14, t22 * t16),
+        let t19 = T::fused(
+            carriage_wx * carriage_wz,
+            t9,
+            T::fused(-t14, T::fused(carriage_wy, carriage_wy, t15), t17 * t11),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t8,
-            t10,
+            -(k(2.0) * T::fused(t1, T::fused(disc_e1, disc_e1, -t0), t6)),
+            -(k(2.0) * T::fused(t5 + t4, t1, -t7)),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t22, t21, T::fused(t15, t14, t18 * t16)),
-            -T::fused(t22, T::fused(-carriage_e3, k(2.0) * carriage_e3, t13), t23),
-            -t24,
+            k(2.0) * T::fused(-t10, t9, T::fused(-t14, t11, t17 * t16)),
+            k(2.0) * T::fused(t13 - t12, t10, -t18),
+            k(2.0) * t19,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 30 operations (7 ±, 23 ×, 0 ÷) and 4 functions.
@@ -1153,7 +1143,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             -(carriage_wy * t6),
         ];
     }
-    /// Solves eq. (17): 116 operations (33 ±, 81 ×, 2 ÷) and 4 functions.
+    /// Solves eq. (17): 109 operations (33 ±, 74 ×, 2 ÷) and 4 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1175,61 +1165,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let carriage_wy = y[37];
         let carriage_wz = y[38];
         let turn0 = y[40];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = T::fused(-disc_e0, t0, k(1.0));
-        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
-            / T::fused(-disc_e3, k(2.0) * disc_e3, t1);
-        let t3 = T::fused(
-            -T::fused(disc_e1, t0, disc_e3 * (k(2.0) * disc_e2)),
-            t2,
-            disc_wy * disc_wz,
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            / T::fused(disc_e3, disc_e3, -t0);
+        let t2 = T::fused(disc_e1, disc_e1, -t0);
+        let t3 = turn0.cos();
+        let t4 = turn0.sin();
+        let t5 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t6 = (k(2.0) * T::fused(-t4, t2, t5 * t3))
+            .atan2(k(2.0) * T::fused(t3, t2, t5 * t4));
+        let t7 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t8 = T::fused(carriage_e1, carriage_e1, -t7);
+        let t9 = T::fused(carriage_e3, carriage_e3, -t7);
+        let t10 = t8 * t9;
+        let t11 = carriage_e0 * carriage_e2;
+        let t12 = carriage_e1 * carriage_e3;
+        let t13 = t12 - t11;
+        let t14 = t12 + t11;
+        let t15 = T::fused(t14, t13, -t10);
+        let t16 = k(1.0) / (t8 * t15);
+        let t17 = carriage_wy * carriage_wz;
+        let t18 = carriage_wx * carriage_wx;
+        let t19 = T::fused(carriage_wz, carriage_wz, t18);
+        let t20 = carriage_wx * carriage_wy;
+        let t21 = T::fused(
+            t13,
+            t20,
+            -T::fused(
+                -t17,
+                t9,
+                T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t19,
+            ),
         );
-        let t4 = k(2.0) * disc_e1;
-        let t5 = T::fused(-disc_e1, t4, t1);
-        let t6 = turn0.cos();
-        let t7 = T::fused(disc_e3, t0, disc_e2 * t4);
-        let t8 = turn0.sin();
-        let t9 = T::fused(t8, t5, t6 * t7).atan2(T::fused(-t6, t5, t8 * t7));
-        let t10 = k(50.0)
-            * T::fused(k(0.5), turn0 + t9, k(0.05) * (k(10.0) * disc_wz).tanh());
-        let t11 = k(2.0) * carriage_e1;
-        let t12 = k(2.0) * carriage_e0;
-        let t13 = T::fused(-carriage_e0, t12, k(1.0));
-        let t14 = T::fused(-carriage_e1, t11, t13);
-        let t15 = carriage_wx * carriage_wy;
-        let t16 = T::fused(-carriage_e3, t12, carriage_e2 * t11);
-        let t17 = carriage_wx * carriage_wx;
-        let t18 = T::fused(carriage_wz, carriage_wz, t17);
-        let t19 = carriage_e2 * t12;
-        let t20 = carriage_e3 * t11;
-        let t21 = t20 + t19;
-        let t22 = carriage_wy * carriage_wz;
-        let t23 = T::fused(t22, t21, -T::fused(t15, t14, t18 * t16));
-        let t24 = t20 - t19;
-        let t25 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t13);
-        let t26 = t14 * t25;
-        let t27 = T::fused(t21, t24, -t26);
-        let t28 = k(1.0) / (t14 * t27);
-        let t29 = T::fused(
-            -t15,
-            t24,
-            t18 * T::fused(carriage_e1, t12, carriage_e3 * (k(2.0) * carriage_e2)),
+        let t22 = T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
+        let t23 = T::fused(-t20, t8, T::fused(-t14, t17, t22 * t19));
+        let t24 = T::fused(t21, t16 * (t8 * t8), t23 * (t13 * t8 * t16));
+        let t25 = T::fused(t21, t16 * (t22 * t8), t23 * (t22 * t13 * t16));
+        let t26 = T::fused(
+            carriage_wx * carriage_wz,
+            t8,
+            T::fused(-t14, T::fused(carriage_wy, carriage_wy, t18), t22 * t17),
         );
-        let t30 = T::fused(t22, t25, t29);
-        let t31 = T::fused(-(t28 * (t14 * t24)), t23, t28 * (t14 * t14) * t30);
-        let t32 = T::fused(
-            T::fused(carriage_wy, carriage_wy, t17),
-            t21,
-            -T::fused(-(carriage_wx * carriage_wz), t14, t22 * t16),
-        );
-        let t33 = T::fused(-t23, t28 * (t16 * t24), t30 * (t28 * (t14 * t16)));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t3,
-            T::fused(-disc_wx, disc_wz, T::fused(-disc_e2, t0, disc_e3 * t4) * t2),
-            -t10,
+            T::fused(
+                T::fused(disc_e0, disc_e1, disc_e2 * disc_e3),
+                t1,
+                disc_wy * disc_wz,
+            ),
+            -T::fused(
+                T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3),
+                t1,
+                disc_wx * disc_wz,
+            ),
+            -(k(2.5) * T::fused(k(10.0), turn0 + t6, (k(10.0) * disc_wz).tanh())),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1239,12 +1230,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             k(0.0),
             -(k(0.25) * carriage_sy),
             k(0.0),
-            t31,
-            -T::fused(t27 * t28, t32, t33),
-            T::fused(-t30, t28 * (t14 * t21), t23 * (t26 * t28)),
+            t24,
+            T::fused(-t26, t15 * t16, t25),
+            T::fused(t21, t16 * (t14 * t8), t23 * (t10 * t16)),
         ];
     }
-    /// Writes λ: 90 operations (23 ±, 65 ×, 2 ÷).
+    /// Writes λ: 85 operations (23 ±, 60 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1280,55 +1271,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let carriage_dwx = accelerations[15];
         let carriage_dwy = accelerations[16];
         let carriage_dwz = accelerations[17];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = disc_e3 * t0;
-        let t2 = k(2.0) * disc_e1;
-        let t3 = disc_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = t3 - t1;
-        let t6 = T::fused(-disc_e0, t0, k(1.0));
-        let t7 = T::fused(-disc_e2, k(2.0) * disc_e2, t6);
-        let t8 = T::fused(-disc_e1, t2, t6);
-        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
-        let t10 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t11 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
-        let t12 = k(0.1) * carriage_wx;
-        let t13 = T::fused(carriage_wy, t12, k(0.2) * carriage_dwz);
-        let t14 = k(2.0) * carriage_e0;
-        let t15 = T::fused(-carriage_e0, t14, k(1.0));
-        let t16 = k(2.0) * carriage_e1;
-        let t17 = T::fused(-carriage_e1, t16, t15);
-        let t18 = t17 * T::fused(-carriage_e3, k(2.0) * carriage_e3, t15);
-        let t19 = carriage_e2 * t14;
-        let t20 = carriage_e3 * t16;
-        let t21 = t20 - t19;
-        let t22 = t20 + t19;
-        let t23 = T::fused(t22, t21, -t18);
-        let t24 = k(1.0) / (t17 * t23);
-        let t25 = T::fused(-carriage_wz, t12, k(0.2) * carriage_dwy);
-        let t26 = T::fused(-carriage_e3, t14, carriage_e2 * t16);
-        let t27 = k(0.1) * carriage_dwx;
-        let t28 = T::fused(-(t24 * (t26 * t21)), t25, t27 * (t24 * (t17 * t21)));
-        let t29 = T::fused(-(t24 * (t17 * t26)), t25, t27 * (t24 * (t17 * t17)));
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e2, disc_e2, -t0);
+        let t2 = T::fused(disc_e1, disc_e1, -t0);
+        let t3 = disc_e0 * disc_e3;
+        let t4 = disc_e1 * disc_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t9 = T::fused(disc_wy, disc_wz, disc_dwx);
+        let t10 = T::fused(k(2.0), carriage_dwz, carriage_wx * carriage_wy);
+        let t11 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t12 = T::fused(carriage_e1, carriage_e1, -t11);
+        let t13 = t12 * T::fused(carriage_e3, carriage_e3, -t11);
+        let t14 = carriage_e0 * carriage_e2;
+        let t15 = carriage_e1 * carriage_e3;
+        let t16 = t15 - t14;
+        let t17 = t15 + t14;
+        let t18 = T::fused(t17, t16, -t13);
+        let t19 = k(1.0) / (t12 * t18);
+        let t20 = T::fused(-k(2.0), carriage_dwy, carriage_wx * carriage_wz);
+        let t21 = T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
+        let t22 = T::fused(
+            carriage_dwx,
+            t16 * t12 * t19,
+            -T::fused(-(t13 * t19), t10, t21 * t16 * t19 * t20),
+        );
+        let t23 = T::fused(-(t19 * (t17 * t12)), t10, t19 * (t21 * t12) * t20);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            -T::fused(t10, t4 * t9, t11 * (t7 * t9)),
-            -T::fused(t10, t8 * t9, t11 * (t5 * t9)),
+            k(0.005) * T::fused(-t8, t1 * t7, t9 * (t5 * t7)),
+            -(k(0.005) * T::fused(-t8, t6 * t7, t9 * (t2 * t7))),
             -ball_dsx,
             -ball_dsy,
             -ball_dsz,
             -(k(2.0) * carriage_dsx),
             k(2.0) * carriage_dsz,
-            T::fused(t18 * t24, t13, -t28),
-            T::fused(-(t24 * (t17 * t22)), t13, t29),
-            -(t23 * t24 * t25),
+            -(k(0.05) * t22),
+            -(k(0.05) * T::fused(carriage_dwx, t19 * (t12 * t12), -t23)),
+            -(k(0.05) * (t18 * t19 * t20)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Friction<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 71 operations (19 ±, 50 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 70 operations (19 ±, 49 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -1358,36 +1347,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Friction<T> {
         let row10 = rows[10];
         let row11 = rows[11];
         let row12 = rows[12];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = disc_e3 * t0;
-        let t2 = k(2.0) * disc_e1;
-        let t3 = disc_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = t3 - t1;
-        let t6 = T::fused(-disc_e0, t0, k(1.0));
-        let t7 = T::fused(-disc_e2, k(2.0) * disc_e2, t6);
-        let t8 = T::fused(-disc_e1, t2, t6);
-        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
-        let t10 = k(2.0) * carriage_e0;
-        let t11 = carriage_e2 * t10;
-        let t12 = k(2.0) * carriage_e1;
-        let t13 = carriage_e3 * t12;
-        let t14 = t13 - t11;
-        let t15 = T::fused(-carriage_e0, t10, k(1.0));
-        let t16 = T::fused(-carriage_e1, t12, t15);
-        let t17 = t16 * T::fused(-carriage_e3, k(2.0) * carriage_e3, t15);
-        let t18 = t13 + t11;
-        let t19 = T::fused(t18, t14, -t17);
-        let t20 = k(1.0) / (t16 * t19);
-        let t21 = T::fused(-(t20 * (t16 * t14)), row10, t20 * (t16 * t16) * row11);
-        let t22 = T::fused(-carriage_e3, t10, carriage_e2 * t12);
-        let t23 = T::fused(-(t20 * (t22 * t14)), row10, t20 * (t16 * t22) * row11);
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e2, disc_e2, -t0);
+        let t2 = T::fused(disc_e1, disc_e1, -t0);
+        let t3 = disc_e0 * disc_e3;
+        let t4 = disc_e1 * disc_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t9 = T::fused(carriage_e1, carriage_e1, -t8);
+        let t10 = t9 * T::fused(carriage_e3, carriage_e3, -t8);
+        let t11 = carriage_e0 * carriage_e2;
+        let t12 = carriage_e1 * carriage_e3;
+        let t13 = t12 - t11;
+        let t14 = t12 + t11;
+        let t15 = T::fused(t14, t13, -t10);
+        let t16 = k(1.0) / (t9 * t15);
+        let t17 = T::fused(t16 * (t9 * t9), row11, t13 * t9 * t16 * row10);
+        let t18 = T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
+        let t19 = T::fused(t16 * (t18 * t9), row11, t18 * t13 * t16 * row10);
+        let t20 = k(0.5) * T::fused(t16 * (t14 * t9), row11, t10 * t16 * row10);
         *out = [
             row0,
             row1,
             row2,
-            T::fused(row3, t4 * t9, row4 * (t8 * t9)),
-            -T::fused(row3, t7 * t9, row4 * (t5 * t9)),
+            -(k(0.5) * T::fused(-row4, t2 * t7, row3 * (t5 * t7))),
+            -(k(0.5) * T::fused(-row4, t6 * t7, row3 * (t1 * t7))),
             k(0.0),
             row5,
             row6,
@@ -1398,9 +1384,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Friction<T> {
             row8,
             k(0.0),
             -row9,
-            -t21,
-            T::fused(t19 * t20, row12, t23),
-            T::fused(-(t17 * t20), row10, t20 * (t16 * t18) * row11),
+            k(0.5) * t17,
+            -(k(0.5) * T::fused(t15 * t16, row12, -t19)),
+            t20,
         ];
     }
 }
@@ -1431,7 +1417,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 31]
     }
-    /// Writes u̇: 9 operations (1 ±, 8 ×, 0 ÷) and 1 functions.
+    /// Writes u̇: 8 operations (1 ±, 7 ×, 0 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -1441,14 +1427,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let u3 = x[9];
         let u4 = x[10];
         *out = [
-            -(k(50.0) * T::fused(k(0.05), (k(10.0) * u0).tanh(), k(0.5) * x0)),
+            -(k(25.0) * T::fused(k(0.1), (k(10.0) * u0).tanh(), x0)),
             -(k(0.8) * u1),
             -(k(0.8) * u2),
             -(k(0.8) * u3),
             -(k(0.25) * u4),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 39 operations (12 ±, 27 ×, 0 ÷) and 1 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 37 operations (12 ±, 25 ×, 0 ÷) and 1 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -1462,16 +1448,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let u2 = x[8];
         let u3 = x[9];
         let u4 = x[10];
-        let t0 = T::fused(
-            u3,
-            k(0.04) * u3,
-            T::fused(u1, k(0.04) * u1, u2 * (k(0.04) * u2)),
-        );
-        let t1 = T::fused(
-            u0,
-            k(0.05) * (k(10.0) * u0).tanh(),
-            T::fused(u4, k(0.5) * u4, t0),
-        );
+        let t0 = T::fused(k(1.25), u0 * (k(10.0) * u0).tanh(), k(12.5) * (u4 * u4));
+        let t1 = k(0.04) * T::fused(u1, u1, T::fused(u2, u2, T::fused(u3, u3, t0)));
         *dx = [
             u0,
             -(k(0.5) * T::fused(x4, u3, T::fused(x3, u2, x2 * u1))),
@@ -1587,7 +1565,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         x[10] = carriage_sy;
         x[11] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 25 operations (7 ±, 18 ×, 0 ÷) and 4 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 24 operations (7 ±, 17 ×, 0 ÷) and 4 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1600,22 +1578,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let ball_wy = y[31];
         let ball_wz = y[32];
         let turn0 = y[40];
-        let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t2 = turn0.sin();
-        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
-        let t5 = k(50.0)
-            * T::fused(k(0.5), turn0 + t4, k(0.05) * (k(10.0) * disc_wz).tanh());
+        let t0 = turn0.sin();
+        let t1 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t2 = turn0.cos();
+        let t3 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t4 = (k(2.0) * T::fused(t1, t2, t3 * t0))
+            .atan2(-(k(2.0) * T::fused(-t1, t0, t3 * t2)));
         *out = [
-            -t5,
+            -(k(2.5) * T::fused(k(10.0), turn0 + t4, (k(10.0) * disc_wz).tanh())),
             -(k(0.8) * ball_wx),
             -(k(0.8) * ball_wy),
             -(k(0.8) * ball_wz),
             -(k(0.25) * carriage_sy),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 43 operations (11 ±, 32 ×, 0 ÷) and 4 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 39 operations (11 ±, 28 ×, 0 ÷) and 4 functions.
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -1639,41 +1616,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let ball_wy = y[31];
         let ball_wz = y[32];
         let turn0 = y[40];
-        let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t2 = turn0.sin();
-        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
-        let t5 = k(50.0)
-            * T::fused(k(0.5), turn0 + t4, k(0.05) * (k(10.0) * disc_wz).tanh());
-        let t6 = k(0.25) * carriage_sy;
+        let t0 = turn0.sin();
+        let t1 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t2 = turn0.cos();
+        let t3 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t4 = (k(2.0) * T::fused(t1, t2, t3 * t0))
+            .atan2(-(k(2.0) * T::fused(-t1, t0, t3 * t2)));
+        let t5 = k(0.5) * carriage_sy;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             disc_wy * disc_wz,
             -(disc_wx * disc_wz),
-            -t5,
+            -(k(2.5) * T::fused(k(10.0), turn0 + t4, (k(10.0) * disc_wz).tanh())),
             k(0.0),
             k(0.0),
             k(0.0),
             -(k(0.8) * ball_wx),
             -(k(0.8) * ball_wy),
             -(k(0.8) * ball_wz),
-            -(k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
-                * t6),
-            k(2.0)
-                * (k(0.5)
-                    - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0))
-                * t6,
-            -(k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
-                * t6),
+            -(T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2) * t5),
+            (k(0.5) - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0))
+                * t5,
+            -(T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t5),
             k(0.0),
             k(0.0),
             k(0.0),
         ];
     }
-    /// Writes λ: 29 operations (7 ±, 22 ×, 0 ÷).
+    /// Writes λ: 30 operations (8 ±, 22 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1703,29 +1675,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let carriage_dwx = accelerations[15];
         let carriage_dwy = accelerations[16];
         let carriage_dwz = accelerations[17];
-        let t0 = k(2.0) * disc_e3;
-        let t1 = disc_e0 * t0;
-        let t2 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t3 = T::fused(-disc_e3, t0, k(1.0));
-        let t4 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
-        let t5 = k(0.1) * carriage_wx;
+        let t0 = disc_e0 * (k(2.0) * disc_e3);
+        let t1 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t2 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t3 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t4 = k(0.1) * carriage_wx;
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            T::fused(-t2, t1, t4 * t3),
-            T::fused(t2, t3, t4 * t1),
+            T::fused(-t1, t0, t3 * t2),
+            T::fused(t1, t2, t3 * t0),
             -ball_dsx,
             -ball_dsy,
             -ball_dsz,
             -(k(2.0) * carriage_dsx),
             k(2.0) * carriage_dsz,
-            T::fused(carriage_wy, t5, k(0.2) * carriage_dwz),
+            T::fused(carriage_wy, t4, k(0.2) * carriage_dwz),
             k(0.1) * carriage_dwx,
-            T::fused(-carriage_wz, t5, k(0.2) * carriage_dwy),
+            T::fused(-carriage_wz, t4, k(0.2) * carriage_dwy),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 60 operations (14 ±, 46 ×, 0 ÷) and 4 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 57 operations (15 ±, 42 ×, 0 ÷) and 4 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1749,59 +1720,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let turn0 = y[40];
         let t0 = disc_wy * disc_wz;
         let t1 = disc_wx * disc_wz;
-        let t2 = turn0.cos();
-        let t3 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t4 = turn0.sin();
-        let t5 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t6 = T::fused(t3, t4, t5 * t2).atan2(T::fused(-t3, t2, t5 * t4));
-        let t7 = k(50.0)
-            * T::fused(k(0.5), turn0 + t6, k(0.05) * (k(10.0) * disc_wz).tanh());
-        let t8 = k(0.25) * carriage_sy;
-        let t9 = k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
-            * t8;
-        let t10 = k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
-            * t8;
-        let t11 = k(0.02) * t1;
-        let t12 = k(2.0) * disc_e3;
-        let t13 = T::fused(-disc_e3, t12, k(1.0));
-        let t14 = k(0.02) * t0;
-        let t15 = disc_e0 * t12;
-        let t16 = k(0.1) * carriage_wx;
+        let t2 = turn0.sin();
+        let t3 = disc_e0 * disc_e3;
+        let t4 = T::fused(disc_e1, disc_e2, t3);
+        let t5 = turn0.cos();
+        let t6 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t7 = (k(2.0) * T::fused(t4, t5, t6 * t2))
+            .atan2(-(k(2.0) * T::fused(-t4, t2, t6 * t5)));
+        let t8 = T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
+            * carriage_sy;
+        let t9 = T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
+            * carriage_sy;
+        let t10 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t11 = k(0.1) * carriage_wx;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t0,
             -t1,
-            -t7,
+            -(k(2.5) * T::fused(k(10.0), turn0 + t7, (k(10.0) * disc_wz).tanh())),
             k(0.0),
             k(0.0),
             k(0.0),
             -(k(0.8) * ball_wx),
             -(k(0.8) * ball_wy),
             -(k(0.8) * ball_wz),
-            -t9,
-            k(2.0)
-                * (k(0.5)
+            -(k(0.5) * t8),
+            k(0.5)
+                * ((k(0.5)
                     - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0))
-                * t8,
-            -t10,
+                    * carriage_sy),
+            -(k(0.5) * t9),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t15, t14, t13 * t11),
-            T::fused(t15, t11, t13 * t14),
+            -(k(0.04) * T::fused(-k(0.5), t1 * t10, t3 * t0)),
+            k(0.02) * T::fused(k(2.0), t3 * t1, t0 * t10),
             k(0.0),
             k(0.0),
             k(0.0),
-            k(2.0) * t9,
-            -(k(2.0) * t10),
-            carriage_wy * t16,
+            t8,
+            -t9,
+            carriage_wy * t11,
             k(0.0),
-            -(carriage_wz * t16),
+            -(carriage_wz * t11),
         ];
     }
 }
@@ -1814,7 +1780,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Friction<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 19 operations (2 ±, 17 ×, 0 ÷) and 1 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 18 operations (2 ±, 16 ×, 0 ÷) and 1 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1980,7 +1946,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Friction<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -T::fused(k(10.0), t8 * (k(0.05) * u0), k(0.05) * t7),
+            -(k(0.05) * T::fused(k(10.0), u0 * t8, t7)),
             -(k(0.08) * u1),
             -(k(0.08) * u2),
             -(k(0.08) * u3),

@@ -12,38 +12,38 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 200 operations by rotations of the bodies, doubled; 200 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 124 operations by rotations of the bodies; 124 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 14 operations by normal form; 18 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 43 operations by normal form; 51 operations by recursion; 3 more compared
-//! * corrected_accelerations: 61 operations by normal form in the global frame; 66 operations by normal form in the bodies' frames; 9 more compared
-//! * joint_jacobian: 0 operations by normal form of that; 42 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
+//! * accelerations: 167 operations by rotations of the bodies, doubled; 167 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 106 operations by rotations of the bodies, doubled; 106 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 12 operations by recursion; 12 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 40 operations by recursion; 40 operations by normal form; 3 more compared
+//! * corrected_accelerations: 55 operations by normal form in the global frame; 56 operations by recursion in the global frame; 9 more compared
+//! * joint_jacobian: 0 operations by normal form of that; 29 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 26 | 32 | 0 | 58 | 0 of 12 | 69 | 58 |
+//! | phi | Φ | 26 | 29 | 0 | 55 | 0 of 12 | 66 | 55 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 13 | 26 | 0 | 39 | 0 of 34 | 62 | 39 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 26 | 35 | 0 | 61 | 0 of 18 | 98 | 61 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 22 | 33 | 0 | 55 | 0 of 18 | 95 | 55 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 10 of 10 | 0 | 0 |
-//! | gamma | γ | 46 | 76 | 0 | 122 | 5 of 10 | 275 | 122 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 31 | 54 | 0 | 85 | 0 of 10 | 156 | 85 |
-//! | applied_force | (f, n' − w̃'J'w') | 30 | 50 | 0 | 80 | 1 of 12 | 177 | 80 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 66 | 132 | 2 | 200 | 4 of 12 | 2702 | 201 |
-//! | multipliers | λ, the accelerations being known | 65 | 117 | 2 | 184 | 0 of 10 | 2402 | 184 |
-//! | project | (δr, δπ') that changes the rows as given | 41 | 81 | 2 | 124 | 1 of 12 | 1551 | 124 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 52 | 91 | 0 | 143 | 0 of 15 | 208 | 143 |
-//! | energy | T and V | 11 | 21 | 0 | 32 | 1 of 2 | 32 | 32 |
+//! | gamma | γ | 46 | 69 | 0 | 115 | 5 of 10 | 215 | 115 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 31 | 47 | 0 | 78 | 0 of 10 | 116 | 78 |
+//! | applied_force | (f, n' − w̃'J'w') | 30 | 44 | 0 | 74 | 1 of 12 | 124 | 74 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 62 | 103 | 2 | 167 | 4 of 12 | 1658 | 168 |
+//! | multipliers | λ, the accelerations being known | 62 | 99 | 2 | 163 | 0 of 10 | 1472 | 163 |
+//! | project | (δr, δπ') that changes the rows as given | 34 | 70 | 2 | 106 | 1 of 12 | 1231 | 106 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 52 | 82 | 0 | 134 | 0 of 15 | 163 | 134 |
+//! | energy | T and V | 11 | 18 | 0 | 29 | 1 of 2 | 29 | 29 |
 //! | read_joints | joint coordinates and rates | 10 | 12 | 0 | 22 | 0 of 5 | 25 | 22 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 9 | 0 | 14 | 0 of 2 | 31 | 14 |
-//! | joint_derivative | ẋ but for u̇ | 6 | 16 | 0 | 22 | 0 of 3 | 38 | 22 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 7 | 0 | 12 | 0 of 2 | 27 | 12 |
+//! | joint_derivative | ẋ but for u̇ | 6 | 12 | 0 | 18 | 0 of 3 | 33 | 18 |
 //! | to_maximal | (q, v) of a joint state | 1 | 5 | 0 | 6 | 18 of 26 | 7 | 6 |
 //! | to_joints | (x, u) of a maximal state | 13 | 16 | 0 | 29 | 0 of 4 | 50 | 29 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 17 | 26 | 0 | 43 | 0 of 2 | 57 | 43 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 38 | 0 | 61 | 6 of 12 | 131 | 61 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 45 | 66 | 0 | 111 | 0 of 10 | 219 | 111 |
-//! | corrected_solution | both | 51 | 80 | 0 | 131 | 6 of 22 | 430 | 131 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 17 | 23 | 0 | 40 | 0 of 2 | 51 | 40 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 32 | 0 | 55 | 6 of 12 | 122 | 55 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 55 | 0 | 101 | 0 of 10 | 194 | 101 |
+//! | corrected_solution | both | 51 | 67 | 0 | 118 | 6 of 22 | 389 | 118 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 26 of 30 | 0 | 0 |
 //!
 //! # Proof
@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 143 operations (52 ±, 91 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 134 operations (52 ±, 82 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -147,57 +147,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = k(2.0) * disc_e1;
-        let t2 = T::fused(-disc_e3, t0, disc_e2 * t1);
-        let t3 = k(0.2) * disc_wz;
-        let t4 = disc_e2 * t0;
-        let t5 = disc_e3 * t1;
-        let t6 = k(0.2) * disc_wy;
-        let t7 = k(2.0) * disc_e2;
-        let t8 = T::fused(-disc_e0, t0, k(1.0));
-        let t9 = T::fused(-disc_e2, t7, t8);
-        let t10 = disc_e1 * t0;
-        let t11 = disc_e3 * t7;
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e2, disc_e2, -t0);
+        let t2 = disc_e0 * disc_e1;
+        let t3 = disc_e2 * disc_e3;
+        let t4 = t1
+            * T::fused(-disc_wz, t1, T::fused(-k(2.5), disc_sy, (t3 - t2) * disc_wy));
+        let t5 = T::fused(disc_e3, disc_e3, -t0);
+        let t6 = t3 + t2;
+        let t7 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t8 = carriage_e0 * carriage_e2;
+        let t9 = carriage_e1 * carriage_e3;
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
         let t12 = T::fused(
-            -(k(0.3) * t2),
-            disc_sx - T::fused(-t3, t2, t6 * (t5 + t4)),
-            k(0.3) * t9 * (disc_sy - T::fused(t3, t9, t6 * (t11 - t10))),
+            carriage_wx,
+            T::fused(carriage_e1, carriage_e1, -t7),
+            T::fused(t9 + t8, carriage_wz, (t11 - t10) * carriage_wy),
         );
-        let t13 = t11 + t10;
-        let t14 = T::fused(-disc_e3, k(2.0) * disc_e3, t8);
-        let t15 = T::fused(k(0.3) * t13, disc_sz + T::fused(t3, t13, t6 * t14), -t12);
-        let t16 = T::fused(
-            disc_wz,
-            k(0.01) * t14,
-            -T::fused(disc_wx, k(0.01) * (t5 - t4), disc_wy * (k(0.01) * t13)),
+        let t13 = T::fused(
+            t11 + t10,
+            carriage_wz,
+            -T::fused(
+                k(5.0),
+                carriage_sy,
+                T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
+                    * carriage_wx,
+            ),
         );
-        let t17 = k(2.0) * carriage_e0;
-        let t18 = carriage_e2 * t17;
-        let t19 = k(2.0) * carriage_e1;
-        let t20 = carriage_e3 * t19;
-        let t21 = k(0.1) * carriage_wz;
-        let t22 = T::fused(-carriage_e0, t17, k(1.0));
-        let t23 = k(0.1) * carriage_wx;
-        let t24 = T::fused(
-            t21,
-            t20 - t18,
-            t23 * T::fused(-carriage_e3, k(2.0) * carriage_e3, t22),
+        let t14 = T::fused(
+            carriage_wx,
+            T::fused(carriage_e3, carriage_e3, -t7),
+            T::fused(k(5.0), carriage_sz, -T::fused(k(5.0), t13, -t12)),
         );
-        let t25 = carriage_e3 * t17;
-        let t26 = carriage_e2 * t19;
-        let t27 = T::fused(
-            -t21,
-            t26 + t25,
-            t23 * T::fused(-carriage_e1, t17, carriage_e3 * (k(2.0) * carriage_e2)),
+        let t15 = T::fused(
+            k(0.1),
+            t6 * disc_wy,
+            T::fused(k(0.1), disc_wz * t5, T::fused(t9 - t8, carriage_wz, -t14)),
         );
-        let t28 = T::fused(
-            -carriage_wx,
-            k(0.1) * T::fused(-carriage_e1, t19, t22),
-            carriage_wy * (k(0.1) * (t26 - t25)),
+        let t16 = disc_e0 * disc_e2;
+        let t17 = disc_e1 * disc_e3;
+        let t18 = T::fused(
+            -k(1.2),
+            t6 * T::fused(t6, disc_wz, T::fused(-disc_wy, t5, k(2.5) * disc_sz)),
+            T::fused(k(0.1), (t17 - t16) * disc_wx, t15),
         );
-        let t29 = T::fused(carriage_wz, k(0.1) * (t20 + t18), t28)
-            + T::fused(k(5.0), carriage_sy + t27, carriage_sz - t24);
+        let t19 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t20 = t19
+            * T::fused(t19, disc_wz, -T::fused(-k(2.5), disc_sx, (t17 + t16) * disc_wy));
         *dy = [
             disc_sx,
             disc_sy,
@@ -265,7 +262,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            t29 + (t16 + t15),
+            k(0.2) * T::fused(k(1.2), t20, -T::fused(k(1.2), t4, t18)),
         ];
     }
 }
@@ -282,7 +279,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 143 operations (52 ±, 91 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 134 operations (52 ±, 82 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -307,57 +304,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = k(2.0) * disc_e1;
-        let t2 = T::fused(-disc_e3, t0, disc_e2 * t1);
-        let t3 = k(0.2) * disc_wz;
-        let t4 = disc_e2 * t0;
-        let t5 = disc_e3 * t1;
-        let t6 = k(0.2) * disc_wy;
-        let t7 = k(2.0) * disc_e2;
-        let t8 = T::fused(-disc_e0, t0, k(1.0));
-        let t9 = T::fused(-disc_e2, t7, t8);
-        let t10 = disc_e1 * t0;
-        let t11 = disc_e3 * t7;
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e2, disc_e2, -t0);
+        let t2 = disc_e0 * disc_e1;
+        let t3 = disc_e2 * disc_e3;
+        let t4 = t1
+            * T::fused(-disc_wz, t1, T::fused(-k(2.5), disc_sy, (t3 - t2) * disc_wy));
+        let t5 = T::fused(disc_e3, disc_e3, -t0);
+        let t6 = t3 + t2;
+        let t7 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t8 = carriage_e0 * carriage_e2;
+        let t9 = carriage_e1 * carriage_e3;
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
         let t12 = T::fused(
-            -(k(0.3) * t2),
-            disc_sx - T::fused(-t3, t2, t6 * (t5 + t4)),
-            k(0.3) * t9 * (disc_sy - T::fused(t3, t9, t6 * (t11 - t10))),
+            carriage_wx,
+            T::fused(carriage_e1, carriage_e1, -t7),
+            T::fused(t9 + t8, carriage_wz, (t11 - t10) * carriage_wy),
         );
-        let t13 = t11 + t10;
-        let t14 = T::fused(-disc_e3, k(2.0) * disc_e3, t8);
-        let t15 = T::fused(k(0.3) * t13, disc_sz + T::fused(t3, t13, t6 * t14), -t12);
-        let t16 = T::fused(
-            disc_wz,
-            k(0.01) * t14,
-            -T::fused(disc_wx, k(0.01) * (t5 - t4), disc_wy * (k(0.01) * t13)),
+        let t13 = T::fused(
+            t11 + t10,
+            carriage_wz,
+            -T::fused(
+                k(5.0),
+                carriage_sy,
+                T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
+                    * carriage_wx,
+            ),
         );
-        let t17 = k(2.0) * carriage_e0;
-        let t18 = carriage_e2 * t17;
-        let t19 = k(2.0) * carriage_e1;
-        let t20 = carriage_e3 * t19;
-        let t21 = k(0.1) * carriage_wz;
-        let t22 = T::fused(-carriage_e0, t17, k(1.0));
-        let t23 = k(0.1) * carriage_wx;
-        let t24 = T::fused(
-            t21,
-            t20 - t18,
-            t23 * T::fused(-carriage_e3, k(2.0) * carriage_e3, t22),
+        let t14 = T::fused(
+            carriage_wx,
+            T::fused(carriage_e3, carriage_e3, -t7),
+            T::fused(k(5.0), carriage_sz, -T::fused(k(5.0), t13, -t12)),
         );
-        let t25 = carriage_e3 * t17;
-        let t26 = carriage_e2 * t19;
-        let t27 = T::fused(
-            -t21,
-            t26 + t25,
-            t23 * T::fused(-carriage_e1, t17, carriage_e3 * (k(2.0) * carriage_e2)),
+        let t15 = T::fused(
+            k(0.1),
+            t6 * disc_wy,
+            T::fused(k(0.1), disc_wz * t5, T::fused(t9 - t8, carriage_wz, -t14)),
         );
-        let t28 = T::fused(
-            -carriage_wx,
-            k(0.1) * T::fused(-carriage_e1, t19, t22),
-            carriage_wy * (k(0.1) * (t26 - t25)),
+        let t16 = disc_e0 * disc_e2;
+        let t17 = disc_e1 * disc_e3;
+        let t18 = T::fused(
+            -k(1.2),
+            t6 * T::fused(t6, disc_wz, T::fused(-disc_wy, t5, k(2.5) * disc_sz)),
+            T::fused(k(0.1), (t17 - t16) * disc_wx, t15),
         );
-        let t29 = T::fused(carriage_wz, k(0.1) * (t20 + t18), t28)
-            + T::fused(k(5.0), carriage_sy + t27, carriage_sz - t24);
+        let t19 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t20 = t19
+            * T::fused(t19, disc_wz, -T::fused(-k(2.5), disc_sx, (t17 + t16) * disc_wy));
         *dy = [
             disc_sx,
             disc_sy,
@@ -425,10 +419,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            t29 + (t16 + t15),
+            k(0.2) * T::fused(k(1.2), t20, -T::fused(k(1.2), t4, t18)),
         ];
     }
-    /// Writes Φ: 58 operations (26 ±, 32 ×, 0 ÷).
+    /// Writes Φ: 55 operations (26 ±, 29 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let disc_rx = y[0];
@@ -445,24 +439,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let carriage_e1 = y[11];
         let carriage_e2 = y[12];
         let carriage_e3 = y[13];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = carriage_e2 * carriage_e2;
-        let t5 = T::fused(
-            -k(0.6),
-            T::fused(-k(1.6), k(0.5) - t1, k(1.2) * (t3 - t2)),
-            k(0.8) * T::fused(-k(1.2), k(0.5) - (t0 + t4), k(1.6) * (t3 + t2)),
-        );
-        let t6 = carriage_e0 * carriage_e2;
-        let t7 = carriage_e1 * carriage_e3;
-        let t8 = carriage_e0 * carriage_e1;
-        let t9 = carriage_e2 * carriage_e3;
+        let t0 = carriage_e0 * carriage_e3;
+        let t1 = carriage_e1 * carriage_e2;
+        let t2 = carriage_e2 * carriage_e2;
+        let t3 = carriage_e0 * carriage_e0;
+        let t4 = T::fused(carriage_e1, carriage_e1, t3);
+        let t5 = T::fused(-k(0.75), t1 - t0, k(0.5) - t4)
+            - T::fused(-k(1.3333333333333333), t1 + t0, k(0.5) - (t3 + t2));
+        let t6 = carriage_e0 * carriage_e1;
+        let t7 = carriage_e2 * carriage_e3;
+        let t8 = carriage_e0 * carriage_e2;
+        let t9 = carriage_e1 * carriage_e3;
         let t10 = T::fused(
-            disc_e3,
-            disc_e3,
-            T::fused(disc_e2, disc_e2, T::fused(disc_e1, disc_e1, disc_e0 * disc_e0)),
+            disc_e2,
+            disc_e2,
+            T::fused(disc_e1, disc_e1, T::fused(disc_e3, disc_e3, disc_e0 * disc_e0)),
         );
         *out = [
             disc_rx,
@@ -470,16 +461,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
             disc_rz,
             k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
             k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3),
-            T::fused(k(0.8), carriage_ry, k(0.6) * (k(1.0) - carriage_rx)),
+            k(0.8) * T::fused(k(0.75), k(1.0) - carriage_rx, carriage_ry),
             carriage_rz,
-            t5,
-            T::fused(k(1.6), t7 - t6, k(1.2) * (t9 + t8)),
-            T::fused(-k(1.2), t7 + t6, k(1.6) * (t9 - t8)),
+            k(0.96) * t5,
+            k(1.6) * T::fused(k(0.75), t7 + t6, t9 - t8),
+            -(k(1.2) * T::fused(-k(1.3333333333333333), t7 - t6, t9 + t8)),
             t10 - k(1.0),
-            T::fused(carriage_e3, carriage_e3, t1 + t4) - k(1.0),
+            t2 + T::fused(carriage_e3, carriage_e3, t4) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 85 operations (31 ±, 54 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 78 operations (31 ±, 47 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -501,67 +492,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(2.0) * disc_e1;
-        let t1 = k(2.0) * disc_e0;
-        let t2 = T::fused(-disc_e0, t1, k(1.0));
-        let t3 = disc_e3 * t1;
-        let t4 = disc_e2 * t0;
-        let t5 = T::fused(
-            disc_wy,
-            t4 + t3,
-            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t2),
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = disc_e0 * disc_e3;
+        let t2 = disc_e1 * disc_e2;
+        let t3 = k(2.0)
+            * T::fused(-disc_wy, T::fused(disc_e1, disc_e1, -t0), (t2 - t1) * disc_wx);
+        let t4 = k(2.0)
+            * T::fused(-disc_wx, T::fused(disc_e2, disc_e2, -t0), (t2 + t1) * disc_wy);
+        let t5 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t6 = T::fused(carriage_e2, carriage_e2, -t5);
+        let t7 = carriage_e0 * carriage_e1;
+        let t8 = carriage_e2 * carriage_e3;
+        let t9 = t8 - t7;
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
+        let t12 = t11 + t10;
+        let t13 = T::fused(
+            k(0.75),
+            T::fused(-t9, carriage_wx, t12 * carriage_wz),
+            T::fused(-carriage_wz, t6, t9 * carriage_wy),
         );
-        let t6 = k(2.0) * carriage_e0;
-        let t7 = carriage_e3 * t6;
-        let t8 = k(2.0) * carriage_e1;
-        let t9 = carriage_e2 * t8;
-        let t10 = t9 + t7;
-        let t11 = carriage_e1 * t6;
-        let t12 = k(2.0) * carriage_e2;
-        let t13 = carriage_e3 * t12;
-        let t14 = t13 - t11;
-        let t15 = T::fused(-carriage_e0, t6, k(1.0));
-        let t16 = T::fused(-carriage_e2, t12, t15);
-        let t17 = T::fused(
-            -k(0.6),
-            T::fused(-carriage_wz, t10, carriage_wx * t14),
-            k(0.8) * T::fused(carriage_wz, t16, carriage_wy * t14),
+        let t14 = T::fused(carriage_e1, carriage_e1, -t5);
+        let t15 = carriage_e0 * carriage_e2;
+        let t16 = carriage_e1 * carriage_e3;
+        let t17 = t16 + t15;
+        let t18 = t11 - t10;
+        let t19 = T::fused(
+            k(0.75),
+            T::fused(-carriage_wz, t14, t17 * carriage_wx),
+            T::fused(-t17, carriage_wy, t18 * carriage_wz),
         );
-        let t18 = T::fused(-carriage_e1, t8, t15);
-        let t19 = carriage_e2 * t6;
-        let t20 = carriage_e3 * t8;
-        let t21 = t20 + t19;
-        let t22 = t9 - t7;
-        let t23 = T::fused(
-            -k(0.6),
-            T::fused(carriage_wz, t18, carriage_wx * t21),
-            k(0.8) * T::fused(-carriage_wz, t22, carriage_wy * t21),
+        let t20 = T::fused(carriage_e3, carriage_e3, -t5);
+        let t21 = T::fused(
+            -k(0.75),
+            T::fused(-carriage_wx, t20, (t16 - t15) * carriage_wz),
+            T::fused(-carriage_wy, t20, (t8 + t7) * carriage_wz),
         );
-        let t24 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t15);
-        let t25 = T::fused(
-            -k(0.6),
-            T::fused(carriage_wz, t20 - t19, carriage_wx * t24),
-            k(0.8) * T::fused(carriage_wz, t13 + t11, carriage_wy * t24),
-        );
-        let t26 = T::fused(
-            k(0.8),
-            T::fused(carriage_wy, t10, carriage_wx * t16),
-            k(0.6) * T::fused(carriage_wy, t18, carriage_wx * t22),
+        let t22 = T::fused(
+            k(1.3333333333333333),
+            T::fused(-carriage_wx, t6, t12 * carriage_wy),
+            T::fused(-carriage_wy, t14, t18 * carriage_wx),
         );
         *out = [
             disc_sx,
             disc_sy,
             disc_sz,
-            -T::fused(disc_wy, T::fused(-disc_e1, t0, t2), disc_wx * (t4 - t3)),
-            t5,
-            T::fused(-k(0.6), carriage_sx, k(0.8) * carriage_sy),
+            -t3,
+            t4,
+            k(0.8) * T::fused(-k(0.75), carriage_sx, carriage_sy),
             carriage_sz,
-            T::fused(-k(0.8), t17, k(0.6) * t23),
-            t25,
-            t26,
+            -(k(0.96) * T::fused(k(1.3333333333333333), t13, t19)),
+            k(1.6) * t21,
+            k(1.2) * t22,
         ];
     }
-    /// Kinetic and potential energy: 32 operations (11 ±, 21 ×, 0 ÷).
+    /// Kinetic and potential energy: 29 operations (11 ±, 18 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let disc_sx = y[14];
@@ -577,35 +562,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let carriage_wy = y[24];
         let carriage_wz = y[25];
         let t0 = T::fused(
-            carriage_wz,
-            k(0.2) * carriage_wz,
-            T::fused(
-                carriage_wy,
-                k(0.2) * carriage_wy,
-                carriage_wx * (k(0.1) * carriage_wx),
-            ),
+            k(0.1),
+            disc_wz * disc_wz,
+            k(0.05) * T::fused(disc_wx, disc_wx, disc_wy * disc_wy),
         );
         let t1 = T::fused(
-            k(2.0),
+            k(20.0),
+            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
+            t0,
+        );
+        let t2 = T::fused(
+            carriage_wz,
+            carriage_wz,
+            T::fused(
+                carriage_wy,
+                carriage_wy,
+                T::fused(k(0.5), carriage_wx * carriage_wx, t1),
+            ),
+        );
+        let t3 = T::fused(
+            k(10.0),
             T::fused(
                 carriage_sz,
                 carriage_sz,
                 T::fused(carriage_sy, carriage_sy, carriage_sx * carriage_sx),
             ),
-            t0,
-        );
-        let t2 = T::fused(
-            disc_wz,
-            k(0.02) * disc_wz,
-            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
-        );
-        let t3 = T::fused(
-            k(4.0),
-            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
             t2,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t3 + t1),
+            kinetic: k(0.1) * t3,
             potential: k(0.0),
         }
     }
@@ -898,7 +883,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
             k(2.0) * carriage_e3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 61 operations (26 ±, 35 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 55 operations (22 ±, 33 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -911,45 +896,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_e3 = y[13];
         let t0 = disc_e0 * disc_e3;
         let t1 = disc_e1 * disc_e2;
-        let t2 = disc_e0 * disc_e0;
+        let t2 = T::fused(-disc_e0, disc_e0, k(0.5));
         let t3 = carriage_e0 * carriage_e1;
         let t4 = carriage_e2 * carriage_e3;
-        let t5 = t4 - t3;
-        let t6 = carriage_e0 * carriage_e2;
-        let t7 = carriage_e1 * carriage_e3;
-        let t8 = t7 + t6;
-        let t9 = carriage_e0 * carriage_e0;
-        let t10 = k(1.6) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t9));
-        let t11 = carriage_e0 * carriage_e3;
-        let t12 = carriage_e1 * carriage_e2;
-        let t13 = t12 + t11;
-        let t14 = k(1.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t9));
-        let t15 = t12 - t11;
-        let t16 = T::fused(
-            k(0.8),
-            T::fused(k(1.2), t13, t10),
-            k(0.6) * T::fused(k(1.6), t15, t14),
-        );
-        let t17 = k(0.5) - T::fused(carriage_e3, carriage_e3, t9);
+        let t5 = carriage_e0 * carriage_e2;
+        let t6 = carriage_e1 * carriage_e3;
+        let t7 = T::fused(-k(1.3333333333333333), t4 - t3, t6 + t5);
+        let t8 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t9 = T::fused(carriage_e1, carriage_e1, -t8);
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
+        let t12 = t11 - t10;
+        let t13 = T::fused(carriage_e2, carriage_e2, -t8);
+        let t14 = t11 + t10;
+        let t15 = T::fused(carriage_e3, carriage_e3, -t8);
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
             -(k(2.0) * (t1 - t0)),
-            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t2))),
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t2)),
+            k(2.0) * T::fused(disc_e1, disc_e1, -t2),
+            -(k(2.0) * T::fused(disc_e2, disc_e2, -t2)),
             k(2.0) * (t1 + t0),
             k(-0.6),
             k(0.8),
             k(1.0),
-            T::fused(-k(0.72), t8, k(0.96) * t5),
-            T::fused(-k(1.28), t5, k(0.96) * t8),
-            -t16,
-            -(k(1.2) * t17),
-            k(1.6) * t17,
-            T::fused(-k(1.2), t7 - t6, k(1.6) * (t4 + t3)),
-            T::fused(k(1.2), t15, t10),
-            T::fused(k(1.6), t13, t14),
+            -(k(0.72) * t7),
+            k(0.96) * t7,
+            -(k(0.96)
+                * (T::fused(-k(1.3333333333333333), t13, t14)
+                    + T::fused(-k(0.75), t9, t12))),
+            k(1.2) * t15,
+            -(k(1.6) * t15),
+            k(1.6) * T::fused(-k(0.75), t6 - t5, t4 + t3),
+            k(1.6) * T::fused(k(0.75), t12, -t13),
+            k(1.2) * T::fused(k(1.3333333333333333), t14, -t9),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -968,7 +949,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 122 operations (46 ±, 76 ×, 0 ÷).
+    /// Writes γ: 115 operations (46 ±, 69 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -985,87 +966,81 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(2.0) * disc_e1;
-        let t1 = k(2.0) * disc_e0;
-        let t2 = T::fused(-disc_e0, t1, k(1.0));
-        let t3 = disc_wx * disc_wz;
-        let t4 = disc_e3 * t1;
-        let t5 = disc_e2 * t0;
-        let t6 = disc_wy * disc_wz;
-        let t7 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t8 = T::fused(
-            t7,
-            T::fused(disc_e2, t1, disc_e3 * t0),
-            -T::fused(-t3, T::fused(-disc_e1, t0, t2), t6 * (t5 - t4)),
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = disc_wx * disc_wz;
+        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t3 = disc_wy * disc_wz;
+        let t4 = disc_e0 * disc_e3;
+        let t5 = disc_e1 * disc_e2;
+        let t6 = T::fused(
+            -T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            t2,
+            (t5 - t4) * t3,
         );
-        let t9 = k(2.0) * disc_e2;
-        let t10 = T::fused(
-            t7,
-            T::fused(-disc_e1, t1, disc_e3 * t9),
-            T::fused(-t3, t5 + t4, t6 * T::fused(-disc_e2, t9, t2)),
+        let t7 = T::fused(
+            -t3,
+            T::fused(disc_e2, disc_e2, -t0),
+            T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3) * t2,
         );
-        let t11 = k(2.0) * carriage_e1;
-        let t12 = k(2.0) * carriage_e0;
-        let t13 = T::fused(-carriage_e0, t12, k(1.0));
-        let t14 = T::fused(-carriage_e1, t11, t13);
-        let t15 = carriage_wy * carriage_wy;
-        let t16 = carriage_wz * carriage_wz;
-        let t17 = t16 + t15;
-        let t18 = carriage_e3 * t12;
-        let t19 = carriage_e2 * t11;
+        let t8 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t9 = T::fused(carriage_e1, carriage_e1, -t8);
+        let t10 = carriage_wy * carriage_wy;
+        let t11 = carriage_wz * carriage_wz;
+        let t12 = t11 + t10;
+        let t13 = carriage_wx * carriage_wz;
+        let t14 = carriage_e0 * carriage_e2;
+        let t15 = carriage_e1 * carriage_e3;
+        let t16 = t15 + t14;
+        let t17 = carriage_wx * carriage_wy;
+        let t18 = carriage_e0 * carriage_e3;
+        let t19 = carriage_e1 * carriage_e2;
         let t20 = t19 - t18;
-        let t21 = carriage_wx * carriage_wy;
-        let t22 = carriage_e2 * t12;
-        let t23 = carriage_e3 * t11;
-        let t24 = t23 + t22;
-        let t25 = carriage_wx * carriage_wz;
-        let t26 = carriage_wx * carriage_wx;
-        let t27 = t16 + t26;
-        let t28 = carriage_wy * carriage_wz;
-        let t29 = T::fused(
-            k(0.8),
-            T::fused(t25, t24, T::fused(t17, t14, t21 * t20)),
-            k(0.6) * T::fused(t28, t24, -T::fused(t21, t14, t27 * t20)),
+        let t21 = carriage_wy * carriage_wz;
+        let t22 = carriage_wx * carriage_wx;
+        let t23 = t11 + t22;
+        let t24 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(-t12, t9, T::fused(t16, t13, t20 * t17)),
+            T::fused(-t17, t9, T::fused(-t16, t21, t20 * t23)),
         );
-        let t30 = t19 + t18;
-        let t31 = k(2.0) * carriage_e2;
-        let t32 = T::fused(-carriage_e2, t31, t13);
-        let t33 = carriage_e1 * t12;
-        let t34 = carriage_e3 * t31;
-        let t35 = t34 - t33;
+        let t25 = T::fused(carriage_e2, carriage_e2, -t8);
+        let t26 = carriage_e0 * carriage_e1;
+        let t27 = carriage_e2 * carriage_e3;
+        let t28 = t27 - t26;
+        let t29 = t19 + t18;
+        let t30 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(t29, t12, -T::fused(t17, t25, t28 * t13)),
+            T::fused(t29, t17, T::fused(-t23, t25, t28 * t21)),
+        );
+        let t31 = T::fused(carriage_e3, carriage_e3, -t8);
+        let t32 = t27 + t26;
+        let t33 = t15 - t14;
+        let t34 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(t33, t12, -T::fused(t13, t31, t32 * t17)),
+            T::fused(t33, t17, -T::fused(-t21, t31, t32 * t23)),
+        );
+        let t35 = t10 + t22;
         let t36 = T::fused(
-            k(0.8),
-            T::fused(t25, t35, -T::fused(t17, t30, t21 * t32)),
-            k(0.6) * T::fused(t28, t35, T::fused(t21, t30, t27 * t32)),
-        );
-        let t37 = t23 - t22;
-        let t38 = t34 + t33;
-        let t39 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t13);
-        let t40 = T::fused(
-            k(0.8),
-            T::fused(t25, t39, -T::fused(-t17, t37, t21 * t38)),
-            k(0.6) * T::fused(t28, t39, T::fused(-t21, t37, t27 * t38)),
-        );
-        let t41 = t15 + t26;
-        let t42 = T::fused(
-            -k(0.6),
-            T::fused(t41, t24, -T::fused(-t25, t14, t28 * t20)),
-            k(0.8) * T::fused(t41, t35, T::fused(-t25, t30, t28 * t32)),
+            -k(0.75),
+            T::fused(t13, t9, T::fused(-t16, t35, t20 * t21)),
+            T::fused(t29, t13, -T::fused(-t21, t25, t28 * t35)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t8,
-            t10,
+            -(k(2.0) * T::fused(t1, T::fused(disc_e1, disc_e1, -t0), t6)),
+            -(k(2.0) * T::fused(t5 + t4, t1, -t7)),
             k(0.0),
             k(0.0),
-            T::fused(-k(0.8), t36, k(0.6) * t29),
-            t40,
-            t42,
+            -(k(0.96) * T::fused(k(0.75), t24, t30)),
+            -(k(1.2) * t34),
+            -(k(1.6) * t36),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 80 operations (30 ±, 50 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 74 operations (30 ±, 44 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1082,60 +1057,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = k(2.0) * disc_e1;
-        let t2 = T::fused(-disc_e3, t0, disc_e2 * t1);
-        let t3 = k(0.3) * t2;
-        let t4 = k(2.0) * disc_e2;
-        let t5 = T::fused(-disc_e0, t0, k(1.0));
-        let t6 = T::fused(-disc_e2, t4, t5);
-        let t7 = k(0.3) * t6;
-        let t8 = disc_e1 * t0;
-        let t9 = disc_e3 * t4;
-        let t10 = t9 + t8;
-        let t11 = k(0.3) * t10;
-        let t12 = disc_e2 * t0;
-        let t13 = disc_e3 * t1;
-        let t14 = T::fused(-disc_e3, k(2.0) * disc_e3, t5);
-        let t15 = T::fused(t14, t11, T::fused(-(t13 + t12), t3, (t9 - t8) * t7));
-        let t16 = T::fused(
-            k(0.2),
-            T::fused(t10, t11, T::fused(t2, t3, t6 * t7)),
-            k(0.01) * t14,
+        let t0 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t1 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t2 = T::fused(disc_e2, disc_e2, -t1);
+        let t3 = disc_e0 * disc_e1;
+        let t4 = disc_e2 * disc_e3;
+        let t5 = t4 + t3;
+        let t6 = disc_e1 * disc_e3;
+        let t7 = disc_e0 * disc_e2;
+        let t8 = T::fused(disc_e3, disc_e3, -t1);
+        let t9 = T::fused(t0, t6 + t7, T::fused(t5, t8, (t4 - t3) * t2));
+        let t10 = T::fused(-k(12.0), T::fused(t0, t0, T::fused(t2, t2, t5 * t5)), t8);
+        let t11 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t12 = T::fused(
+            k(5.0),
+            T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
+            T::fused(
+                carriage_e3,
+                carriage_e3,
+                -(t11 - T::fused(carriage_e1, carriage_e1, -t11)),
+            ),
         );
-        let t17 = k(2.0) * carriage_e0;
-        let t18 = T::fused(-carriage_e0, t17, k(1.0));
-        let t19 = T::fused(
-            -k(5.0),
-            T::fused(-carriage_e1, t17, carriage_e3 * (k(2.0) * carriage_e2)),
-            T::fused(-carriage_e3, k(2.0) * carriage_e3, t18),
-        );
-        let t20 = k(2.0) * carriage_e1;
-        let t21 = carriage_e3 * t17;
-        let t22 = carriage_e2 * t20;
-        let t23 = carriage_e2 * t17;
-        let t24 = carriage_e3 * t20;
-        let t25 = T::fused(
-            carriage_wx,
-            carriage_wy,
-            -(t24 + t23 - T::fused(k(5.0), t22 + t21, t24 - t23)),
+        let t13 = k(0.5) * carriage_wx;
+        let t14 = carriage_e1 * carriage_e2;
+        let t15 = carriage_e0 * carriage_e3;
+        let t16 = carriage_e1 * carriage_e3;
+        let t17 = carriage_e0 * carriage_e2;
+        let t18 = T::fused(
+            k(5.0),
+            t14 + t15,
+            -(t17 - (t16 - (t17 + T::fused(-carriage_wy, t13, t16)))),
         );
         *out = [
-            t3,
-            -t7,
-            t11,
-            -(k(0.01) * T::fused(disc_wy, disc_wz, t13 - t12)),
-            T::fused(k(0.01), disc_wx * disc_wz, -T::fused(-k(0.2), t15, k(0.01) * t10)),
-            t16,
+            k(0.6) * t0,
+            k(0.6) * t2,
+            k(0.6) * t5,
+            k(0.02) * (t7 - T::fused(k(0.5), disc_wy * disc_wz, t6)),
+            -(k(0.01) * T::fused(k(24.0), t9, T::fused(-disc_wx, disc_wz, k(2.0) * t5))),
+            -(k(0.02) * t10),
             k(0.0),
             k(5.0),
             k(1.0),
-            -(k(0.1) * (T::fused(-carriage_e1, t20, t18) + t19)),
-            k(0.1) * T::fused(carriage_wx, carriage_wz, t22 - t21),
-            -(k(0.1) * t25),
+            k(0.2) * t12,
+            -(k(0.2) * (t15 - T::fused(carriage_wz, t13, t14))),
+            -(k(0.2) * t18),
         ];
     }
-    /// Solves eq. (17): 200 operations (66 ±, 132 ×, 2 ÷).
+    /// Solves eq. (17): 167 operations (62 ±, 103 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1152,109 +1120,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = T::fused(-disc_e0, t0, k(1.0));
-        let t2 = T::fused(-disc_e3, k(2.0) * disc_e3, t1);
-        let t3 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy) / t2;
-        let t4 = k(2.0) * disc_e2;
-        let t5 = T::fused(disc_e1, t0, disc_e3 * t4);
-        let t6 = k(2.0) * disc_e1;
-        let t7 = T::fused(-disc_e3, t0, disc_e2 * t6);
-        let t8 = T::fused(-disc_e2, t4, t1);
-        let t9 = T::fused(
-            t5,
-            k(0.3) * t5,
-            T::fused(t7, k(0.3) * t7, t8 * (k(0.3) * t8)),
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e3, disc_e3, -t0);
+        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy) / t1;
+        let t3 = T::fused(disc_e0, disc_e1, disc_e2 * disc_e3);
+        let t4 = T::fused(disc_e2, disc_e2, -t0);
+        let t5 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t6 = T::fused(-k(12.0), T::fused(t5, t5, T::fused(t4, t4, t3 * t3)), t1);
+        let t7 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t8 = T::fused(carriage_e2, carriage_e2, -t7);
+        let t9 = carriage_e0 * carriage_e3;
+        let t10 = carriage_e1 * carriage_e2;
+        let t11 = t10 - t9;
+        let t12 = T::fused(k(0.75), t11, -t8);
+        let t13 = k(1.7777777777777777) * t12;
+        let t14 = T::fused(carriage_e1, carriage_e1, -t7);
+        let t15 = t10 + t9;
+        let t16 = T::fused(-k(1.3333333333333333), t8, t15)
+            + T::fused(-k(0.75), t14, t11);
+        let t17 = T::fused(carriage_e3, carriage_e3, -t7);
+        let t18 = carriage_e0 * carriage_e2;
+        let t19 = carriage_e1 * carriage_e3;
+        let t20 = t19 - t18;
+        let t21 = carriage_e0 * carriage_e1;
+        let t22 = carriage_e2 * carriage_e3;
+        let t23 = t22 + t21;
+        let t24 = T::fused(-k(0.75), t20, t23);
+        let t25 = t22 - t21;
+        let t26 = t19 + t18;
+        let t27 = T::fused(-k(1.3333333333333333), t25, t26);
+        let t28 = T::fused(-t17, t16, t27 * t24);
+        let t29 = T::fused(k(1.3333333333333333), t15, -t14);
+        let t30 = k(1.0) / T::fused(t28, t13, t28 * t29);
+        let t31 = carriage_wx * carriage_wz;
+        let t32 = carriage_wx * carriage_wy;
+        let t33 = carriage_wy * carriage_wy;
+        let t34 = carriage_wz * carriage_wz;
+        let t35 = t34 + t33;
+        let t36 = carriage_wy * carriage_wz;
+        let t37 = carriage_wx * carriage_wx;
+        let t38 = t34 + t37;
+        let t39 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(t20, t35, -T::fused(t31, t17, t23 * t32)),
+            T::fused(t20, t32, -T::fused(-t36, t17, t23 * t38)),
         );
-        let t10 = k(2.0) * carriage_e1;
-        let t11 = k(2.0) * carriage_e0;
-        let t12 = T::fused(-carriage_e0, t11, k(1.0));
-        let t13 = T::fused(-carriage_e1, t10, t12);
-        let t14 = carriage_wx * carriage_wz;
-        let t15 = carriage_e3 * t11;
-        let t16 = carriage_e2 * t10;
-        let t17 = t16 - t15;
-        let t18 = carriage_wy * carriage_wz;
-        let t19 = carriage_e2 * t11;
-        let t20 = carriage_e3 * t10;
-        let t21 = t20 + t19;
-        let t22 = carriage_wx * carriage_wx;
-        let t23 = carriage_wy * carriage_wy;
-        let t24 = t23 + t22;
-        let t25 = t16 + t15;
-        let t26 = k(2.0) * carriage_e2;
-        let t27 = T::fused(-carriage_e2, t26, t12);
-        let t28 = carriage_e1 * t11;
-        let t29 = carriage_e3 * t26;
-        let t30 = t29 - t28;
-        let t31 = T::fused(
-            -k(0.6),
-            T::fused(t24, t21, -T::fused(-t14, t13, t18 * t17)),
-            k(0.8) * T::fused(t24, t30, T::fused(-t14, t25, t18 * t27)),
+        let t40 = T::fused(
+            -k(1.3333333333333333),
+            T::fused(-t35, t14, T::fused(t26, t31, t11 * t32)),
+            T::fused(-t32, t14, T::fused(-t26, t36, t11 * t38)),
         );
-        let t32 = k(0.8) * t27;
-        let t33 = T::fused(k(0.6), t17, t32);
-        let t34 = T::fused(-k(0.64), t30, k(0.48) * t21);
-        let t35 = t20 - t19;
-        let t36 = t29 + t28;
-        let t37 = T::fused(-k(0.6), t35, k(0.8) * t36);
-        let t38 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t12);
-        let t39 = k(0.8) * t38;
-        let t40 = k(0.6) * t13;
         let t41 = T::fused(
-            k(0.8),
-            T::fused(k(0.6), t25, t32),
-            k(0.6) * T::fused(k(0.8), t17, t40),
+            -k(1.3333333333333333),
+            T::fused(t15, t35, -T::fused(t32, t8, t25 * t31)),
+            T::fused(t15, t32, T::fused(-t38, t8, t25 * t36)),
         );
-        let t42 = T::fused(t37, t34, t41 * t39);
-        let t43 = T::fused(k(0.8), t25, t40);
-        let t44 = k(0.6) * t38;
-        let t45 = T::fused(-k(0.48), t30, k(0.36) * t21);
-        let t46 = T::fused(t41, t44, t37 * t45);
-        let t47 = k(1.0) / T::fused(t42, t33, t46 * t43);
-        let t48 = carriage_wz * carriage_wz;
-        let t49 = t48 + t23;
-        let t50 = carriage_wx * carriage_wy;
-        let t51 = t48 + t22;
-        let t52 = T::fused(
-            k(0.8),
-            T::fused(t14, t21, T::fused(t49, t13, t50 * t17)),
-            k(0.6) * T::fused(t18, t21, -T::fused(t50, t13, t51 * t17)),
+        let t42 = T::fused(k(0.75), t40, t41);
+        let t43 = k(1.3333333333333333) * t42;
+        let t44 = T::fused(t39, t16 * t29 * t30, t24 * t29 * t30 * t43);
+        let t45 = t33 + t37;
+        let t46 = T::fused(
+            -k(0.75),
+            T::fused(t31, t14, T::fused(-t26, t45, t11 * t36)),
+            T::fused(t15, t31, -T::fused(-t36, t8, t25 * t45)),
         );
-        let t53 = T::fused(
-            k(0.8),
-            T::fused(t14, t30, -T::fused(t49, t25, t50 * t27)),
-            k(0.6) * T::fused(t18, t30, T::fused(t50, t25, t51 * t27)),
-        );
-        let t54 = T::fused(-k(0.6), t52, k(0.8) * t53);
-        let t55 = T::fused(
-            k(0.8),
-            T::fused(t14, t38, -T::fused(-t49, t35, t50 * t36)),
-            k(0.6) * T::fused(t18, t38, T::fused(-t50, t35, t51 * t36)),
-        );
-        let t56 = T::fused(-(t47 * (t37 * t43)), t54, t47 * (t41 * t43) * t55);
-        let t57 = T::fused(-t54, t47 * (t37 * t33), t55 * (t47 * (t41 * t33)));
-        let t58 = T::fused(
-            t54,
-            t47 * T::fused(t44, t43, t39 * t33),
-            t55 * (t47 * T::fused(t34, t33, t45 * t43)),
+        let t47 = t46 * (t28 * t30);
+        let t48 = T::fused(t39, t12 * t16 * t30, t43 * (t24 * t12 * t30));
+        let t49 = T::fused(
+            t39,
+            t30 * T::fused(t27, t13, t27 * t29),
+            k(2.3703703703703702)
+                * (t42 * (T::fused(k(0.5625), t17 * t29, t12 * t17) * t30)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t5, t3, disc_wy * disc_wz),
-            T::fused(-disc_wx, disc_wz, T::fused(-disc_e2, t0, disc_e3 * t6) * t3),
-            k(50.0) * T::fused(k(0.2), t9, k(0.01) * t2),
+            T::fused(t3, t2, disc_wy * disc_wz),
+            -T::fused(
+                T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3),
+                t2,
+                disc_wx * disc_wz,
+            ),
+            -t6,
             k(1.2),
             k(0.9),
             k(0.0),
-            T::fused(t42 * t47, t31, -t56),
-            T::fused(t31, t46 * t47, t57),
-            T::fused(t31, t47 * T::fused(-t45, t39, t44 * t34), t58),
+            T::fused(-k(1.7777777777777777), t47, t44),
+            -(k(1.3333333333333333) * (t47 + t48)),
+            -(k(0.75) * t49),
         ];
     }
-    /// Writes λ: 184 operations (65 ±, 117 ×, 2 ÷).
+    /// Writes λ: 163 operations (62 ±, 99 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1288,108 +1245,92 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_dwx = accelerations[9];
         let carriage_dwy = accelerations[10];
         let carriage_dwz = accelerations[11];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = disc_e3 * t0;
-        let t2 = k(2.0) * disc_e1;
-        let t3 = disc_e2 * t2;
-        let t4 = t3 - t1;
-        let t5 = k(0.3) * t4;
-        let t6 = k(2.0) * disc_e2;
-        let t7 = T::fused(-disc_e0, t0, k(1.0));
-        let t8 = T::fused(-disc_e2, t6, t7);
-        let t9 = k(0.3) * t8;
-        let t10 = disc_e1 * t0;
-        let t11 = disc_e3 * t6;
-        let t12 = t11 + t10;
-        let t13 = k(0.3) * t12;
-        let t14 = disc_e2 * t0;
-        let t15 = disc_e3 * t2;
-        let t16 = k(0.01) * (disc_dwx + T::fused(disc_wy, disc_wz, t15 - t14));
-        let t17 = t3 + t1;
-        let t18 = T::fused(-disc_e1, t2, t7);
-        let t19 = k(1.0) / T::fused(-t4, t17, t18 * t8);
-        let t20 = T::fused(
-            T::fused(-disc_e3, k(2.0) * disc_e3, t7),
-            t13,
-            T::fused(-(t15 + t14), t5, (t11 - t10) * t9),
+        let t0 = disc_e0 * disc_e3;
+        let t1 = disc_e1 * disc_e2;
+        let t2 = t1 - t0;
+        let t3 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t4 = T::fused(disc_e2, disc_e2, -t3);
+        let t5 = disc_e0 * disc_e1;
+        let t6 = disc_e2 * disc_e3;
+        let t7 = t6 + t5;
+        let t8 = disc_e0 * disc_e2;
+        let t9 = disc_e1 * disc_e3;
+        let t10 = T::fused(
+            t2,
+            t9 + t8,
+            T::fused(t7, T::fused(disc_e3, disc_e3, -t3), (t6 - t5) * t4),
         );
-        let t21 = T::fused(
-            k(0.01),
-            disc_dwy,
-            -T::fused(k(0.01), disc_wx * disc_wz, -T::fused(-k(0.2), t20, k(0.01) * t12)),
+        let t11 = k(0.5)
+            * T::fused(
+                k(24.0),
+                t10,
+                T::fused(k(2.0), t7, -T::fused(disc_wx, disc_wz, -disc_dwy)),
+            );
+        let t12 = T::fused(disc_e1, disc_e1, -t3);
+        let t13 = t1 + t0;
+        let t14 = k(1.0) / T::fused(-t4, t12, t2 * t13);
+        let t15 = t8 - T::fused(k(0.5), T::fused(disc_wy, disc_wz, disc_dwx), t9);
+        let t16 = k(0.5) * carriage_wx;
+        let t17 = carriage_e0 * carriage_e3;
+        let t18 = carriage_e1 * carriage_e2;
+        let t19 = t18 - t17;
+        let t20 = carriage_dwy - T::fused(carriage_wz, t16, t19);
+        let t21 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t22 = T::fused(carriage_e2, carriage_e2, -t21);
+        let t23 = T::fused(-k(1.3333333333333333), t22, t19);
+        let t24 = carriage_e0 * carriage_e1;
+        let t25 = carriage_e2 * carriage_e3;
+        let t26 = carriage_e0 * carriage_e2;
+        let t27 = carriage_e1 * carriage_e3;
+        let t28 = t27 - t26;
+        let t29 = T::fused(-k(1.3333333333333333), t25 + t24, t28);
+        let t30 = T::fused(carriage_e1, carriage_e1, -t21);
+        let t31 = t18 + t17;
+        let t32 = T::fused(
+            k(0.5625),
+            T::fused(k(1.3333333333333333), t19, -t30),
+            T::fused(k(0.75), t31, -t22),
         );
-        let t22 = k(2.0) * carriage_e0;
-        let t23 = carriage_e1 * t22;
-        let t24 = k(2.0) * carriage_e2;
-        let t25 = carriage_e3 * t24;
-        let t26 = t25 - t23;
-        let t27 = T::fused(-carriage_e0, t22, k(1.0));
-        let t28 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t27);
-        let t29 = k(2.0) * carriage_e1;
-        let t30 = T::fused(-carriage_e1, t29, t27);
-        let t31 = k(0.1) * (carriage_dwx + (t30 + T::fused(-k(5.0), t26, t28)));
-        let t32 = carriage_e3 * t22;
-        let t33 = carriage_e2 * t29;
-        let t34 = t33 + t32;
-        let t35 = k(0.6) * t30;
-        let t36 = T::fused(k(0.8), t34, t35);
-        let t37 = carriage_e2 * t22;
-        let t38 = carriage_e3 * t29;
-        let t39 = t38 - t37;
-        let t40 = T::fused(-k(0.6), t39, k(0.8) * (t25 + t23));
-        let t41 = t33 - t32;
-        let t42 = k(0.8) * T::fused(-carriage_e2, t24, t27);
-        let t43 = T::fused(k(0.6), t41, t42);
-        let t44 = t38 + t37;
-        let t45 = T::fused(-k(0.64), t26, k(0.48) * t44);
-        let t46 = k(0.8) * t28;
-        let t47 = T::fused(
-            k(0.8),
-            T::fused(k(0.6), t34, t42),
-            k(0.6) * T::fused(k(0.8), t41, t35),
+        let t33 = T::fused(carriage_e3, carriage_e3, -t21);
+        let t34 = t33 * t32;
+        let t35 = t27 + t26;
+        let t36 = t25 - t24;
+        let t37 = T::fused(-k(0.75), t35, t36);
+        let t38 = t37 * t29;
+        let t39 = T::fused(k(0.75), t38, -t34);
+        let t40 = T::fused(-k(0.75), t30, t31);
+        let t41 = T::fused(-k(1.3333333333333333), t34, t38);
+        let t42 = k(1.0) / T::fused(k(1.3333333333333333), t40 * t39, t23 * t41);
+        let t43 = carriage_dwz
+            + T::fused(k(5.0), t31, t28 - T::fused(-carriage_wy, t16, t35));
+        let t44 = T::fused(
+            -k(0.75),
+            t42 * (t29 * t23) * t20,
+            t42 * T::fused(t33, t23, t33 * t40) * t43,
         );
-        let t48 = T::fused(t40, t45, t47 * t46);
-        let t49 = k(0.6) * t28;
-        let t50 = T::fused(-k(0.48), t26, k(0.36) * t44);
-        let t51 = T::fused(t47, t49, t40 * t50);
-        let t52 = k(1.0) / T::fused(t48, t43, t51 * t36);
-        let t53 = T::fused(
-            -k(0.1),
-            T::fused(carriage_wx, carriage_wz, t41),
-            k(0.2) * carriage_dwy,
-        );
-        let t54 = T::fused(-(t52 * (t40 * t36)), t31, t52 * (t40 * t43) * t53);
-        let t55 = T::fused(
-            k(0.1),
-            T::fused(carriage_wx, carriage_wy, -(t44 - T::fused(k(5.0), t34, t39))),
-            k(0.2) * carriage_dwz,
-        );
-        let t56 = T::fused(-(t52 * (t47 * t36)), t31, t52 * (t47 * t43) * t53);
-        let t57 = T::fused(
-            t52 * T::fused(-t50, t46, t49 * t45),
-            t55,
-            T::fused(t48 * t52, t31, t51 * t52 * t53),
+        let t45 = T::fused(k(5.0), t36, t33 + T::fused(-k(0.5), carriage_dwx, t30));
+        let t46 = T::fused(
+            -(t42 * (t23 * t32)),
+            t20,
+            t42 * T::fused(t37, t40, t37 * t23) * t43,
         );
         *lambda = [
-            T::fused(-k(4.0), disc_dsx, t5),
-            -T::fused(k(4.0), disc_dsy, t9),
-            T::fused(-k(4.0), disc_dsz, t13),
-            T::fused(-(t17 * t19), t16, t8 * t19 * t21),
-            T::fused(-(t18 * t19), t16, t4 * t19 * t21),
-            T::fused(
-                k(0.8),
-                T::fused(-k(2.0), carriage_dsy, k(5.0)),
-                k(1.2) * carriage_dsx,
-            ),
-            T::fused(-k(2.0), carriage_dsz, k(1.0)),
-            T::fused(t52 * T::fused(t49, t36, t46 * t43), t55, -t54),
-            -T::fused(t52 * T::fused(t45, t43, t50 * t36), t55, t56),
-            -t57,
+            k(0.6) * T::fused(-k(6.666666666666667), disc_dsx, t2),
+            k(0.6) * T::fused(-k(6.666666666666667), disc_dsy, t4),
+            k(0.6) * T::fused(-k(6.666666666666667), disc_dsz, t7),
+            -(k(0.01) * T::fused(-(t4 * t14), t11, t13 * t14 * t15)),
+            k(0.01) * T::fused(-(t2 * t14), t11, t12 * t14 * t15),
+            -(k(1.6) * T::fused(-k(0.75), carriage_dsx, carriage_dsy - k(2.5))),
+            k(2.0) * (k(0.5) - carriage_dsz),
+            k(0.20833333333333334) * T::fused(t42 * (t29 * t40), t45, -t44),
+            -(k(0.16666666666666666)
+                * T::fused(k(1.3333333333333333), t42 * (t32 * t40) * t45, -t46)),
+            k(0.16666666666666666) * T::fused(-(t39 * t42), t20, t41 * t42 * t45),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Loads<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 124 operations (41 ±, 81 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 106 operations (34 ±, 70 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -1416,63 +1357,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Loads<T> {
         let row7 = rows[7];
         let row8 = rows[8];
         let row9 = rows[9];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = k(2.0) * (t1 - t0);
-        let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
-        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
-        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
-        let t8 = carriage_e0 * carriage_e3;
-        let t9 = carriage_e1 * carriage_e2;
-        let t10 = t9 - t8;
-        let t11 = carriage_e0 * carriage_e0;
-        let t12 = k(1.6) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t11));
-        let t13 = T::fused(k(1.2), t10, t12);
-        let t14 = carriage_e0 * carriage_e1;
-        let t15 = carriage_e2 * carriage_e3;
-        let t16 = t15 - t14;
-        let t17 = carriage_e0 * carriage_e2;
-        let t18 = carriage_e1 * carriage_e3;
-        let t19 = t18 + t17;
-        let t20 = T::fused(-k(1.28), t16, k(0.96) * t19);
-        let t21 = T::fused(-k(1.2), t18 - t17, k(1.6) * (t15 + t14));
-        let t22 = k(0.5) - T::fused(carriage_e3, carriage_e3, t11);
-        let t23 = k(1.6) * t22;
-        let t24 = t9 + t8;
-        let t25 = k(1.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t11));
-        let t26 = T::fused(
-            k(0.8),
-            T::fused(k(1.2), t24, t12),
-            k(0.6) * T::fused(k(1.6), t10, t25),
-        );
-        let t27 = T::fused(t21, t20, t26 * t23);
-        let t28 = T::fused(k(1.6), t24, t25);
-        let t29 = k(1.2) * t22;
-        let t30 = T::fused(-k(0.96), t16, k(0.72) * t19);
-        let t31 = T::fused(t26, t29, t21 * t30);
-        let t32 = k(1.0) / T::fused(t27, t13, t31 * t28);
-        let t33 = T::fused(t32 * (t21 * t28), row7, t32 * (t26 * t28) * row8);
-        let t34 = T::fused(t32 * (t21 * t13), row7, t32 * (t26 * t13) * row8);
-        let t35 = T::fused(
-            -(t32 * T::fused(t29, t28, t23 * t13)),
-            row7,
-            t32 * T::fused(t20, t13, t30 * t28) * row8,
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e1, disc_e1, -t0);
+        let t2 = T::fused(disc_e2, disc_e2, -t0);
+        let t3 = disc_e0 * disc_e3;
+        let t4 = disc_e1 * disc_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t9 = T::fused(carriage_e2, carriage_e2, -t8);
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
+        let t12 = t11 - t10;
+        let t13 = T::fused(k(0.75), t12, -t9);
+        let t14 = k(1.7777777777777777) * t13;
+        let t15 = T::fused(carriage_e1, carriage_e1, -t8);
+        let t16 = t11 + t10;
+        let t17 = T::fused(-k(1.3333333333333333), t9, t16)
+            + T::fused(-k(0.75), t15, t12);
+        let t18 = T::fused(carriage_e3, carriage_e3, -t8);
+        let t19 = carriage_e0 * carriage_e2;
+        let t20 = carriage_e1 * carriage_e3;
+        let t21 = carriage_e0 * carriage_e1;
+        let t22 = carriage_e2 * carriage_e3;
+        let t23 = T::fused(-k(0.75), t20 - t19, t22 + t21);
+        let t24 = T::fused(-k(1.3333333333333333), t22 - t21, t20 + t19);
+        let t25 = T::fused(-t18, t17, t24 * t23);
+        let t26 = T::fused(k(1.3333333333333333), t16, -t15);
+        let t27 = k(1.0) / T::fused(t25, t14, t25 * t26);
+        let t28 = k(1.6666666666666667) * row7;
+        let t29 = T::fused(t17 * t26 * t27, row8, t23 * t26 * t27 * t28);
+        let t30 = t25 * t27 * row9;
+        let t31 = T::fused(t13 * t17 * t27, row8, t23 * t13 * t27 * t28);
+        let t32 = T::fused(
+            t27 * T::fused(t24, t14, t24 * t26),
+            row8,
+            k(2.962962962962963)
+                * (T::fused(k(0.5625), t18 * t26, t13 * t18) * t27 * row7),
         );
         *out = [
             row0,
             row1,
             row2,
-            T::fused(row3, t2 * t7, row4 * (t6 * t7)),
-            -T::fused(row3, t5 * t7, row4 * (t3 * t7)),
+            -(k(0.5) * T::fused(-row4, t1 * t7, row3 * (t5 * t7))),
+            -(k(0.5) * T::fused(-row4, t6 * t7, row3 * (t2 * t7))),
             k(0.0),
             -(k(0.6) * row5),
             k(0.8) * row5,
             row6,
-            T::fused(t27 * t32, row9, -t33),
-            T::fused(t31 * t32, row9, t34),
-            T::fused(t32 * T::fused(-t30, t23, t29 * t20), row9, t35),
+            k(0.8333333333333334) * T::fused(k(1.3333333333333333), t30, -t29),
+            k(1.1111111111111112) * T::fused(k(0.75), t30, t31),
+            k(0.625) * t32,
         ];
     }
 }
@@ -1490,24 +1426,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 22]
     }
-    /// Writes u̇: 14 operations (5 ±, 9 ×, 0 ÷) and 2 functions.
+    /// Writes u̇: 12 operations (5 ±, 7 ×, 0 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
         let t0 = k(0.5) * x0;
         let t1 = t0.cos();
         let t2 = t1 * t1;
-        let t3 = k(2.0) * (k(0.5) - t2);
+        let t3 = k(0.5) - t2;
         let t4 = t0.sin();
-        let t5 = k(2.0) * (t4 * t1);
+        let t5 = t4 * t1;
         let t6 = T::fused(
-            k(3.0),
+            k(12.0),
             T::fused(t3, t3, t5 * t5),
             k(0.5) - T::fused(t4, t4, t2),
         );
         *out = [t6, k(1.5)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 22 operations (6 ±, 16 ×, 0 ÷) and 2 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 18 operations (6 ±, 12 ×, 0 ÷) and 2 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -1515,24 +1451,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         let x0 = x[0];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = k(0.2) * u0;
-        let t1 = k(0.5) * x0;
-        let t2 = t1.cos();
-        let t3 = t1.sin();
-        let t4 = t3 * t2;
-        let t5 = t2 * t2;
-        let t6 = k(0.5) - t5;
-        let t7 = T::fused(
-            k(0.6) * t4,
-            k(2.0) * t4 * t0,
-            k(0.6) * t6 * (k(2.0) * t6 * t0),
-        );
-        let t8 = T::fused(
-            k(3.0),
+        let t0 = k(0.5) * x0;
+        let t1 = t0.sin();
+        let t2 = t0.cos();
+        let t3 = t2 * t2;
+        let t4 = T::fused(
+            k(12.5),
             u1,
-            T::fused(u0, k(0.02) * (k(0.5) - T::fused(t3, t3, t5)), t7),
+            k(0.08333333333333333) * (u0 * (k(0.5) - T::fused(t1, t1, t3))),
         );
-        *dx = [u0, u1, rates[0], rates[1], t8];
+        let t5 = k(0.5) - t3;
+        let t6 = t1 * t2;
+        let t7 = k(0.24) * T::fused(t6, u0 * t6, T::fused(t5, u0 * t5, t4));
+        *dx = [u0, u1, rates[0], rates[1], t7];
     }
     /// Writes the maximal state of a joint state: 6 operations (1 ±, 5 ×, 0 ÷) and 2 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -1601,7 +1532,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         x[3] = T::fused(k(0.8), carriage_sx, k(0.6) * carriage_sy);
         x[4] = y[26];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 43 operations (17 ±, 26 ×, 0 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 40 operations (17 ±, 23 ×, 0 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1612,32 +1543,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         let carriage_e1 = y[11];
         let carriage_e2 = y[12];
         let carriage_e3 = y[13];
-        let t0 = disc_e0 * disc_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t0));
-        let t2 = k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3);
-        let t3 = k(2.0) * T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t0 = T::fused(disc_e0, disc_e1, disc_e2 * disc_e3);
+        let t1 = disc_e0 * disc_e0;
+        let t2 = k(0.5) - T::fused(disc_e2, disc_e2, t1);
+        let t3 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
         let t4 = T::fused(
-            k(3.0),
-            T::fused(t1, t1, T::fused(t2, t2, t3 * t3)),
-            k(0.5) - T::fused(disc_e3, disc_e3, t0),
+            k(12.0),
+            T::fused(t3, t3, T::fused(t0, t0, t2 * t2)),
+            k(0.5) - T::fused(disc_e3, disc_e3, t1),
         );
         let t5 = T::fused(
-            -k(3.0),
-            k(0.5) - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0),
-            k(0.6) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
+            k(5.0),
+            T::fused(carriage_e0, carriage_e3, carriage_e1 * carriage_e2),
+            T::fused(-carriage_e0, carriage_e2, carriage_e1 * carriage_e3),
         );
         let t6 = T::fused(
-            k(0.8),
-            T::fused(-carriage_e0, carriage_e2, carriage_e1 * carriage_e3),
-            T::fused(
-                k(4.0),
-                T::fused(carriage_e0, carriage_e3, carriage_e1 * carriage_e2),
-                t5,
-            ),
+            -k(5.0),
+            k(0.5) - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0),
+            T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
         );
-        *out = [t4, t6];
+        *out = [t4, k(0.6) * T::fused(k(1.3333333333333333), t5, t6)];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 61 operations (23 ±, 38 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 55 operations (23 ±, 32 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -1656,48 +1583,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         let disc_wx = y[17];
         let disc_wy = y[18];
         let disc_wz = y[19];
-        let t0 = disc_e0 * disc_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t0));
-        let t2 = k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3);
-        let t3 = k(2.0) * T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t0 = T::fused(disc_e0, disc_e1, disc_e2 * disc_e3);
+        let t1 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t2 = disc_e0 * disc_e0;
+        let t3 = k(0.5) - T::fused(disc_e2, disc_e2, t2);
         let t4 = T::fused(
-            k(3.0),
-            T::fused(t1, t1, T::fused(t2, t2, t3 * t3)),
-            k(0.5) - T::fused(disc_e3, disc_e3, t0),
+            -k(12.0),
+            T::fused(t3, t3, T::fused(t0, t0, t1 * t1)),
+            T::fused(disc_e3, disc_e3, t2),
         );
-        let t5 = carriage_e0 * carriage_e0;
+        let t5 = k(1.3333333333333333)
+            * T::fused(-carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
         let t6 = carriage_e0 * carriage_e3;
         let t7 = carriage_e1 * carriage_e2;
-        let t8 = T::fused(
-            -k(1.6),
-            k(0.5) - T::fused(carriage_e1, carriage_e1, t5),
-            k(1.2) * (t7 - t6),
-        );
-        let t9 = T::fused(-carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
-        let t10 = t7 + t6;
-        let t11 = k(0.5) - T::fused(carriage_e2, carriage_e2, t5);
-        let t12 = T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
-        let t13 = T::fused(
-            k(0.8),
-            t9,
-            T::fused(k(4.0), t10, T::fused(-k(3.0), t11, k(0.6) * t12)),
-        );
+        let t8 = t7 + t6;
+        let t9 = carriage_e0 * carriage_e0;
+        let t10 = k(0.5) - T::fused(carriage_e2, carriage_e2, t9);
+        let t11 = T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
+        let t12 = T::fused(k(6.666666666666667), t8, T::fused(-k(5.0), t10, t11)) + t5;
+        let t13 = k(0.72) * t12;
+        let t14 = T::fused(
+            -k(1.3333333333333333),
+            k(0.5) - T::fused(carriage_e1, carriage_e1, t9),
+            t7 - t6,
+        ) * t13;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             disc_wy * disc_wz,
             -(disc_wx * disc_wz),
-            t4,
-            t13 * t8,
-            t13 * T::fused(-k(1.2), t11, k(1.6) * t10),
-            t13 * T::fused(k(1.6), t9, k(1.2) * t12),
+            k(0.5) - t4,
+            t14,
+            k(0.96) * (t12 * T::fused(-k(0.75), t10, t8)),
+            (t11 + t5) * t13,
             k(0.0),
             k(0.0),
             k(0.0),
         ];
     }
-    /// Writes λ: 111 operations (45 ±, 66 ×, 0 ÷).
+    /// Writes λ: 101 operations (46 ±, 55 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1731,74 +1656,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         let carriage_dwx = accelerations[9];
         let carriage_dwy = accelerations[10];
         let carriage_dwz = accelerations[11];
-        let t0 = k(0.6) * T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t1 = disc_e0 * disc_e0;
-        let t2 = k(0.6) * (k(0.5) - T::fused(disc_e2, disc_e2, t1));
-        let t3 = disc_e0 * disc_e1;
-        let t4 = disc_e2 * disc_e3;
-        let t5 = t4 + t3;
-        let t6 = k(0.6) * t5;
+        let t0 = disc_e0 * disc_e3;
+        let t1 = T::fused(disc_e1, disc_e2, -t0);
+        let t2 = disc_e0 * disc_e0;
+        let t3 = k(0.5) - T::fused(disc_e2, disc_e2, t2);
+        let t4 = disc_e0 * disc_e1;
+        let t5 = disc_e2 * disc_e3;
+        let t6 = t5 + t4;
         let t7 = disc_e0 * disc_e2;
         let t8 = disc_e1 * disc_e3;
-        let t9 = k(0.01) * (disc_dwx + T::fused(disc_wy, disc_wz, k(2.0) * (t8 - t7)));
-        let t10 = k(2.0) * disc_e3;
-        let t11 = disc_e0 * t10;
-        let t12 = T::fused(-(k(2.0) * (t8 + t7)), t0, k(2.0) * (t4 - t3) * t2);
-        let t13 = T::fused(
-            -k(0.2),
-            T::fused(k(2.0) * (k(0.5) - T::fused(disc_e3, disc_e3, t1)), t6, t12),
-            k(0.02) * t5,
+        let t9 = T::fused(disc_wy, disc_wz, T::fused(k(2.0), t8 - t7, disc_dwx));
+        let t10 = T::fused(t6, k(0.5) - T::fused(disc_e3, disc_e3, t2), t3 * (t5 - t4));
+        let t11 = T::fused(
+            k(24.0),
+            T::fused(t1, t8 + t7, -t10),
+            T::fused(k(2.0), t6, -T::fused(disc_wx, disc_wz, -disc_dwy)),
         );
-        let t14 = T::fused(
-            k(0.01),
-            disc_dwy,
-            -T::fused(k(0.01), disc_wx * disc_wz, -t13),
-        );
-        let t15 = T::fused(-disc_e3, t10, k(1.0));
+        let t12 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t13 = k(0.5) * carriage_wx;
+        let t14 = carriage_e0 * carriage_e2;
+        let t15 = carriage_e1 * carriage_e3;
         let t16 = carriage_e0 * carriage_e3;
         let t17 = carriage_e1 * carriage_e2;
-        let t18 = carriage_e0 * carriage_e2;
-        let t19 = carriage_e1 * carriage_e3;
-        let t20 = T::fused(
-            k(2.0),
-            t19 + t18,
-            -T::fused(k(10.0), t17 + t16, k(2.0) * (t19 - t18)),
+        let t18 = T::fused(
+            k(5.0),
+            t17 + t16,
+            t15 - t14 - T::fused(-carriage_wy, t13, t15 + t14),
         );
-        let t21 = carriage_e0 * carriage_e0;
-        let t22 = T::fused(
-            -k(10.0),
+        let t19 = carriage_e0 * carriage_e0;
+        let t20 = k(0.5) - T::fused(carriage_e3, carriage_e3, t19)
+            + T::fused(
+                k(0.5),
+                carriage_dwx,
+                k(0.5) - T::fused(carriage_e1, carriage_e1, t19),
+            );
+        let t21 = T::fused(
+            k(5.0),
             T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
-            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t21)),
+            -t20,
         );
-        let t23 = carriage_dwx
-            + T::fused(k(2.0), k(0.5) - T::fused(carriage_e1, carriage_e1, t21), t22);
-        let t24 = T::fused(
-            -k(0.1),
-            T::fused(carriage_wx, carriage_wz, k(2.0) * (t17 - t16)),
-            k(0.2) * carriage_dwy,
-        );
+        let t22 = carriage_dwy - T::fused(carriage_wz, t13, t17 - t16);
         *lambda = [
-            T::fused(-k(4.0), disc_dsx, t0),
-            -T::fused(k(4.0), disc_dsy, t2),
-            T::fused(-k(4.0), disc_dsz, t6),
-            -T::fused(t11, t9, t15 * t14),
-            T::fused(-t11, t14, t15 * t9),
-            T::fused(
-                k(0.8),
-                T::fused(-k(2.0), carriage_dsy, k(5.0)),
-                k(1.2) * carriage_dsx,
-            ),
-            T::fused(-k(2.0), carriage_dsz, k(1.0)),
-            -T::fused(
-                k(0.1),
-                T::fused(carriage_wx, carriage_wy, -t20),
-                k(0.2) * carriage_dwz,
-            ),
-            T::fused(-k(0.06), t23, k(0.8) * t24),
-            T::fused(k(0.08), t23, k(0.6) * t24),
+            -(k(4.0) * T::fused(-k(0.15), t1, disc_dsx)),
+            -(k(4.0) * T::fused(k(0.15), t3, disc_dsy)),
+            -(k(4.0) * T::fused(-k(0.15), t6, disc_dsz)),
+            -(k(0.01) * T::fused(k(2.0), t0 * t9, t12 * t11)),
+            -(k(0.02) * T::fused(-k(0.5), t12 * t9, t0 * t11)),
+            k(1.2)
+                * T::fused(-k(1.3333333333333333), carriage_dsy - k(2.5), carriage_dsx),
+            k(2.0) * (k(0.5) - carriage_dsz),
+            -(k(0.2) * (carriage_dwz + t18)),
+            k(0.16) * T::fused(k(0.75), t21, t22),
+            k(0.12) * T::fused(-k(1.3333333333333333), t21, t22),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 131 operations (51 ±, 80 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 118 operations (51 ±, 67 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1817,87 +1729,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         let carriage_wz = y[25];
         let t0 = disc_wy * disc_wz;
         let t1 = disc_wx * disc_wz;
-        let t2 = disc_e0 * disc_e0;
-        let t3 = k(0.5) - T::fused(disc_e2, disc_e2, t2);
-        let t4 = k(2.0) * t3;
-        let t5 = disc_e0 * disc_e1;
-        let t6 = disc_e2 * disc_e3;
-        let t7 = t6 + t5;
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t10 = k(2.0) * t9;
-        let t11 = k(0.5) - T::fused(disc_e3, disc_e3, t2);
-        let t12 = T::fused(k(3.0), T::fused(t4, t4, T::fused(t8, t8, t10 * t10)), t11);
-        let t13 = carriage_e0 * carriage_e0;
-        let t14 = k(0.5) - T::fused(carriage_e1, carriage_e1, t13);
-        let t15 = carriage_e0 * carriage_e3;
-        let t16 = carriage_e1 * carriage_e2;
-        let t17 = t16 - t15;
-        let t18 = carriage_e0 * carriage_e2;
-        let t19 = carriage_e1 * carriage_e3;
-        let t20 = t19 - t18;
-        let t21 = t16 + t15;
-        let t22 = k(0.5) - T::fused(carriage_e2, carriage_e2, t13);
-        let t23 = carriage_e0 * carriage_e1;
-        let t24 = carriage_e2 * carriage_e3;
-        let t25 = t24 + t23;
-        let t26 = T::fused(
-            k(0.8),
-            t20,
-            T::fused(k(4.0), t21, T::fused(-k(3.0), t22, k(0.6) * t25)),
+        let t2 = disc_e0 * disc_e1;
+        let t3 = disc_e2 * disc_e3;
+        let t4 = t3 + t2;
+        let t5 = disc_e0 * disc_e3;
+        let t6 = T::fused(disc_e1, disc_e2, -t5);
+        let t7 = disc_e0 * disc_e0;
+        let t8 = k(0.5) - T::fused(disc_e2, disc_e2, t7);
+        let t9 = k(0.5) - T::fused(disc_e3, disc_e3, t7);
+        let t10 = T::fused(
+            k(0.08333333333333333),
+            t9,
+            T::fused(t8, t8, T::fused(t4, t4, t6 * t6)),
         );
-        let t27 = t26 * T::fused(-k(1.6), t14, k(1.2) * t17);
-        let t28 = t26 * T::fused(-k(1.2), t22, k(1.6) * t21);
-        let t29 = t26 * T::fused(k(1.6), t20, k(1.2) * t25);
-        let t30 = k(0.6) * t9;
-        let t31 = k(0.6) * t3;
-        let t32 = k(0.6) * t7;
-        let t33 = disc_e0 * disc_e2;
-        let t34 = disc_e1 * disc_e3;
-        let t35 = T::fused(-(k(2.0) * (t34 + t33)), t30, k(2.0) * (t6 - t5) * t31);
-        let t36 = k(0.01) * t1;
-        let t37 = t36
-            - T::fused(-k(0.2), T::fused(k(2.0) * t11, t32, t35), k(0.02) * t7);
-        let t38 = t36 + t37;
-        let t39 = k(2.0) * disc_e3;
-        let t40 = T::fused(-disc_e3, t39, k(1.0));
-        let t41 = k(0.01) * (t0 + T::fused(k(2.0), t34 - t33, t0));
-        let t42 = disc_e0 * t39;
-        let t43 = T::fused(
-            carriage_wx,
-            carriage_wy,
-            -T::fused(k(2.0), t19 + t18, -T::fused(k(10.0), t21, k(2.0) * t20)),
+        let t11 = carriage_e0 * carriage_e3;
+        let t12 = carriage_e1 * carriage_e2;
+        let t13 = t12 - t11;
+        let t14 = carriage_e0 * carriage_e0;
+        let t15 = k(0.5) - T::fused(carriage_e1, carriage_e1, t14);
+        let t16 = k(0.5) - T::fused(carriage_e2, carriage_e2, t14);
+        let t17 = carriage_e0 * carriage_e1;
+        let t18 = carriage_e2 * carriage_e3;
+        let t19 = k(0.75) * (t18 + t17);
+        let t20 = t12 + t11;
+        let t21 = k(5.0) * t20;
+        let t22 = carriage_e0 * carriage_e2;
+        let t23 = carriage_e1 * carriage_e3;
+        let t24 = t23 - t22;
+        let t25 = t24 + (t21 + T::fused(-k(3.75), t16, t19));
+        let t26 = t25 * T::fused(-k(0.75), t13, t15);
+        let t27 = t25 * T::fused(-k(1.3333333333333333), t20, t16);
+        let t28 = t25 * (t24 + t19);
+        let t29 = disc_e0 * disc_e2;
+        let t30 = disc_e1 * disc_e3;
+        let t31 = t0 + T::fused(k(2.0), t30 - t29, t0);
+        let t32 = T::fused(t6, t30 + t29, -T::fused(t4, t9, t8 * (t3 - t2)));
+        let t33 = T::fused(k(2.0), t4 - t1, k(24.0) * t32);
+        let t34 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t35 = k(0.2)
+            * (t21 + (t24 - T::fused(-k(0.5), carriage_wx * carriage_wy, t23 + t22)));
+        let t36 = T::fused(
+            k(5.0),
+            t18 - t17,
+            -(t15 + (k(0.5) - T::fused(carriage_e3, carriage_e3, t14))),
         );
-        let t44 = T::fused(carriage_wx, carriage_wz, k(2.0) * t17);
-        let t45 = T::fused(
-            -k(10.0),
-            t24 - t23,
-            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t13)),
-        );
-        let t46 = T::fused(k(2.0), t14, t45);
+        let t37 = T::fused(carriage_wx, carriage_wz, k(2.0) * t13);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t0,
             -t1,
-            t12,
-            t27,
-            t28,
-            t29,
+            k(12.0) * t10,
+            -(k(1.28) * t26),
+            -(k(0.96) * t27),
+            k(1.28) * t28,
             k(0.0),
             k(0.0),
             k(0.0),
-            t30,
-            -t31,
-            t32,
-            T::fused(-t42, t41, t40 * t38),
-            T::fused(t42, t38, t40 * t41),
-            T::fused(k(1.2), t27, k(0.8) * T::fused(-k(2.0), t28, k(5.0))),
-            T::fused(-k(2.0), t29, k(1.0)),
-            -(k(0.1) * t43),
-            -T::fused(k(0.08), t44, k(0.06) * t46),
-            T::fused(-k(0.06), t44, k(0.08) * t46),
+            k(0.6) * t6,
+            -(k(0.6) * t8),
+            k(0.6) * t4,
+            -(k(0.01) * T::fused(k(2.0), t5 * t31, t34 * t33)),
+            -(k(0.02) * T::fused(-k(0.5), t34 * t31, t5 * t33)),
+            -(k(1.536) * (t26 - (t27 + k(2.6041666666666665)))),
+            -(k(2.56) * (t28 - k(0.390625))),
+            -t35,
+            -(k(0.08) * T::fused(-k(1.5), t36, t37)),
+            -(k(0.06) * T::fused(k(2.6666666666666665), t36, t37)),
         ];
     }
 }

@@ -12,8 +12,8 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 26 operations by rotations of the bodies; 26 operations by relative Euler parameters; 2 more compared
-//! * project: 27 operations by rotations of the bodies, doubled; 27 operations by relative Euler parameters, doubled; 2 more compared
+//! * accelerations: 23 operations by rotations of the bodies; 23 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 26 operations by rotations of the bodies, doubled; 26 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 3 operations by recursion; 3 operations by normal form
 //! * joint_accelerations_at: 3 operations by recursion; 3 operations by normal form; 1 more compared
 //! * corrected_accelerations: 5 operations by recursion in the bodies' frames; 5 operations by recursion in the global frame; 5 more compared
@@ -28,26 +28,26 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 15 | 12 | 4 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 5 | 8 | 0 | 13 | 0 of 7 | 22 | 13 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 12 | 22 | 0 | 34 | 3 of 5 | 52 | 34 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 7 | 12 | 0 | 19 | 0 of 5 | 28 | 19 |
+//! | gamma | γ | 12 | 21 | 0 | 33 | 3 of 5 | 42 | 33 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 7 | 11 | 0 | 18 | 0 of 5 | 22 | 18 |
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 4 | 0 | 5 | 3 of 6 | 6 | 5 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 8 | 17 | 1 | 26 | 3 of 6 | 37 | 27 |
-//! | multipliers | λ, the accelerations being known | 10 | 25 | 1 | 36 | 0 of 5 | 151 | 36 |
-//! | project | (δr, δπ') that changes the rows as given | 8 | 18 | 1 | 27 | 1 of 6 | 136 | 27 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 8 | 14 | 1 | 23 | 3 of 6 | 33 | 24 |
+//! | multipliers | λ, the accelerations being known | 10 | 22 | 1 | 33 | 0 of 5 | 109 | 33 |
+//! | project | (δr, δπ') that changes the rows as given | 8 | 17 | 1 | 26 | 1 of 6 | 98 | 26 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 9 | 19 | 0 | 28 | 0 of 8 | 28 | 28 |
-//! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 | 16 | 16 |
+//! | energy | T and V | 5 | 9 | 0 | 14 | 1 of 2 | 14 | 14 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 47 | 80 | 1 | 128 | 3 of 7 | 8000 | 128 |
-//! | solve_velocities | dependent velocities, eq. (19) | 13 | 23 | 1 | 37 | 3 of 6 | 166 | 37 |
+//! | newton_step | dependent positions, one Newton step | 47 | 79 | 1 | 127 | 3 of 7 | 7172 | 127 |
+//! | solve_velocities | dependent velocities, eq. (19) | 13 | 19 | 1 | 33 | 3 of 6 | 138 | 33 |
 //! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
 //! | joint_derivative | ẋ but for u̇ | 1 | 3 | 0 | 4 | 0 of 2 | 4 | 4 |
 //! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 13 | 2 | 1 |
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 1 | 4 | 0 | 5 | 3 of 6 | 5 | 5 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 5 | 14 | 0 | 19 | 0 of 5 | 31 | 19 |
-//! | corrected_solution | both | 4 | 13 | 0 | 17 | 6 of 11 | 29 | 17 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 14 | 0 | 20 | 0 of 5 | 31 | 20 |
+//! | corrected_solution | both | 5 | 13 | 0 | 18 | 6 of 11 | 29 | 18 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 1 | 1 | 0 | 2 | 9 of 12 | 2 | 2 |
 //! | joint_input_jacobian | ∂f/∂(inputs) | 0 | 0 | 0 | 0 | 1 of 3 | 0 | 0 |
 //!
@@ -256,7 +256,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Motor<T> {
             t0 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 19 operations (7 ±, 12 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 18 operations (7 ±, 11 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -268,25 +268,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Motor<T> {
         let disc_sz = y[9];
         let disc_wx = y[10];
         let disc_wy = y[11];
-        let t0 = k(2.0) * disc_e1;
-        let t1 = k(2.0) * disc_e0;
-        let t2 = T::fused(-disc_e0, t1, k(1.0));
-        let t3 = disc_e3 * t1;
-        let t4 = disc_e2 * t0;
-        let t5 = T::fused(
-            disc_wy,
-            t4 + t3,
-            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t2),
-        );
-        *out = [
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -T::fused(disc_wy, T::fused(-disc_e1, t0, t2), disc_wx * (t4 - t3)),
-            t5,
-        ];
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = disc_e0 * disc_e3;
+        let t2 = disc_e1 * disc_e2;
+        let t3 = k(2.0)
+            * T::fused(-disc_wy, T::fused(disc_e1, disc_e1, -t0), (t2 - t1) * disc_wx);
+        let t4 = k(2.0)
+            * T::fused(-disc_wx, T::fused(disc_e2, disc_e2, -t0), (t2 + t1) * disc_wy);
+        *out = [disc_sx, disc_sy, disc_sz, -t3, t4];
     }
-    /// Kinetic and potential energy: 16 operations (5 ±, 11 ×, 0 ÷).
+    /// Kinetic and potential energy: 14 operations (5 ±, 9 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let disc_sx = y[7];
@@ -296,17 +287,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Motor<T> {
         let disc_wy = y[11];
         let disc_wz = y[12];
         let t0 = T::fused(
-            disc_wz,
-            k(0.02) * disc_wz,
-            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
-        );
-        let t1 = T::fused(
-            k(4.0),
+            k(400.0),
             T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
-            t0,
+            T::fused(
+                k(2.0),
+                disc_wz * disc_wz,
+                T::fused(disc_wx, disc_wx, disc_wy * disc_wy),
+            ),
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
+            kinetic: k(0.005) * t0,
             potential: k(0.0),
         }
     }
@@ -406,7 +396,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Motor<T> {
         let disc_e3 = y[6];
         [[-disc_e3, disc_e2, -disc_e1, disc_e0]]
     }
-    /// One Newton step of the dependent positions: 128 operations (47 ±, 80 ×, 1 ÷).
+    /// One Newton step of the dependent positions: 127 operations (47 ±, 79 ×, 1 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -418,74 +408,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Motor<T> {
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
         let t0 = T::fused(
-            disc_e3,
-            disc_e3,
-            T::fused(disc_e2, disc_e2, T::fused(disc_e1, disc_e1, disc_e0 * disc_e0)),
+            disc_e2,
+            disc_e2,
+            T::fused(disc_e1, disc_e1, T::fused(disc_e3, disc_e3, disc_e0 * disc_e0)),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
-        let t2 = disc_e2 * t1;
-        let t3 = disc_e0 * t1;
-        let t4 = t3 * t3;
-        let t5 = k(2.0) * (k(0.5) - T::fused(t2, t2, t4));
-        let t6 = disc_e1 * t1;
-        let t7 = k(2.0) * (k(0.5) - T::fused(t6, t6, t4));
-        let t8 = t6 * t2;
-        let t9 = disc_e3 * t1;
-        let t10 = t3 * t9;
-        let t11 = k(2.0) * (t10 + t8);
-        let t12 = k(2.0) * (t10 - t8);
-        let t13 = T::fused(t7, t5, t12 * t11);
-        let t14 = T::fused(
-            chart0_2,
-            disc_e2 + t2,
-            T::fused(chart0_1, disc_e1 + t6, chart0_0 * (disc_e0 + t3)),
-        );
-        let t15 = T::fused(
-            -chart0_3,
-            t6,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t9, chart0_0 * t2)),
-        );
-        let t16 = k(0.5) * t15;
-        let t17 = T::fused(
+        let t1 = k(3.0) - t0;
+        let t2 = disc_e3 * t1;
+        let t3 = disc_e2 * t1;
+        let t4 = disc_e1 * t1;
+        let t5 = disc_e0 * t1;
+        let t6 = T::fused(
             chart0_3,
-            t2,
-            T::fused(-chart0_2, t9, T::fused(-chart0_1, t3, chart0_0 * t6)),
+            t5,
+            -T::fused(chart0_2, t4, -T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t18 = k(0.5) * t17;
-        let t19 = k(2.0) * T::fused(-t2, t9, t3 * t6);
-        let t20 = k(2.0) * T::fused(t6, t9, t3 * t2);
+        let t7 = t5 * t2;
+        let t8 = t3 * t4;
+        let t9 = t8 + t7;
+        let t10 = T::fused(t3, t5, t4 * t2);
+        let t11 = t5 * t5;
+        let t12 = k(2.0) - T::fused(t4, t4, t11);
+        let t13 = T::fused(-t5, t4, t3 * t2);
+        let t14 = t8 - t7;
+        let t15 = k(2.0) - T::fused(t3, t3, t11);
+        let t16 = T::fused(-t9, t14, t15 * t12);
+        let t17 = k(1.0) / (t16 * t6);
+        let t18 = t17 * T::fused(t10, t9 * t6, t13 * (t12 * t6));
+        let t19 = t17 * T::fused(t10, t15 * t6, t13 * (t14 * t6));
+        let t20 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t5, disc_e0),
+            chart0_1 * T::fused(-k(0.5), t4, disc_e1),
+        );
         let t21 = T::fused(
-            t19,
-            T::fused(t12, t16, t7 * t18),
-            t20 * T::fused(-t11, t18, t5 * t16),
+            chart0_3,
+            T::fused(-k(0.5), t2, disc_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t3, disc_e2), t20),
         );
         let t22 = T::fused(
-            -chart0_3,
+            chart0_3,
+            t4,
+            T::fused(chart0_2, t5, -T::fused(chart0_0, t3, chart0_1 * t2)),
+        );
+        let t23 = T::fused(
+            chart0_3,
             t3,
-            T::fused(chart0_2, t6, T::fused(-chart0_1, t2, chart0_0 * t9)),
+            -T::fused(chart0_2, t2, T::fused(-chart0_0, t4, chart0_1 * t5)),
         );
-        let t23 = k(0.5) * t22;
-        let t24 = k(1.0) / (t23 * t13);
-        let t25 = t24 * T::fused(-T::fused(chart0_3, disc_e3 + t9, t14), t13, t21);
-        let t26 = t24 * T::fused(t19, t12 * t23, t20 * (t5 * t23));
-        let t27 = t24 * T::fused(-t19, t7 * t23, t20 * (t11 * t23));
-        let t28 = T::fused(k(0.5), T::fused(t9, t25, T::fused(-t2, t26, t6 * t27)), t3);
-        let t29 = T::fused(-k(0.5), T::fused(t2, t25, T::fused(t9, t26, t3 * t27)), t6);
-        let t30 = T::fused(
-            -k(0.5),
-            T::fused(-t6, t25, T::fused(-t3, t26, t9 * t27)),
-            t2,
+        let t24 = T::fused(
+            T::fused(t15, t22, t9 * t23),
+            t10,
+            T::fused(t12, t23, t14 * t22) * t13,
         );
-        let t31 = T::fused(k(0.5), T::fused(-t3, t25, T::fused(t6, t26, t2 * t27)), t9);
+        let t25 = T::fused(-k(4.0), t16 * t21, t24) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t2, t25, -T::fused(-t4, t18, t3 * t19)), t5);
+        let t27 = T::fused(-k(0.5), T::fused(t3, t25, T::fused(t5, t18, t2 * t19)), t4);
+        let t28 = T::fused(k(0.5), T::fused(t4, t25, T::fused(-t2, t18, t5 * t19)), t3);
+        let t29 = T::fused(-k(0.5), T::fused(t5, t25, -T::fused(t3, t18, t4 * t19)), t2);
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t28;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t31;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t27;
+        y[5] = k(0.5) * t28;
+        y[6] = k(0.5) * t29;
     }
-    /// Solves eq. (19) for the dependent velocities: 37 operations (13 ±, 23 ×, 1 ÷).
+    /// Solves eq. (19) for the dependent velocities: 33 operations (13 ±, 19 ×, 1 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -496,19 +484,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Motor<T> {
         let disc_wy = y[11];
         let t0 = disc_e0 * disc_e3;
         let t1 = disc_e1 * disc_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = k(2.0) * (t1 - t0);
-        let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
-        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
-        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
-        let t8 = T::fused(t2, disc_wy, t5 * disc_wx);
-        let t9 = T::fused(t6, disc_wy, t3 * disc_wx);
+        let t2 = t1 - t0;
+        let t3 = disc_e0 * disc_e0;
+        let t4 = k(0.5) - T::fused(disc_e1, disc_e1, t3);
+        let t5 = T::fused(t2, disc_wx, t4 * disc_wy);
+        let t6 = k(0.5) - T::fused(disc_e2, disc_e2, t3);
+        let t7 = t1 + t0;
+        let t8 = k(1.0) / T::fused(-t4, t6, t2 * t7);
+        let t9 = T::fused(t6, disc_wx, t7 * disc_wy);
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = T::fused(-t8, t6 * t7, T::fused(t9, t2 * t7, disc_wx));
-        y[11] = T::fused(t8, t3 * t7, T::fused(-t9, t5 * t7, disc_wy));
+        y[10] = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, disc_wx));
+        y[11] = T::fused(-(t2 * t8), t9, T::fused(t6 * t8, t5, disc_wy));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for Motor<T> {
@@ -644,7 +632,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 34 operations (12 ±, 22 ×, 0 ÷).
+    /// Writes γ: 33 operations (12 ±, 21 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -654,26 +642,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {
         let disc_wx = y[10];
         let disc_wy = y[11];
         let disc_wz = y[12];
-        let t0 = k(2.0) * disc_e1;
-        let t1 = k(2.0) * disc_e0;
-        let t2 = T::fused(-disc_e0, t1, k(1.0));
-        let t3 = disc_wx * disc_wz;
-        let t4 = disc_e3 * t1;
-        let t5 = disc_e2 * t0;
-        let t6 = disc_wy * disc_wz;
-        let t7 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t8 = T::fused(
-            t7,
-            T::fused(disc_e2, t1, disc_e3 * t0),
-            -T::fused(-t3, T::fused(-disc_e1, t0, t2), t6 * (t5 - t4)),
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = disc_wx * disc_wz;
+        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t3 = disc_wy * disc_wz;
+        let t4 = disc_e0 * disc_e3;
+        let t5 = disc_e1 * disc_e2;
+        let t6 = T::fused(
+            -T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            t2,
+            (t5 - t4) * t3,
         );
-        let t9 = k(2.0) * disc_e2;
-        let t10 = T::fused(
-            t7,
-            T::fused(-disc_e1, t1, disc_e3 * t9),
-            T::fused(-t3, t5 + t4, t6 * T::fused(-disc_e2, t9, t2)),
+        let t7 = T::fused(
+            -t3,
+            T::fused(disc_e2, disc_e2, -t0),
+            T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3) * t2,
         );
-        *out = [k(0.0), k(0.0), k(0.0), t8, t10];
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(2.0) * T::fused(t1, T::fused(disc_e1, disc_e1, -t0), t6)),
+            -(k(2.0) * T::fused(t5 + t4, t1, -t7)),
+        ];
     }
     /// Writes (f, n' − w̃'J'w'): 5 operations (1 ±, 4 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -691,7 +682,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {
             T::fused(-k(0.03), disc_wz, self.torque),
         ];
     }
-    /// Solves eq. (17): 26 operations (8 ±, 17 ×, 1 ÷).
+    /// Solves eq. (17): 23 operations (8 ±, 14 ×, 1 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -702,27 +693,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {
         let disc_wy = y[11];
         let disc_wz = y[12];
         let t0 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
-            * (k(0.5) / (k(0.5) - T::fused(disc_e3, disc_e3, disc_e0 * disc_e0)));
-        let t1 = T::fused(
-            -(k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3)),
-            t0,
-            disc_wy * disc_wz,
-        );
-        let t2 = T::fused(
-            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
-            t0,
-            disc_wx * disc_wz,
-        );
+            / (k(0.5) - T::fused(disc_e3, disc_e3, disc_e0 * disc_e0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t1,
-            -t2,
+            T::fused(
+                -T::fused(disc_e0, disc_e1, disc_e2 * disc_e3),
+                t0,
+                disc_wy * disc_wz,
+            ),
+            T::fused(
+                -disc_wx,
+                disc_wz,
+                T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3) * t0,
+            ),
             -(k(50.0) * T::fused(k(0.03), disc_wz, -self.torque)),
         ];
     }
-    /// Writes λ: 36 operations (10 ±, 25 ×, 1 ÷).
+    /// Writes λ: 33 operations (10 ±, 22 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -743,29 +732,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Motor<T> {
         let disc_dsz = accelerations[2];
         let disc_dwx = accelerations[3];
         let disc_dwy = accelerations[4];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = disc_e3 * t0;
-        let t2 = k(2.0) * disc_e1;
-        let t3 = disc_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = t3 - t1;
-        let t6 = T::fused(-disc_e0, t0, k(1.0));
-        let t7 = T::fused(-disc_e2, k(2.0) * disc_e2, t6);
-        let t8 = T::fused(-disc_e1, t2, t6);
-        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
-        let t10 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t11 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e2, disc_e2, -t0);
+        let t2 = T::fused(disc_e1, disc_e1, -t0);
+        let t3 = disc_e0 * disc_e3;
+        let t4 = disc_e1 * disc_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t9 = T::fused(disc_wy, disc_wz, disc_dwx);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            -T::fused(t10, t4 * t9, t11 * (t7 * t9)),
-            -T::fused(t10, t8 * t9, t11 * (t5 * t9)),
+            k(0.005) * T::fused(-t8, t1 * t7, t9 * (t5 * t7)),
+            -(k(0.005) * T::fused(-t8, t6 * t7, t9 * (t2 * t7))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Motor<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 27 operations (8 ±, 18 ×, 1 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 26 operations (8 ±, 17 ×, 1 ÷).
     fn project(
         &self,
         _t: T,
@@ -783,22 +770,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Motor<T> {
         let row2 = rows[2];
         let row3 = rows[3];
         let row4 = rows[4];
-        let t0 = k(2.0) * disc_e0;
-        let t1 = disc_e3 * t0;
-        let t2 = k(2.0) * disc_e1;
-        let t3 = disc_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = t3 - t1;
-        let t6 = T::fused(-disc_e0, t0, k(1.0));
-        let t7 = T::fused(-disc_e2, k(2.0) * disc_e2, t6);
-        let t8 = T::fused(-disc_e1, t2, t6);
-        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
+        let t0 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t1 = T::fused(disc_e2, disc_e2, -t0);
+        let t2 = T::fused(disc_e1, disc_e1, -t0);
+        let t3 = disc_e0 * disc_e3;
+        let t4 = disc_e1 * disc_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
         *out = [
             row0,
             row1,
             row2,
-            T::fused(row3, t4 * t9, row4 * (t8 * t9)),
-            -T::fused(row3, t7 * t9, row4 * (t5 * t9)),
+            -(k(0.5) * T::fused(-row4, t2 * t7, row3 * (t5 * t7))),
+            -(k(0.5) * T::fused(-row4, t6 * t7, row3 * (t1 * t7))),
             k(0.0),
         ];
     }
@@ -903,7 +888,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Motor<T> {
             -(k(50.0) * T::fused(k(0.03), disc_wz, -self.torque)),
         ];
     }
-    /// Writes λ: 19 operations (5 ±, 14 ×, 0 ÷).
+    /// Writes λ: 20 operations (6 ±, 14 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -922,20 +907,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Motor<T> {
         let disc_dsz = accelerations[2];
         let disc_dwx = accelerations[3];
         let disc_dwy = accelerations[4];
-        let t0 = k(2.0) * disc_e3;
-        let t1 = disc_e0 * t0;
-        let t2 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t3 = T::fused(-disc_e3, t0, k(1.0));
-        let t4 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t0 = disc_e0 * (k(2.0) * disc_e3);
+        let t1 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t2 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t3 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            T::fused(-t2, t1, t4 * t3),
-            T::fused(t2, t3, t4 * t1),
+            T::fused(-t1, t0, t3 * t2),
+            T::fused(t1, t2, t3 * t0),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 17 operations (4 ±, 13 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 18 operations (5 ±, 13 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -946,10 +930,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Motor<T> {
         let t0 = disc_wy * disc_wz;
         let t1 = disc_wx * disc_wz;
         let t2 = k(0.02) * t1;
-        let t3 = k(2.0) * disc_e3;
-        let t4 = T::fused(-disc_e3, t3, k(1.0));
-        let t5 = k(0.02) * t0;
-        let t6 = disc_e0 * t3;
+        let t3 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t4 = k(0.02) * t0;
+        let t5 = disc_e0 * (k(2.0) * disc_e3);
         *out = [
             k(0.0),
             k(0.0),
@@ -960,8 +943,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Motor<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t6, t5, t4 * t2),
-            T::fused(t6, t2, t4 * t5),
+            T::fused(-t5, t4, t3 * t2),
+            T::fused(t5, t2, t3 * t4),
         ];
     }
 }

@@ -11,42 +11,42 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 523 operations by relative Euler parameters, doubled; 533 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 403 operations by rotations of the bodies, doubled; 410 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 115 operations by recursion; 124 operations by normal form; 1 more compared
-//! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 156 operations by orthogonal motions on the bodies' spins; 3 more compared
-//! * corrected_accelerations: 523 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 9 more compared
-//! * joint_jacobian: 1755 operations by derivatives of u̇, from its leaves; 1755 operations by normal form of that; 7 more compared
+//! * project: 379 operations by rotations of the bodies, doubled; 383 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 113 operations by recursion; 123 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 141 operations by recursion on the bodies' spins; 152 operations by orthogonal motions on the bodies' spins; 3 more compared
+//! * corrected_accelerations: 523 operations by elimination in maximal coordinates; 229 operations by recursion on the bodies' spins in the global frame; 9 more compared
+//! * joint_jacobian: 1760 operations by derivatives of u̇, from its leaves; 1760 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 53 | 69 | 0 | 122 | 0 of 18 | 216 | 122 |
+//! | phi | Φ | 53 | 60 | 0 | 113 | 0 of 18 | 193 | 113 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 74 | 144 | 0 | 218 | 0 of 77 | 752 | 218 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 106 | 0 | 170 | 0 of 41 | 731 | 170 |
-//! | nu | ν | 9 | 28 | 0 | 37 | 13 of 15 | 79 | 37 |
+//! | nu | ν | 9 | 26 | 0 | 35 | 13 of 15 | 71 | 35 |
 //! | gamma | γ | 151 | 234 | 0 | 385 | 6 of 15 | 2294 | 385 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 95 | 141 | 0 | 236 | 0 of 15 | 851 | 236 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 95 | 139 | 0 | 234 | 0 of 15 | 623 | 234 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 208 | 310 | 5 | 523 | 7 of 18 | 611110 | 527 |
-//! | multipliers | λ, the accelerations being known | 114 | 188 | 3 | 305 | 0 of 15 | 4894 | 305 |
-//! | project | (δr, δπ') that changes the rows as given | 150 | 248 | 5 | 403 | 1 of 18 | 492063 | 404 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 126 | 221 | 1 | 348 | 0 of 22 | 2914 | 348 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 59 | 74 | 0 | 133 | 0 of 9 | 268 | 133 |
-//! | outputs | outputs, the accelerations being known | 197 | 325 | 3 | 525 | 1 of 26 | 89856 | 525 |
+//! | multipliers | λ, the accelerations being known | 114 | 177 | 3 | 294 | 0 of 15 | 3441 | 294 |
+//! | project | (δr, δπ') that changes the rows as given | 148 | 226 | 5 | 379 | 1 of 18 | 336935 | 380 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 126 | 199 | 1 | 326 | 0 of 22 | 2105 | 326 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
+//! | read_joints | joint coordinates and rates | 59 | 64 | 0 | 123 | 0 of 9 | 258 | 123 |
+//! | outputs | outputs, the accelerations being known | 197 | 315 | 3 | 515 | 1 of 26 | 63119 | 515 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 206 | 343 | 3 | 552 | 6 of 21 | 2.3e9 | 552 |
-//! | solve_velocities | dependent velocities, eq. (19) | 113 | 196 | 3 | 312 | 6 of 18 | 21819 | 312 |
+//! | newton_step | dependent positions, one Newton step | 206 | 319 | 3 | 528 | 6 of 21 | 2.1e9 | 528 |
+//! | solve_velocities | dependent velocities, eq. (19) | 113 | 171 | 3 | 287 | 6 of 18 | 19009 | 287 |
 //! | joint_accelerations | u̇ in joint coordinates | 35 | 77 | 1 | 113 | 0 of 3 | 755 | 114 |
-//! | joint_derivative | ẋ but for u̇ | 192 | 346 | 2 | 540 | 0 of 4 | 132773 | 541 |
-//! | to_maximal | (q, v) of a joint state | 39 | 88 | 0 | 127 | 12 of 39 | 2299 | 127 |
-//! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 | 549 | 154 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 46 | 96 | 1 | 143 | 0 of 3 | 1501 | 144 |
+//! | joint_derivative | ẋ but for u̇ | 191 | 326 | 2 | 519 | 0 of 4 | 130027 | 520 |
+//! | to_maximal | (q, v) of a joint state | 42 | 88 | 0 | 130 | 12 of 39 | 2351 | 130 |
+//! | to_joints | (x, u) of a maximal state | 68 | 76 | 0 | 144 | 0 of 6 | 522 | 144 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 93 | 1 | 141 | 0 of 3 | 1943 | 142 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 208 | 310 | 5 | 523 | 7 of 18 | 611110 | 527 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 | 931 | 156 |
-//! | corrected_solution | both | 249 | 373 | 5 | 627 | 7 of 33 | 5.0e6 | 631 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 678 | 1071 | 2 | 1751 | 29 of 56 | 1.2e8 | 1751 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 63 | 96 | 0 | 159 | 0 of 15 | 1207 | 159 |
+//! | corrected_solution | both | 252 | 375 | 5 | 632 | 7 of 33 | 5.0e6 | 636 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 687 | 1071 | 2 | 1760 | 29 of 56 | 1.2e8 | 1760 |
 //!
 //! # Proof
 //!
@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 348 operations (126 ±, 221 ×, 1 ÷) and 8 functions.
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 326 operations (126 ±, 199 ×, 1 ÷) and 8 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -185,159 +185,132 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(2.0) * rotor_e1;
-        let t1 = k(2.0) * rotor_e0;
-        let t2 = T::fused(-rotor_e0, t1, k(1.0));
-        let t3 = T::fused(-rotor_e1, t0, t2);
-        let t4 = k(2.0) * inner_ring_e1;
-        let t5 = k(2.0) * inner_ring_e0;
-        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
-        let t7 = T::fused(-inner_ring_e1, t4, t6);
-        let t8 = rotor_e3 * t1;
-        let t9 = rotor_e2 * t0;
-        let t10 = t9 + t8;
-        let t11 = inner_ring_e3 * t5;
-        let t12 = inner_ring_e2 * t4;
-        let t13 = t12 + t11;
-        let t14 = rotor_e2 * t1;
-        let t15 = rotor_e3 * t0;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e2 * t5;
-        let t18 = inner_ring_e3 * t4;
+        let t0 = k(12.566370614359172) * t;
+        let t1 = k(0.1) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = t3 * t2;
+        let t5 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t6 = T::fused(outer_ring_e2, outer_ring_e2, -t5);
+        let t7 = t1.sin();
+        let t8 = t3 * t7;
+        let t9 = outer_ring_e0 * outer_ring_e1;
+        let t10 = outer_ring_e2 * outer_ring_e3;
+        let t11 = t10 + t9;
+        let t12 = k(2.0) * rotor_dwx;
+        let t13 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t14 = T::fused(rotor_e1, rotor_e1, -t13);
+        let t15 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t16 = T::fused(inner_ring_e1, inner_ring_e1, -t15);
+        let t17 = rotor_e0 * rotor_e2;
+        let t18 = rotor_e1 * rotor_e3;
         let t19 = t18 - t17;
-        let t20 = k(1e-5) * rotor_dwx;
-        let t21 = t9 - t8;
-        let t22 = k(2.0) * rotor_e2;
-        let t23 = T::fused(-rotor_e2, t22, t2);
-        let t24 = rotor_e1 * t1;
-        let t25 = rotor_e3 * t22;
-        let t26 = t25 + t24;
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t28 = T::fused(
-            t20,
-            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
-            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
-        );
-        let t29 = t15 + t14;
-        let t30 = t25 - t24;
-        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
-        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
-        let t34 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t33,
-        );
-        let t35 = k(2.0) * outer_ring_e1;
-        let t36 = k(2.0) * outer_ring_e0;
-        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
-        let t38 = T::fused(-outer_ring_e1, t35, t37);
-        let t39 = outer_ring_e3 * t36;
-        let t40 = outer_ring_e2 * t35;
-        let t41 = t40 + t39;
-        let t42 = outer_ring_e2 * t36;
-        let t43 = outer_ring_e3 * t35;
-        let t44 = t43 - t42;
-        let t45 = t12 - t11;
-        let t46 = k(2.0) * inner_ring_e2;
-        let t47 = T::fused(-inner_ring_e2, t46, t6);
-        let t48 = inner_ring_e1 * t5;
-        let t49 = inner_ring_e3 * t46;
-        let t50 = t49 + t48;
-        let t51 = T::fused(
-            t20,
-            T::fused(t50, t16, -T::fused(t45, t3, t47 * t10)),
-            t27 * T::fused(t50, t26, T::fused(t45, t21, t47 * t23)),
-        );
-        let t52 = T::fused(t32, T::fused(t50, t31, T::fused(-t45, t29, t47 * t30)), t51);
-        let t53 = t18 + t17;
-        let t54 = k(0.08) * rotor_dsx;
-        let t55 = t49 - t48;
-        let t56 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t57 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
-        let t58 = k(0.08) * rotor_dsz;
-        let t59 = T::fused(
-            t58,
-            k(0.000125) * t57,
-            -T::fused(t54, k(0.000125) * t53, t56 * (k(0.000125) * t55)),
-        );
-        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + t52);
-        let t61 = T::fused(
-            -T::fused(t44, t19, T::fused(t38, t7, t41 * t13)),
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = t21 - t20;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = t24 + t23;
+        let t26 = inner_ring_e0 * inner_ring_e3;
+        let t27 = inner_ring_e1 * inner_ring_e2;
+        let t28 = t27 + t26;
+        let t29 = T::fused(rotor_e3, rotor_e3, -t13);
+        let t30 = rotor_e0 * rotor_e1;
+        let t31 = rotor_e2 * rotor_e3;
+        let t32 = t31 - t30;
+        let t33 = t18 + t17;
+        let t34 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t35 = T::fused(
             t34,
-            T::fused(t44, t50, -T::fused(t38, t45, t41 * t47)) * t60,
+            T::fused(t33, t16, T::fused(t22, t29, t28 * t32)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
+        let t36 = T::fused(rotor_e2, rotor_e2, -t13);
+        let t37 = t31 + t30;
+        let t38 = t24 - t23;
+        let t39 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t40 = T::fused(t39, T::fused(t38, t16, T::fused(t28, t36, t22 * t37)), -t35);
+        let t41 = T::fused(T::fused(t16, t14, T::fused(t22, t19, t28 * t25)), t12, t40);
+        let t42 = T::fused(outer_ring_e1, outer_ring_e1, -t5);
+        let t43 = outer_ring_e0 * outer_ring_e2;
+        let t44 = outer_ring_e1 * outer_ring_e3;
+        let t45 = t44 - t43;
+        let t46 = outer_ring_e0 * outer_ring_e3;
+        let t47 = outer_ring_e1 * outer_ring_e2;
+        let t48 = t47 + t46;
+        let t49 = T::fused(inner_ring_e2, inner_ring_e2, -t15);
+        let t50 = inner_ring_e0 * inner_ring_e1;
+        let t51 = inner_ring_e2 * inner_ring_e3;
+        let t52 = t51 + t50;
+        let t53 = t27 - t26;
+        let t54 = T::fused(inner_ring_e3, inner_ring_e3, -t15);
+        let t55 = rotor_dsy + k(10.0);
+        let t56 = t51 - t50;
+        let t57 = t21 + t20;
+        let t58 = T::fused(
+            t57,
+            rotor_dsx,
+            T::fused(t56, t55, -T::fused(-rotor_dsz, t54, k(0.1) * inner_ring_dwy)),
+        );
+        let t59 = T::fused(t34, T::fused(t53, t33, T::fused(t52, t29, t32 * t49)), t58);
+        let t60 = T::fused(t39, T::fused(t53, t38, T::fused(t36, t49, t52 * t37)), -t59);
+        let t61 = T::fused(T::fused(t53, t14, T::fused(t25, t49, t52 * t19)), t12, t60);
         let t62 = T::fused(
-            t20,
-            T::fused(t57, t16, -T::fused(-t53, t3, t55 * t10)),
-            t27 * T::fused(t57, t26, T::fused(-t53, t21, t55 * t23)),
+            t49,
+            t55,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t52 * rotor_dsz,
+            ),
         );
-        let t63 = T::fused(t32, T::fused(t57, t31, T::fused(t53, t29, t55 * t30)), t62);
-        let t64 = T::fused(
-            t58,
-            k(0.000125) * t50,
-            -T::fused(-t54, k(0.000125) * t45, t56 * (k(0.000125) * t47)),
-        );
-        let t65 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t64 - t63,
-        );
-        let t66 = T::fused(
-            T::fused(t44, t57, -T::fused(-t38, t53, t41 * t55)),
-            t65,
-            -t61,
-        );
-        let t67 = T::fused(k(2e-6), outer_ring_dwx, -t66);
-        let t68 = k(18.84955592153876) * t;
-        let t69 = k(0.05) * t68.sin();
-        let t70 = t69.cos();
-        let t71 = t69.sin();
-        let t72 = k(12.566370614359172) * t;
-        let t73 = k(0.1) * t72.sin();
-        let t74 = t73.cos();
-        let t75 = t74 * t71;
-        let t76 = t73.sin();
-        let t77 = t76 * t71;
-        let t78 = T::fused(t77, t44, T::fused(-t70, t38, t75 * t41));
-        let t79 = outer_ring_e1 * t36;
-        let t80 = k(2.0) * outer_ring_e2;
-        let t81 = outer_ring_e3 * t80;
-        let t82 = t81 - t79;
-        let t83 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
-        let t84 = T::fused(t76, t82, t74 * t83);
-        let t85 = T::fused(-t76, t41, t74 * t44);
-        let t86 = t43 + t42;
-        let t87 = T::fused(t77, t83, -T::fused(t70, t86, t75 * t82));
-        let t88 = k(1.0) / T::fused(-t84, t78, t87 * t85);
-        let t89 = T::fused(
-            -T::fused(t83, t19, -T::fused(-t86, t7, t82 * t13)),
+        let t63 = T::fused(
             t34,
-            T::fused(t83, t50, T::fused(-t86, t45, t82 * t47)) * t60,
+            T::fused(t57, t33, T::fused(t29, t54, t56 * t32)),
+            -T::fused(t53, rotor_dsx, t62),
         );
-        let t90 = T::fused(T::fused(t83, t57, T::fused(t86, t53, t82 * t55)), t65, -t89);
-        let t91 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t90,
+        let t64 = T::fused(t39, T::fused(t57, t38, T::fused(t37, t54, t56 * t36)), -t63);
+        let t65 = T::fused(T::fused(t57, t14, T::fused(t19, t54, t56 * t25)), t12, t64);
+        let t66 = T::fused(
+            T::fused(t57, t42, T::fused(t45, t54, t48 * t56)),
+            t65,
+            k(0.025) * outer_ring_dwx,
         );
-        let t92 = t81 + t79;
-        let t93 = k(1.2566370614359172) * t72.cos();
-        let t94 = t93 * t76;
-        let t95 = T::fused(-outer_ring_e2, t80, t37);
-        let t96 = t93 * t74;
-        let t97 = k(0.9424777960769379) * t68.cos();
-        let t98 = t97 * t70;
-        let t99 = T::fused(
-            -T::fused(-t74, t98, t71 * t94),
-            t95,
-            t97 * t71 * (t40 - t39),
+        let t67 = T::fused(T::fused(t53, t42, T::fused(t48, t49, t45 * t52)), t61, t66);
+        let t68 = T::fused(T::fused(t42, t16, T::fused(t45, t22, t48 * t28)), t41, t67);
+        let t69 = T::fused(outer_ring_e3, outer_ring_e3, -t5);
+        let t70 = k(18.84955592153876) * t;
+        let t71 = k(0.05) * t70.sin();
+        let t72 = t71.sin();
+        let t73 = t7 * t72;
+        let t74 = t10 - t9;
+        let t75 = t2 * t72;
+        let t76 = t44 + t43;
+        let t77 = t71.cos();
+        let t78 = T::fused(t77, t76, T::fused(t73, t69, t75 * t74));
+        let t79 = T::fused(-t7, t48, t2 * t45);
+        let t80 = T::fused(t77, t42, T::fused(t73, t45, t75 * t48));
+        let t81 = T::fused(-t2, t69, t7 * t74);
+        let t82 = k(1.0) / T::fused(t79, t78, t81 * t80);
+        let t83 = T::fused(
+            -T::fused(t76, t57, T::fused(t69, t54, t74 * t56)),
+            t65,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t100 = T::fused(
-            T::fused(-t94, t92, t96 * t95),
-            T::fused(t78 * t88, t67, t87 * t88 * t91),
-            T::fused(-T::fused(t76, t98, t71 * t96), t92, t99)
-                * T::fused(t85 * t88, t67, t84 * t88 * t91),
+        let t84 = T::fused(-T::fused(t76, t53, T::fused(t52, t69, t74 * t49)), t61, t83);
+        let t85 = T::fused(-T::fused(t76, t16, T::fused(t22, t69, t74 * t28)), t41, t84);
+        let t86 = t70.cos();
+        let t87 = k(0.75) * (t86 * t77);
+        let t88 = T::fused(
+            t6,
+            T::fused(-t2, t87, t72 * t8),
+            k(0.75) * ((t47 - t46) * (t86 * t72)),
+        );
+        let t89 = T::fused(
+            -T::fused(-(t80 * t82), t68, t78 * t82 * t85),
+            T::fused(t6, t4, t11 * t8),
+            T::fused(t79 * t82, t68, t81 * t82 * t85)
+                * T::fused(t11, T::fused(t7, t87, t72 * t4), -t88),
         );
         *dy = [
             outer_ring_sx,
@@ -455,7 +428,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -t100,
+            -(k(0.00010053096491487339) * t89),
         ];
     }
 }
@@ -472,7 +445,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 348 operations (126 ±, 221 ×, 1 ÷) and 8 functions.
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 326 operations (126 ±, 199 ×, 1 ÷) and 8 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -518,159 +491,132 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(2.0) * rotor_e1;
-        let t1 = k(2.0) * rotor_e0;
-        let t2 = T::fused(-rotor_e0, t1, k(1.0));
-        let t3 = T::fused(-rotor_e1, t0, t2);
-        let t4 = k(2.0) * inner_ring_e1;
-        let t5 = k(2.0) * inner_ring_e0;
-        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
-        let t7 = T::fused(-inner_ring_e1, t4, t6);
-        let t8 = rotor_e3 * t1;
-        let t9 = rotor_e2 * t0;
-        let t10 = t9 + t8;
-        let t11 = inner_ring_e3 * t5;
-        let t12 = inner_ring_e2 * t4;
-        let t13 = t12 + t11;
-        let t14 = rotor_e2 * t1;
-        let t15 = rotor_e3 * t0;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e2 * t5;
-        let t18 = inner_ring_e3 * t4;
+        let t0 = k(12.566370614359172) * t;
+        let t1 = k(0.1) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = t3 * t2;
+        let t5 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t6 = T::fused(outer_ring_e2, outer_ring_e2, -t5);
+        let t7 = t1.sin();
+        let t8 = t3 * t7;
+        let t9 = outer_ring_e0 * outer_ring_e1;
+        let t10 = outer_ring_e2 * outer_ring_e3;
+        let t11 = t10 + t9;
+        let t12 = k(2.0) * rotor_dwx;
+        let t13 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t14 = T::fused(rotor_e1, rotor_e1, -t13);
+        let t15 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t16 = T::fused(inner_ring_e1, inner_ring_e1, -t15);
+        let t17 = rotor_e0 * rotor_e2;
+        let t18 = rotor_e1 * rotor_e3;
         let t19 = t18 - t17;
-        let t20 = k(1e-5) * rotor_dwx;
-        let t21 = t9 - t8;
-        let t22 = k(2.0) * rotor_e2;
-        let t23 = T::fused(-rotor_e2, t22, t2);
-        let t24 = rotor_e1 * t1;
-        let t25 = rotor_e3 * t22;
-        let t26 = t25 + t24;
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t28 = T::fused(
-            t20,
-            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
-            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
-        );
-        let t29 = t15 + t14;
-        let t30 = t25 - t24;
-        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
-        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
-        let t34 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t33,
-        );
-        let t35 = k(2.0) * outer_ring_e1;
-        let t36 = k(2.0) * outer_ring_e0;
-        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
-        let t38 = T::fused(-outer_ring_e1, t35, t37);
-        let t39 = outer_ring_e3 * t36;
-        let t40 = outer_ring_e2 * t35;
-        let t41 = t40 + t39;
-        let t42 = outer_ring_e2 * t36;
-        let t43 = outer_ring_e3 * t35;
-        let t44 = t43 - t42;
-        let t45 = t12 - t11;
-        let t46 = k(2.0) * inner_ring_e2;
-        let t47 = T::fused(-inner_ring_e2, t46, t6);
-        let t48 = inner_ring_e1 * t5;
-        let t49 = inner_ring_e3 * t46;
-        let t50 = t49 + t48;
-        let t51 = T::fused(
-            t20,
-            T::fused(t50, t16, -T::fused(t45, t3, t47 * t10)),
-            t27 * T::fused(t50, t26, T::fused(t45, t21, t47 * t23)),
-        );
-        let t52 = T::fused(t32, T::fused(t50, t31, T::fused(-t45, t29, t47 * t30)), t51);
-        let t53 = t18 + t17;
-        let t54 = k(0.08) * rotor_dsx;
-        let t55 = t49 - t48;
-        let t56 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t57 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
-        let t58 = k(0.08) * rotor_dsz;
-        let t59 = T::fused(
-            t58,
-            k(0.000125) * t57,
-            -T::fused(t54, k(0.000125) * t53, t56 * (k(0.000125) * t55)),
-        );
-        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + t52);
-        let t61 = T::fused(
-            -T::fused(t44, t19, T::fused(t38, t7, t41 * t13)),
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = t21 - t20;
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = t24 + t23;
+        let t26 = inner_ring_e0 * inner_ring_e3;
+        let t27 = inner_ring_e1 * inner_ring_e2;
+        let t28 = t27 + t26;
+        let t29 = T::fused(rotor_e3, rotor_e3, -t13);
+        let t30 = rotor_e0 * rotor_e1;
+        let t31 = rotor_e2 * rotor_e3;
+        let t32 = t31 - t30;
+        let t33 = t18 + t17;
+        let t34 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t35 = T::fused(
             t34,
-            T::fused(t44, t50, -T::fused(t38, t45, t41 * t47)) * t60,
+            T::fused(t33, t16, T::fused(t22, t29, t28 * t32)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
+        let t36 = T::fused(rotor_e2, rotor_e2, -t13);
+        let t37 = t31 + t30;
+        let t38 = t24 - t23;
+        let t39 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t40 = T::fused(t39, T::fused(t38, t16, T::fused(t28, t36, t22 * t37)), -t35);
+        let t41 = T::fused(T::fused(t16, t14, T::fused(t22, t19, t28 * t25)), t12, t40);
+        let t42 = T::fused(outer_ring_e1, outer_ring_e1, -t5);
+        let t43 = outer_ring_e0 * outer_ring_e2;
+        let t44 = outer_ring_e1 * outer_ring_e3;
+        let t45 = t44 - t43;
+        let t46 = outer_ring_e0 * outer_ring_e3;
+        let t47 = outer_ring_e1 * outer_ring_e2;
+        let t48 = t47 + t46;
+        let t49 = T::fused(inner_ring_e2, inner_ring_e2, -t15);
+        let t50 = inner_ring_e0 * inner_ring_e1;
+        let t51 = inner_ring_e2 * inner_ring_e3;
+        let t52 = t51 + t50;
+        let t53 = t27 - t26;
+        let t54 = T::fused(inner_ring_e3, inner_ring_e3, -t15);
+        let t55 = rotor_dsy + k(10.0);
+        let t56 = t51 - t50;
+        let t57 = t21 + t20;
+        let t58 = T::fused(
+            t57,
+            rotor_dsx,
+            T::fused(t56, t55, -T::fused(-rotor_dsz, t54, k(0.1) * inner_ring_dwy)),
+        );
+        let t59 = T::fused(t34, T::fused(t53, t33, T::fused(t52, t29, t32 * t49)), t58);
+        let t60 = T::fused(t39, T::fused(t53, t38, T::fused(t36, t49, t52 * t37)), -t59);
+        let t61 = T::fused(T::fused(t53, t14, T::fused(t25, t49, t52 * t19)), t12, t60);
         let t62 = T::fused(
-            t20,
-            T::fused(t57, t16, -T::fused(-t53, t3, t55 * t10)),
-            t27 * T::fused(t57, t26, T::fused(-t53, t21, t55 * t23)),
+            t49,
+            t55,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t52 * rotor_dsz,
+            ),
         );
-        let t63 = T::fused(t32, T::fused(t57, t31, T::fused(t53, t29, t55 * t30)), t62);
-        let t64 = T::fused(
-            t58,
-            k(0.000125) * t50,
-            -T::fused(-t54, k(0.000125) * t45, t56 * (k(0.000125) * t47)),
-        );
-        let t65 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t64 - t63,
-        );
-        let t66 = T::fused(
-            T::fused(t44, t57, -T::fused(-t38, t53, t41 * t55)),
-            t65,
-            -t61,
-        );
-        let t67 = T::fused(k(2e-6), outer_ring_dwx, -t66);
-        let t68 = k(18.84955592153876) * t;
-        let t69 = k(0.05) * t68.sin();
-        let t70 = t69.cos();
-        let t71 = t69.sin();
-        let t72 = k(12.566370614359172) * t;
-        let t73 = k(0.1) * t72.sin();
-        let t74 = t73.cos();
-        let t75 = t74 * t71;
-        let t76 = t73.sin();
-        let t77 = t76 * t71;
-        let t78 = T::fused(t77, t44, T::fused(-t70, t38, t75 * t41));
-        let t79 = outer_ring_e1 * t36;
-        let t80 = k(2.0) * outer_ring_e2;
-        let t81 = outer_ring_e3 * t80;
-        let t82 = t81 - t79;
-        let t83 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
-        let t84 = T::fused(t76, t82, t74 * t83);
-        let t85 = T::fused(-t76, t41, t74 * t44);
-        let t86 = t43 + t42;
-        let t87 = T::fused(t77, t83, -T::fused(t70, t86, t75 * t82));
-        let t88 = k(1.0) / T::fused(-t84, t78, t87 * t85);
-        let t89 = T::fused(
-            -T::fused(t83, t19, -T::fused(-t86, t7, t82 * t13)),
+        let t63 = T::fused(
             t34,
-            T::fused(t83, t50, T::fused(-t86, t45, t82 * t47)) * t60,
+            T::fused(t57, t33, T::fused(t29, t54, t56 * t32)),
+            -T::fused(t53, rotor_dsx, t62),
         );
-        let t90 = T::fused(T::fused(t83, t57, T::fused(t86, t53, t82 * t55)), t65, -t89);
-        let t91 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t90,
+        let t64 = T::fused(t39, T::fused(t57, t38, T::fused(t37, t54, t56 * t36)), -t63);
+        let t65 = T::fused(T::fused(t57, t14, T::fused(t19, t54, t56 * t25)), t12, t64);
+        let t66 = T::fused(
+            T::fused(t57, t42, T::fused(t45, t54, t48 * t56)),
+            t65,
+            k(0.025) * outer_ring_dwx,
         );
-        let t92 = t81 + t79;
-        let t93 = k(1.2566370614359172) * t72.cos();
-        let t94 = t93 * t76;
-        let t95 = T::fused(-outer_ring_e2, t80, t37);
-        let t96 = t93 * t74;
-        let t97 = k(0.9424777960769379) * t68.cos();
-        let t98 = t97 * t70;
-        let t99 = T::fused(
-            -T::fused(-t74, t98, t71 * t94),
-            t95,
-            t97 * t71 * (t40 - t39),
+        let t67 = T::fused(T::fused(t53, t42, T::fused(t48, t49, t45 * t52)), t61, t66);
+        let t68 = T::fused(T::fused(t42, t16, T::fused(t45, t22, t48 * t28)), t41, t67);
+        let t69 = T::fused(outer_ring_e3, outer_ring_e3, -t5);
+        let t70 = k(18.84955592153876) * t;
+        let t71 = k(0.05) * t70.sin();
+        let t72 = t71.sin();
+        let t73 = t7 * t72;
+        let t74 = t10 - t9;
+        let t75 = t2 * t72;
+        let t76 = t44 + t43;
+        let t77 = t71.cos();
+        let t78 = T::fused(t77, t76, T::fused(t73, t69, t75 * t74));
+        let t79 = T::fused(-t7, t48, t2 * t45);
+        let t80 = T::fused(t77, t42, T::fused(t73, t45, t75 * t48));
+        let t81 = T::fused(-t2, t69, t7 * t74);
+        let t82 = k(1.0) / T::fused(t79, t78, t81 * t80);
+        let t83 = T::fused(
+            -T::fused(t76, t57, T::fused(t69, t54, t74 * t56)),
+            t65,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t100 = T::fused(
-            T::fused(-t94, t92, t96 * t95),
-            T::fused(t78 * t88, t67, t87 * t88 * t91),
-            T::fused(-T::fused(t76, t98, t71 * t96), t92, t99)
-                * T::fused(t85 * t88, t67, t84 * t88 * t91),
+        let t84 = T::fused(-T::fused(t76, t53, T::fused(t52, t69, t74 * t49)), t61, t83);
+        let t85 = T::fused(-T::fused(t76, t16, T::fused(t22, t69, t74 * t28)), t41, t84);
+        let t86 = t70.cos();
+        let t87 = k(0.75) * (t86 * t77);
+        let t88 = T::fused(
+            t6,
+            T::fused(-t2, t87, t72 * t8),
+            k(0.75) * ((t47 - t46) * (t86 * t72)),
+        );
+        let t89 = T::fused(
+            -T::fused(-(t80 * t82), t68, t78 * t82 * t85),
+            T::fused(t6, t4, t11 * t8),
+            T::fused(t79 * t82, t68, t81 * t82 * t85)
+                * T::fused(t11, T::fused(t7, t87, t72 * t4), -t88),
         );
         *dy = [
             outer_ring_sx,
@@ -788,10 +734,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -t100,
+            -(k(0.00010053096491487339) * t89),
         ];
     }
-    /// Writes Φ: 122 operations (53 ±, 69 ×, 0 ÷) and 6 functions.
+    /// Writes Φ: 113 operations (53 ±, 60 ×, 0 ÷) and 6 functions.
     fn phi(&self, t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -815,75 +761,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e2 * outer_ring_e2;
-        let t1 = outer_ring_e0 * outer_ring_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + t0));
-        let t3 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t4 = t3.sin();
-        let t5 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t6 = t3.cos();
+        let t0 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t1 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t2 = t1.cos();
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = outer_ring_e0 * outer_ring_e0;
+        let t5 = k(0.5) - (t4 + t3);
+        let t6 = t1.sin();
         let t7 = k(0.05) * (k(18.84955592153876) * t).sin();
         let t8 = t7.sin();
         let t9 = outer_ring_e0 * outer_ring_e3;
         let t10 = outer_ring_e1 * outer_ring_e2;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = T::fused(t4 * t8, t5, T::fused(-(t6 * t8), t2, t7.cos() * t11));
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = T::fused(outer_ring_e1, outer_ring_e1, t1);
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = T::fused(-(k(2.0) * (k(0.5) - t16)), t15, k(2.0) * (t10 + t9) * t19);
-        let t21 = inner_ring_e3 * inner_ring_e3;
-        let t22 = inner_ring_e0 * inner_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + t21));
-        let t24 = T::fused(inner_ring_e1, inner_ring_e1, t22);
+        let t11 = t10 - t9;
+        let t12 = T::fused(t2 * t8, t5, -T::fused(t6 * t8, t0, t7.cos() * t11));
+        let t13 = inner_ring_e3 * inner_ring_e3;
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = k(0.5) - (t14 + t13);
+        let t16 = inner_ring_e0 * inner_ring_e1;
+        let t17 = inner_ring_e2 * inner_ring_e3;
+        let t18 = t17 - t16;
+        let t19 = T::fused(
+            -T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3),
+            t15,
+            (t10 + t9) * t18,
+        );
+        let t20 = inner_ring_e0 * inner_ring_e2;
+        let t21 = inner_ring_e1 * inner_ring_e3;
+        let t22 = t21 + t20;
+        let t23 = T::fused(outer_ring_e1, outer_ring_e1, t4);
+        let t24 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
-        let t27 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
-        let t28 = k(2.0) * (k(0.5) - t27);
-        let t29 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = inner_ring_e2 * inner_ring_e2;
-        let t31 = T::fused(
-            k(2.0) * (t26 - t25),
-            t28,
-            k(2.0) * (k(0.5) - (t22 + t30)) * t29,
+        let t27 = T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t28 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t29 = inner_ring_e2 * inner_ring_e2;
+        let t30 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
+        let t31 = k(0.5) - t30;
+        let t32 = T::fused(
+            t26 - t25,
+            t31,
+            T::fused(-(t17 + t16), t27, (k(0.5) - (t14 + t29)) * t28),
         );
-        let t32 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            T::fused(t4, t2, t6 * t5),
-            t12,
+            k(2.0) * T::fused(t2, t0, t6 * t5),
+            -(k(2.0) * t12),
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t23,
-                t20,
-            ),
-            T::fused(-t5, t23, T::fused(-t2, t19, t11 * t15)),
-            rotor_rx - T::fused(-k(0.00025), k(0.5) - t24, inner_ring_rx),
-            rotor_ry - T::fused(k(0.00025), t26 + t25, inner_ring_ry),
-            rotor_rz - T::fused(k(0.00025), t14 - t13, inner_ring_rz),
-            T::fused(k(2.0) * (t18 + t17), t32, -t31),
-            T::fused(-t23, t32, T::fused(-t15, t28, t19 * t29)),
-            T::fused(outer_ring_e3, outer_ring_e3, t16 + t0) - k(1.0),
-            t21 + (t24 + t30) - k(1.0),
-            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t27)) - k(1.0),
+            -(k(4.0) * T::fused(k(0.5) - t23, t22, -t19)),
+            -(k(4.0) * T::fused(t5, t18, -T::fused(-t0, t15, t11 * t22))),
+            T::fused(k(0.00025), k(0.5) - t24, -(inner_ring_rx - rotor_rx)),
+            -T::fused(k(0.00025), t26 + t25, inner_ring_ry - rotor_ry),
+            -T::fused(k(0.00025), t21 - t20, inner_ring_rz - rotor_rz),
+            -(k(4.0) * t32),
+            -(k(4.0) * T::fused(t22, t31, -T::fused(-t15, t27, t18 * t28))),
+            t3 + T::fused(outer_ring_e3, outer_ring_e3, t23) - k(1.0),
+            t29 + (t24 + t13) - k(1.0),
+            T::fused(rotor_e2, rotor_e2, T::fused(rotor_e3, rotor_e3, t30)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 236 operations (95 ±, 141 ×, 0 ÷) and 8 functions.
+    /// Writes Φ_r s + Φ_π' w' − ν: 234 operations (95 ±, 139 ×, 0 ÷) and 8 functions.
     fn velocity_residual(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -915,162 +855,162 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e2 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
-        let t7 = T::fused(outer_ring_wz, t4, outer_ring_wx * t6);
-        let t8 = k(12.566370614359172) * t;
-        let t9 = k(0.1) * t8.sin();
-        let t10 = t9.cos();
-        let t11 = outer_ring_e1 * t0;
-        let t12 = k(2.0) * outer_ring_e2;
-        let t13 = outer_ring_e3 * t12;
-        let t14 = t13 + t11;
-        let t15 = t9.sin();
-        let t16 = k(1.2566370614359172) * t8.cos();
-        let t17 = t16 * t15;
-        let t18 = outer_ring_e3 * t0;
-        let t19 = outer_ring_e2 * t2;
-        let t20 = t19 + t18;
-        let t21 = t13 - t11;
-        let t22 = T::fused(-outer_ring_wz, t20, outer_ring_wx * t21);
-        let t23 = T::fused(-outer_ring_e2, t12, t5);
-        let t24 = t16 * t10;
-        let t25 = T::fused(-t15, t22, t24 * t23) - T::fused(t10, t7, t17 * t14);
-        let t26 = k(18.84955592153876) * t;
-        let t27 = k(0.05) * t26.sin();
-        let t28 = t27.sin();
-        let t29 = t27.cos();
-        let t30 = k(0.9424777960769379) * t26.cos();
-        let t31 = t30 * t29;
-        let t32 = T::fused(-(t15 * t28), t7, T::fused(t15, t31, t28 * t24) * t14);
-        let t33 = T::fused(t10 * t28, t22, T::fused(-t10, t31, t28 * t17) * t23);
-        let t34 = T::fused(-outer_ring_e1, t2, t5);
-        let t35 = t3 + t1;
-        let t36 = t19 - t18;
-        let t37 = T::fused(
-            -t29,
-            T::fused(outer_ring_wz, t34, outer_ring_wx * t35),
-            t30 * t28 * t36,
+        let t0 = k(12.566370614359172) * t;
+        let t1 = k(0.1) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = t3 * t2;
+        let t5 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t6 = T::fused(outer_ring_e2, outer_ring_e2, -t5);
+        let t7 = outer_ring_e0 * outer_ring_e1;
+        let t8 = outer_ring_e2 * outer_ring_e3;
+        let t9 = t8 - t7;
+        let t10 = outer_ring_e0 * outer_ring_e3;
+        let t11 = outer_ring_e1 * outer_ring_e2;
+        let t12 = t11 + t10;
+        let t13 = T::fused(-t9, outer_ring_wx, t12 * outer_ring_wz);
+        let t14 = t1.sin();
+        let t15 = t3 * t14;
+        let t16 = t8 + t7;
+        let t17 = T::fused(outer_ring_e3, outer_ring_e3, -t5);
+        let t18 = outer_ring_e0 * outer_ring_e2;
+        let t19 = outer_ring_e1 * outer_ring_e3;
+        let t20 = t19 - t18;
+        let t21 = T::fused(-outer_ring_wx, t17, t20 * outer_ring_wz);
+        let t22 = T::fused(
+            k(0.7957747154594766),
+            t2 * t21,
+            T::fused(t16, t15, -T::fused(-t6, t4, k(0.7957747154594766) * (t14 * t13))),
         );
-        let t38 = k(2.0) * inner_ring_e0;
-        let t39 = inner_ring_e2 * t38;
-        let t40 = k(2.0) * inner_ring_e1;
-        let t41 = inner_ring_e3 * t40;
-        let t42 = t41 + t39;
-        let t43 = inner_ring_e1 * t38;
-        let t44 = k(2.0) * inner_ring_e2;
-        let t45 = inner_ring_e3 * t44;
-        let t46 = t45 - t43;
-        let t47 = T::fused(-inner_ring_e0, t38, k(1.0));
-        let t48 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t47);
-        let t49 = T::fused(t6, t48, T::fused(t35, t42, t21 * t46));
-        let t50 = T::fused(
+        let t23 = k(18.84955592153876) * t;
+        let t24 = k(0.05) * t23.sin();
+        let t25 = t24.cos();
+        let t26 = t23.cos();
+        let t27 = k(0.75) * (t26 * t25);
+        let t28 = t24.sin();
+        let t29 = T::fused(outer_ring_e1, outer_ring_e1, -t5);
+        let t30 = t19 + t18;
+        let t31 = t11 - t10;
+        let t32 = T::fused(
+            -t25,
+            T::fused(-outer_ring_wz, t29, t30 * outer_ring_wx),
+            k(0.9424777960769379) * (t31 * (t26 * t28)),
+        );
+        let t33 = T::fused(
+            t2 * t28,
+            t13,
+            T::fused(k(1.2566370614359172), t6 * T::fused(-t2, t27, t28 * t15), t32),
+        );
+        let t34 = T::fused(
+            t14 * t28,
+            t21,
+            T::fused(-k(1.2566370614359172), t16 * T::fused(t14, t27, t28 * t4), t33),
+        );
+        let t35 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t36 = T::fused(inner_ring_e3, inner_ring_e3, -t35);
+        let t37 = inner_ring_e0 * inner_ring_e1;
+        let t38 = inner_ring_e2 * inner_ring_e3;
+        let t39 = t38 - t37;
+        let t40 = inner_ring_e0 * inner_ring_e2;
+        let t41 = inner_ring_e1 * inner_ring_e3;
+        let t42 = t41 + t40;
+        let t43 = T::fused(t30, t42, T::fused(t17, t36, t9 * t39));
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t35);
+        let t45 = t38 + t37;
+        let t46 = inner_ring_e0 * inner_ring_e3;
+        let t47 = inner_ring_e1 * inner_ring_e2;
+        let t48 = t47 - t46;
+        let t49 = T::fused(inner_ring_e1, inner_ring_e1, -t35);
+        let t50 = t41 - t40;
+        let t51 = t47 + t46;
+        let t52 = T::fused(
+            -inner_ring_wx,
+            T::fused(t48, t29, T::fused(t12, t44, t20 * t45)),
+            inner_ring_wy * T::fused(t29, t49, T::fused(t20, t50, t12 * t51)),
+        );
+        let t53 = T::fused(
             outer_ring_wz,
-            T::fused(t14, t48, T::fused(-t36, t42, t23 * t46)),
-            outer_ring_wy * t49,
+            T::fused(t31, t42, T::fused(t16, t36, t39 * t6)),
+            T::fused(-outer_ring_wy, t43, t52),
         );
-        let t51 = T::fused(-inner_ring_e1, t40, t47);
-        let t52 = inner_ring_e3 * t38;
-        let t53 = inner_ring_e2 * t40;
-        let t54 = t53 + t52;
-        let t55 = t41 - t39;
-        let t56 = t53 - t52;
-        let t57 = T::fused(-inner_ring_e2, t44, t47);
-        let t58 = t45 + t43;
-        let t59 = T::fused(
-            -inner_ring_wy,
-            T::fused(t4, t55, T::fused(t34, t51, t20 * t54)),
-            inner_ring_wx * T::fused(t4, t58, -T::fused(t34, t56, t20 * t57)),
+        let t54 = T::fused(
+            -inner_ring_wx,
+            T::fused(t31, t48, T::fused(t6, t44, t16 * t45)),
+            inner_ring_wy * T::fused(t31, t49, T::fused(t51, t6, t16 * t50)),
         );
-        let t60 = T::fused(
+        let t55 = T::fused(
             outer_ring_wz,
-            T::fused(t4, t48, -T::fused(-t34, t42, t20 * t46)),
-            outer_ring_wx * t49,
+            T::fused(t42, t29, T::fused(t20, t36, t12 * t39)),
+            -T::fused(outer_ring_wx, t43, t54),
         );
-        let t61 = T::fused(
-            -inner_ring_wy,
-            T::fused(t14, t55, -T::fused(t36, t51, t23 * t54)),
-            inner_ring_wx * T::fused(t14, t58, T::fused(t36, t56, t23 * t57)),
+        let t56 = rotor_e0 * rotor_e2;
+        let t57 = rotor_e1 * rotor_e3;
+        let t58 = t57 - t56;
+        let t59 = rotor_e0 * rotor_e3;
+        let t60 = rotor_e1 * rotor_e2;
+        let t61 = t60 + t59;
+        let t62 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t63 = T::fused(rotor_e1, rotor_e1, -t62);
+        let t64 = T::fused(rotor_e3, rotor_e3, -t62);
+        let t65 = rotor_e0 * rotor_e1;
+        let t66 = rotor_e2 * rotor_e3;
+        let t67 = t66 - t65;
+        let t68 = t57 + t56;
+        let t69 = T::fused(rotor_e2, rotor_e2, -t62);
+        let t70 = t66 + t65;
+        let t71 = t60 - t59;
+        let t72 = T::fused(
+            -rotor_wy,
+            T::fused(t48, t68, T::fused(t45, t64, t67 * t44)),
+            rotor_wz * T::fused(t48, t71, T::fused(t69, t44, t45 * t70)),
         );
-        let t62 = k(2.0) * rotor_e1;
-        let t63 = k(2.0) * rotor_e0;
-        let t64 = T::fused(-rotor_e0, t63, k(1.0));
-        let t65 = T::fused(-rotor_e1, t62, t64);
-        let t66 = rotor_e3 * t63;
-        let t67 = rotor_e2 * t62;
-        let t68 = t67 + t66;
-        let t69 = rotor_e2 * t63;
-        let t70 = rotor_e3 * t62;
-        let t71 = t70 - t69;
-        let t72 = T::fused(t55, t71, T::fused(t51, t65, t54 * t68));
         let t73 = T::fused(
-            inner_ring_wz,
+            inner_ring_wx,
+            T::fused(t42, t63, T::fused(t58, t36, t39 * t61)),
             t72,
-            inner_ring_wx * T::fused(t48, t71, -T::fused(-t42, t65, t46 * t68)),
         );
-        let t74 = t67 - t66;
-        let t75 = k(2.0) * rotor_e2;
-        let t76 = T::fused(-rotor_e2, t75, t64);
-        let t77 = rotor_e1 * t63;
-        let t78 = rotor_e3 * t75;
-        let t79 = t78 + t77;
-        let t80 = t70 + t69;
-        let t81 = t78 - t77;
-        let t82 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t64);
-        let t83 = T::fused(
-            rotor_wz,
-            T::fused(t58, t79, T::fused(t56, t74, t57 * t76)),
-            rotor_wy * T::fused(t58, t82, T::fused(-t56, t80, t57 * t81)),
+        let t74 = T::fused(t49, t63, T::fused(t50, t58, t51 * t61));
+        let t75 = T::fused(
+            -rotor_wy,
+            T::fused(t42, t68, T::fused(t64, t36, t39 * t67)),
+            rotor_wz * T::fused(t42, t71, T::fused(t70, t36, t39 * t69)),
         );
-        let t84 = T::fused(
-            -inner_ring_wy,
-            t72,
-            inner_ring_wx * T::fused(t58, t71, -T::fused(t56, t65, t57 * t68)),
-        );
-        let t85 = T::fused(
-            rotor_wz,
-            T::fused(t48, t79, T::fused(-t42, t74, t46 * t76)),
-            rotor_wy * T::fused(t48, t82, T::fused(t42, t80, t46 * t81)),
+        let t76 = T::fused(
+            -inner_ring_wx,
+            T::fused(t48, t63, T::fused(t61, t44, t45 * t58)),
+            t75,
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            t25,
-            t32 - (t37 - t33),
+            -(k(2.5132741228718345) * t22),
+            -(k(2.0) * t34),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t59 + t50),
-            t60 - t61,
-            rotor_sx
-                - T::fused(
-                    -k(0.000125),
-                    T::fused(-inner_ring_wz, t56, inner_ring_wy * t42),
-                    inner_ring_sx,
-                ),
-            rotor_sy
-                - T::fused(
-                    -k(0.000125),
-                    T::fused(inner_ring_wz, t57, inner_ring_wy * t46),
-                    inner_ring_sy,
-                ),
-            rotor_sz
-                - T::fused(
-                    k(0.000125),
-                    T::fused(inner_ring_wz, t58, inner_ring_wy * t48),
-                    inner_ring_sz,
-                ),
-            t83 - t73,
-            -(t85 + t84),
+            k(4.0) * t53,
+            -(k(4.0) * t55),
+            T::fused(
+                k(0.00025),
+                T::fused(-t48, inner_ring_wz, t42 * inner_ring_wy),
+                -(inner_ring_sx - rotor_sx),
+            ),
+            T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wz, t44, t39 * inner_ring_wy),
+                -(inner_ring_sy - rotor_sy),
+            ),
+            -T::fused(
+                k(0.00025),
+                T::fused(-inner_ring_wy, t36, t45 * inner_ring_wz),
+                inner_ring_sz - rotor_sz,
+            ),
+            -(k(4.0) * T::fused(inner_ring_wz, t74, -t73)),
+            k(4.0) * T::fused(inner_ring_wy, t74, t76),
         ];
     }
-    /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
+    /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -1095,65 +1035,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = T::fused(
-            rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
-        );
-        let t1 = T::fused(
-            k(0.08),
-            T::fused(
-                rotor_sz,
-                rotor_sz,
-                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
-            T::fused(
-                inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.01),
-            T::fused(
-                inner_ring_sz,
-                inner_ring_sz,
-                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
-            T::fused(
-                outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.01),
+            k(10000.0),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
                 T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
             ),
-            t4,
+            T::fused(
+                outer_ring_wz,
+                outer_ring_wz,
+                T::fused(
+                    k(2.0),
+                    outer_ring_wx * outer_ring_wx,
+                    outer_ring_wy * outer_ring_wy,
+                ),
+            ),
+        );
+        let t1 = T::fused(
+            inner_ring_wz,
+            inner_ring_wz,
+            T::fused(
+                k(2.0),
+                inner_ring_wy * inner_ring_wy,
+                T::fused(inner_ring_wx, inner_ring_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(10000.0),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t1,
+        );
+        let t3 = T::fused(
+            k(5.0),
+            rotor_wz * rotor_wz,
+            T::fused(
+                k(5.0),
+                rotor_wy * rotor_wy,
+                T::fused(k(10.0), rotor_wx * rotor_wx, t2),
+            ),
+        );
+        let t4 = T::fused(
+            k(80000.0),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t3,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: T::fused(
-                k(0.8),
-                rotor_ry,
-                k(0.1) * (outer_ring_ry + inner_ring_ry),
-            ),
+            kinetic: k(5e-7) * t4,
+            potential: k(0.1) * T::fused(k(8.0), rotor_ry, outer_ring_ry + inner_ring_ry),
         }
     }
-    /// Writes the joint readings: 133 operations (59 ±, 74 ×, 0 ÷) and 7 functions.
+    /// Writes the joint readings: 123 operations (59 ±, 64 ×, 0 ÷) and 7 functions.
     fn read_joints(&self, t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1173,75 +1112,76 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = outer_ring_e2 * outer_ring_e2;
+        let t0 = outer_ring_e3 * outer_ring_e3;
         let t1 = outer_ring_e0 * outer_ring_e0;
         let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
-        let t3 = outer_ring_e3 * outer_ring_e3;
-        let t4 = k(1.0) - (t3 + (t2 + t0));
-        let t5 = T::fused(k(2.0), k(0.5) - (t1 + t3), -t4);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
         let t6 = k(0.05) * (k(18.84955592153876) * t).sin();
         let t7 = t6.sin();
         let t8 = k(12.566370614359172) * t;
         let t9 = k(0.1) * t8.sin();
         let t10 = t9.sin();
-        let t11 = outer_ring_e0 * outer_ring_e1;
-        let t12 = outer_ring_e2 * outer_ring_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = t9.cos();
-        let t15 = outer_ring_e0 * outer_ring_e2;
-        let t16 = outer_ring_e1 * outer_ring_e3;
-        let t17 = T::fused(t14 * t7, t13, t6.cos() * (k(2.0) * (t16 + t15)));
-        let t18 = inner_ring_e0 * inner_ring_e2;
-        let t19 = inner_ring_e1 * inner_ring_e3;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = inner_ring_e0 * inner_ring_e3;
-        let t22 = inner_ring_e1 * inner_ring_e2;
-        let t23 = k(2.0) * (t22 + t21);
-        let t24 = inner_ring_e2 * inner_ring_e2;
-        let t25 = inner_ring_e0 * inner_ring_e0;
-        let t26 = T::fused(inner_ring_e1, inner_ring_e1, t25);
-        let t27 = inner_ring_e3 * inner_ring_e3;
-        let t28 = k(1.0) - (t27 + (t26 + t24));
-        let t29 = T::fused(k(2.0), k(0.5) - t26, -t28);
-        let t30 = outer_ring_e0 * outer_ring_e3;
-        let t31 = outer_ring_e1 * outer_ring_e2;
-        let t32 = T::fused(
-            t23,
-            T::fused(k(2.0), k(0.5) - (t1 + t0), -t4),
-            k(2.0) * (t31 - t30) * t29,
+        let t11 = outer_ring_e0 * outer_ring_e2;
+        let t12 = outer_ring_e1 * outer_ring_e3;
+        let t13 = outer_ring_e0 * outer_ring_e1;
+        let t14 = outer_ring_e2 * outer_ring_e3;
+        let t15 = t14 - t13;
+        let t16 = t9.cos();
+        let t17 = T::fused(
+            -(t10 * t7),
+            t5,
+            T::fused(t6.cos(), t12 + t11, t16 * t7 * t15),
         );
+        let t18 = inner_ring_e3 * inner_ring_e3;
+        let t19 = inner_ring_e0 * inner_ring_e0;
+        let t20 = T::fused(inner_ring_e1, inner_ring_e1, t19);
+        let t21 = inner_ring_e2 * inner_ring_e2;
+        let t22 = k(0.5) * (k(1.0) - (t21 + (t20 + t18)));
+        let t23 = k(0.5) - t20 - t22;
+        let t24 = outer_ring_e0 * outer_ring_e3;
+        let t25 = outer_ring_e1 * outer_ring_e2;
+        let t26 = inner_ring_e0 * inner_ring_e3;
+        let t27 = inner_ring_e1 * inner_ring_e2;
+        let t28 = t27 + t26;
+        let t29 = T::fused(t25 - t24, t23, t28 * (k(0.5) - (t1 + t3) - t4));
+        let t30 = inner_ring_e0 * inner_ring_e2;
+        let t31 = inner_ring_e1 * inner_ring_e3;
+        let t32 = t31 - t30;
         let t33 = T::fused(
-            k(2.0) * (t31 + t30),
-            t23,
-            T::fused(k(2.0), k(0.5) - t2, -t4) * t29,
+            t12 - t11,
+            t32,
+            T::fused(t23, k(0.5) - t2 - t4, (t25 + t24) * t28),
         );
-        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t35 = rotor_e2 * rotor_e2;
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = T::fused(
-            k(2.0),
-            k(0.5) - (t36 + t35),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        let t34 = rotor_e2 * rotor_e2;
+        let t35 = rotor_e0 * rotor_e0;
+        let t36 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t35 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t35 + t34))),
         );
+        let t37 = k(0.5) * (k(1.0) - (t34 + t36));
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t19 + t18) * t40);
+        let t40 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t41 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t42 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t25 + t24), -t28),
-            t37,
-            k(2.0) * (t22 - t21) * t40,
+            t41,
+            k(0.5) - (t19 + t18) - t22,
+            -T::fused(t39 - t38, t37, (t31 + t30) * t40),
         );
+        let t43 = T::fused(-(k(0.5) - (t19 + t21) - t22), t37, (t27 - t26) * t40);
         *out = [
-            T::fused(-(t10 * t7), t5, t17),
-            -T::fused(t14, t5, t10 * t13),
-            T::fused(k(1.2566370614359172) * t8.cos(), t7, outer_ring_wy),
-            T::fused(k(2.0) * (t12 + t11), t20, -t32),
-            T::fused(k(2.0) * (t16 - t15), t20, t33),
+            k(2.0) * t17,
+            -(k(2.0) * T::fused(t16, t5, t10 * t15)),
+            k(1.2566370614359172)
+                * T::fused(k(0.7957747154594766), outer_ring_wy, t8.cos() * t7),
+            k(4.0) * T::fused(t14 + t13, t32, -t29),
+            k(4.0) * t33,
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t34, T::fused(k(2.0), k(0.5) - (t25 + t27), -t28), t41),
-            T::fused(k(2.0) * (t39 + t38), t34, t42),
+            -(k(4.0) * t42),
+            k(4.0) * T::fused(t39 + t38, t41, t43),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -1385,7 +1325,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for PitchingBearings<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 552 operations (206 ±, 343 ×, 3 ÷) and 6 functions.
+    /// One Newton step of the dependent positions: 528 operations (206 ±, 319 ×, 3 ÷) and 6 functions.
     fn newton_step_on(&self, t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1413,313 +1353,320 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for PitchingBearings<T> {
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
         let t0 = T::fused(
-            outer_ring_e3,
-            outer_ring_e3,
+            outer_ring_e2,
+            outer_ring_e2,
             T::fused(
-                outer_ring_e2,
-                outer_ring_e2,
-                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+                outer_ring_e1,
+                outer_ring_e1,
+                T::fused(outer_ring_e3, outer_ring_e3, outer_ring_e0 * outer_ring_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
-        let t2 = outer_ring_e1 * t1;
+        let t1 = k(3.0) - t0;
+        let t2 = outer_ring_e2 * t1;
         let t3 = outer_ring_e0 * t1;
-        let t4 = outer_ring_e3 * t1;
-        let t5 = outer_ring_e2 * t1;
-        let t6 = T::fused(
-            -chart0_3,
-            t2,
-            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
-        );
-        let t7 = k(0.5) * t6;
-        let t8 = t5 * t4;
-        let t9 = t3 * t2;
-        let t10 = k(2.0) * (t9 - t8);
+        let t4 = t3 * t2;
+        let t5 = outer_ring_e3 * t1;
+        let t6 = outer_ring_e1 * t1;
+        let t7 = t6 * t5;
+        let t8 = t7 - t4;
+        let t9 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t10 = t9.sin();
         let t11 = k(0.1) * (k(12.566370614359172) * t).sin();
         let t12 = t11.sin();
-        let t13 = t3 * t3;
-        let t14 = k(2.0) * (k(0.5) - T::fused(t4, t4, t13));
-        let t15 = t11.cos();
-        let t16 = T::fused(-t12, t10, t15 * t14);
-        let t17 = t2 * t5;
-        let t18 = t3 * t4;
-        let t19 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t20 = t19.cos();
-        let t21 = k(2.0) * (k(0.5) - T::fused(t5, t5, t13));
-        let t22 = t19.sin();
-        let t23 = t15 * t22;
-        let t24 = k(2.0) * (t9 + t8);
-        let t25 = t12 * t22;
-        let t26 = T::fused(t25, t24, -T::fused(t20, k(2.0) * (t18 - t17), t23 * t21));
-        let t27 = t2 * t4;
-        let t28 = t3 * t5;
-        let t29 = T::fused(t25, t14, T::fused(-t20, k(2.0) * (t28 + t27), t23 * t10));
-        let t30 = T::fused(t12, t21, t15 * t24);
-        let t31 = k(2.0) * (t18 + t17);
-        let t32 = T::fused(-t20, k(2.0) * (k(0.5) - T::fused(t2, t2, t13)), t23 * t31);
-        let t33 = k(2.0) * (t28 - t27);
-        let t34 = T::fused(t25, t33, -t32);
-        let t35 = T::fused(t12, t31, t15 * t33);
-        let t36 = T::fused(-t16, t34, t35 * t29);
-        let t37 = k(1.0) / (t7 * t36);
-        let t38 = t37 * T::fused(-t26, t16 * t7, t30 * (t29 * t7));
+        let t13 = t12 * t10;
+        let t14 = t3 * t5;
+        let t15 = t6 * t2;
+        let t16 = t15 + t14;
+        let t17 = t11.cos();
+        let t18 = t17 * t10;
+        let t19 = t3 * t3;
+        let t20 = t9.cos();
+        let t21 = T::fused(
+            t20,
+            k(2.0) - T::fused(t6, t6, t19),
+            -T::fused(t13, t8, t18 * t16),
+        );
+        let t22 = T::fused(
+            chart0_3,
+            t6,
+            T::fused(chart0_2, t3, -T::fused(chart0_0, t2, chart0_1 * t5)),
+        );
+        let t23 = t6 * t3;
+        let t24 = t5 * t2;
+        let t25 = t24 + t23;
+        let t26 = k(2.0) - T::fused(t2, t2, t19);
+        let t27 = T::fused(t17, t25, t12 * t26);
+        let t28 = T::fused(-t17, t8, t12 * t16);
+        let t29 = T::fused(t20, t15 - t14, -T::fused(-t13, t25, t18 * t26));
+        let t30 = k(2.0) - T::fused(t5, t5, t19);
+        let t31 = t24 - t23;
+        let t32 = T::fused(t20, t7 + t4, T::fused(-t13, t30, t18 * t31));
+        let t33 = T::fused(t17, t30, t12 * t31);
+        let t34 = T::fused(t32, t28, t33 * t21);
+        let t35 = k(1.0) / (t22 * t34);
+        let t36 = t35 * T::fused(-t27, t22 * t21, t29 * (t22 * t28));
+        let t37 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t3, outer_ring_e0),
+            chart0_1 * T::fused(-k(0.5), t6, outer_ring_e1),
+        );
+        let t38 = T::fused(
+            chart0_3,
+            T::fused(-k(0.5), t5, outer_ring_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t2, outer_ring_e2), t37),
+        );
         let t39 = T::fused(
-            chart0_2,
-            outer_ring_e2 + t5,
-            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+            chart0_3,
+            t2,
+            -T::fused(chart0_2, t5, T::fused(-chart0_0, t6, chart0_1 * t3)),
         );
         let t40 = T::fused(
             chart0_3,
-            t5,
-            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
-        );
-        let t41 = k(0.5) * t40;
-        let t42 = T::fused(
-            -chart0_3,
             t3,
-            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+            -T::fused(chart0_2, t6, -T::fused(-chart0_0, t5, chart0_1 * t2)),
         );
-        let t43 = k(0.5) * t42;
-        let t44 = T::fused(
-            -t26,
-            T::fused(t35, t41, t16 * t43),
-            t30 * T::fused(t29, t43, t34 * t41),
+        let t41 = T::fused(
+            -t27,
+            T::fused(t21, t39, t32 * t40),
+            t29 * T::fused(-t33, t40, t28 * t39),
         );
-        let t45 = t37 * T::fused(T::fused(chart0_3, outer_ring_e3 + t4, t39), t36, t44);
-        let t46 = t37 * T::fused(-t26, t35 * t7, t30 * (t34 * t7));
-        let t47 = T::fused(k(0.5), T::fused(t4, t38, T::fused(-t5, t45, t2 * t46)), t3);
-        let t48 = T::fused(-k(0.5), T::fused(t5, t38, T::fused(t4, t45, t3 * t46)), t2);
-        let t49 = T::fused(
+        let t42 = t35 * T::fused(-k(4.0), t34 * t38, t41);
+        let t43 = T::fused(t22 * t32, t27, t22 * t33 * t29) * t35;
+        let t44 = T::fused(k(0.5), T::fused(t5, t43, T::fused(t6, t36, t2 * t42)), t3);
+        let t45 = T::fused(
             -k(0.5),
-            T::fused(-t2, t38, T::fused(-t3, t45, t4 * t46)),
-            t5,
+            T::fused(t2, t43, -T::fused(-t3, t36, t5 * t42)),
+            t6,
         );
-        let t50 = T::fused(k(0.5), T::fused(-t3, t38, T::fused(t2, t45, t5 * t46)), t4);
-        let t51 = t48 * t49;
-        let t52 = t47 * t50;
-        let t53 = k(2.0) * (t52 - t51);
+        let t46 = T::fused(k(0.5), T::fused(t6, t43, -T::fused(t5, t36, t3 * t42)), t2);
+        let t47 = T::fused(-k(0.5), T::fused(t3, t43, T::fused(-t2, t36, t6 * t42)), t5);
+        let t48 = T::fused(
+            inner_ring_e2,
+            inner_ring_e2,
+            T::fused(
+                inner_ring_e1,
+                inner_ring_e1,
+                T::fused(inner_ring_e3, inner_ring_e3, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t49 = k(3.0) - t48;
+        let t50 = inner_ring_e3 * t49;
+        let t51 = inner_ring_e2 * t49;
+        let t52 = inner_ring_e1 * t49;
+        let t53 = inner_ring_e0 * t49;
         let t54 = T::fused(
-            inner_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                inner_ring_e2,
-                inner_ring_e2,
-                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t55 = k(0.5) * (t54 - k(3.0));
-        let t56 = inner_ring_e2 * t55;
-        let t57 = inner_ring_e1 * t55;
-        let t58 = t57 * t56;
-        let t59 = inner_ring_e3 * t55;
-        let t60 = inner_ring_e0 * t55;
-        let t61 = t60 * t59;
-        let t62 = k(2.0) * (t61 - t58);
-        let t63 = t47 * t47;
-        let t64 = k(2.0) * (k(0.5) - T::fused(t49, t49, t63));
-        let t65 = t60 * t60;
-        let t66 = k(2.0) * (k(0.5) - T::fused(t56, t56, t65));
-        let t67 = k(2.0) * T::fused(t49, t50, t47 * t48);
-        let t68 = t56 * t59;
-        let t69 = t60 * t57;
-        let t70 = k(2.0) * (t69 + t68);
-        let t71 = T::fused(t70, t67, T::fused(t62, t53, t66 * t64));
-        let t72 = k(2.0) * (k(0.5) - T::fused(t57, t57, t65));
-        let t73 = k(2.0) * (k(0.5) - T::fused(t48, t48, t63));
-        let t74 = k(2.0) * (t61 + t58);
-        let t75 = k(2.0) * (t52 + t51);
-        let t76 = t57 * t59;
-        let t77 = t60 * t56;
-        let t78 = k(2.0) * (t77 - t76);
-        let t79 = k(2.0) * T::fused(-t48, t50, t47 * t49);
-        let t80 = T::fused(t79, t78, T::fused(t73, t72, t75 * t74));
-        let t81 = T::fused(t78, t67, T::fused(-t72, t53, t74 * t64));
-        let t82 = T::fused(t70, t79, T::fused(-t62, t73, t66 * t75));
-        let t83 = T::fused(-t80, t71, t82 * t81);
-        let t84 = T::fused(
-            chart1_2,
-            inner_ring_e2 + t56,
-            T::fused(chart1_1, inner_ring_e1 + t57, chart1_0 * (inner_ring_e0 + t60)),
-        );
-        let t85 = T::fused(
-            -chart1_3,
-            t57,
-            T::fused(-chart1_2, t60, T::fused(chart1_1, t59, chart1_0 * t56)),
-        );
-        let t86 = k(0.5) * t85;
-        let t87 = T::fused(
             chart1_3,
-            t56,
-            T::fused(-chart1_2, t59, T::fused(-chart1_1, t60, chart1_0 * t57)),
+            t53,
+            -T::fused(chart1_2, t52, -T::fused(-chart1_0, t50, chart1_1 * t51)),
         );
-        let t88 = k(0.5) * t87;
-        let t89 = k(2.0) * (t77 + t76);
-        let t90 = k(2.0) * (t69 - t68);
-        let t91 = k(2.0) * (k(0.5) - T::fused(t59, t59, t65));
-        let t92 = T::fused(t91, t67, -T::fused(-t89, t53, t90 * t64));
-        let t93 = T::fused(t79, t91, -T::fused(t73, t89, t75 * t90));
+        let t55 = t51 * t53;
+        let t56 = t52 * t50;
+        let t57 = t56 - t55;
+        let t58 = T::fused(t44, t45, t46 * t47);
+        let t59 = t50 * t53;
+        let t60 = t51 * t52;
+        let t61 = t60 + t59;
+        let t62 = t44 * t44;
+        let t63 = k(2.0) - T::fused(t46, t46, t62);
+        let t64 = t53 * t53;
+        let t65 = k(2.0) - T::fused(t52, t52, t64);
+        let t66 = t44 * t47;
+        let t67 = t45 * t46;
+        let t68 = t67 - t66;
+        let t69 = T::fused(t68, t65, T::fused(-t58, t57, t63 * t61));
+        let t70 = k(2.0) - T::fused(t50, t50, t64);
+        let t71 = T::fused(-t44, t46, t45 * t47);
+        let t72 = t52 * t53;
+        let t73 = t51 * t50;
+        let t74 = t73 - t72;
+        let t75 = t67 + t66;
+        let t76 = t56 + t55;
+        let t77 = k(2.0) - T::fused(t45, t45, t62);
+        let t78 = T::fused(t77, t76, -T::fused(-t71, t70, t75 * t74));
+        let t79 = T::fused(t65, t77, T::fused(t57, t71, t61 * t75));
+        let t80 = T::fused(t68, t76, -T::fused(t58, t70, t63 * t74));
+        let t81 = t73 + t72;
+        let t82 = k(2.0) - T::fused(t51, t51, t64);
+        let t83 = t60 - t59;
+        let t84 = T::fused(t83, t77, T::fused(-t81, t71, t82 * t75));
+        let t85 = T::fused(t68, t83, T::fused(t58, t81, t63 * t82));
+        let t86 = T::fused(-t69, t84, t85 * t79);
+        let t87 = k(1.0) / (t86 * t54);
+        let t88 = t87 * T::fused(-t78, t69 * t54, t80 * (t79 * t54));
+        let t89 = t87 * T::fused(-t78, t85 * t54, t80 * (t84 * t54));
+        let t90 = T::fused(
+            chart1_0,
+            T::fused(-k(0.5), t53, inner_ring_e0),
+            chart1_1 * T::fused(-k(0.5), t52, inner_ring_e1),
+        );
+        let t91 = T::fused(
+            chart1_3,
+            T::fused(-k(0.5), t50, inner_ring_e3),
+            T::fused(chart1_2, T::fused(-k(0.5), t51, inner_ring_e2), t90),
+        );
+        let t92 = T::fused(
+            chart1_3,
+            t52,
+            T::fused(chart1_2, t53, -T::fused(chart1_0, t51, chart1_1 * t50)),
+        );
+        let t93 = T::fused(
+            chart1_3,
+            t51,
+            -T::fused(chart1_2, t50, T::fused(-chart1_0, t52, chart1_1 * t53)),
+        );
         let t94 = T::fused(
-            t92,
-            T::fused(-t82, t86, t80 * t88),
-            t93 * T::fused(-t81, t88, t71 * t86),
+            -T::fused(t85, t92, t69 * t93),
+            t78,
+            T::fused(t79, t93, t84 * t92) * t80,
         );
-        let t95 = T::fused(
-            -chart1_3,
-            t60,
-            T::fused(chart1_2, t57, T::fused(-chart1_1, t56, chart1_0 * t59)),
-        );
-        let t96 = k(0.5) * t95;
-        let t97 = k(1.0) / (t96 * t83);
-        let t98 = t97
-            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t59, t84), t83, t94);
-        let t99 = t97 * T::fused(-t92, t82 * t96, t93 * (t71 * t96));
-        let t100 = t97 * T::fused(-t92, t80 * t96, t93 * (t81 * t96));
-        let t101 = T::fused(
-            k(0.5),
-            T::fused(t59, t98, T::fused(-t56, t99, t57 * t100)),
-            t60,
-        );
-        let t102 = T::fused(
+        let t95 = T::fused(k(4.0), t86 * t91, t94) * t87;
+        let t96 = T::fused(
             -k(0.5),
-            T::fused(t56, t98, T::fused(t59, t99, t60 * t100)),
-            t57,
+            T::fused(t50, t95, -T::fused(-t52, t88, t51 * t89)),
+            t53,
         );
-        let t103 = T::fused(
-            -k(0.5),
-            T::fused(-t57, t98, T::fused(-t60, t99, t59 * t100)),
-            t56,
-        );
-        let t104 = T::fused(
+        let t97 = T::fused(
             k(0.5),
-            T::fused(-t60, t98, T::fused(t57, t99, t56 * t100)),
-            t59,
+            T::fused(t51, t95, T::fused(t53, t88, t50 * t89)),
+            t52,
         );
-        let t105 = t101 * t101;
-        let t106 = t102 * t103;
-        let t107 = t101 * t104;
-        let t108 = t102 * t104;
-        let t109 = t101 * t103;
-        let t110 = T::fused(
-            rotor_e3,
-            rotor_e3,
+        let t98 = T::fused(
+            -k(0.5),
+            T::fused(t52, t95, T::fused(-t50, t88, t53 * t89)),
+            t51,
+        );
+        let t99 = T::fused(
+            k(0.5),
+            T::fused(t53, t95, -T::fused(t51, t88, t52 * t89)),
+            t50,
+        );
+        let t100 = t96 * t96;
+        let t101 = t96 * t99;
+        let t102 = t97 * t98;
+        let t103 = t96 * t98;
+        let t104 = t97 * t99;
+        let t105 = T::fused(
+            rotor_e2,
+            rotor_e2,
             T::fused(
-                rotor_e2,
-                rotor_e2,
-                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+                rotor_e1,
+                rotor_e1,
+                T::fused(rotor_e3, rotor_e3, rotor_e0 * rotor_e0),
             ),
         );
-        let t111 = k(0.5) * (t110 - k(3.0));
-        let t112 = rotor_e2 * t111;
-        let t113 = rotor_e3 * t111;
-        let t114 = rotor_e0 * t111;
-        let t115 = rotor_e1 * t111;
-        let t116 = T::fused(
-            chart2_3,
-            t112,
-            T::fused(-chart2_2, t113, T::fused(-chart2_1, t114, chart2_0 * t115)),
+        let t106 = k(3.0) - t105;
+        let t107 = rotor_e0 * t106;
+        let t108 = rotor_e1 * t106;
+        let t109 = T::fused(
+            chart2_0,
+            T::fused(-k(0.5), t107, rotor_e0),
+            chart2_1 * T::fused(-k(0.5), t108, rotor_e1),
         );
-        let t117 = k(0.5) * t116;
-        let t118 = k(2.0) * (t107 - t106);
-        let t119 = t115 * t113;
-        let t120 = t114 * t112;
-        let t121 = k(2.0) * (t120 + t119);
-        let t122 = k(2.0) * (k(0.5) - T::fused(t103, t103, t105));
-        let t123 = t112 * t113;
-        let t124 = t114 * t115;
-        let t125 = k(2.0) * (t124 - t123);
-        let t126 = t103 * t104;
-        let t127 = t101 * t102;
-        let t128 = k(2.0) * (t127 + t126);
-        let t129 = t114 * t114;
-        let t130 = k(2.0) * (k(0.5) - T::fused(t113, t113, t129));
-        let t131 = T::fused(t130, t128, -T::fused(-t121, t118, t125 * t122));
-        let t132 = k(2.0) * (t109 + t108);
-        let t133 = k(2.0) * (k(0.5) - T::fused(t115, t115, t129));
-        let t134 = k(2.0) * (t127 - t126);
-        let t135 = t115 * t112;
-        let t136 = t114 * t113;
-        let t137 = k(2.0) * (t136 + t135);
-        let t138 = k(2.0) * (k(0.5) - T::fused(t104, t104, t105));
-        let t139 = k(2.0) * (t120 - t119);
-        let t140 = T::fused(t139, t138, -T::fused(t133, t132, t137 * t134));
-        let t141 = T::fused(t130, t138, T::fused(t121, t132, t125 * t134));
-        let t142 = T::fused(t128, t139, T::fused(-t118, t133, t122 * t137));
-        let t143 = k(2.0) * (t136 - t135);
-        let t144 = k(2.0) * (k(0.5) - T::fused(t112, t112, t129));
-        let t145 = k(2.0) * (t124 + t123);
-        let t146 = T::fused(t128, t145, T::fused(t118, t143, t122 * t144));
-        let t147 = T::fused(t145, t138, -T::fused(-t143, t132, t144 * t134));
-        let t148 = T::fused(-t146, t141, t131 * t147);
-        let t149 = k(1.0) / (t117 * t148);
-        let t150 = t149 * T::fused(-t140, t131 * t117, t142 * (t141 * t117));
-        let t151 = t149 * T::fused(-t140, t146 * t117, t142 * (t147 * t117));
+        let t110 = rotor_e2 * t106;
+        let t111 = rotor_e3 * t106;
+        let t112 = T::fused(
+            chart2_3,
+            T::fused(-k(0.5), t111, rotor_e3),
+            T::fused(chart2_2, T::fused(-k(0.5), t110, rotor_e2), t109),
+        );
+        let t113 = t107 * t108;
+        let t114 = t110 * t111;
+        let t115 = t114 + t113;
+        let t116 = k(2.0) - T::fused(t99, t99, t100);
+        let t117 = t107 * t107;
+        let t118 = k(2.0) - T::fused(t110, t110, t117);
+        let t119 = t96 * t97;
+        let t120 = t98 * t99;
+        let t121 = t120 - t119;
+        let t122 = t111 * t107;
+        let t123 = t110 * t108;
+        let t124 = t123 - t122;
+        let t125 = t104 + t103;
+        let t126 = T::fused(t125, t124, -T::fused(t116, t115, t121 * t118));
+        let t127 = k(2.0) - T::fused(t111, t111, t117);
+        let t128 = t120 + t119;
+        let t129 = t114 - t113;
+        let t130 = k(2.0) - T::fused(t98, t98, t100);
+        let t131 = t110 * t107;
+        let t132 = t111 * t108;
+        let t133 = t132 + t131;
+        let t134 = t102 - t101;
+        let t135 = T::fused(t134, t133, -T::fused(t128, t127, t130 * t129));
+        let t136 = T::fused(t134, t124, T::fused(t128, t115, t130 * t118));
+        let t137 = T::fused(t133, t125, T::fused(t127, t116, t129 * t121));
+        let t138 = T::fused(-t135, t126, t137 * t136);
+        let t139 = T::fused(
+            chart2_3,
+            t107,
+            -T::fused(chart2_2, t108, -T::fused(-chart2_0, t111, chart2_1 * t110)),
+        );
+        let t140 = T::fused(
+            chart2_3,
+            t108,
+            T::fused(chart2_2, t107, -T::fused(chart2_0, t110, chart2_1 * t111)),
+        );
+        let t141 = t132 - t131;
+        let t142 = t123 + t122;
+        let t143 = k(2.0) - T::fused(t108, t108, t117);
+        let t144 = T::fused(t134, t143, T::fused(-t128, t141, t130 * t142));
+        let t145 = T::fused(t125, t143, -T::fused(-t116, t141, t121 * t142));
+        let t146 = T::fused(
+            -t144,
+            T::fused(t137, t139, t126 * t140),
+            t145 * T::fused(t136, t140, t135 * t139),
+        );
+        let t147 = T::fused(
+            chart2_3,
+            t110,
+            -T::fused(chart2_2, t111, T::fused(-chart2_0, t108, chart2_1 * t107)),
+        );
+        let t148 = k(1.0) / (t147 * t138);
+        let t149 = t148 * T::fused(k(4.0), t138 * t112, t146);
+        let t150 = t148 * T::fused(-t144, t147 * t126, t145 * (t147 * t136));
+        let t151 = T::fused(-(t147 * t137), t144, t147 * t135 * t145) * t148;
         let t152 = T::fused(
-            chart2_2,
-            rotor_e2 + t112,
-            T::fused(chart2_1, rotor_e1 + t115, chart2_0 * (rotor_e0 + t114)),
+            k(0.5),
+            T::fused(t111, t151, T::fused(t108, t149, t110 * t150)),
+            t107,
         );
         let t153 = T::fused(
-            -chart2_3,
-            t114,
-            T::fused(chart2_2, t115, T::fused(-chart2_1, t112, chart2_0 * t113)),
+            -k(0.5),
+            T::fused(t110, t151, -T::fused(-t107, t149, t111 * t150)),
+            t108,
         );
-        let t154 = k(0.5) * t153;
+        let t154 = T::fused(
+            k(0.5),
+            T::fused(t108, t151, -T::fused(t111, t149, t107 * t150)),
+            t110,
+        );
         let t155 = T::fused(
-            -chart2_3,
-            t115,
-            T::fused(-chart2_2, t114, T::fused(chart2_1, t113, chart2_0 * t112)),
-        );
-        let t156 = k(0.5) * t155;
-        let t157 = T::fused(
-            t140,
-            T::fused(-t131, t154, t146 * t156),
-            t142 * T::fused(-t147, t156, t141 * t154),
-        );
-        let t158 = t149
-            * T::fused(T::fused(chart2_3, rotor_e3 + t113, t152), t148, t157);
-        let t159 = T::fused(
             -k(0.5),
-            T::fused(-t113, t150, T::fused(t112, t151, t115 * t158)),
-            t114,
-        );
-        let t160 = T::fused(
-            k(0.5),
-            T::fused(-t112, t150, T::fused(-t113, t151, t114 * t158)),
-            t115,
-        );
-        let t161 = T::fused(
-            k(0.5),
-            T::fused(t115, t150, T::fused(t114, t151, t113 * t158)),
-            t112,
-        );
-        let t162 = T::fused(
-            -k(0.5),
-            T::fused(t114, t150, T::fused(-t115, t151, t112 * t158)),
-            t113,
+            T::fused(t107, t151, T::fused(-t110, t149, t108 * t150)),
+            t111,
         );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
-        y[3] = -t47;
-        y[4] = -t48;
-        y[5] = -t49;
-        y[6] = -t50;
+        y[3] = k(0.5) * t44;
+        y[4] = k(0.5) * t45;
+        y[5] = k(0.5) * t46;
+        y[6] = k(0.5) * t47;
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = -t101;
-        y[11] = -t102;
-        y[12] = -t103;
-        y[13] = -t104;
-        y[14] = -(k(0.00025) * (k(0.5) - T::fused(t102, t102, t105)));
-        y[15] = k(0.00025) * (t107 + t106);
-        y[16] = -(k(0.00025) * (t109 - t108));
-        y[17] = -t159;
-        y[18] = -t160;
-        y[19] = -t161;
-        y[20] = -t162;
+        y[10] = k(0.5) * t96;
+        y[11] = k(0.5) * t97;
+        y[12] = k(0.5) * t98;
+        y[13] = k(0.5) * t99;
+        y[14] = -(k(6.25e-5) * (k(2.0) - T::fused(t97, t97, t100)));
+        y[15] = k(6.25e-5) * (t102 + t101);
+        y[16] = k(6.25e-5) * (t104 - t103);
+        y[17] = k(0.5) * t152;
+        y[18] = k(0.5) * t153;
+        y[19] = k(0.5) * t154;
+        y[20] = k(0.5) * t155;
     }
-    /// Solves eq. (19) for the dependent velocities: 312 operations (113 ±, 196 ×, 3 ÷) and 8 functions.
+    /// Solves eq. (19) for the dependent velocities: 287 operations (113 ±, 171 ×, 3 ÷) and 8 functions.
     fn solve_velocities_on(&self, t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1742,139 +1689,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for PitchingBearings<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t2 = k(18.84955592153876) * t;
-        let t3 = k(0.05) * t2.sin();
-        let t4 = t3.cos();
-        let t5 = outer_ring_e0 * outer_ring_e3;
-        let t6 = outer_ring_e1 * outer_ring_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = t3.sin();
-        let t9 = k(12.566370614359172) * t;
-        let t10 = k(0.1) * t9.sin();
-        let t11 = t10.cos();
-        let t12 = t11 * t8;
-        let t13 = outer_ring_e0 * outer_ring_e2;
-        let t14 = outer_ring_e1 * outer_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = t10.sin();
-        let t17 = t16 * t8;
-        let t18 = T::fused(t17, t15, T::fused(-t4, t1, t12 * t7));
-        let t19 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t20 = outer_ring_e0 * outer_ring_e1;
-        let t21 = outer_ring_e2 * outer_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = T::fused(t11, t19, t16 * t22);
-        let t24 = k(2.0) * (t14 + t13);
-        let t25 = T::fused(-t17, t19, T::fused(t12, t22, t4 * t24));
-        let t26 = T::fused(-t11, t15, t16 * t7);
-        let t27 = k(1.0) / T::fused(-t23, t18, t26 * t25);
-        let t28 = k(0.9424777960769379) * t2.cos();
-        let t29 = t28 * t4;
-        let t30 = k(1.2566370614359172) * t9.cos();
-        let t31 = t30 * t11;
-        let t32 = k(2.0) * (t21 + t20);
-        let t33 = T::fused(t15, outer_ring_wz, t19 * outer_ring_wx);
-        let t34 = t30 * t16;
-        let t35 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t36 = T::fused(-t7, outer_ring_wz, t22 * outer_ring_wx);
-        let t37 = k(2.0) * (t6 - t5);
-        let t38 = T::fused(
-            -t37,
-            t28 * t8,
-            t4 * T::fused(t1, outer_ring_wz, t24 * outer_ring_wx),
+        let t0 = k(18.84955592153876) * t;
+        let t1 = k(0.05) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = k(0.75) * (t3 * t2);
+        let t5 = k(12.566370614359172) * t;
+        let t6 = k(0.1) * t5.sin();
+        let t7 = t6.sin();
+        let t8 = t6.cos();
+        let t9 = t5.cos();
+        let t10 = t9 * t8;
+        let t11 = t1.sin();
+        let t12 = outer_ring_e0 * outer_ring_e1;
+        let t13 = outer_ring_e2 * outer_ring_e3;
+        let t14 = t13 + t12;
+        let t15 = k(1.2566370614359172) * t14;
+        let t16 = t9 * t7;
+        let t17 = outer_ring_e0 * outer_ring_e0;
+        let t18 = k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t17);
+        let t19 = k(1.2566370614359172) * t18;
+        let t20 = outer_ring_e0 * outer_ring_e3;
+        let t21 = outer_ring_e1 * outer_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = outer_ring_e0 * outer_ring_e2;
+        let t24 = outer_ring_e1 * outer_ring_e3;
+        let t25 = t24 + t23;
+        let t26 = k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t17);
+        let t27 = T::fused(
+            -k(0.9424777960769379),
+            t22 * (t3 * t11),
+            t2 * T::fused(t25, outer_ring_wx, t26 * outer_ring_wz),
         );
-        let t39 = t38 + T::fused(t35, T::fused(-t11, t29, t8 * t34), t12 * t36);
-        let t40 = t39 - T::fused(-t32, T::fused(t16, t29, t8 * t31), t17 * t33);
-        let t41 = T::fused(-t35, t31, t16 * t36) + T::fused(t32, t34, t11 * t33);
-        let t42 = T::fused(-t40, t26 * t27, T::fused(t41, t18 * t27, outer_ring_wx));
-        let t43 = T::fused(-t40, t23 * t27, T::fused(t41, t25 * t27, outer_ring_wz));
-        let t44 = inner_ring_e0 * inner_ring_e0;
-        let t45 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t44));
-        let t46 = inner_ring_e0 * inner_ring_e3;
-        let t47 = inner_ring_e1 * inner_ring_e2;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = inner_ring_e0 * inner_ring_e2;
-        let t50 = inner_ring_e1 * inner_ring_e3;
-        let t51 = k(2.0) * (t50 - t49);
-        let t52 = T::fused(t32, t51, -T::fused(t37, t45, t35 * t48));
-        let t53 = k(2.0) * (t47 - t46);
-        let t54 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t44));
-        let t55 = inner_ring_e0 * inner_ring_e1;
-        let t56 = inner_ring_e2 * inner_ring_e3;
-        let t57 = k(2.0) * (t56 + t55);
-        let t58 = T::fused(t15, t57, -T::fused(t1, t53, t7 * t54));
-        let t59 = T::fused(t32, t57, T::fused(t35, t54, t37 * t53));
-        let t60 = T::fused(t15, t51, T::fused(t1, t45, t7 * t48));
-        let t61 = k(1.0) / T::fused(-t58, t52, t60 * t59);
-        let t62 = k(2.0) * (t50 + t49);
-        let t63 = k(2.0) * (t56 - t55);
-        let t64 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t44));
-        let t65 = T::fused(t19, t64, T::fused(t22, t63, t24 * t62));
-        let t66 = T::fused(
-            t43,
-            T::fused(t15, t64, -T::fused(-t1, t62, t7 * t63)),
-            t42 * t65,
+        let t28 = t13 - t12;
+        let t29 = t21 + t20;
+        let t30 = T::fused(-t28, outer_ring_wx, t29 * outer_ring_wz);
+        let t31 = t8 * t11;
+        let t32 = T::fused(-t19, T::fused(-t8, t4, t11 * t16), T::fused(t31, t30, -t27));
+        let t33 = k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t17);
+        let t34 = t24 - t23;
+        let t35 = T::fused(t33, outer_ring_wx, t34 * outer_ring_wz);
+        let t36 = t7 * t11;
+        let t37 = T::fused(-t15, T::fused(t7, t4, t11 * t10), T::fused(t36, t35, t32));
+        let t38 = T::fused(-t7, t29, t8 * t34);
+        let t39 = T::fused(t36, t33, -T::fused(t2, t25, t31 * t28));
+        let t40 = T::fused(t2, t26, -T::fused(t36, t34, t31 * t29));
+        let t41 = T::fused(t7, t28, t8 * t33);
+        let t42 = k(1.0) / T::fused(t39, t38, t41 * t40);
+        let t43 = T::fused(t16, t15, T::fused(t8, t35, -T::fused(t10, t19, t7 * t30)));
+        let t44 = T::fused(
+            -(t38 * t42),
+            t37,
+            T::fused(-(t40 * t42), t43, outer_ring_wx),
         );
-        let t67 = t66 - T::fused(-inner_ring_wy, t52, inner_ring_wx * t59);
-        let t68 = T::fused(
-            t43,
-            T::fused(t32, t64, -T::fused(-t35, t63, t37 * t62)),
-            outer_ring_wy * t65,
+        let t45 = T::fused(t41 * t42, t37, T::fused(-(t39 * t42), t43, outer_ring_wz));
+        let t46 = inner_ring_e0 * inner_ring_e0;
+        let t47 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t46);
+        let t48 = inner_ring_e0 * inner_ring_e1;
+        let t49 = inner_ring_e2 * inner_ring_e3;
+        let t50 = t49 - t48;
+        let t51 = inner_ring_e0 * inner_ring_e2;
+        let t52 = inner_ring_e1 * inner_ring_e3;
+        let t53 = t52 + t51;
+        let t54 = T::fused(t33, t47, T::fused(t25, t53, t28 * t50));
+        let t55 = T::fused(
+            T::fused(t26, t53, -T::fused(-t34, t47, t29 * t50)),
+            t45,
+            t54 * t44,
         );
-        let t69 = t68 + T::fused(-inner_ring_wy, t60, inner_ring_wx * t58);
-        let t70 = T::fused(t67, t60 * t61, T::fused(t69, t52 * t61, inner_ring_wx));
-        let t71 = T::fused(t67, t58 * t61, T::fused(t69, t59 * t61, inner_ring_wy));
-        let t72 = rotor_e0 * rotor_e0;
-        let t73 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t72));
-        let t74 = rotor_e0 * rotor_e3;
-        let t75 = rotor_e1 * rotor_e2;
-        let t76 = k(2.0) * (t75 - t74);
-        let t77 = rotor_e0 * rotor_e1;
-        let t78 = rotor_e2 * rotor_e3;
-        let t79 = k(2.0) * (t78 + t77);
-        let t80 = T::fused(t64, t79, -T::fused(-t63, t73, t62 * t76));
-        let t81 = k(2.0) * (t78 - t77);
-        let t82 = rotor_e0 * rotor_e2;
-        let t83 = rotor_e1 * rotor_e3;
-        let t84 = k(2.0) * (t83 + t82);
-        let t85 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t72));
-        let t86 = T::fused(t57, t85, -T::fused(-t54, t81, t53 * t84));
-        let t87 = T::fused(t64, t85, T::fused(t63, t81, t62 * t84));
-        let t88 = T::fused(t57, t79, T::fused(t54, t73, t53 * t76));
-        let t89 = k(1.0) / T::fused(-t86, t80, t88 * t87);
-        let t90 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t72));
-        let t91 = k(2.0) * (t75 + t74);
-        let t92 = k(2.0) * (t83 - t82);
-        let t93 = T::fused(t51, t92, T::fused(t45, t90, t48 * t91));
-        let t94 = T::fused(
-            -t71,
-            t93,
-            t70 * T::fused(t57, t92, -T::fused(t53, t90, t54 * t91)),
+        let t56 = t49 + t48;
+        let t57 = inner_ring_e0 * inner_ring_e3;
+        let t58 = inner_ring_e1 * inner_ring_e2;
+        let t59 = t58 - t57;
+        let t60 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t46);
+        let t61 = T::fused(t18, t60, T::fused(t14, t56, t22 * t59));
+        let t62 = t52 - t51;
+        let t63 = t58 + t57;
+        let t64 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t46);
+        let t65 = T::fused(t22, t64, T::fused(-t14, t62, t18 * t63));
+        let t66 = T::fused(inner_ring_wy, t65, T::fused(inner_ring_wx, t61, -t55));
+        let t67 = T::fused(t26, t64, T::fused(t34, t62, t29 * t63));
+        let t68 = T::fused(t26, t59, T::fused(-t34, t56, t29 * t60));
+        let t69 = k(1.0) / T::fused(-t61, t67, t65 * t68);
+        let t70 = T::fused(
+            T::fused(t18, t50, -T::fused(-t14, t47, t22 * t53)),
+            t45,
+            outer_ring_wy * t54,
         );
-        let t95 = t94 + T::fused(rotor_wz, t80, rotor_wy * t87);
-        let t96 = T::fused(
-            inner_ring_wz,
-            t93,
-            t70 * T::fused(t64, t92, -T::fused(-t62, t90, t63 * t91)),
+        let t71 = T::fused(inner_ring_wy, t67, T::fused(inner_ring_wx, t68, -t70));
+        let t72 = T::fused(t67 * t69, t66, T::fused(-(t65 * t69), t71, inner_ring_wx));
+        let t73 = T::fused(-(t68 * t69), t66, T::fused(t61 * t69, t71, inner_ring_wy));
+        let t74 = rotor_e0 * rotor_e2;
+        let t75 = rotor_e1 * rotor_e3;
+        let t76 = t75 - t74;
+        let t77 = rotor_e0 * rotor_e3;
+        let t78 = rotor_e1 * rotor_e2;
+        let t79 = t78 + t77;
+        let t80 = rotor_e0 * rotor_e0;
+        let t81 = k(0.5) - T::fused(rotor_e1, rotor_e1, t80);
+        let t82 = T::fused(t64, t81, T::fused(t62, t76, t63 * t79));
+        let t83 = T::fused(
+            t82,
+            t73,
+            T::fused(t59, t81, T::fused(-t56, t76, t60 * t79)) * t72,
         );
-        let t97 = t96 - T::fused(rotor_wz, t88, rotor_wy * t86);
+        let t84 = t75 + t74;
+        let t85 = rotor_e0 * rotor_e1;
+        let t86 = rotor_e2 * rotor_e3;
+        let t87 = t86 - t85;
+        let t88 = k(0.5) - T::fused(rotor_e3, rotor_e3, t80);
+        let t89 = T::fused(t47, t88, T::fused(t53, t84, t50 * t87));
+        let t90 = t86 + t85;
+        let t91 = t78 - t77;
+        let t92 = k(0.5) - T::fused(rotor_e2, rotor_e2, t80);
+        let t93 = T::fused(t50, t92, -T::fused(-t47, t90, t53 * t91));
+        let t94 = T::fused(rotor_wz, t93, T::fused(rotor_wy, t89, -t83));
+        let t95 = T::fused(t60, t92, T::fused(t56, t90, t59 * t91));
+        let t96 = T::fused(t60, t87, -T::fused(-t56, t88, t59 * t84));
+        let t97 = k(1.0) / T::fused(-t89, t95, t93 * t96);
+        let t98 = T::fused(
+            T::fused(t53, t81, -T::fused(-t47, t76, t50 * t79)),
+            t72,
+            inner_ring_wz * t82,
+        );
+        let t99 = T::fused(rotor_wz, t95, T::fused(rotor_wy, t96, -t98));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
-        y[24] = t42;
-        y[26] = t43;
+        y[24] = t44;
+        y[26] = t45;
         y[27] = k(0.0);
         y[28] = k(0.0);
         y[29] = k(0.0);
-        y[30] = t70;
-        y[31] = t71;
-        y[33] = -(k(0.000125) * T::fused(-t53, inner_ring_wz, t62 * t71));
-        y[34] = -(k(0.000125) * T::fused(t54, inner_ring_wz, t63 * t71));
-        y[35] = k(0.000125) * T::fused(t57, inner_ring_wz, t64 * t71);
-        y[37] = T::fused(-t95, t88 * t89, T::fused(-t97, t80 * t89, rotor_wy));
-        y[38] = T::fused(t95, t86 * t89, T::fused(t97, t87 * t89, rotor_wz));
+        y[30] = t72;
+        y[31] = t73;
+        y[33] = k(0.00025) * T::fused(-t53, t73, t59 * inner_ring_wz);
+        y[34] = -(k(0.00025) * T::fused(t50, t73, t60 * inner_ring_wz));
+        y[35] = k(0.00025) * T::fused(t47, t73, t56 * inner_ring_wz);
+        y[37] = T::fused(t95 * t97, t94, T::fused(-(t93 * t97), t99, rotor_wy));
+        y[38] = T::fused(-(t96 * t97), t94, T::fused(t89 * t97, t99, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for PitchingBearings<T> {
@@ -2338,7 +2291,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             -T::fused(t34, t66, T::fused(-t28, t64, t32 * t65)),
         ];
     }
-    /// Writes ν: 37 operations (9 ±, 28 ×, 0 ÷) and 8 functions.
+    /// Writes ν: 35 operations (9 ±, 26 ×, 0 ÷) and 8 functions.
     fn nu(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2347,34 +2300,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let outer_ring_e3 = y[6];
         let t0 = k(12.566370614359172) * t;
         let t1 = k(0.1) * t0.sin();
-        let t2 = t1.sin();
-        let t3 = k(1.2566370614359172) * t0.cos();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
         let t4 = t3 * t2;
-        let t5 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t6 = t1.cos();
+        let t5 = k(0.5)
+            - T::fused(outer_ring_e2, outer_ring_e2, outer_ring_e0 * outer_ring_e0);
+        let t6 = t1.sin();
         let t7 = t3 * t6;
-        let t8 = k(2.0)
-            * (k(0.5)
-                - T::fused(outer_ring_e2, outer_ring_e2, outer_ring_e0 * outer_ring_e0));
+        let t8 = T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t9 = k(18.84955592153876) * t;
         let t10 = k(0.05) * t9.sin();
-        let t11 = k(0.9424777960769379) * t9.cos();
-        let t12 = t11 * t10.cos();
-        let t13 = t10.sin();
-        let t14 = T::fused(
+        let t11 = t10.sin();
+        let t12 = k(1.3333333333333333) * t11;
+        let t13 = t9.cos();
+        let t14 = t13 * t10.cos();
+        let t15 = T::fused(
             -t8,
-            T::fused(-t6, t12, t13 * t4),
-            k(2.0)
-                * T::fused(-outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)
-                * (t11 * t13),
+            T::fused(t4, t12, t6 * t14),
+            T::fused(-outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)
+                * (t13 * t11),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t8, t7, t5 * t4),
-            T::fused(-t5, T::fused(t2, t12, t13 * t7), t14),
+            k(2.5132741228718345) * T::fused(-t5, t4, t8 * t7),
+            k(1.8849555921538759) * T::fused(t5, T::fused(-t7, t12, t2 * t14), t15),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2996,7 +2947,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             T::fused(t77, t178, -T::fused(-t70, t176, t93 * t177)) - t114,
         ];
     }
-    /// Writes λ: 305 operations (114 ±, 188 ×, 3 ÷) and 6 functions.
+    /// Writes λ: 294 operations (114 ±, 177 ×, 3 ÷) and 6 functions.
     fn multipliers(
         &self,
         t: T,
@@ -3042,174 +2993,149 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsx;
-        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = k(0.08) * rotor_dsz;
-        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = k(2.0) * rotor_e1;
-        let t7 = k(2.0) * rotor_e0;
-        let t8 = T::fused(-rotor_e0, t7, k(1.0));
-        let t9 = T::fused(-rotor_e1, t6, t8);
-        let t10 = k(2.0) * inner_ring_e1;
-        let t11 = k(2.0) * inner_ring_e0;
-        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
-        let t13 = T::fused(-inner_ring_e1, t10, t12);
-        let t14 = rotor_e3 * t7;
-        let t15 = rotor_e2 * t6;
-        let t16 = t15 + t14;
-        let t17 = inner_ring_e3 * t11;
-        let t18 = inner_ring_e2 * t10;
-        let t19 = t18 + t17;
-        let t20 = rotor_e2 * t7;
-        let t21 = rotor_e3 * t6;
-        let t22 = t21 - t20;
-        let t23 = inner_ring_e2 * t11;
-        let t24 = inner_ring_e3 * t10;
-        let t25 = t24 - t23;
-        let t26 = k(1e-5) * rotor_dwx;
-        let t27 = t15 - t14;
-        let t28 = k(2.0) * rotor_e2;
-        let t29 = T::fused(-rotor_e2, t28, t8);
-        let t30 = rotor_e1 * t7;
-        let t31 = rotor_e3 * t28;
-        let t32 = t31 + t30;
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t34 = T::fused(
+        let t0 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t1 = rotor_dsy + k(10.0);
+        let t2 = k(10.0) + T::fused(k(8.0), t1, inner_ring_dsy);
+        let t3 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t4 = k(2.0) * rotor_dwx;
+        let t5 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t6 = T::fused(rotor_e1, rotor_e1, -t5);
+        let t7 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t8 = T::fused(inner_ring_e1, inner_ring_e1, -t7);
+        let t9 = rotor_e0 * rotor_e2;
+        let t10 = rotor_e1 * rotor_e3;
+        let t11 = t10 - t9;
+        let t12 = inner_ring_e0 * inner_ring_e2;
+        let t13 = inner_ring_e1 * inner_ring_e3;
+        let t14 = t13 - t12;
+        let t15 = rotor_e0 * rotor_e3;
+        let t16 = rotor_e1 * rotor_e2;
+        let t17 = t16 + t15;
+        let t18 = inner_ring_e0 * inner_ring_e3;
+        let t19 = inner_ring_e1 * inner_ring_e2;
+        let t20 = t19 + t18;
+        let t21 = T::fused(rotor_e3, rotor_e3, -t5);
+        let t22 = rotor_e0 * rotor_e1;
+        let t23 = rotor_e2 * rotor_e3;
+        let t24 = t23 - t22;
+        let t25 = t10 + t9;
+        let t26 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t27 = T::fused(
             t26,
-            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
-            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
+            T::fused(t25, t8, T::fused(t14, t21, t20 * t24)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t35 = t21 + t20;
-        let t36 = t31 - t30;
-        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
-        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t39 = T::fused(
-            t38,
-            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
-            t34,
+        let t28 = T::fused(rotor_e2, rotor_e2, -t5);
+        let t29 = t23 + t22;
+        let t30 = t16 - t15;
+        let t31 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t32 = T::fused(t31, T::fused(t30, t8, T::fused(t20, t28, t14 * t29)), -t27);
+        let t33 = T::fused(T::fused(t8, t6, T::fused(t14, t11, t20 * t17)), t4, t32);
+        let t34 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t35 = T::fused(outer_ring_e1, outer_ring_e1, -t34);
+        let t36 = outer_ring_e0 * outer_ring_e2;
+        let t37 = outer_ring_e1 * outer_ring_e3;
+        let t38 = t37 - t36;
+        let t39 = outer_ring_e0 * outer_ring_e3;
+        let t40 = outer_ring_e1 * outer_ring_e2;
+        let t41 = t40 + t39;
+        let t42 = T::fused(t35, t8, T::fused(t38, t14, t41 * t20));
+        let t43 = T::fused(inner_ring_e2, inner_ring_e2, -t7);
+        let t44 = inner_ring_e0 * inner_ring_e1;
+        let t45 = inner_ring_e2 * inner_ring_e3;
+        let t46 = t45 + t44;
+        let t47 = t19 - t18;
+        let t48 = T::fused(inner_ring_e3, inner_ring_e3, -t7);
+        let t49 = t45 - t44;
+        let t50 = t13 + t12;
+        let t51 = T::fused(
+            t50,
+            rotor_dsx,
+            T::fused(t49, t1, -T::fused(-rotor_dsz, t48, k(0.1) * inner_ring_dwy)),
         );
-        let t40 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t39,
+        let t52 = T::fused(t47, t25, T::fused(t46, t21, t24 * t43));
+        let t53 = T::fused(t47, t30, T::fused(t28, t43, t46 * t29));
+        let t54 = T::fused(
+            T::fused(t47, t6, T::fused(t17, t43, t46 * t11)),
+            t4,
+            T::fused(t31, t53, -T::fused(t26, t52, t51)),
         );
-        let t41 = k(2.0) * outer_ring_e1;
-        let t42 = k(2.0) * outer_ring_e0;
-        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
-        let t44 = T::fused(-outer_ring_e1, t41, t43);
-        let t45 = outer_ring_e3 * t42;
-        let t46 = outer_ring_e2 * t41;
-        let t47 = t46 + t45;
-        let t48 = outer_ring_e2 * t42;
-        let t49 = outer_ring_e3 * t41;
-        let t50 = t49 - t48;
-        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
-        let t52 = t18 - t17;
-        let t53 = k(2.0) * inner_ring_e2;
-        let t54 = T::fused(-inner_ring_e2, t53, t12);
-        let t55 = inner_ring_e1 * t11;
-        let t56 = inner_ring_e3 * t53;
-        let t57 = t56 + t55;
-        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
+        let t55 = T::fused(t47, t35, T::fused(t41, t43, t38 * t46));
+        let t56 = T::fused(
+            t43,
+            t1,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t46 * rotor_dsz,
+            ),
+        );
+        let t57 = T::fused(t50, t25, T::fused(t21, t48, t49 * t24));
+        let t58 = T::fused(t50, t30, T::fused(t29, t48, t49 * t28));
         let t59 = T::fused(
-            t26,
-            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
-            t33 * t58,
-        );
-        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
-        let t61 = t24 + t23;
-        let t62 = t56 - t55;
-        let t63 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
-        let t64 = T::fused(
+            T::fused(t50, t6, T::fused(t11, t48, t49 * t17)),
             t4,
-            k(0.000125) * t63,
-            -T::fused(t0, k(0.000125) * t61, t2 * (k(0.000125) * t62)),
+            T::fused(t31, t58, -T::fused(t26, t57, -T::fused(t47, rotor_dsx, t56))),
         );
-        let t65 = T::fused(k(2e-6), inner_ring_dwy, t64 + T::fused(t38, t60, t59));
-        let t66 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
-        let t67 = T::fused(t63, t32, T::fused(-t61, t27, t62 * t29));
-        let t68 = T::fused(
-            t26,
-            T::fused(t63, t22, -T::fused(-t61, t9, t62 * t16)),
-            t33 * t67,
+        let t60 = T::fused(
+            T::fused(t50, t35, T::fused(t38, t48, t41 * t49)),
+            t59,
+            k(0.025) * outer_ring_dwx,
         );
-        let t69 = T::fused(t63, t37, T::fused(t61, t35, t62 * t36));
-        let t70 = T::fused(
-            t4,
-            k(0.000125) * t57,
-            -T::fused(-t0, k(0.000125) * t52, t2 * (k(0.000125) * t54)),
+        let t61 = T::fused(t42, t33, T::fused(t55, t54, t60));
+        let t62 = T::fused(outer_ring_e3, outer_ring_e3, -t34);
+        let t63 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t64 = t63.sin();
+        let t65 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t66 = t65.sin();
+        let t67 = t66 * t64;
+        let t68 = outer_ring_e0 * outer_ring_e1;
+        let t69 = outer_ring_e2 * outer_ring_e3;
+        let t70 = t69 - t68;
+        let t71 = t65.cos();
+        let t72 = t71 * t64;
+        let t73 = t37 + t36;
+        let t74 = t63.cos();
+        let t75 = T::fused(t74, t73, T::fused(t67, t62, t72 * t70));
+        let t76 = T::fused(-t66, t41, t71 * t38);
+        let t77 = T::fused(t74, t35, T::fused(t67, t38, t72 * t41));
+        let t78 = T::fused(-t71, t62, t66 * t70);
+        let t79 = k(1.0) / T::fused(t76, t75, t78 * t77);
+        let t80 = T::fused(
+            -T::fused(t73, t50, T::fused(t62, t48, t70 * t49)),
+            t59,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t71 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t70 - T::fused(t38, t69, t68),
-        );
-        let t72 = T::fused(
-            T::fused(t50, t63, -T::fused(-t44, t61, t47 * t62)),
-            t71,
-            -T::fused(-t51, t40, t66 * t65),
-        );
-        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
-        let t74 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t75 = t74.cos();
-        let t76 = t74.sin();
-        let t77 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t78 = t77.cos();
-        let t79 = t78 * t76;
-        let t80 = t77.sin();
-        let t81 = t80 * t76;
-        let t82 = T::fused(t81, t50, T::fused(-t75, t44, t79 * t47));
-        let t83 = outer_ring_e1 * t42;
-        let t84 = k(2.0) * outer_ring_e2;
-        let t85 = outer_ring_e3 * t84;
-        let t86 = t85 - t83;
-        let t87 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
-        let t88 = T::fused(t80, t86, t78 * t87);
-        let t89 = T::fused(-t80, t47, t78 * t50);
-        let t90 = t49 + t48;
-        let t91 = T::fused(t81, t87, -T::fused(t75, t90, t79 * t86));
-        let t92 = k(1.0) / T::fused(-t88, t82, t91 * t89);
-        let t93 = T::fused(
-            -T::fused(t87, t25, -T::fused(-t90, t13, t86 * t19)),
-            t40,
-            T::fused(t87, t57, T::fused(-t90, t52, t86 * t54)) * t65,
-        );
-        let t94 = T::fused(T::fused(t87, t63, T::fused(t90, t61, t86 * t62)), t71, -t93);
-        let t95 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t94,
-        );
-        let t96 = t46 - t45;
-        let t97 = T::fused(-outer_ring_e2, t84, t43);
-        let t98 = t85 + t83;
-        let t99 = T::fused(t98, t25, -T::fused(t96, t13, t97 * t19));
-        let t100 = T::fused(t98, t57, T::fused(t96, t52, t97 * t54));
-        let t101 = k(1.0) / T::fused(-t99, t66, t100 * t51);
-        let t102 = k(1.0) / T::fused(-t67, t60, t69 * t58);
+        let t81 = T::fused(-T::fused(t73, t47, T::fused(t46, t62, t70 * t43)), t54, t80);
+        let t82 = T::fused(-T::fused(t73, t8, T::fused(t14, t62, t70 * t20)), t33, t81);
+        let t83 = T::fused(outer_ring_e2, outer_ring_e2, -t34);
+        let t84 = t69 + t68;
+        let t85 = t40 - t39;
+        let t86 = T::fused(t85, t47, T::fused(t83, t43, t84 * t46));
+        let t87 = T::fused(t85, t8, T::fused(t20, t83, t84 * t14));
+        let t88 = k(1.0) / T::fused(-t86, t42, t87 * t55);
+        let t89 = k(1.0) / T::fused(-t57, t53, t58 * t52);
         *lambda = [
-            -T::fused(k(0.01), outer_ring_dsx, t1),
-            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
-            -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t82 * t92, t73, t91 * t92 * t95),
-            T::fused(t89 * t92, t73, t88 * t92 * t95),
-            -t1,
-            -t3,
-            -t5,
-            T::fused(-(t100 * t101), t65, t99 * t101 * t40),
-            T::fused(-(t51 * t101), t40, t66 * t101 * t65),
-            -t0,
-            -t2,
-            -t4,
-            T::fused(t33, t67 * t102, t38 * (t69 * t102)),
-            T::fused(t33, t58 * t102, t38 * (t60 * t102)),
+            -(k(0.01) * (outer_ring_dsx + t0)),
+            -(k(0.01) * (k(10.0) + (outer_ring_dsy + t2))),
+            -(k(0.01) * (outer_ring_dsz + t3)),
+            -(k(4e-5) * T::fused(-(t77 * t79), t61, t75 * t79 * t82)),
+            -(k(4e-5) * T::fused(t76 * t79, t61, t78 * t79 * t82)),
+            -(k(0.01) * t0),
+            -(k(0.01) * t2),
+            -(k(0.01) * t3),
+            k(5e-6) * T::fused(t87 * t88, t33, t86 * t88 * t54),
+            -(k(5e-6) * T::fused(t42 * t88, t33, t55 * t88 * t54)),
+            -(k(0.08) * rotor_dsx),
+            -(k(0.08) * t1),
+            -(k(0.08) * rotor_dsz),
+            k(1.25e-6) * T::fused(-t26, t57 * t89, t31 * (t58 * t89)),
+            -(k(1.25e-6) * T::fused(-t26, t52 * t89, t31 * (t53 * t89))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for PitchingBearings<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 403 operations (150 ±, 248 ×, 5 ÷) and 6 functions.
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 379 operations (148 ±, 226 ×, 5 ÷) and 6 functions.
     fn project(
         &self,
         t: T,
@@ -3245,185 +3171,182 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for PitchingBearings<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = k(2.0) * outer_ring_e1;
-        let t1 = k(2.0) * outer_ring_e0;
-        let t2 = T::fused(-outer_ring_e0, t1, k(1.0));
-        let t3 = T::fused(-outer_ring_e1, t0, t2);
-        let t4 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t5 = t4.cos();
-        let t6 = outer_ring_e3 * t1;
-        let t7 = outer_ring_e2 * t0;
-        let t8 = t7 + t6;
-        let t9 = t4.sin();
-        let t10 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t11 = t10.cos();
-        let t12 = t11 * t9;
-        let t13 = outer_ring_e2 * t1;
-        let t14 = outer_ring_e3 * t0;
-        let t15 = t14 - t13;
-        let t16 = t10.sin();
-        let t17 = t16 * t9;
-        let t18 = T::fused(t17, t15, T::fused(-t5, t3, t12 * t8));
-        let t19 = outer_ring_e1 * t1;
-        let t20 = k(2.0) * outer_ring_e2;
-        let t21 = outer_ring_e3 * t20;
-        let t22 = t21 - t19;
-        let t23 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t2);
-        let t24 = T::fused(t16, t22, t11 * t23);
-        let t25 = T::fused(-t16, t8, t11 * t15);
-        let t26 = t14 + t13;
-        let t27 = T::fused(t17, t23, -T::fused(t5, t26, t12 * t22));
-        let t28 = k(1.0) / T::fused(-t24, t18, t27 * t25);
-        let t29 = T::fused(-row3, t18 * t28, row4 * (t25 * t28));
-        let t30 = k(2.0) * rotor_e0;
-        let t31 = k(2.0) * rotor_e1;
-        let t32 = T::fused(rotor_e2, t30, rotor_e3 * t31);
-        let t33 = k(2.0) * inner_ring_e0;
-        let t34 = inner_ring_e3 * t33;
-        let t35 = k(2.0) * inner_ring_e1;
-        let t36 = inner_ring_e2 * t35;
-        let t37 = t36 - t34;
-        let t38 = rotor_e1 * t30;
-        let t39 = k(2.0) * rotor_e2;
-        let t40 = rotor_e3 * t39;
-        let t41 = t40 - t38;
-        let t42 = k(2.0) * inner_ring_e2;
-        let t43 = T::fused(-inner_ring_e0, t33, k(1.0));
-        let t44 = T::fused(-inner_ring_e2, t42, t43);
-        let t45 = T::fused(-rotor_e0, t30, k(1.0));
-        let t46 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t45);
-        let t47 = inner_ring_e1 * t33;
-        let t48 = inner_ring_e3 * t42;
+        let t0 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t1 = T::fused(outer_ring_e3, outer_ring_e3, -t0);
+        let t2 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t3 = t2.sin();
+        let t4 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t5 = t4.sin();
+        let t6 = t5 * t3;
+        let t7 = outer_ring_e0 * outer_ring_e1;
+        let t8 = outer_ring_e2 * outer_ring_e3;
+        let t9 = t8 - t7;
+        let t10 = t4.cos();
+        let t11 = t10 * t3;
+        let t12 = outer_ring_e0 * outer_ring_e2;
+        let t13 = outer_ring_e1 * outer_ring_e3;
+        let t14 = t13 + t12;
+        let t15 = t2.cos();
+        let t16 = T::fused(t15, t14, T::fused(t6, t1, t11 * t9));
+        let t17 = outer_ring_e0 * outer_ring_e3;
+        let t18 = outer_ring_e1 * outer_ring_e2;
+        let t19 = t18 + t17;
+        let t20 = t13 - t12;
+        let t21 = T::fused(-t5, t19, t10 * t20);
+        let t22 = T::fused(outer_ring_e1, outer_ring_e1, -t0);
+        let t23 = T::fused(t15, t22, T::fused(t6, t20, t11 * t19));
+        let t24 = T::fused(-t10, t1, t5 * t9);
+        let t25 = k(1.0) / T::fused(t21, t16, t24 * t23);
+        let t26 = T::fused(-row4, t21 * t25, row3 * (t23 * t25));
+        let t27 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t28 = T::fused(inner_ring_e2, inner_ring_e2, -t27);
+        let t29 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t30 = T::fused(rotor_e2, rotor_e2, -t29);
+        let t31 = rotor_e0 * rotor_e1;
+        let t32 = rotor_e2 * rotor_e3;
+        let t33 = t32 + t31;
+        let t34 = inner_ring_e0 * inner_ring_e1;
+        let t35 = inner_ring_e2 * inner_ring_e3;
+        let t36 = t35 + t34;
+        let t37 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t38 = inner_ring_e0 * inner_ring_e3;
+        let t39 = inner_ring_e1 * inner_ring_e2;
+        let t40 = t39 - t38;
+        let t41 = T::fused(t40, t37, T::fused(t30, t28, t36 * t33));
+        let t42 = T::fused(inner_ring_e3, inner_ring_e3, -t27);
+        let t43 = T::fused(rotor_e3, rotor_e3, -t29);
+        let t44 = t32 - t31;
+        let t45 = t35 - t34;
+        let t46 = T::fused(rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t47 = inner_ring_e0 * inner_ring_e2;
+        let t48 = inner_ring_e1 * inner_ring_e3;
         let t49 = t48 + t47;
-        let t50 = T::fused(t49, t46, T::fused(-t37, t32, t44 * t41));
-        let t51 = T::fused(-rotor_e3, t30, rotor_e2 * t31);
-        let t52 = inner_ring_e2 * t33;
-        let t53 = inner_ring_e3 * t35;
-        let t54 = t53 + t52;
-        let t55 = T::fused(-rotor_e2, t39, t45);
-        let t56 = t48 - t47;
-        let t57 = t40 + t38;
-        let t58 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t43);
-        let t59 = T::fused(t58, t57, T::fused(-t54, t51, t56 * t55));
-        let t60 = T::fused(t49, t57, T::fused(t37, t51, t44 * t55));
-        let t61 = T::fused(t58, t46, T::fused(t54, t32, t56 * t41));
-        let t62 = k(1.0) / T::fused(-t59, t50, t61 * t60);
-        let t63 = T::fused(row13, t59 * t62, row14 * (t60 * t62));
-        let t64 = k(5e-6) * t63;
-        let t65 = T::fused(-inner_ring_e1, t35, t43);
-        let t66 = t36 + t34;
-        let t67 = t53 - t52;
-        let t68 = T::fused(t67, t57, -T::fused(t65, t51, t66 * t55));
-        let t69 = T::fused(row13, t61 * t62, row14 * (t50 * t62));
-        let t70 = k(5e-6) * t69;
-        let t71 = T::fused(t67, t46, -T::fused(-t65, t32, t66 * t41));
-        let t72 = k(0.08) * row10;
-        let t73 = k(0.000125) * t37;
-        let t74 = k(0.08) * row11;
-        let t75 = k(0.000125) * t44;
-        let t76 = k(0.08) * row12;
-        let t77 = k(0.000125) * t49;
-        let t78 = T::fused(t77, t76, -T::fused(-t73, t72, t75 * t74))
-            + T::fused(t59, t64, t61 * t70);
-        let t79 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t59, k(5e-6) * t59, t61 * (k(5e-6) * t61)));
-        let t80 = k(1.0) / t79;
-        let t81 = t80 * t78;
-        let t82 = k(5e-6) * t68;
-        let t83 = k(5e-6) * t71;
-        let t84 = T::fused(t59, t82, t61 * t83);
-        let t85 = k(1e-5) * t37;
-        let t86 = t80 * t85;
-        let t87 = t84 * t86;
-        let t88 = k(1e-5) * t44;
-        let t89 = t80 * t88;
-        let t90 = t84 * t89;
-        let t91 = k(1e-5) * t49;
-        let t92 = t80 * t91;
-        let t93 = t84 * t92;
-        let t94 = T::fused(t15, t49, -T::fused(t3, t37, t8 * t44));
-        let t95 = t7 - t6;
-        let t96 = T::fused(-outer_ring_e2, t20, t2);
-        let t97 = t21 + t19;
-        let t98 = T::fused(t97, t67, -T::fused(t95, t65, t96 * t66));
-        let t99 = T::fused(t15, t67, T::fused(t3, t65, t8 * t66));
-        let t100 = T::fused(t97, t49, T::fused(t95, t37, t96 * t44));
-        let t101 = k(1.0) / T::fused(-t98, t94, t100 * t99);
-        let t102 = T::fused(-row8, t98 * t101, row9 * (t99 * t101));
-        let t103 = t80 * t84;
-        let t104 = T::fused(t84, t103, -(k(1e-6) + T::fused(t68, t82, t71 * t83)));
-        let t105 = T::fused(-row8, t100 * t101, row9 * (t94 * t101));
-        let t106 = k(5e-6) * t60;
-        let t107 = k(5e-6) * t50;
-        let t108 = T::fused(t59, t106, t61 * t107);
-        let t109 = T::fused(t108, t103, -T::fused(t60, t82, t50 * t83));
-        let t110 = T::fused(t104, t102, t109 * t105)
-            + T::fused(row7, t93, -T::fused(-row5, t87, row6 * t90));
-        let t111 = k(0.000125) * t54;
-        let t112 = k(0.000125) * t56;
-        let t113 = k(0.000125) * t58;
-        let t114 = T::fused(t113, t76, -T::fused(t111, t72, t112 * t74))
-            - T::fused(t60, t64, t50 * t70);
-        let t115 = T::fused(-k(1e-5), t54, t108 * t86);
-        let t116 = T::fused(k(1e-5), t56, t108 * t89);
-        let t117 = T::fused(k(1e-5), t58, t108 * t92);
-        let t118 = T::fused(
-            t108,
-            t80 * t108,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t60, t106, t50 * t107))),
+        let t50 = T::fused(t49, t46, T::fused(t43, t42, t45 * t44));
+        let t51 = T::fused(t40, t46, T::fused(t36, t43, t44 * t28));
+        let t52 = T::fused(t49, t37, T::fused(t33, t42, t45 * t30));
+        let t53 = k(1.0) / T::fused(-t50, t41, t52 * t51);
+        let t54 = k(0.25) * T::fused(-row14, t51 * t53, row13 * (t50 * t53));
+        let t55 = T::fused(
+            -t50,
+            t54,
+            T::fused(t40, row10, T::fused(t28, row11, t36 * row12)),
         );
-        let t119 = T::fused(t109, t102, t118 * t105)
-            + T::fused(row7, t117, -T::fused(-row5, t115, row6 * t116));
-        let t120 = T::fused(
-            t98,
-            t110 + T::fused(t84, t81, -T::fused(t68, t64, t71 * t70)),
-            t100 * (t119 + T::fused(t108, t81, t114)),
+        let t56 = k(0.25) * T::fused(-row14, t41 * t53, row13 * (t52 * t53));
+        let t57 = T::fused(t52, t56, -t55);
+        let t58 = k(1.0) / (k(0.012515625) + T::fused(t50, t50, t52 * t52));
+        let t59 = t58 * t57;
+        let t60 = t48 - t47;
+        let t61 = t39 + t38;
+        let t62 = T::fused(inner_ring_e1, inner_ring_e1, -t27);
+        let t63 = T::fused(t46, t62, T::fused(t60, t43, t61 * t44));
+        let t64 = T::fused(t37, t62, T::fused(t61, t30, t60 * t33));
+        let t65 = T::fused(t63, t50, t64 * t52);
+        let t66 = T::fused(t22, t62, T::fused(t20, t60, t19 * t61));
+        let t67 = T::fused(outer_ring_e2, outer_ring_e2, -t0);
+        let t68 = t8 + t7;
+        let t69 = t18 - t17;
+        let t70 = T::fused(t69, t40, T::fused(t67, t28, t68 * t36));
+        let t71 = T::fused(t40, t22, T::fused(t19, t28, t20 * t36));
+        let t72 = T::fused(t69, t62, T::fused(t61, t67, t68 * t60));
+        let t73 = k(1.0) / T::fused(-t70, t66, t72 * t71);
+        let t74 = T::fused(-row9, t71 * t73, row8 * (t70 * t73));
+        let t75 = T::fused(t50, t51, t52 * t41);
+        let t76 = t65 * t58;
+        let t77 = T::fused(t64, t41, T::fused(-t76, t75, t63 * t51));
+        let t78 = T::fused(-row9, t66 * t73, row8 * (t72 * t73));
+        let t79 = k(0.0125) + T::fused(t64, t64, T::fused(-t65, t76, t63 * t63));
+        let t80 = t36 * t58;
+        let t81 = t65 * t80;
+        let t82 = t58 * t28;
+        let t83 = t65 * t82;
+        let t84 = T::fused(
+            row6,
+            t83,
+            T::fused(row7, t81, T::fused(t77, t74, t79 * t78)),
         );
-        let t121 = T::fused(
-            -row0,
-            T::fused(t98, t87, t100 * t115),
-            row1 * T::fused(t98, t90, t100 * t116),
+        let t85 = t40 * t58;
+        let t86 = t65 * t85;
+        let t87 = T::fused(
+            t64,
+            t56,
+            T::fused(t63, t54, T::fused(-t65, t59, T::fused(row5, t86, t84))),
         );
-        let t122 = T::fused(
-            t98,
-            T::fused(t104, t99, t109 * t94),
-            t100 * T::fused(t109, t99, t118 * t94),
+        let t88 = k(0.025015625)
+            + T::fused(t41, t41, T::fused(-t75, t58 * t75, t51 * t51));
+        let t89 = T::fused(t75, t80, t42);
+        let t90 = T::fused(t75, t82, t45);
+        let t91 = T::fused(
+            row6,
+            t90,
+            T::fused(row7, t89, T::fused(t88, t74, t77 * t78)),
         );
-        let t123 = T::fused(-row3, t27 * t28, row4 * (t24 * t28));
-        let t124 = T::fused(t23, t67, -T::fused(-t26, t65, t22 * t66));
-        let t125 = T::fused(t98, t104, t100 * t109);
-        let t126 = T::fused(t23, t49, T::fused(-t26, t37, t22 * t44));
-        let t127 = T::fused(t109, t98, t118 * t100);
-        let t128 = T::fused(t122, t29, T::fused(t125, t124, t127 * t126) * t123)
-            + T::fused(row2, T::fused(t98, t93, t100 * t117), -t121);
-        let t129 = (t128 + t120) / (k(1e-6) - T::fused(t98, t125, t100 * t127));
-        let t130 = row0 + row5;
-        let t131 = row1 + row6;
-        let t132 = row2 + row7;
-        let t133 = t102 + T::fused(t124, t123, T::fused(t99, t29, t98 * t129));
-        let t134 = t105 + T::fused(t126, t123, T::fused(t94, t29, t100 * t129));
-        let t135 = T::fused(t84, t133, t108 * t134)
-            + T::fused(t132, t91, -T::fused(-t130, t85, t131 * t88));
-        let t136 = t80 * (t78 + t135);
+        let t92 = T::fused(t75, t85, t49);
+        let t93 = T::fused(
+            t45,
+            row11,
+            T::fused(t42, row12, T::fused(-t75, t59, T::fused(row5, t92, t91))),
+        );
+        let t94 = T::fused(row4, t24 * t25, row3 * (t16 * t25));
+        let t95 = T::fused(t14, t40, T::fused(t36, t1, t9 * t28));
+        let t96 = T::fused(t70, t88, t72 * t77);
+        let t97 = T::fused(t14, t62, T::fused(t60, t1, t9 * t61));
+        let t98 = T::fused(t77, t70, t79 * t72);
+        let t99 = T::fused(
+            t70,
+            T::fused(t88, t71, t77 * t66),
+            t72 * T::fused(t77, t71, t79 * t66),
+        );
+        let t100 = T::fused(
+            k(8.0),
+            T::fused(T::fused(t96, t95, t98 * t97), t94, t99 * t26),
+            row2 * T::fused(t70, t89, t72 * t81),
+        );
+        let t101 = T::fused(
+            row0,
+            T::fused(t70, t92, t72 * t86),
+            T::fused(row1, T::fused(t70, t90, t72 * t83), t100),
+        );
+        let t102 = T::fused(
+            t70,
+            T::fused(t41, t56, T::fused(t51, t54, T::fused(t49, row10, t93))),
+            t101,
+        );
+        let t103 = T::fused(t72, t87, t102)
+            / (k(0.00078125) + T::fused(t70, t96, t72 * t98));
+        let t104 = row0 + row5;
+        let t105 = row1 + row6;
+        let t106 = row2 + row7;
+        let t107 = k(8.0) * t26;
+        let t108 = k(8.0) * t94;
+        let t109 = T::fused(t66, t107, T::fused(-t72, t103, T::fused(t97, t108, t78)));
+        let t110 = T::fused(t71, t107, T::fused(-t70, t103, T::fused(t95, t108, t74)));
+        let t111 = T::fused(
+            t28,
+            t105,
+            T::fused(t36, t106, -T::fused(t65, t109, T::fused(t75, t110, t57))),
+        );
+        let t112 = t58 * T::fused(t40, t104, t111);
+        let t113 = k(6.25e-5) * t112;
+        let t114 = k(6.25e-5) * t110;
         *out = [
             row0,
             row1,
             row2,
-            -t29,
-            -t129,
-            t123,
-            t130,
-            t131,
-            t132,
-            -t133,
-            -t134,
-            -t136,
-            row10 + (t130 - T::fused(-t111, t134, t73 * t136)),
-            row11 + (t131 + T::fused(t112, t134, t75 * t136)),
-            row12 + (t132 - T::fused(t113, t134, t77 * t136)),
+            -(k(0.5) * t26),
+            k(0.0625) * t103,
+            -(k(0.5) * t94),
+            t104,
+            t105,
+            t106,
+            -(k(0.25) * t109),
+            -(k(0.25) * t110),
+            -(k(0.25) * t112),
+            T::fused(t49, t114, T::fused(-t40, t113, row10 + t104)),
+            T::fused(t45, t114, T::fused(-t28, t113, row11 + t105)),
+            T::fused(t42, t114, T::fused(-t36, t113, row12 + t106)),
             k(0.0),
-            T::fused(t59, t136, -T::fused(t68, t133, t60 * t134)) - t63,
-            t69 - T::fused(t61, t136, -T::fused(t71, t133, t50 * t134)),
+            -T::fused(t64, t109, T::fused(t41, t110, T::fused(t52, t112, t56))),
+            -T::fused(t63, t109, T::fused(t51, t110, T::fused(t50, t112, t54))),
         ];
     }
 }
@@ -3514,7 +3437,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             t32 - T::fused(t22, t34, t12 * t21),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 540 operations (192 ±, 346 ×, 2 ÷) and 24 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 519 operations (191 ±, 326 ×, 2 ÷) and 24 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -3525,341 +3448,316 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let (
-            t13,
+        let t0 = k(18.84955592153876) * t;
+        let t1 = t0.sin();
+        let t2 = k(15.0) * t1;
+        let t3 = x0.sin();
+        let t4 = x0.cos();
+        let t5 = k(0.05) * t1;
+        let t6 = t5.cos();
+        let t7 = k(12.566370614359172) * t;
+        let t8 = t7.sin();
+        let t9 = t5.sin();
+        let t10 = t0.cos();
+        let t11 = t10 * t9;
+        let t12 = t7.cos();
+        let t13 = T::fused(k(13.333333333333334), t8 * t6, t12 * t11);
+        let t14 = T::fused(-t3, t2, t13 * t4);
+        let t15 = k(0.5) * x0;
+        let t16 = t15.cos();
+        let t17 = t15.sin();
+        let t18 = (t17 - t16) * (t17 + t16);
+        let t19 = t17 * t16;
+        let t20 = t12 * t6;
+        let t21 = T::fused(-k(0.375), t10 * t18, t20 * t19);
+        let t22 = T::fused(k(0.47123889803846897), t14, u0 * t21);
+        let t23 = k(0.75) * t10;
+        let t24 = T::fused(t23, t4, t20 * t3);
+        let t25 = T::fused(-t23, t3, t20 * t4);
+        let t26 = x1.sin();
+        let t27 = T::fused(-k(1.2566370614359172), t12 * t9, u0);
+        let t28 = k(0.7957747154594766) * t27;
+        let t29 = x1.cos();
+        let t30 = T::fused(-t26, t25, t29 * t28);
+        let t31 = u1 * t30;
+        let t32 = T::fused(k(0.7957747154594766), u1, t24);
+        let t33 = T::fused(t29, t25, t26 * t28);
+        let t34 = k(0.7957747154594766) * u2;
+        let t35 = k(1.2566370614359172) * (t34 + t33);
+        let t36 = T::fused(k(0.0003141592653589793), t33 * t32, k(1.40025) * (u1 * t33))
+            - T::fused(u2, t32, t35 * t32);
+        let t37 = T::fused(u0, t24, k(0.9424777960769379) * t14);
+        let t38 = k(0.1) * t8;
+        let t39 = t38.sin();
+        let t40 = t38.cos();
+        let t41 = t40 * t9;
+        let t42 = T::fused(
+            -k(4.7756430111511845),
+            t26 * t29 * t37,
+            k(63.325739776461106) * (t29 * T::fused(-t39, t4, t41 * t3)),
+        );
+        let t43 = T::fused(
+            k(0.7957747154594766),
+            t26 * T::fused(k(1.2566370614359172), t30 * t32, -t31),
+            T::fused(k(3.9788735772973833), t29 * t36, t42),
+        );
+        let t44 = T::fused(-t25, t24, t43)
+            / (k(1.0) + T::fused(k(7.00125), t29 * t29, t26 * t26));
+        let t45 = k(0.5) * x1;
+        let t46 = t45.cos();
+        let t47 = t45.sin();
+        let t48 = t47 * t46;
+        let t49 = T::fused(k(1.5), t10 * t19, t20 * t18);
+        let t50 = (t47 - t46) * (t47 + t46);
+        let t51 = T::fused(k(1.5915494309189533), t27 * t48, t50 * t49);
+        let t52 = T::fused(
+            u1,
+            t51,
+            -T::fused(k(1.2566370614359172), t29 * t44, k(2.0) * (t26 * t22)),
+        );
+        let t53 = t26 * t44;
+        let t54 = T::fused(-k(0.3978873577297383), t50 * t27, t48 * t49);
+        let t55 = T::fused(u1, t54, T::fused(-t29, t22, k(0.6283185307179586) * t53));
+        let t56 = T::fused(
+            k(2.0),
+            t55,
+            -T::fused(-t29, t37, T::fused(k(1.2566370614359172), t53, t31)),
+        );
+        let t57 = k(3183.0988618379065) * t56;
+        let t58 = k(0.5) * x2;
+        let t59 = t58.sin();
+        let t60 = k(0.025) * t1;
+        let t61 = t60.sin();
+        let t62 = k(0.05) * t8;
+        let t63 = t62.sin();
+        let t64 = t63 * t61;
+        let t65 = t60.cos();
+        let t66 = t62.cos();
+        let t67 = t66 * t65;
+        let t68 = T::fused(t64, t17, t67 * t16);
+        let t69 = t63 * t65;
+        let t70 = t66 * t61;
+        let t71 = T::fused(t69, t17, t70 * t16);
+        let t72 = T::fused(t68, t47, t71 * t46);
+        let t73 = t58.cos();
+        let t74 = T::fused(-t70, t17, t69 * t16);
+        let t75 = T::fused(-t67, t17, t64 * t16);
+        let t76 = T::fused(t74, t47, t75 * t46);
+        let t77 = T::fused(-t72, t59, t76 * t73);
+        let t78 = T::fused(-t75, t47, t74 * t46);
+        let t79 = T::fused(-t71, t47, t68 * t46);
+        let t80 = T::fused(-t78, t59, t79 * t73);
+        let t81 = t80 * t77;
+        let t82 = T::fused(t76, t59, t72 * t73);
+        let t83 = T::fused(t79, t59, t78 * t73);
+        let t84 = t83 * t82;
+        let t85 = t84 + t81;
+        let t86 = t79 * t78;
+        let t87 = t76 * t72;
+        let t88 = t87 - t86;
+        let t89 = t80 * t82;
+        let t90 = t83 * t77;
+        let t91 = t90 - t89;
+        let t92 = t79 * t79;
+        let t93 = k(0.5) - T::fused(t76, t76, t92);
+        let t94 = t80 * t80;
+        let t95 = k(0.5) - T::fused(t83, t83, t94);
+        let t96 = t79 * t72;
+        let t97 = t78 * t76;
+        let t98 = t97 + t96;
+        let t99 = T::fused(k(0.3978873577297383), u1, t21);
+        let t100 = k(2.0) * T::fused(t99, t99, t54 * t54);
+        let t101 = k(0.5) - T::fused(t78, t78, t92);
+        let t102 = t79 * t76;
+        let t103 = t78 * t72;
+        let t104 = t103 - t102;
+        let t105 = k(0.9424777960769379) * T::fused(t4, t2, t13 * t3);
+        let t106 = T::fused(u0, t49, t105);
+        let t107 = t33 * t30;
+        let t108 = T::fused(-(t40 * t6), t29, t26 * T::fused(t39, t3, t41 * t4));
+        let t109 = T::fused(
+            k(3.9788735772973833),
+            T::fused(u2, t30, t30 * t35),
+            T::fused(-k(0.00125), t107, k(63.325739776461106) * t108),
+        );
+        let t110 = T::fused(
+            -u0,
             t25,
-            t77,
-            t180,
-            t187,
-            t188,
-            t189,
-            t190,
-            t191,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = x0.cos();
-            let t1 = k(18.84955592153876) * t;
-            let t2 = t1.sin();
-            let t3 = k(0.05) * t2;
-            let t4 = t3.cos();
-            let t5 = k(12.566370614359172) * t;
-            let t6 = k(1.2566370614359172) * t5.cos();
-            let t7 = t6 * t4;
-            let t8 = x0.sin();
-            let t9 = k(0.9424777960769379) * t1.cos();
-            let t10 = T::fused(-t7, t0, t9 * t8);
-            let t11 = x1.cos();
-            let t12 = x1.sin();
-            let t13 = t3.sin();
-            let t14 = T::fused(t6, t13, -u0);
-            let t15 = T::fused(t11, t10, t14 * t12);
-            let t16 = k(1e-5) * t15;
-            let t17 = T::fused(-t12, t10, t14 * t11);
-            let t18 = u2 - t15;
-            let t19 = T::fused(
-                k(0.000125) * t17,
-                t16,
-                k(5e-6) * T::fused(u2, t17, t18 * t17),
+            T::fused(-k(0.2093958860963828), t107 - t109, t105),
+        ) - t106;
+        let t111 = t99 * t51;
+        let t112 = t54 * t51;
+        let t113 = T::fused(
+            t98,
+            t112,
+            -T::fused(
+                -k(0.3978873577297383),
+                T::fused(-t104, t52, t98 * t110),
+                t104 * t111,
+            ),
+        );
+        let t114 = T::fused(-t101, t100, t113);
+        let t115 = t97 - t96;
+        let t116 = t87 + t86;
+        let t117 = T::fused(
+            t93,
+            t112,
+            T::fused(k(0.3978873577297383), T::fused(t116, t52, t93 * t110), t116 * t111),
+        );
+        let t118 = k(12665.147955292221) - T::fused(-t115, t100, t117);
+        let t119 = t103 + t102;
+        let t120 = k(0.5) - T::fused(t72, t72, t92);
+        let t121 = T::fused(
+            t88,
+            t112,
+            T::fused(k(0.3978873577297383), T::fused(t120, t52, t88 * t110), t120 * t111),
+        );
+        let t122 = T::fused(t119, t100, t121);
+        let t123 = x2.sin();
+        let t124 = x2.cos();
+        let t125 = t59 * t73;
+        let t126 = (t59 - t73) * (t59 + t73);
+        let t127 = T::fused(-k(2.0), t125 * t99, t126 * t54);
+        let t128 = t34 + t51;
+        let t129 = T::fused(
+            k(2.5132741228718345),
+            t128 * t127,
+            T::fused(k(2.0), u2 * t127, T::fused(t123, t52, t124 * t110)),
+        );
+        let t130 = k(1591.5494309189532) * t129;
+        let t131 = k(0.5) - T::fused(t82, t82, t94);
+        let t132 = t80 * t83;
+        let t133 = t77 * t82;
+        let t134 = t133 + t132;
+        let t135 = t84 - t81;
+        let t136 = T::fused(
+            T::fused(t98, t135, -T::fused(t88, t131, t93 * t134)),
+            t130,
+            T::fused(-t104, t114, T::fused(-t116, t118, t120 * t122)),
+        );
+        let t137 = T::fused(k(0.5), t126 * t99, t125 * t54);
+        let t138 = T::fused(
+            k(5.026548245743669),
+            t137 * t128,
+            T::fused(k(4.0), u2 * t137, -T::fused(-t124, t52, t123 * t110)),
+        );
+        let t139 = k(1591.5494309189532) * t138;
+        let t140 = t133 - t132;
+        let t141 = k(0.5) - T::fused(t77, t77, t94);
+        let t142 = t90 + t89;
+        let t143 = T::fused(
+            T::fused(t98, t142, T::fused(t88, t140, t93 * t141)),
+            t139,
+            t136,
+        );
+        let t144 = T::fused(
+            -T::fused(t98, t95, T::fused(-t88, t85, t93 * t91)),
+            t57,
+            t143,
+        );
+        let t145 = T::fused(k(159.15494309189535), t52, t144);
+        let t146 = t68 * t75;
+        let t147 = t74 * t71;
+        let t148 = t147 + t146;
+        let t149 = t68 * t71;
+        let t150 = t74 * t75;
+        let t151 = t150 - t149;
+        let t152 = t68 * t68;
+        let t153 = k(0.5) - T::fused(t74, t74, t152);
+        let t154 = T::fused(
+            T::fused(t104, t135, T::fused(t120, t131, t116 * t134)),
+            t130,
+            T::fused(t98, t114, T::fused(-t93, t118, t88 * t122)),
+        );
+        let t155 = T::fused(
+            T::fused(t104, t142, -T::fused(t120, t140, t116 * t141)),
+            t139,
+            t154,
+        );
+        let t156 = T::fused(
+            -T::fused(t104, t95, -T::fused(-t120, t85, t116 * t91)),
+            t57,
+            t155,
+        );
+        let t157 = T::fused(k(200.0), T::fused(k(0.3978873577297383), t110, t112), t156);
+        let t158 = T::fused(
+            T::fused(t153, t98, T::fused(-t148, t88, t151 * t93)),
+            t145,
+            T::fused(t153, t104, -T::fused(-t148, t120, t151 * t116)) * t157,
+        );
+        let t159 = T::fused(
+            T::fused(t101, t142, T::fused(-t119, t140, t115 * t141)),
+            t138,
+            T::fused(t101, t135, -T::fused(-t119, t131, t115 * t134)) * t129,
+        );
+        let t160 = T::fused(
+            -k(2.0),
+            T::fused(t101, t95, T::fused(t119, t85, t115 * t91)) * t56,
+            t159,
+        );
+        let t161 = k(1591.5494309189532)
+            * T::fused(
+                k(0.25132741228718347),
+                T::fused(-k(0.3978873577297383), t55, t99 * t54),
+                t160,
             );
-            let t20 = t5.sin();
-            let t21 = k(0.1) * t20;
-            let t22 = t21.cos();
-            let t23 = t22 * t13;
-            let t24 = k(10.0) * t23;
-            let t25 = t21.sin();
-            let t26 = k(10.0) * t25;
-            let t27 = T::fused(
-                -t12,
-                T::fused(t0, t24, t8 * t26),
-                t11 * (k(10.0) * (t22 * t4)),
-            );
-            let t28 = t9 * t13;
-            let t29 = k(15.791367041742975) * t20;
-            let t30 = T::fused(t6, t28, t4 * t29);
-            let t31 = k(17.765287921960844) * t2;
-            let t32 = T::fused(t30, t8, t31 * t0);
-            let t33 = T::fused(
-                -k(166631.95167673402),
-                T::fused(k(1e-5), t27, T::fused(k(1e-6), t15 * t17, t19)),
-                T::fused(u0, t10, t32),
-            );
-            let t34 = k(0.5) * x0;
-            let t35 = t34.sin();
-            let t36 = k(2.0) * t35;
-            let t37 = T::fused(-t35, t36, k(1.0));
-            let t38 = t34.cos();
-            let t39 = t38 * t36;
-            let t40 = T::fused(-t7, t37, t9 * t39);
-            let t41 = T::fused(u0, t40, t32);
-            let t42 = t41 - t33;
-            let t43 = k(0.5) * x1;
-            let t44 = t43.sin();
-            let t45 = k(0.025) * t2;
-            let t46 = t45.cos();
-            let t47 = k(0.05) * t20;
-            let t48 = t47.cos();
-            let t49 = t48 * t46;
-            let t50 = t45.sin();
-            let t51 = t47.sin();
-            let t52 = t51 * t50;
-            let t53 = T::fused(-t49, t35, t52 * t38);
-            let t54 = t43.cos();
-            let t55 = t48 * t50;
-            let t56 = t51 * t46;
-            let t57 = T::fused(-t55, t35, t56 * t38);
-            let t58 = T::fused(-t53, t44, t57 * t54);
-            let t59 = T::fused(t56, t35, t55 * t38);
-            let t60 = T::fused(t52, t35, t49 * t38);
-            let t61 = T::fused(-t59, t44, t60 * t54);
-            let t62 = t61 * t58;
-            let t63 = T::fused(t60, t44, t59 * t54);
-            let t64 = T::fused(t57, t44, t53 * t54);
-            let t65 = t64 * t63;
-            let t66 = t65 - t62;
-            let t67 = k(0.00025) * t66;
-            let t68 = T::fused(t7, t8, t9 * t0);
-            let t69 = u1 + t68;
-            let t70 = T::fused(
-                k(0.000125) * t69,
-                t16,
-                k(5e-6) * T::fused(u2, t69, t69 * t18),
-            );
-            let t71 = u1 * t17;
-            let t72 = T::fused(
-                t11,
-                T::fused(k(7.00125e-6), u1 * t15, t70),
-                t12 * (k(1e-6) * T::fused(t69, t17, -t71)),
-            );
-            let t73 = T::fused(-t30, t0, t31 * t8);
-            let t74 = T::fused(-u0, t68, t73);
-            let t75 = T::fused(
-                -(k(1e-5) * t11),
-                T::fused(-t8, t24, t0 * t26),
-                T::fused(-t12, k(1e-6) * t11, t11 * (k(7.00125e-6) * t12)) * t74,
-            );
-            let t76 = (t75 + T::fused(k(1e-6), t68 * t10, -t72))
-                / (k(1e-6) + T::fused(t12, k(1e-6) * t12, t11 * (k(7.00125e-6) * t11)));
-            let t77 = t9 * t4;
-            let t78 = T::fused(-t6, t77, t13 * t29);
-            let t79 = t78 - (t78 - t76);
-            let t80 = T::fused(t7, t39, t9 * t37);
-            let t81 = T::fused(-u0, t80, t73);
-            let t82 = k(2.0) * t44;
-            let t83 = T::fused(-t44, t82, k(1.0));
-            let t84 = t54 * t82;
-            let t85 = T::fused(t83, t40, t14 * t84);
-            let t86 = T::fused(u1, t85, -T::fused(-t11, t79, t12 * t81));
-            let t87 = t61 * t61;
-            let t88 = k(0.5) - T::fused(t63, t63, t87);
-            let t89 = k(0.00025) * t88;
-            let t90 = T::fused(-t84, t40, t14 * t83);
-            let t91 = k(0.000125) * t90;
-            let t92 = u1 + t80;
-            let t93 = k(0.000125) * t92;
-            let t94 = T::fused(t90, t91, t92 * t93);
-            let t95 = t61 * t64;
-            let t96 = t58 * t63;
-            let t97 = k(2.0) * (t96 + t95);
-            let t98 = t91 * t85;
-            let t99 = k(2.0) * t66;
-            let t100 = t93 * t85;
-            let t101 = k(2.0) * t88;
-            let t102 = T::fused(t101, t100, -T::fused(t97, t94, t99 * t98))
-                + T::fused(t67, t42, t89 * t86);
-            let t103 = k(0.08) * t102;
-            let t104 = k(0.5) - T::fused(t64, t64, t87);
-            let t105 = k(0.00025) * t104;
-            let t106 = t65 + t62;
-            let t107 = k(0.00025) * t106;
-            let t108 = t61 * t63;
-            let t109 = t58 * t64;
-            let t110 = k(2.0) * (t109 - t108);
-            let t111 = k(2.0) * t104;
-            let t112 = k(2.0) * t106;
-            let t113 = T::fused(t112, t100, -T::fused(-t110, t94, t111 * t98))
-                + T::fused(t105, t42, t107 * t86);
-            let t114 = T::fused(k(0.08), t113, k(0.8));
-            let t115 = t109 + t108;
-            let t116 = k(0.00025) * t115;
-            let t117 = t96 - t95;
-            let t118 = k(0.00025) * t117;
-            let t119 = k(2.0) * (k(0.5) - T::fused(t58, t58, t87));
-            let t120 = k(2.0) * t115;
-            let t121 = k(2.0) * t117;
-            let t122 = T::fused(t121, t100, T::fused(-t119, t94, t120 * t98))
-                + T::fused(-t116, t42, t118 * t86);
-            let t123 = k(0.08) * t122;
-            let t124 = x2.cos();
-            let t125 = x2.sin();
-            let t126 = k(0.5) * x2;
-            let t127 = t126.sin();
-            let t128 = k(2.0) * t127;
-            let t129 = T::fused(-t127, t128, k(1.0));
-            let t130 = t126.cos();
-            let t131 = t130 * t128;
-            let t132 = T::fused(-t129, t90, t131 * t92);
-            let t133 = u2 - t85;
-            let t134 = T::fused(
-                t133,
-                t132,
-                T::fused(u2, t132, T::fused(t124, t42, t125 * t86)),
-            );
-            let t135 = k(5e-6) * t134;
-            let t136 = T::fused(-t63, t127, t64 * t130);
-            let t137 = T::fused(-t58, t127, t61 * t130);
-            let t138 = t137 * t136;
-            let t139 = T::fused(t64, t127, t63 * t130);
-            let t140 = T::fused(t61, t127, t58 * t130);
-            let t141 = t140 * t139;
-            let t142 = k(2.0) * (t141 - t138);
-            let t143 = t137 * t140;
-            let t144 = t136 * t139;
-            let t145 = k(2.0) * (t144 + t143);
-            let t146 = t137 * t137;
-            let t147 = k(2.0) * (k(0.5) - T::fused(t139, t139, t146));
-            let t148 = T::fused(t131, t90, t129 * t92);
-            let t149 = T::fused(
-                t133,
-                t148,
-                T::fused(u2, t148, T::fused(-t125, t42, t124 * t86)),
-            );
-            let t150 = k(5e-6) * t149;
-            let t151 = t137 * t139;
-            let t152 = t140 * t136;
-            let t153 = k(2.0) * (t152 + t151);
-            let t154 = k(2.0) * (k(0.5) - T::fused(t136, t136, t146));
-            let t155 = k(2.0) * (t144 - t143);
-            let t156 = T::fused(u1, t90, -T::fused(t12, t79, t11 * t81));
-            let t157 = k(1e-5) * (t156 - (t71 - T::fused(t12, t76, t11 * t74)));
-            let t158 = k(2.0) * (k(0.5) - T::fused(t140, t140, t146));
-            let t159 = k(2.0) * (t152 - t151);
-            let t160 = k(2.0) * (t141 + t138);
-            let t161 = T::fused(
-                T::fused(t101, t155, T::fused(-t121, t153, t112 * t154)),
-                t150,
-                T::fused(t101, t160, -T::fused(-t121, t158, t112 * t159)) * t157,
-            );
-            let t162 = T::fused(
-                -T::fused(t101, t147, T::fused(t121, t142, t112 * t145)),
-                t135,
-                t161,
-            );
-            let t163 = T::fused(
-                k(1e-6),
-                T::fused(t90, t85, -t42),
-                t162 + T::fused(-t67, t103, T::fused(-t105, t114, t116 * t123)),
-            );
-            let t164 = t60 * t53;
-            let t165 = t57 * t59;
-            let t166 = k(2.0) * (t165 - t164);
-            let t167 = t60 * t57;
-            let t168 = t53 * t59;
-            let t169 = k(2.0) * (t168 + t167);
-            let t170 = t60 * t60;
-            let t171 = k(2.0) * (k(0.5) - T::fused(t59, t59, t170));
-            let t172 = T::fused(
-                T::fused(t99, t155, T::fused(t120, t153, t111 * t154)),
-                t150,
-                T::fused(t99, t160, -T::fused(t120, t158, t111 * t159)) * t157,
-            );
-            let t173 = T::fused(
-                -T::fused(t99, t147, T::fused(-t120, t142, t111 * t145)),
-                t135,
-                t172,
-            );
-            let t174 = T::fused(
-                k(2e-6),
-                t86,
-                t173 + T::fused(t89, t103, T::fused(t107, t114, t118 * t123)),
-            );
-            let t175 = T::fused(
-                T::fused(t97, t155, -T::fused(t119, t153, t110 * t154)),
-                t150,
-                T::fused(t97, t160, T::fused(t119, t158, t110 * t159)) * t157,
-            );
-            let t176 = T::fused(
-                -T::fused(t97, t147, -T::fused(-t119, t142, t110 * t145)),
-                t135,
-                t175,
-            );
-            let t177 = T::fused(k(1e-6), T::fused(t90, t92, -t156), -t176);
-            let t178 = T::fused(
-                -T::fused(t171, t99, T::fused(-t166, t120, t169 * t111)),
-                t174,
-                T::fused(t171, t97, -T::fused(-t166, t119, t169 * t110)) * t177,
-            );
-            let t179 = T::fused(
-                -T::fused(t171, t101, T::fused(t166, t121, t169 * t112)),
-                t163,
-                t178,
-            );
-            let t180 = T::fused(k(1e-6), T::fused(t14, t40, t41), t179);
-            let t181 = k(2.0) * (k(0.5) - T::fused(t57, t57, t170));
-            let t182 = t60 * t59;
-            let t183 = t57 * t53;
-            let t184 = k(2.0) * (t183 - t182);
-            let t185 = k(2.0) * (t165 + t164);
-            let t186 = t25 * t13;
-            let t187 = T::fused(t186, t185, -T::fused(t4, t181, t23 * t184));
-            let t188 = T::fused(-t25, t169, t22 * t171);
-            let t189 = T::fused(t186, t171, T::fused(-t4, t166, t23 * t169));
-            let t190 = T::fused(t25, t184, t22 * t185);
-            let t191 = k(1.0) / T::fused(-t188, t187, t190 * t189);
-            let t192 = T::fused(
-                -T::fused(t185, t99, -T::fused(t181, t120, t184 * t111)),
-                t174,
-                T::fused(t185, t97, T::fused(t181, t119, t184 * t110)) * t177,
-            );
-            let t193 = T::fused(
-                -T::fused(t185, t101, -T::fused(-t181, t121, t184 * t112)),
-                t163,
-                t192,
-            );
-            let t194 = T::fused(k(2e-6), t81, t193);
-            let t195 = k(2.0) * (t168 - t167);
-            let t196 = t6 * t22;
-            let t197 = k(2.0) * (k(0.5) - T::fused(t53, t53, t170));
-            let t198 = t6 * t25;
-            let t199 = T::fused(
-                T::fused(-t22, t77, t13 * t198),
-                t197,
-                t28 * (k(2.0) * (t183 + t182)),
-            );
-            (
-                t13,
-                t25,
-                t77,
-                t180,
-                t187,
-                t188,
-                t189,
-                t190,
-                t191,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t200,) = {
-            let t200 = T::fused(
-                -T::fused(-T::fused(t25, t77, t13 * t196), t195, t199),
-                T::fused(t188 * t191, t180, t190 * t191 * t194),
-                T::fused(t198, t195, t196 * t197)
-                    * T::fused(t189 * t191, t180, t187 * t191 * t194),
-            );
-            (t200,)
-        };
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -t200];
+        let t162 = T::fused(
+            T::fused(t153, t101, T::fused(t148, t119, t151 * t115)),
+            t161,
+            t158,
+        );
+        let t163 = T::fused(k(79.57747154594767), t22, t162);
+        let t164 = T::fused(t40, t148, t39 * t151);
+        let t165 = k(0.5) - T::fused(t71, t71, t152);
+        let t166 = t39 * t9;
+        let t167 = t68 * t74;
+        let t168 = t75 * t71;
+        let t169 = t168 + t167;
+        let t170 = t147 - t146;
+        let t171 = T::fused(t6, t170, -T::fused(t166, t165, t41 * t169));
+        let t172 = T::fused(-t40, t165, t39 * t169);
+        let t173 = T::fused(t6, t153, T::fused(-t166, t148, t41 * t151));
+        let t174 = k(1.0) / T::fused(t171, t164, t173 * t172);
+        let t175 = T::fused(
+            T::fused(t170, t98, -T::fused(t165, t88, t169 * t93)),
+            t145,
+            T::fused(t170, t104, T::fused(t165, t120, t169 * t116)) * t157,
+        );
+        let t176 = T::fused(
+            T::fused(t170, t101, -T::fused(-t165, t119, t169 * t115)),
+            t161,
+            t175,
+        );
+        let t177 = T::fused(k(19.89436788648692), T::fused(t27, t49, -t106), t176);
+        let t178 = t12 * t40;
+        let t179 = k(0.5) - T::fused(t75, t75, t152);
+        let t180 = t12 * t39;
+        let t181 = t168 - t167;
+        let t182 = k(1.3333333333333333) * t9;
+        let t183 = t10 * t6;
+        let t184 = T::fused(
+            -t179,
+            T::fused(-t180, t182, t40 * t183),
+            t11 * (t150 + t149),
+        );
+        let t185 = T::fused(-(t164 * t174), t163, t172 * t174 * t177)
+            * T::fused(-t181, T::fused(t178, t182, t39 * t183), t184);
+        let t186 = T::fused(
+            -T::fused(t179, t178, t181 * t180),
+            T::fused(t173 * t174, t163, t171 * t174 * t177),
+            k(0.75) * t185,
+        );
+        *dx = [
+            u0,
+            u1,
+            u2,
+            rates[0],
+            rates[1],
+            rates[2],
+            -(k(7.937606830156754e-8) * t186),
+        ];
     }
-    /// Writes the maximal state of a joint state: 127 operations (39 ±, 88 ×, 0 ÷) and 16 functions.
+    /// Writes the maximal state of a joint state: 130 operations (42 ±, 88 ×, 0 ÷) and 16 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -3903,40 +3801,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let t32 = k(0.5) * x2;
         let t33 = t32.sin();
         let t34 = t32.cos();
-        let t35 = k(2.0) * t1;
-        let t36 = T::fused(-t1, t35, k(1.0));
-        let t37 = k(0.05) * t3;
-        let t38 = k(1.2566370614359172) * t6.cos();
-        let t39 = t38 * t37.cos();
-        let t40 = t10 * t35;
-        let t41 = k(0.9424777960769379) * t2.cos();
-        let t42 = T::fused(-t39, t36, t41 * t40);
-        let t43 = T::fused(t38, t37.sin(), -u0);
-        let t44 = T::fused(t39, t40, t41 * t36);
-        let t45 = k(2.0) * t21;
-        let t46 = T::fused(-t21, t45, k(1.0));
-        let t47 = t22 * t45;
-        let t48 = T::fused(t46, t42, t43 * t47);
-        let t49 = T::fused(-t47, t42, t43 * t46);
-        let t50 = u1 + t44;
-        let t51 = k(0.000125) * t50;
-        let t52 = k(0.000125) * t49;
-        let t53 = T::fused(-(k(2.0) * (t29 + t28)), t51, k(2.0) * (t31 - t30) * t52);
-        let t54 = t23 * t24;
-        let t55 = t25 * t26;
-        let t56 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t25, t25, t27)),
-            t51,
-            k(2.0) * (t55 + t54) * t52,
+        let t35 = (t1 - t10) * (t1 + t10);
+        let t36 = k(0.05) * t3;
+        let t37 = k(1.2566370614359172) * t6.cos();
+        let t38 = t37 * t36.cos();
+        let t39 = t10 * (k(2.0) * t1);
+        let t40 = k(0.9424777960769379) * t2.cos();
+        let t41 = T::fused(t38, t35, t40 * t39);
+        let t42 = T::fused(t37, t36.sin(), -u0);
+        let t43 = T::fused(-t38, t39, t40 * t35);
+        let t44 = (t21 - t22) * (t21 + t22);
+        let t45 = t22 * (k(2.0) * t21);
+        let t46 = T::fused(-t44, t41, t42 * t45);
+        let t47 = T::fused(t45, t41, t42 * t44);
+        let t48 = u1 - t43;
+        let t49 = k(0.000125) * t48;
+        let t50 = k(0.000125) * t47;
+        let t51 = T::fused(k(2.0) * (t29 + t28), t49, k(2.0) * (t31 - t30) * t50);
+        let t52 = t23 * t24;
+        let t53 = t25 * t26;
+        let t54 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(t25, t25, t27))),
+            t49,
+            k(2.0) * (t53 + t52) * t50,
         );
-        let t57 = T::fused(
-            k(2.0) * (t55 - t54),
-            t51,
-            k(2.0) * (k(0.5) - T::fused(t26, t26, t27)) * t52,
+        let t55 = T::fused(
+            -(k(2.0) * (t53 - t52)),
+            t49,
+            k(2.0) * (k(0.5) - T::fused(t26, t26, t27)) * t50,
         );
-        let t58 = k(2.0) * t33;
-        let t59 = T::fused(-t33, t58, k(1.0));
-        let t60 = t34 * t58;
+        let t56 = (t33 - t34) * (t33 + t34);
+        let t57 = t34 * (k(2.0) * t33);
         *y = [
             k(0.0),
             k(0.0),
@@ -3962,25 +3857,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             k(0.0),
             k(0.0),
             k(0.0),
+            -t41,
             -t42,
             -t43,
-            t44,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t48,
-            -t49,
-            t50,
-            t53,
-            -t56,
-            -t57,
-            u2 - t48,
-            T::fused(-t59, t49, t60 * t50),
-            T::fused(t60, t49, t59 * t50),
+            -t46,
+            t47,
+            t48,
+            -t51,
+            t54,
+            t55,
+            u2 - t46,
+            T::fused(-t56, t47, t57 * t48),
+            -T::fused(t57, t47, t56 * t48),
             x[6],
         ];
     }
-    /// Writes the joint state of a maximal state: 154 operations (68 ±, 86 ×, 0 ÷) and 16 functions.
+    /// Writes the joint state of a maximal state: 144 operations (68 ±, 76 ×, 0 ÷) and 16 functions.
     fn to_joints(&self, t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4003,90 +3898,91 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let x0 = x[0];
         let x1 = x[1];
         let x2 = x[2];
-        let t0 = x0.sin();
-        let t1 = outer_ring_e2 * outer_ring_e2;
-        let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = T::fused(outer_ring_e1, outer_ring_e1, t2);
-        let t4 = outer_ring_e3 * outer_ring_e3;
-        let t5 = k(1.0) - (t4 + (t3 + t1));
-        let t6 = T::fused(k(2.0), k(0.5) - (t2 + t4), -t5);
-        let t7 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t8 = t7.sin();
-        let t9 = k(12.566370614359172) * t;
-        let t10 = k(0.1) * t9.sin();
-        let t11 = t10.sin();
-        let t12 = outer_ring_e0 * outer_ring_e1;
-        let t13 = outer_ring_e2 * outer_ring_e3;
-        let t14 = k(2.0) * (t13 - t12);
-        let t15 = t10.cos();
-        let t16 = outer_ring_e0 * outer_ring_e2;
-        let t17 = outer_ring_e1 * outer_ring_e3;
-        let t18 = T::fused(t15 * t8, t14, t7.cos() * (k(2.0) * (t17 + t16)));
-        let t19 = T::fused(-(t11 * t8), t6, t18);
-        let t20 = x0.cos();
-        let t21 = T::fused(t15, t6, t11 * t14);
-        let t22 = T::fused(t19, t20, t21 * t0).atan2(T::fused(-t21, t20, t19 * t0));
-        let t23 = x1.sin();
-        let t24 = inner_ring_e0 * inner_ring_e2;
-        let t25 = inner_ring_e1 * inner_ring_e3;
-        let t26 = k(2.0) * (t25 - t24);
-        let t27 = inner_ring_e0 * inner_ring_e3;
-        let t28 = inner_ring_e1 * inner_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = inner_ring_e2 * inner_ring_e2;
-        let t31 = inner_ring_e0 * inner_ring_e0;
-        let t32 = T::fused(inner_ring_e1, inner_ring_e1, t31);
-        let t33 = inner_ring_e3 * inner_ring_e3;
-        let t34 = k(1.0) - (t33 + (t32 + t30));
-        let t35 = T::fused(k(2.0), k(0.5) - t32, -t34);
-        let t36 = outer_ring_e0 * outer_ring_e3;
-        let t37 = outer_ring_e1 * outer_ring_e2;
-        let t38 = T::fused(
-            t29,
-            T::fused(k(2.0), k(0.5) - (t2 + t1), -t5),
-            k(2.0) * (t37 - t36) * t35,
+        let t0 = outer_ring_e3 * outer_ring_e3;
+        let t1 = outer_ring_e0 * outer_ring_e0;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
+        let t3 = outer_ring_e2 * outer_ring_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + (t2 + t0)));
+        let t5 = k(0.5) - (t1 + t0) - t4;
+        let t6 = k(12.566370614359172) * t;
+        let t7 = k(0.1) * t6.sin();
+        let t8 = t7.cos();
+        let t9 = outer_ring_e0 * outer_ring_e1;
+        let t10 = outer_ring_e2 * outer_ring_e3;
+        let t11 = t10 - t9;
+        let t12 = t7.sin();
+        let t13 = T::fused(t8, t5, t12 * t11);
+        let t14 = x0.cos();
+        let t15 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t16 = t15.sin();
+        let t17 = outer_ring_e0 * outer_ring_e2;
+        let t18 = outer_ring_e1 * outer_ring_e3;
+        let t19 = T::fused(
+            -(t12 * t16),
+            t5,
+            T::fused(t15.cos(), t18 + t17, t8 * t16 * t11),
         );
-        let t39 = T::fused(-(k(2.0) * (t13 + t12)), t26, t38);
-        let t40 = x1.cos();
-        let t41 = T::fused(
-            k(2.0) * (t37 + t36),
-            t29,
-            T::fused(k(2.0), k(0.5) - t3, -t5) * t35,
+        let t20 = x0.sin();
+        let t21 = (k(2.0) * T::fused(t20, t13, t14 * t19))
+            .atan2(k(2.0) * T::fused(-t14, t13, t20 * t19));
+        let t22 = inner_ring_e3 * inner_ring_e3;
+        let t23 = inner_ring_e0 * inner_ring_e0;
+        let t24 = T::fused(inner_ring_e1, inner_ring_e1, t23);
+        let t25 = inner_ring_e2 * inner_ring_e2;
+        let t26 = k(0.5) * (k(1.0) - (t25 + (t24 + t22)));
+        let t27 = k(0.5) - t24 - t26;
+        let t28 = inner_ring_e0 * inner_ring_e3;
+        let t29 = inner_ring_e1 * inner_ring_e2;
+        let t30 = t29 + t28;
+        let t31 = outer_ring_e0 * outer_ring_e3;
+        let t32 = outer_ring_e1 * outer_ring_e2;
+        let t33 = inner_ring_e0 * inner_ring_e2;
+        let t34 = inner_ring_e1 * inner_ring_e3;
+        let t35 = t34 - t33;
+        let t36 = T::fused(
+            t18 - t17,
+            t35,
+            T::fused(t27, k(0.5) - t2 - t4, (t32 + t31) * t30),
         );
-        let t42 = T::fused(k(2.0) * (t17 - t16), t26, t41);
-        let t43 = -T::fused(t39, t40, t42 * t23).atan2(T::fused(-t39, t23, t42 * t40));
-        let t44 = x2.sin();
-        let t45 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t46 = rotor_e2 * rotor_e2;
-        let t47 = rotor_e0 * rotor_e0;
-        let t48 = T::fused(
-            k(2.0),
-            k(0.5) - (t47 + t46),
-            -(k(1.0)
-                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t47) + t46)),
+        let t37 = x1.cos();
+        let t38 = T::fused(t32 - t31, t27, t30 * (k(0.5) - (t1 + t3) - t4));
+        let t39 = T::fused(t10 + t9, t35, -t38);
+        let t40 = x1.sin();
+        let t41 = (k(4.0) * T::fused(-t40, t36, t37 * t39))
+            .atan2(k(4.0) * T::fused(t37, t36, t40 * t39));
+        let t42 = rotor_e2 * rotor_e2;
+        let t43 = rotor_e0 * rotor_e0;
+        let t44 = T::fused(
+            rotor_e1,
+            rotor_e1,
+            t43 + T::fused(rotor_e3, rotor_e3, k(2.0) * (k(0.5) - (t43 + t42))),
         );
-        let t49 = inner_ring_e0 * inner_ring_e1;
-        let t50 = inner_ring_e2 * inner_ring_e3;
-        let t51 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t52 = T::fused(-(k(2.0) * (t50 - t49)), t48, k(2.0) * (t25 + t24) * t51);
-        let t53 = T::fused(-t45, T::fused(k(2.0), k(0.5) - (t31 + t33), -t34), t52);
+        let t45 = k(0.5) * (k(1.0) - (t42 + t44));
+        let t46 = inner_ring_e0 * inner_ring_e1;
+        let t47 = inner_ring_e2 * inner_ring_e3;
+        let t48 = T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t49 = T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t50 = T::fused(
+            t49,
+            k(0.5) - (t23 + t22) - t26,
+            -T::fused(t47 - t46, t45, (t34 + t33) * t48),
+        );
+        let t51 = x2.sin();
+        let t52 = T::fused(-(k(0.5) - (t23 + t25) - t26), t45, (t29 - t28) * t48);
+        let t53 = T::fused(t47 + t46, t49, t52);
         let t54 = x2.cos();
-        let t55 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t31 + t30), -t34),
-            t48,
-            k(2.0) * (t28 - t27) * t51,
-        );
-        let t56 = T::fused(k(2.0) * (t50 + t49), t45, t55);
-        let t57 = T::fused(-t56, t44, t53 * t54).atan2(T::fused(t53, t44, t56 * t54));
-        x[0] = x0 + t22;
-        x[1] = x1 + t43;
-        x[2] = x2 + t57;
-        x[3] = T::fused(k(1.2566370614359172) * t9.cos(), t8, outer_ring_wy);
+        let t55 = -(k(4.0) * T::fused(t54, t50, t51 * t53))
+            .atan2(k(4.0) * T::fused(-t51, t50, t54 * t53));
+        x[0] = x0 + t21;
+        x[1] = x1 + t41;
+        x[2] = x2 + t55;
+        x[3] = k(1.2566370614359172)
+            * T::fused(k(0.7957747154594766), outer_ring_wy, t6.cos() * t16);
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 143 operations (46 ±, 96 ×, 1 ÷) and 12 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 141 operations (47 ±, 93 ×, 1 ÷) and 12 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4104,18 +4000,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = k(12.566370614359172) * t;
+        let t0 = k(18.84955592153876) * t;
         let t1 = t0.sin();
-        let t2 = k(0.1) * t1;
-        let t3 = k(10.0) * t2.cos();
-        let t4 = k(18.84955592153876) * t;
-        let t5 = t4.sin();
-        let t6 = k(0.05) * t5;
-        let t7 = t6.sin();
-        let t8 = t7 * t3;
-        let t9 = k(0.025) * t5;
+        let t2 = k(0.05) * t1;
+        let t3 = t2.cos();
+        let t4 = t0.cos();
+        let t5 = k(12.566370614359172) * t;
+        let t6 = t5.cos();
+        let t7 = t2.sin();
+        let t8 = t5.sin();
+        let t9 = k(0.025) * t1;
         let t10 = t9.cos();
-        let t11 = k(0.05) * t1;
+        let t11 = k(0.05) * t8;
         let t12 = t11.sin();
         let t13 = t12 * t10;
         let t14 = t11.cos();
@@ -4132,8 +4028,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(-t17, outer_ring_e1, t18 * outer_ring_e0),
             ),
         );
-        let t20 = k(2.0) * t19;
-        let t21 = T::fused(
+        let t20 = T::fused(
             t17,
             outer_ring_e3,
             T::fused(
@@ -4142,10 +4037,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(t13, outer_ring_e1, t15 * outer_ring_e0),
             ),
         );
-        let t22 = t21 * t20;
-        let t23 = k(10.0) * t2.sin();
-        let t24 = T::fused(-t19, t20, k(1.0));
+        let t21 = (t20 - t19) * (t20 + t19);
+        let t22 = T::fused(k(13.333333333333334), t8 * t3, t6 * (t4 * t7));
+        let t23 = t20 * t19;
+        let t24 = T::fused(k(1.2566370614359172), t6 * t7, outer_ring_wy);
         let t25 = T::fused(
+            outer_ring_wz,
+            t24,
+            -T::fused(
+                -k(1.184352528130723),
+                t22 * t21,
+                k(35.53057584392169) * (t1 * t23),
+            ),
+        );
+        let t26 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4154,17 +4059,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t26 = k(2.0) * t25;
-        let t27 = T::fused(-t25, t26, k(1.0));
-        let t28 = k(1.2566370614359172) * t0.cos();
-        let t29 = T::fused(t28, t7, outer_ring_wy);
-        let t30 = k(0.9424777960769379) * t4.cos();
-        let t31 = k(15.791367041742975) * t1;
-        let t32 = t6.cos();
-        let t33 = T::fused(t28, t30 * t7, t32 * t31);
-        let t34 = k(17.765287921960844) * t5;
-        let t35 = T::fused(-outer_ring_wz, t29, T::fused(-t33, t24, t34 * t22));
-        let t36 = T::fused(
+        let t27 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4173,48 +4068,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t37 = t36 * t26;
-        let t38 = T::fused(
-            k(1e-5) * t27,
-            T::fused(-t22, t8, t24 * t23),
-            T::fused(-t37, k(1e-6) * t27, t27 * (k(7.00125e-6) * t37)) * t35,
+        let t28 = (t27 + t26) * (t27 - t26);
+        let t29 = t27 * t26;
+        let t30 = k(0.1) * t8;
+        let t31 = t30.sin();
+        let t32 = t30.cos();
+        let t33 = t32 * t7;
+        let t34 = T::fused(
+            k(6.00125),
+            t29 * t28 * t25,
+            k(100.0) * (t28 * T::fused(-k(0.5), t31 * t21, t33 * t23)),
         );
-        let t39 = k(1e-5) * inner_ring_wx;
-        let t40 = inner_ring_wx - rotor_wx;
-        let t41 = inner_ring_wx - t40;
-        let t42 = T::fused(
-            -(k(0.000125) * inner_ring_wz),
-            t39,
-            k(5e-6) * T::fused(-inner_ring_wz, t40, inner_ring_wz * t41),
-        );
-        let t43 = outer_ring_wz - inner_ring_wz;
-        let t44 = inner_ring_wy * t43;
-        let t45 = T::fused(
-            t27,
-            T::fused(k(7.00125e-6), inner_ring_wx * t43, t42),
-            t37 * (k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t44)),
-        );
-        let t46 = (T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t45) + t38)
-            / (k(1e-6) + T::fused(t37, k(1e-6) * t37, t27 * (k(7.00125e-6) * t27)));
-        let t47 = T::fused(t27, t32 * t3, t37 * T::fused(t24, t8, t22 * t23));
-        let t48 = T::fused(
-            -(k(0.000125) * inner_ring_wy),
-            t39,
-            k(5e-6) * T::fused(-inner_ring_wy, t40, inner_ring_wy * t41),
-        );
-        let t49 = T::fused(
-            -k(166631.95167673402),
+        let t35 = outer_ring_wz - inner_ring_wz;
+        let t36 = inner_ring_wx - rotor_wx;
+        let t37 = inner_ring_wx - t36;
+        let t38 = T::fused(-inner_ring_wz, t36, inner_ring_wz * t37)
+            - T::fused(
+                -k(1.40025),
+                inner_ring_wx * t35,
+                k(0.00025) * (inner_ring_wx * inner_ring_wz),
+            );
+        let t39 = inner_ring_wy * t35;
+        let t40 = T::fused(
+            t29,
+            T::fused(inner_ring_wy, inner_ring_wz, t39),
             T::fused(
-                k(1e-5),
-                t47,
-                T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, -t48),
+                k(2.5),
+                t28 * t38,
+                T::fused(k(0.5), outer_ring_wx * outer_ring_wz, -t34),
             ),
-            T::fused(-outer_ring_wx, t29, T::fused(t33, t22, t34 * t24)),
+        );
+        let t41 = t40 / (k(0.25) + T::fused(k(1.7503125), t28 * t28, t29 * t29));
+        let t42 = t41
+            + T::fused(
+                -k(2.368705056261446),
+                t6 * (t4 * t3),
+                k(31.58273408348595) * (t8 * t7),
+            );
+        let t43 = T::fused(
+            k(0.5),
+            t32 * t3 * t28,
+            t29 * T::fused(k(2.0), t31 * t23, t33 * t21),
+        );
+        let t44 = inner_ring_wx * inner_ring_wy;
+        let t45 = T::fused(-inner_ring_wy, t36, inner_ring_wy * t37)
+            - T::fused(k(0.00025), t44, T::fused(k(40.0), t43, k(0.2) * t44));
+        let t46 = T::fused(
+            k(2.368705056261446),
+            t23 * t22,
+            T::fused(k(0.8331597583836701), t45, k(17.765287921960844) * (t1 * t21)),
         );
         *out = [
-            -(T::fused(-t28, t30 * t32, t7 * t31) + t46),
-            t49,
-            t44 - T::fused(t37, t46, t27 * t35),
+            -(k(0.5) * t42),
+            T::fused(-outer_ring_wx, t24, t46),
+            T::fused(t28, t25, T::fused(-t29, t41, t39)),
         ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 523 operations (208 ±, 310 ×, 5 ÷) and 8 functions.
@@ -4572,7 +4479,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             T::fused(t77, t178, -T::fused(-t70, t176, t93 * t177)) - t114,
         ];
     }
-    /// Writes λ: 156 operations (60 ±, 96 ×, 0 ÷) and 6 functions.
+    /// Writes λ: 159 operations (63 ±, 96 ×, 0 ÷) and 6 functions.
     fn corrected_multipliers(
         &self,
         t: T,
@@ -4638,8 +4545,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = (t8 + t7) * (t8 - t7);
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
         let t12 = T::fused(
@@ -4658,10 +4573,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t15 = k(2.0) * t14;
-        let t16 = T::fused(-t14, t15, k(1.0));
-        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t18 = T::fused(
+        let t15 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4670,95 +4582,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t19 = t18 * t15;
-        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t21 = T::fused(-t17, t16, t20 * t19);
-        let t22 = t21
+        let t16 = (t15 + t14) * (t15 - t14);
+        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t18 = t15 * (k(2.0) * t14);
+        let t19 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t20 = T::fused(-t17, t16, t19 * t18);
+        let t21 = t20
             - T::fused(
                 t4,
                 k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t13)),
                 -t12,
             );
-        let t23 = T::fused(k(2e-6), inner_ring_dwy, -t22);
-        let t24 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t25 = t24 * t8;
-        let t26 = T::fused(-t9, t6, t25 * t23);
-        let t27 = T::fused(k(2e-6), outer_ring_dwx, t26);
-        let t28 = k(0.025) * (k(18.84955592153876) * t).sin();
-        let t29 = t28.cos();
-        let t30 = k(0.05) * (k(12.566370614359172) * t).sin();
-        let t31 = t30.sin();
-        let t32 = t31 * t29;
-        let t33 = t30.cos();
-        let t34 = t33 * t29;
-        let t35 = t28.sin();
-        let t36 = t33 * t35;
-        let t37 = t31 * t35;
-        let t38 = T::fused(
-            t32,
+        let t22 = T::fused(k(2e-6), inner_ring_dwy, -t21);
+        let t23 = t8 * (k(2.0) * t7);
+        let t24 = T::fused(-t9, t6, t23 * t22);
+        let t25 = T::fused(k(2e-6), outer_ring_dwx, t24);
+        let t26 = k(0.025) * (k(18.84955592153876) * t).sin();
+        let t27 = t26.cos();
+        let t28 = k(0.05) * (k(12.566370614359172) * t).sin();
+        let t29 = t28.sin();
+        let t30 = t29 * t27;
+        let t31 = t28.cos();
+        let t32 = t31 * t27;
+        let t33 = t26.sin();
+        let t34 = t31 * t33;
+        let t35 = t29 * t33;
+        let t36 = T::fused(
+            t30,
             outer_ring_e3,
             T::fused(
-                t34,
+                t32,
                 outer_ring_e2,
-                T::fused(-t36, outer_ring_e1, t37 * outer_ring_e0),
+                T::fused(-t34, outer_ring_e1, t35 * outer_ring_e0),
             ),
         );
-        let t39 = k(2.0) * t38;
-        let t40 = T::fused(-t38, t39, k(1.0));
-        let t41 = T::fused(
+        let t37 = T::fused(
+            t34,
+            outer_ring_e3,
+            T::fused(
+                -t35,
+                outer_ring_e2,
+                T::fused(t30, outer_ring_e1, t32 * outer_ring_e0),
+            ),
+        );
+        let t38 = (t37 - t36) * (t37 + t36);
+        let t39 = T::fused(
             -t0,
             k(0.00025)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
             t2 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13))),
         );
-        let t42 = T::fused(t17, t19, t20 * t16);
-        let t43 = T::fused(
+        let t40 = T::fused(t17, t18, t19 * t16);
+        let t41 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t42 - T::fused(t4, k(0.00025) * (t11 + t10), -t41)),
+            -(t40 - T::fused(t4, k(0.00025) * (t11 + t10), -t39)),
         );
-        let t44 = T::fused(
+        let t42 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t43,
+            -t41,
         );
-        let t45 = T::fused(
-            t36,
-            outer_ring_e3,
-            T::fused(
-                -t37,
-                outer_ring_e2,
-                T::fused(t32, outer_ring_e1, t34 * outer_ring_e0),
-            ),
-        );
-        let t46 = t45 * t39;
+        let t43 = t37 * (k(2.0) * t36);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t40, t27, t46 * t44),
-            -T::fused(t46, t27, t40 * t44),
+            T::fused(-t38, t25, t43 * t42),
+            -T::fused(t43, t25, t38 * t42),
             -t1,
             -t3,
             -t5,
-            -T::fused(t25, t6, t9 * t23),
-            t26,
+            -T::fused(t23, t6, t9 * t22),
+            t24,
             -t0,
             -t2,
             -t4,
-            t42,
-            -t21,
+            t40,
+            -t20,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 627 operations (249 ±, 373 ×, 5 ÷) and 12 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 632 operations (252 ±, 375 ×, 5 ÷) and 12 functions.
     fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4787,11 +4691,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             t14,
             t57,
             t83,
-            t119,
-            t128,
-            t156,
-            t157,
+            t85,
+            t118,
+            t127,
+            t155,
+            t177,
             t179,
+            t180,
             t181,
             t182,
             t183,
@@ -4998,164 +4904,166 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 -(k(2e-6) + (k(1.25e-9) + T::fused(t92, t94, t93 * t95))),
             );
             let t103 = T::fused(-t91, t97, t100 * t102);
-            let t104 = t62 * t63;
-            let t105 = t76 - t104;
-            let t106 = T::fused(
+            let t104 = T::fused(-t62, t63, t76);
+            let t105 = T::fused(
                 inner_ring_wz,
                 t69 + t68,
-                T::fused(-inner_ring_wx, t105, inner_ring_wy * (t65 - t61)),
+                T::fused(-inner_ring_wx, t104, inner_ring_wy * (t65 - t61)),
             );
-            let t107 = rotor_wx - t106;
-            let t108 = T::fused(
+            let t106 = rotor_wx - t105;
+            let t107 = T::fused(
                 inner_ring_wz,
                 t77,
                 -T::fused(inner_ring_wx, t70, inner_ring_wy * t93),
             );
-            let t109 = rotor_wz + t108;
-            let t110 = T::fused(
+            let t108 = rotor_wz + t107;
+            let t109 = T::fused(
                 inner_ring_wz,
                 t75,
                 -T::fused(-inner_ring_wx, t66, inner_ring_wy * t92),
             );
-            let t111 = rotor_wy - t110;
-            let t112 = T::fused(t109, t109, t111 * t111) / t105;
-            let t113 = T::fused(rotor_wx, t108, rotor_wz * t106)
-                + T::fused(-t109, t107, t70 * t112);
-            let t114 = rotor_wx * rotor_wz;
-            let t115 = k(5e-6) * (t114 - t113);
-            let t116 = T::fused(-rotor_wy, t106, rotor_wx * t110)
-                - T::fused(-t111, t107, t66 * t112);
-            let t117 = rotor_wx * rotor_wy;
-            let t118 = k(5e-6) * (t117 + t116);
-            let t119 = inner_ring_wy * inner_ring_wz;
-            let t120 = k(2.0) * inner_ring_e0;
-            let t121 = inner_ring_e3 * t120;
-            let t122 = k(2.0) * inner_ring_e1;
-            let t123 = inner_ring_e2 * t122;
-            let t124 = t123 - t121;
-            let t125 = k(0.000125) * t124;
-            let t126 = T::fused(-inner_ring_e0, t120, k(1.0));
-            let t127 = T::fused(
+            let t110 = rotor_wy - t109;
+            let t111 = T::fused(t108, t108, t110 * t110) / t104;
+            let t112 = T::fused(rotor_wx, t107, rotor_wz * t105)
+                + T::fused(-t108, t106, t70 * t111);
+            let t113 = rotor_wx * rotor_wz;
+            let t114 = k(5e-6) * (t113 - t112);
+            let t115 = T::fused(-rotor_wy, t105, rotor_wx * t109)
+                - T::fused(-t110, t106, t66 * t111);
+            let t116 = rotor_wx * rotor_wy;
+            let t117 = k(5e-6) * (t116 + t115);
+            let t118 = inner_ring_wy * inner_ring_wz;
+            let t119 = k(2.0) * inner_ring_e0;
+            let t120 = inner_ring_e3 * t119;
+            let t121 = k(2.0) * inner_ring_e1;
+            let t122 = inner_ring_e2 * t121;
+            let t123 = t122 - t120;
+            let t124 = k(0.000125) * t123;
+            let t125 = T::fused(-inner_ring_e0, t119, k(1.0));
+            let t126 = T::fused(
                 inner_ring_wy,
                 inner_ring_wy,
                 inner_ring_wz * inner_ring_wz,
             );
-            let t128 = inner_ring_wx * inner_ring_wy;
-            let t129 = inner_ring_e2 * t120;
-            let t130 = inner_ring_e3 * t122;
-            let t131 = t130 + t129;
-            let t132 = inner_ring_wx * inner_ring_wz;
-            let t133 = T::fused(
-                t132,
+            let t127 = inner_ring_wx * inner_ring_wy;
+            let t128 = inner_ring_e2 * t119;
+            let t129 = inner_ring_e3 * t121;
+            let t130 = t129 + t128;
+            let t131 = inner_ring_wx * inner_ring_wz;
+            let t132 = T::fused(
                 t131,
-                T::fused(t127, T::fused(-inner_ring_e1, t122, t126), t128 * t124),
+                t130,
+                T::fused(t126, T::fused(-inner_ring_e1, t121, t125), t127 * t123),
             );
-            let t134 = k(1e-5) * t133;
-            let t135 = k(2.0) * inner_ring_e2;
-            let t136 = T::fused(-inner_ring_e2, t135, t126);
-            let t137 = k(0.000125) * t136;
-            let t138 = inner_ring_e1 * t120;
-            let t139 = inner_ring_e3 * t135;
-            let t140 = t139 - t138;
-            let t141 = T::fused(t132, t140, -T::fused(t127, t123 + t121, t128 * t136));
-            let t142 = T::fused(k(1e-5), t141, k(0.8));
-            let t143 = t139 + t138;
-            let t144 = k(0.000125) * t143;
-            let t145 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t126);
-            let t146 = T::fused(t132, t145, -T::fused(-t127, t130 - t129, t128 * t143));
-            let t147 = k(1e-5) * t146;
-            let t148 = T::fused(t147, t144, T::fused(-t134, t125, t142 * t137))
-                - T::fused(t75, t115, t77 * t118);
-            let t149 = T::fused(k(1e-6), t128, -t148);
-            let t150 = t80 * t149;
-            let t151 = T::fused(
+            let t133 = k(1e-5) * t132;
+            let t134 = k(2.0) * inner_ring_e2;
+            let t135 = T::fused(-inner_ring_e2, t134, t125);
+            let t136 = k(0.000125) * t135;
+            let t137 = inner_ring_e1 * t119;
+            let t138 = inner_ring_e3 * t134;
+            let t139 = t138 - t137;
+            let t140 = T::fused(t131, t139, -T::fused(t126, t122 + t120, t127 * t135));
+            let t141 = T::fused(k(1e-5), t140, k(0.8));
+            let t142 = t138 + t137;
+            let t143 = k(0.000125) * t142;
+            let t144 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t125);
+            let t145 = T::fused(t131, t144, -T::fused(-t126, t129 - t128, t127 * t142));
+            let t146 = k(1e-5) * t145;
+            let t147 = T::fused(t146, t143, T::fused(-t133, t124, t141 * t136))
+                - T::fused(t75, t114, t77 * t117);
+            let t148 = T::fused(k(1e-6), t127, -t147);
+            let t149 = t80 * t148;
+            let t150 = T::fused(
                 t78,
-                t150,
-                -T::fused(k(1e-6), t119, T::fused(-t66, t115, t70 * t118)),
+                t149,
+                -T::fused(k(1e-6), t118, T::fused(-t66, t114, t70 * t117)),
             );
-            let t152 = t89 * t84;
-            let t153 = t85 * t88;
-            let t154 = t87 * t84;
-            let t155 = t85 * t98;
-            let t156 = k(2.0) * t85;
-            let t157 = t85 * t156;
-            let t158 = t99 - t157;
-            let t159 = T::fused(
+            let t151 = t89 * t84;
+            let t152 = t85 * t88;
+            let t153 = t87 * t84;
+            let t154 = t85 * t98;
+            let t155 = k(2.0) * t85;
+            let t156 = T::fused(-t85, t155, t99);
+            let t157 = T::fused(
                 outer_ring_wz,
-                t158,
-                -T::fused(outer_ring_wx, t153 - t152, outer_ring_wy * (t155 + t154)),
+                t156,
+                -T::fused(outer_ring_wx, t152 - t151, outer_ring_wy * (t154 + t153)),
             );
-            let t160 = inner_ring_wz + t159;
-            let t161 = t90 + t86;
-            let t162 = t155 - t154;
-            let t163 = T::fused(
+            let t158 = inner_ring_wz + t157;
+            let t159 = t90 + t86;
+            let t160 = t154 - t153;
+            let t161 = T::fused(
                 outer_ring_wz,
-                t162,
-                -T::fused(-outer_ring_wx, t161, outer_ring_wy * t100),
+                t160,
+                -T::fused(-outer_ring_wx, t159, outer_ring_wy * t100),
             );
-            let t164 = inner_ring_wy - t163;
-            let t165 = T::fused(-t87, t88, t99);
-            let t166 = t153 + t152;
-            let t167 = T::fused(
+            let t162 = inner_ring_wy - t161;
+            let t163 = T::fused(-t87, t88, t99);
+            let t164 = t152 + t151;
+            let t165 = T::fused(
                 outer_ring_wz,
-                t166,
-                T::fused(-outer_ring_wx, t165, outer_ring_wy * t91),
+                t164,
+                T::fused(-outer_ring_wx, t163, outer_ring_wy * t91),
             );
-            let t168 = inner_ring_wx - t167;
-            let t169 = T::fused(t164, t164, t168 * t168) / t158;
-            let t170 = T::fused(inner_ring_wz, t163, inner_ring_wy * t159)
-                - T::fused(-t164, t160, t162 * t169);
-            let t171 = T::fused(inner_ring_wx, t159, inner_ring_wz * t167)
-                - T::fused(-t168, t160, t166 * t169);
-            let t172 = k(0.000125) * t131;
-            let t173 = k(0.000125) * t140;
-            let t174 = k(0.000125) * t145;
-            let t175 = T::fused(t147, t174, T::fused(t134, t172, t142 * t173))
-                + T::fused(t92, t115, t93 * t118);
-            let t176 = T::fused(
+            let t166 = inner_ring_wx - t165;
+            let t167 = T::fused(t162, t162, t166 * t166) / t156;
+            let t168 = T::fused(inner_ring_wz, t161, inner_ring_wy * t157)
+                - T::fused(-t162, t158, t160 * t167);
+            let t169 = T::fused(inner_ring_wx, t157, inner_ring_wz * t165)
+                - T::fused(-t166, t158, t164 * t167);
+            let t170 = k(0.000125) * t130;
+            let t171 = k(0.000125) * t139;
+            let t172 = k(0.000125) * t144;
+            let t173 = T::fused(t146, t172, T::fused(t133, t170, t141 * t171))
+                + T::fused(t92, t114, t93 * t117);
+            let t174 = T::fused(
                 -t91,
-                T::fused(-t82, t170, t97 * t171) + t151,
-                t100 * (T::fused(-t97, t170, t102 * t171) + T::fused(t96, t150, -t175)),
+                T::fused(-t82, t168, t97 * t169) + t150,
+                t100 * (T::fused(-t97, t168, t102 * t169) + T::fused(t96, t149, -t173)),
             );
-            let t177 = T::fused(
+            let t175 = T::fused(
                 -t91,
-                T::fused(-t165, t82, t161 * t97),
-                t100 * T::fused(-t165, t97, t161 * t102),
+                T::fused(-t163, t82, t159 * t97),
+                t100 * T::fused(-t163, t97, t159 * t102),
             );
-            let t178 = T::fused(-outer_ring_wy, t49, outer_ring_wx * t31)
+            let t176 = T::fused(-outer_ring_wy, t49, outer_ring_wx * t31)
                 - T::fused(t55, t40, -T::fused(-t53, t38, t54 * t39));
-            let t179 = t178 - T::fused(t50, t32, t47 * t51);
-            let t180 = T::fused(-t57, t177, t179 * T::fused(t166, t101, t162 * t103))
-                - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t176);
-            let t181 = t180 / (k(1e-6) - T::fused(-t91, t101, t100 * t103));
-            let t182 = t170 - T::fused(t166, t179, -T::fused(-t165, t57, t91 * t181));
-            let t183 = t171 + T::fused(t162, t179, T::fused(-t161, t57, t100 * t181));
-            let t184 = t80 * (t149 + T::fused(-t78, t182, t96 * t183));
-            let t185 = T::fused(k(0.000125), t133, -T::fused(-t172, t183, t125 * t184));
-            let t186 = T::fused(k(0.000125), t141, T::fused(t173, t183, t137 * t184));
-            let t187 = T::fused(k(0.000125), t146, T::fused(t174, t183, t144 * t184));
-            let t188 = t113 + T::fused(t75, t184, -T::fused(t66, t182, t92 * t183));
-            let t189 = t116 - T::fused(t77, t184, -T::fused(-t70, t182, t93 * t183));
-            let t190 = k(0.08) * t185;
-            let t191 = T::fused(k(0.08), t186, k(0.8));
-            let t192 = k(0.1) + t191;
-            let t193 = k(0.08) * t187;
-            let t194 = k(5e-6) * (t117 + t189);
-            let t195 = k(1.0) - t104;
-            let t196 = k(5e-6) * (t114 - t188);
-            let t197 = t58 * t63;
-            let t198 = T::fused(t195, t194, t197 * t196);
-            let t199 = inner_ring_e0 * inner_ring_e1;
+            let t177 = t176 - T::fused(t50, t32, t47 * t51);
+            let t178 = T::fused(-t57, t175, t177 * T::fused(t164, t101, t160 * t103))
+                - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t174);
+            let t179 = t178 / (k(1e-6) - T::fused(-t91, t101, t100 * t103));
+            let t180 = t168 - T::fused(t164, t177, -T::fused(-t163, t57, t91 * t179));
+            let t181 = t169 + T::fused(t160, t177, T::fused(-t159, t57, t100 * t179));
+            let t182 = t80 * (t148 + T::fused(-t78, t180, t96 * t181));
+            let t183 = T::fused(k(0.000125), t132, -T::fused(-t170, t181, t124 * t182));
+            let t184 = T::fused(k(0.000125), t140, T::fused(t171, t181, t136 * t182));
+            let t185 = T::fused(k(0.000125), t145, T::fused(t172, t181, t143 * t182));
+            let t186 = t112 + T::fused(t75, t182, -T::fused(t66, t180, t92 * t181));
+            let t187 = t115 - T::fused(t77, t182, -T::fused(-t70, t180, t93 * t181));
+            let t188 = k(0.08) * t183;
+            let t189 = T::fused(k(0.08), t184, k(0.8));
+            let t190 = k(0.1) + t189;
+            let t191 = k(0.08) * t185;
+            let t192 = k(5e-6) * (t116 + t187);
+            let t193 = (t58 + t62) * (t58 - t62);
+            let t194 = k(5e-6) * (t113 - t186);
+            let t195 = t58 * t63;
+            let t196 = T::fused(t193, t192, t195 * t194);
+            let t197 = inner_ring_e0 * inner_ring_e1;
+            let t198 = inner_ring_e2 * inner_ring_e3;
+            let t199 = inner_ring_e0 * inner_ring_e0;
             (
                 t6,
                 t14,
                 t57,
                 t83,
-                t119,
-                t128,
-                t156,
-                t157,
+                t85,
+                t118,
+                t127,
+                t155,
+                t177,
                 t179,
+                t180,
                 t181,
                 t182,
                 t183,
@@ -5177,118 +5085,115 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 t199,
             )
         };
-        let (t204, t218, t219, t222, t223, t224, t225, t226, t227, t228) = {
-            let t200 = inner_ring_e2 * inner_ring_e3;
-            let t201 = inner_ring_e0 * inner_ring_e0;
-            let t202 = T::fused(
-                -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t201))),
-                t191,
+        let (t202, t215, t216, t219, t220, t221, t222, t223, t224, t225) = {
+            let t200 = T::fused(
+                -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t199))),
+                t189,
                 k(0.00025)
                     * T::fused(
                         -inner_ring_e0,
                         inner_ring_e3,
                         inner_ring_e1 * inner_ring_e2,
-                    ) * t190,
+                    ) * t188,
             );
-            let t203 = T::fused(
+            let t201 = T::fused(
                 k(1e-6),
-                t128 - t184,
-                T::fused(-(k(0.00025) * (t200 + t199)), t193, t202) - t198,
+                t127 - t182,
+                T::fused(-(k(0.00025) * (t198 + t197)), t191, t200) - t196,
             );
-            let t204 = T::fused(
+            let t202 = T::fused(
                 -k(1e-6),
-                T::fused(outer_ring_wx, outer_ring_wy, t179),
-                t203,
+                T::fused(outer_ring_wx, outer_ring_wy, t177),
+                t201,
             );
-            let t205 = k(0.025) * t6;
-            let t206 = t205.cos();
-            let t207 = k(0.05) * t14;
-            let t208 = t207.sin();
-            let t209 = t208 * t206;
-            let t210 = t207.cos();
-            let t211 = t210 * t206;
-            let t212 = t205.sin();
-            let t213 = t210 * t212;
-            let t214 = t208 * t212;
-            let t215 = T::fused(
-                t209,
+            let t203 = k(0.025) * t6;
+            let t204 = t203.cos();
+            let t205 = k(0.05) * t14;
+            let t206 = t205.sin();
+            let t207 = t206 * t204;
+            let t208 = t205.cos();
+            let t209 = t208 * t204;
+            let t210 = t203.sin();
+            let t211 = t208 * t210;
+            let t212 = t206 * t210;
+            let t213 = T::fused(
+                t207,
                 outer_ring_e3,
                 T::fused(
-                    t211,
+                    t209,
                     outer_ring_e2,
-                    T::fused(-t213, outer_ring_e1, t214 * outer_ring_e0),
+                    T::fused(-t211, outer_ring_e1, t212 * outer_ring_e0),
                 ),
             );
-            let t216 = k(2.0) * t215;
+            let t214 = T::fused(
+                t211,
+                outer_ring_e3,
+                T::fused(
+                    -t212,
+                    outer_ring_e2,
+                    T::fused(t207, outer_ring_e1, t209 * outer_ring_e0),
+                ),
+            );
+            let t215 = t214 * (k(2.0) * t213);
+            let t216 = T::fused(-t195, t192, t193 * t194);
             let t217 = T::fused(
-                t213,
-                outer_ring_e3,
-                T::fused(
-                    -t214,
-                    outer_ring_e2,
-                    T::fused(t209, outer_ring_e1, t211 * outer_ring_e0),
-                ),
-            );
-            let t218 = t217 * t216;
-            let t219 = T::fused(-t197, t194, t195 * t196);
-            let t220 = T::fused(
-                k(0.00025) * (t200 - t199),
-                t191,
+                k(0.00025) * (t198 - t197),
+                t189,
                 k(0.00025)
                     * T::fused(
                         inner_ring_e0,
                         inner_ring_e2,
                         inner_ring_e1 * inner_ring_e3,
-                    ) * t190,
+                    ) * t188,
             );
-            let t221 = T::fused(
-                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t201)),
-                t193,
-                t220,
-            ) - t219;
-            let t222 = T::fused(k(2e-6), t183, t221);
-            let t223 = t83 * t156;
-            let t224 = k(1e-6) * (t119 - t182);
-            let t225 = k(1.0) - t157;
-            let t226 = T::fused(t223, t222, t225 * t224);
-            let t227 = T::fused(-k(2e-6), t57, t226);
-            let t228 = T::fused(-t215, t216, k(1.0));
-            (t204, t218, t219, t222, t223, t224, t225, t226, t227, t228)
+            let t218 = T::fused(
+                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t199)),
+                t191,
+                t217,
+            ) - t216;
+            let t219 = T::fused(k(2e-6), t181, t218);
+            let t220 = t83 * t155;
+            let t221 = k(1e-6) * (t118 - t180);
+            let t222 = (t83 + t85) * (t83 - t85);
+            let t223 = T::fused(t220, t219, t222 * t221);
+            let t224 = T::fused(-k(2e-6), t57, t223);
+            let t225 = (t214 - t213) * (t214 + t213);
+            (t202, t215, t216, t219, t220, t221, t222, t223, t224, t225)
         };
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t57,
-            t181,
-            -t179,
+            t179,
+            -t177,
             k(0.0),
             k(0.0),
             k(0.0),
-            t182,
-            -t183,
-            -t184,
-            t185,
-            t186,
+            t180,
+            -t181,
+            -t182,
+            t183,
+            t184,
+            -t185,
+            k(0.0),
+            -t186,
             -t187,
-            k(0.0),
+            -t188,
+            -(k(0.1) + t190),
+            t191,
+            T::fused(-t215, t202, t225 * t224),
+            T::fused(t225, t202, t215 * t224),
+            -t188,
+            -t190,
+            t191,
+            T::fused(-t220, t221, t222 * t219),
+            -t223,
             -t188,
             -t189,
-            -t190,
-            -(k(0.1) + t192),
-            t193,
-            T::fused(-t218, t204, t228 * t227),
-            T::fused(t228, t204, t218 * t227),
-            -t190,
-            -t192,
-            t193,
-            T::fused(-t223, t224, t225 * t222),
-            -t226,
-            -t190,
-            -t191,
-            t193,
-            t198,
-            t219,
+            t191,
+            t196,
+            t216,
         ];
     }
 }
@@ -5301,7 +5206,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1751 operations (678 ±, 1071 ×, 2 ÷) and 24 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1760 operations (687 ±, 1071 ×, 2 ÷) and 24 functions.
     fn joint_jacobian(
         &self,
         t: T,
@@ -5884,34 +5789,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             t247,
             t248,
             t249,
-            t258,
-            t259,
+            t250,
+            t251,
+            t252,
+            t253,
+            t262,
             t263,
-            t264,
-            t265,
-            t266,
             t267,
             t268,
             t269,
-            t278,
-            t289,
+            t270,
+            t271,
+            t272,
+            t273,
+            t274,
+            t275,
+            t284,
             t295,
-            t296,
-            t297,
-            t341,
-            t344,
-            t346,
+            t301,
+            t302,
+            t303,
+            t347,
             t350,
-            t359,
-            t360,
-            t363,
+            t352,
+            t356,
+            t365,
+            t366,
             t368,
-            t371,
+            t369,
+            t370,
             t374,
+            t376,
+            t377,
             t380,
+            t382,
+            t386,
             t387,
+            t388,
+            t390,
             t391,
-            t394,
+            t393,
             t397,
             t399,
         ) = {
@@ -5961,323 +5878,314 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             let t239 = t238 - (t238 - t92);
             let t240 = k(2.0) * t98;
             let t241 = t104 * t240;
-            let t242 = T::fused(-t98, t240, k(1.0));
-            let t243 = T::fused(t9, t241, t12 * t242);
-            let t244 = T::fused(-u0, t243, t64);
-            let t245 = T::fused(-t9, t242, t12 * t241);
-            let t246 = k(2.0) * t147;
-            let t247 = t148 * t246;
-            let t248 = T::fused(-t147, t246, k(1.0));
-            let t249 = T::fused(-t247, t245, t19 * t248);
-            let t250 = T::fused(u1, t249, -T::fused(t17, t239, t14 * t244));
-            let t251 = k(1e-5) * (t250 - (t60 - T::fused(t17, t92, t14 * t65)));
-            let t252 = t166 * t251;
-            let t253 = t193 * t251;
-            let t254 = t203 * t251;
-            let t255 = T::fused(t152, t252, T::fused(-t184, t253, t196 * t254));
-            let t256 = t170 * (k(2.0) * t255);
-            let t257 = T::fused(-t157, t252, T::fused(t186, t253, t198 * t254));
-            let t258 = T::fused(t248, t245, t19 * t247);
-            let t259 = T::fused(u1, t258, -T::fused(-t14, t239, t17 * t244));
-            let t260 = T::fused(u0, t245, t34);
-            let t261 = T::fused(
+            let t242 = t98 + t104;
+            let t243 = t98 - t104;
+            let t244 = t243 * t242;
+            let t245 = T::fused(-t9, t241, t12 * t244);
+            let t246 = T::fused(u0, t245, t64);
+            let t247 = T::fused(t9, t244, t12 * t241);
+            let t248 = k(2.0) * t147;
+            let t249 = t148 * t248;
+            let t250 = t147 + t148;
+            let t251 = t147 - t148;
+            let t252 = t251 * t250;
+            let t253 = T::fused(t249, t247, t19 * t252);
+            let t254 = T::fused(u1, t253, T::fused(t17, t239, t14 * t246));
+            let t255 = k(1e-5) * (t254 + (t60 - T::fused(t17, t92, t14 * t65)));
+            let t256 = t166 * t255;
+            let t257 = t193 * t255;
+            let t258 = t203 * t255;
+            let t259 = T::fused(t152, t256, T::fused(-t184, t257, t196 * t258));
+            let t260 = t170 * (k(2.0) * t259);
+            let t261 = T::fused(-t157, t256, T::fused(t186, t257, t198 * t258));
+            let t262 = T::fused(-t252, t247, t19 * t249);
+            let t263 = T::fused(u1, t262, -T::fused(-t14, t239, t17 * t246));
+            let t264 = T::fused(u0, t247, t34);
+            let t265 = T::fused(
                 k(5e-6),
                 T::fused(u2, t26, t23 * t26),
                 k(1e-5) * (t20 * t77),
             );
-            let t262 = T::fused(
+            let t266 = T::fused(
                 k(1e-5),
                 T::fused(-t17, t47, t14 * t82),
-                T::fused(k(1e-6), t20 * t26, t261),
+                T::fused(k(1e-6), t20 * t26, t265),
             );
-            let t263 = T::fused(k(166631.95167673402), t262, -t35) + t260;
-            let t264 = k(2.0) * t168;
-            let t265 = t169 * t264;
-            let t266 = u1 + t243;
-            let t267 = T::fused(-t168, t264, k(1.0));
-            let t268 = T::fused(t265, t249, t267 * t266);
-            let t269 = u2 - t258;
-            let t270 = T::fused(
-                t269,
-                t268,
-                T::fused(u2, t268, -T::fused(-t217, t259, t225 * t263)),
-            );
-            let t271 = k(5e-6) * t270;
-            let t272 = t166 * t271;
-            let t273 = t193 * t271;
-            let t274 = t203 * t271;
-            let t275 = T::fused(t152, t272, T::fused(-t184, t273, t196 * t274));
-            let t276 = k(2.0) * (t275 + t257);
-            let t277 = T::fused(t160, t252, T::fused(t190, t253, t200 * t254));
-            let t278 = T::fused(-t267, t249, t265 * t266);
-            let t279 = T::fused(
-                t269,
-                t278,
-                T::fused(u2, t278, T::fused(t225, t259, t217 * t263)),
-            );
-            let t280 = k(5e-6) * t279;
-            let t281 = t166 * t280;
-            let t282 = t193 * t280;
-            let t283 = t203 * t280;
-            let t284 = T::fused(t152, t281, T::fused(-t184, t282, t196 * t283));
-            let t285 = k(2.0) * (t284 - t277);
-            let t286 = T::fused(t160, t272, T::fused(t190, t273, t200 * t274));
-            let t287 = T::fused(-t157, t281, T::fused(t186, t282, t198 * t283));
-            let t288 = k(2.0) * (t287 + t286);
-            let t289 = t256
-                + (T::fused(t176, t276, T::fused(t174, t285, t171 * t288)) + t256);
-            let t290 = T::fused(t160, t281, T::fused(t190, t282, t200 * t283));
-            let t291 = T::fused(-t157, t272, T::fused(t186, t273, t198 * t274));
-            let t292 = t171 * (k(2.0) * (t291 - t290 + t255));
-            let t293 = k(2.0) * (t275 - t257);
-            let t294 = k(2.0) * (t284 + t277);
-            let t295 = t292
-                + (T::fused(t174, t293, T::fused(-t176, t294, t170 * t288)) + t292);
-            let t296 = k(0.000125) * t249;
-            let t297 = k(0.000125) * t266;
-            let t298 = T::fused(t249, t296, t266 * t297);
-            let t299 = t296 * t258;
-            let t300 = t297 * t258;
-            let t301 = T::fused(t200, t300, -T::fused(t160, t298, t190 * t299))
-                + T::fused(t232, t259, t263 * t233);
-            let t302 = k(0.08) * t301;
-            let t303 = T::fused(t198, t300, -T::fused(-t157, t298, t186 * t299))
-                + T::fused(t229, t259, t263 * t230);
-            let t304 = T::fused(k(0.08), t303, k(0.8));
-            let t305 = T::fused(t196, t300, T::fused(-t152, t298, t184 * t299))
-                - T::fused(-t226, t259, t263 * t227);
-            let t306 = k(0.08) * t305;
-            let t307 = T::fused(-t223, t280, T::fused(t215, t271, t204 * t251))
-                + T::fused(-t233, t302, T::fused(-t230, t304, t227 * t306));
-            let t308 = T::fused(k(1e-6), T::fused(-t249, t258, t263), -t307);
-            let t309 = t145 * t308;
-            let t310 = t164 * t308;
-            let t311 = T::fused(
-                -t212,
+            let t267 = T::fused(k(166631.95167673402), t266, -t35) + t264;
+            let t268 = k(2.0) * t168;
+            let t269 = t169 * t268;
+            let t270 = u1 - t245;
+            let t271 = t168 + t169;
+            let t272 = t168 - t169;
+            let t273 = t272 * t271;
+            let t274 = T::fused(t269, t253, t273 * t270);
+            let t275 = u2 - t262;
+            let t276 = T::fused(
+                t275,
                 t274,
-                T::fused(t220, t283, T::fused(t128, t309, t132 * t310)),
+                T::fused(u2, t274, T::fused(-t217, t263, t225 * t267)),
             );
-            let t312 = T::fused(
-                -k(0.00025),
-                T::fused(-t234, t259, t193 * t302),
-                k(2.0) * T::fused(t300, t234, T::fused(-t181, t254, t311)),
+            let t277 = k(5e-6) * t276;
+            let t278 = t166 * t277;
+            let t279 = t193 * t277;
+            let t280 = t203 * t277;
+            let t281 = T::fused(t152, t278, T::fused(-t184, t279, t196 * t280));
+            let t282 = k(2.0) * (t281 + t261);
+            let t283 = T::fused(t160, t256, T::fused(t190, t257, t200 * t258));
+            let t284 = T::fused(-t273, t253, t269 * t270);
+            let t285 = T::fused(
+                t275,
+                t284,
+                T::fused(u2, t284, T::fused(t225, t263, t217 * t267)),
             );
-            let t313 = T::fused(-t222, t280, T::fused(t214, t271, t194 * t251))
-                + T::fused(t232, t302, T::fused(t229, t304, t226 * t306));
-            let t314 = T::fused(k(2e-6), t259, t313);
+            let t286 = k(5e-6) * t285;
+            let t287 = t166 * t286;
+            let t288 = t193 * t286;
+            let t289 = t203 * t286;
+            let t290 = T::fused(t152, t287, T::fused(-t184, t288, t196 * t289));
+            let t291 = k(2.0) * (t290 + t283);
+            let t292 = T::fused(t160, t278, T::fused(t190, t279, t200 * t280));
+            let t293 = T::fused(-t157, t287, T::fused(t186, t288, t198 * t289));
+            let t294 = k(2.0) * (t293 - t292);
+            let t295 = t260
+                - (T::fused(-t176, t282, T::fused(t174, t291, t171 * t294)) - t260);
+            let t296 = T::fused(t160, t287, T::fused(t190, t288, t200 * t289));
+            let t297 = T::fused(-t157, t278, T::fused(t186, t279, t198 * t280));
+            let t298 = t171 * (k(2.0) * (t297 + t296 + t259));
+            let t299 = k(2.0) * (t281 - t261);
+            let t300 = k(2.0) * (t290 - t283);
+            let t301 = t298
+                - (T::fused(-t174, t299, T::fused(-t176, t300, t170 * t294)) - t298);
+            let t302 = k(0.000125) * t253;
+            let t303 = k(0.000125) * t270;
+            let t304 = T::fused(t253, t302, t270 * t303);
+            let t305 = t302 * t262;
+            let t306 = t303 * t262;
+            let t307 = T::fused(t200, t306, T::fused(-t160, t304, t190 * t305))
+                + T::fused(t232, t263, t267 * t233);
+            let t308 = k(0.08) * t307;
+            let t309 = T::fused(t198, t306, T::fused(t157, t304, t186 * t305))
+                + T::fused(t229, t263, t267 * t230);
+            let t310 = T::fused(k(0.08), t309, k(0.8));
+            let t311 = T::fused(t196, t306, -T::fused(t152, t304, t184 * t305))
+                - T::fused(-t226, t263, t267 * t227);
+            let t312 = k(0.08) * t311;
+            let t313 = T::fused(t223, t286, T::fused(t215, t277, t204 * t255))
+                - T::fused(-t233, t308, T::fused(-t230, t310, t227 * t312));
+            let t314 = T::fused(k(1e-6), T::fused(t253, t262, t267), t313);
             let t315 = t145 * t314;
             let t316 = t164 * t314;
             let t317 = T::fused(
-                -t219,
-                t282,
-                T::fused(t299, t231, T::fused(-t125, t315, t131 * t316)),
+                t212,
+                t280,
+                T::fused(t220, t289, T::fused(t128, t315, t132 * t316)),
             );
             let t318 = T::fused(
-                -k(2.0),
-                T::fused(-t178, t253, T::fused(t209, t273, t317)),
-                k(0.00025) * T::fused(t203, t304, t263 * t231),
-            );
-            let t319 = T::fused(
-                k(1e-6),
-                T::fused(t249, t266, -t250),
-                -T::fused(-t221, t280, T::fused(t213, t271, t182 * t251)),
-            );
-            let t320 = t145 * t319;
-            let t321 = t164 * t319;
-            let t322 = T::fused(
-                t218,
-                t281,
-                T::fused(t122, t320, T::fused(t134, t321, t298 * t228)),
-            );
-            let t323 = k(2.0) * T::fused(-t173, t252, T::fused(t208, t272, t322));
-            let t324 = t150 * (t323 + (t318 + t312));
-            let t325 = T::fused(
-                -t219,
-                t281,
-                T::fused(t125, t320, T::fused(-t131, t321, t298 * t231)),
-            );
-            let t326 = k(2.0) * T::fused(-t178, t252, T::fused(t209, t272, t325));
-            let t327 = T::fused(
-                t218,
-                t282,
-                T::fused(t299, t228, -T::fused(t122, t315, t134 * t316)),
-            );
-            let t328 = T::fused(
-                -k(2.0),
-                T::fused(-t173, t253, T::fused(t208, t273, t327)),
-                k(0.00025) * T::fused(-t203, t306, t263 * t228),
-            );
-            let t329 = t328 - t326;
-            let t330 = T::fused(
-                -t220,
-                t281,
-                T::fused(-t128, t320, T::fused(-t132, t321, t298 * t234)),
-            );
-            let t331 = k(2.0) * T::fused(t181, t252, T::fused(t212, t272, t330));
-            let t332 = T::fused(
-                t208,
-                t274,
-                T::fused(t218, t283, T::fused(t122, t309, t134 * t310)),
-            );
-            let t333 = T::fused(
-                k(0.00025),
-                T::fused(t228, t259, t193 * t306),
-                k(2.0) * T::fused(t300, t228, -T::fused(-t173, t254, t332)),
-            );
-            let t334 = t333 - t331;
-            let t335 = T::fused(
-                -t220,
-                t282,
-                T::fused(t299, t234, T::fused(t128, t315, t132 * t316)),
-            );
-            let t336 = T::fused(
-                -k(2.0),
-                T::fused(t181, t253, T::fused(t212, t273, t335)),
-                k(0.00025) * T::fused(t203, t302, t263 * t234),
-            );
-            let t337 = T::fused(
-                -t209,
-                t274,
-                T::fused(t219, t283, T::fused(-t125, t309, t131 * t310)),
-            );
-            let t338 = T::fused(
                 -k(0.00025),
-                T::fused(-t231, t259, t193 * t304),
-                k(2.0) * T::fused(t300, t231, T::fused(t178, t254, t337)),
+                T::fused(-t234, t263, t193 * t308),
+                k(2.0) * T::fused(t306, t234, T::fused(t181, t258, t317)),
             );
-            let t339 = t338 - t336;
-            let t340 = t324
-                - (T::fused(t153, t329, T::fused(t155, t334, t149 * t339)) - t324);
-            let t341 = T::fused(-t168, t289, T::fused(-t169, t295, t340));
-            let t342 = k(2.0) * (t287 - t286);
-            let t343 = T::fused(
-                -t170,
-                t285,
-                T::fused(-t176, t342, k(2.0) * (t174 * (k(2.0) * t290))),
+            let t319 = T::fused(t222, t286, T::fused(t214, t277, t194 * t255))
+                - T::fused(t232, t308, T::fused(t229, t310, t226 * t312));
+            let t320 = T::fused(k(2e-6), t263, -t319);
+            let t321 = t145 * t320;
+            let t322 = t164 * t320;
+            let t323 = T::fused(
+                t219,
+                t288,
+                T::fused(t305, t231, -T::fused(-t125, t321, t131 * t322)),
             );
-            let t344 = T::fused(-t171, t293, t343);
-            let t345 = t176 * (k(2.0) * t291);
-            let t346 = T::fused(
-                t170,
-                t276,
-                T::fused(-t171, t294, t345 + T::fused(t174, t342, t345)),
+            let t324 = T::fused(
+                k(2.0),
+                T::fused(-t178, t257, T::fused(t209, t279, t323)),
+                k(0.00025) * T::fused(t203, t310, t267 * t231),
             );
-            let t347 = t333 + t331;
-            let t348 = t338 + t336;
-            let t349 = T::fused(
-                -t150,
-                t329,
-                T::fused(t149, t347, T::fused(-t155, t348, k(2.0) * (t153 * t312))),
-            );
-            let t350 = T::fused(t169, t344, T::fused(t168, t346, t349));
-            let t351 = T::fused(
-                k(2e-6),
-                t244,
-                T::fused(t201, t308, T::fused(-t191, t314, t161 * t319)),
-            );
-            let t352 = t121 * t351;
-            let t353 = T::fused(
+            let t325 = T::fused(
                 k(1e-6),
-                T::fused(t19, t245, t260),
-                T::fused(t202, t308, T::fused(-t192, t314, t165 * t319)),
+                T::fused(t253, t270, -t254),
+                -T::fused(t221, t286, T::fused(t213, t277, t182 * t255)),
             );
-            let t354 = t121 * t353;
-            let t355 = t143 * t351;
-            let t356 = t143 * t353;
+            let t326 = t145 * t325;
+            let t327 = t164 * t325;
+            let t328 = T::fused(
+                t218,
+                t287,
+                T::fused(-t122, t326, T::fused(-t134, t327, t304 * t228)),
+            );
+            let t329 = k(2.0) * T::fused(t173, t256, T::fused(-t208, t278, t328));
+            let t330 = t150 * (t329 + (t324 + t318));
+            let t331 = T::fused(
+                -t219,
+                t287,
+                T::fused(-t125, t326, T::fused(t131, t327, t304 * t231)),
+            );
+            let t332 = k(2.0) * T::fused(t178, t256, T::fused(-t209, t278, t331));
+            let t333 = T::fused(
+                -t218,
+                t288,
+                T::fused(t305, t228, T::fused(t122, t321, t134 * t322)),
+            );
+            let t334 = T::fused(
+                k(2.0),
+                T::fused(-t173, t257, T::fused(t208, t279, t333)),
+                k(0.00025) * T::fused(-t203, t312, t267 * t228),
+            );
+            let t335 = t334 - t332;
+            let t336 = T::fused(
+                -t220,
+                t287,
+                T::fused(t128, t326, T::fused(t132, t327, t304 * t234)),
+            );
+            let t337 = k(2.0) * T::fused(-t181, t256, T::fused(-t212, t278, t336));
+            let t338 = T::fused(
+                -t208,
+                t280,
+                T::fused(t218, t289, T::fused(t122, t315, t134 * t316)),
+            );
+            let t339 = T::fused(
+                k(0.00025),
+                T::fused(t228, t263, t193 * t312),
+                k(2.0) * T::fused(t306, t228, -T::fused(t173, t258, t338)),
+            );
+            let t340 = t339 - t337;
+            let t341 = T::fused(
+                t220,
+                t288,
+                T::fused(t305, t234, -T::fused(t128, t321, t132 * t322)),
+            );
+            let t342 = T::fused(
+                k(2.0),
+                T::fused(t181, t257, T::fused(t212, t279, t341)),
+                k(0.00025) * T::fused(t203, t308, t267 * t234),
+            );
+            let t343 = T::fused(
+                t209,
+                t280,
+                T::fused(t219, t289, T::fused(-t125, t315, t131 * t316)),
+            );
+            let t344 = T::fused(
+                -k(0.00025),
+                T::fused(-t231, t263, t193 * t310),
+                k(2.0) * T::fused(t306, t231, T::fused(-t178, t258, t343)),
+            );
+            let t345 = t344 - t342;
+            let t346 = t330
+                - (T::fused(t153, t335, T::fused(t155, t340, t149 * t345)) - t330);
+            let t347 = T::fused(t168, t295, T::fused(t169, t301, t346));
+            let t348 = k(2.0) * (t293 + t292);
+            let t349 = T::fused(
+                -t170,
+                t291,
+                T::fused(-t176, t348, k(2.0) * (t174 * (k(2.0) * t296))),
+            );
+            let t350 = T::fused(t171, t299, t349);
+            let t351 = t176 * (k(2.0) * t297);
+            let t352 = T::fused(
+                t170,
+                t282,
+                T::fused(t171, t300, t351 - T::fused(t174, t348, -t351)),
+            );
+            let t353 = t339 + t337;
+            let t354 = t344 + t342;
+            let t355 = T::fused(
+                -t150,
+                t335,
+                T::fused(t149, t353, T::fused(-t155, t354, k(2.0) * (t153 * t318))),
+            );
+            let t356 = T::fused(t169, t350, T::fused(-t168, t352, t355));
             let t357 = T::fused(
+                k(2e-6),
+                t246,
+                -T::fused(-t201, t314, T::fused(t191, t320, t161 * t325)),
+            );
+            let t358 = t121 * t357;
+            let t359 = T::fused(
+                k(1e-6),
+                T::fused(t19, t247, t264),
+                -T::fused(-t202, t314, T::fused(t192, t320, t165 * t325)),
+            );
+            let t360 = t121 * t359;
+            let t361 = t143 * t357;
+            let t362 = t143 * t359;
+            let t363 = T::fused(
                 -t130,
-                t352,
-                T::fused(-t135, t354, T::fused(t136, t355, t133 * t356)),
+                t358,
+                T::fused(-t135, t360, T::fused(t136, t361, t133 * t362)),
             );
-            let t358 = t137 * t137 * t357;
-            let t359 = T::fused(-t133, t358, t137 * t352);
-            let t360 = T::fused(-t135, t358, t137 * t355);
-            let t361 = T::fused(
+            let t364 = t137 * t137 * t363;
+            let t365 = T::fused(-t133, t364, t137 * t358);
+            let t366 = T::fused(-t135, t364, t137 * t361);
+            let t367 = T::fused(
                 t186,
-                t315,
-                T::fused(-t198, t309, T::fused(t43, t359, t45 * t360)),
+                t321,
+                T::fused(-t198, t315, T::fused(t43, t365, t45 * t366)),
             );
-            let t362 = T::fused(t157, t320, t361);
-            let t363 = T::fused(t163, t353, t144 * t351);
-            let t364 = t29 * t363;
-            let t365 = k(2.0) * (t364 - t362);
-            let t366 = T::fused(
-                -t190,
-                t315,
-                T::fused(t200, t309, T::fused(-t129, t359, t42 * t360)),
-            );
-            let t367 = T::fused(t160, t320, t366);
-            let t368 = T::fused(t136, t358, t137 * t354);
-            let t369 = T::fused(
-                t5,
-                t368,
-                T::fused(t152, t321, T::fused(t184, t316, t196 * t310)),
-            );
-            let t370 = k(2.0) * (t369 + t367);
-            let t371 = T::fused(t130, t358, t137 * t356);
+            let t368 = T::fused(-t157, t326, t367);
+            let t369 = T::fused(t163, t359, t144 * t357);
+            let t370 = t29 * t369;
+            let t371 = k(2.0) * (t370 - t368);
             let t372 = T::fused(
+                -t190,
+                t321,
+                T::fused(t200, t315, T::fused(-t129, t365, t42 * t366)),
+            );
+            let t373 = T::fused(-t160, t326, t372);
+            let t374 = T::fused(t136, t364, t137 * t360);
+            let t375 = T::fused(
+                t5,
+                t374,
+                T::fused(-t152, t327, T::fused(t184, t322, t196 * t316)),
+            );
+            let t376 = k(2.0) * (t375 + t373);
+            let t377 = T::fused(t130, t364, t137 * t362);
+            let t378 = T::fused(
                 -t43,
-                t368,
-                T::fused(-t157, t321, T::fused(-t186, t316, t198 * t310)),
+                t374,
+                T::fused(t157, t327, T::fused(-t186, t322, t198 * t316)),
             );
-            let t373 = T::fused(-t45, t371, t372);
-            let t374 = T::fused(t162, t353, t138 * t351);
-            let t375 = T::fused(t117, t374, t140 * t363);
-            let t376 = k(2.0) * (t375 - t373);
-            let t377 = T::fused(
+            let t379 = T::fused(-t45, t377, t378);
+            let t380 = T::fused(t162, t359, t138 * t357);
+            let t381 = T::fused(t117, t380, t140 * t369);
+            let t382 = k(2.0) * (t381 - t379);
+            let t383 = T::fused(
                 -t129,
-                t368,
-                T::fused(t160, t321, T::fused(-t190, t316, t200 * t310)),
+                t374,
+                T::fused(-t160, t327, T::fused(-t190, t322, t200 * t316)),
             );
-            let t378 = T::fused(t42, t371, t377);
-            let t379 = T::fused(
+            let t384 = T::fused(t42, t377, t383);
+            let t385 = T::fused(
                 -t108,
-                t370,
-                T::fused(t114, t376, k(2.0) * (t113 * (k(2.0) * t378))),
+                t376,
+                T::fused(t114, t382, k(2.0) * (t113 * (k(2.0) * t384))),
             );
-            let t380 = T::fused(
+            let t386 = T::fused(
                 -t147,
-                t341,
-                T::fused(t148, t350, T::fused(-t111, t365, t379)),
+                t347,
+                T::fused(t148, t356, T::fused(-t111, t371, t385)),
             );
-            let t381 = T::fused(-t120, t374, t141 * t363);
-            let t382 = T::fused(
-                t152,
-                t320,
-                T::fused(t184, t315, T::fused(t196, t309, t5 * t359)),
+            let t387 = T::fused(-t120, t380, t141 * t369);
+            let t388 = T::fused(
+                -t152,
+                t326,
+                T::fused(t184, t321, T::fused(t196, t315, t5 * t365)),
             );
-            let t383 = t111 * (k(2.0) * (t382 + (t381 + t378)));
-            let t384 = k(2.0) * (t369 - t367);
-            let t385 = k(2.0) * (t375 + t373);
-            let t386 = t383
-                - (T::fused(t113, t365, T::fused(-t114, t384, t108 * t385)) - t383);
-            let t387 = T::fused(t148, t341, T::fused(t147, t350, t386));
-            let t388 = t149 * t323;
-            let t389 = t328 + t326;
-            let t390 = t388
-                - (T::fused(t155, t389, T::fused(-t153, t347, t150 * t339)) - t388);
-            let t391 = T::fused(-t169, t289, T::fused(t168, t295, t390));
-            let t392 = t155 * t318;
-            let t393 = T::fused(
+            let t389 = t111 * (k(2.0) * (t388 + (t387 + t384)));
+            let t390 = k(2.0) * (t375 - t373);
+            let t391 = k(2.0) * (t381 + t379);
+            let t392 = t389
+                - (T::fused(t113, t371, T::fused(-t114, t390, t108 * t391)) - t389);
+            let t393 = T::fused(t148, t347, T::fused(t147, t356, t392));
+            let t394 = t149 * t329;
+            let t395 = t334 + t332;
+            let t396 = t394
+                - (T::fused(t155, t395, T::fused(-t153, t353, t150 * t345)) - t394);
+            let t397 = T::fused(t169, t295, T::fused(-t168, t301, t396));
+            let t398 = t155 * t324;
+            let t399 = T::fused(
                 -t149,
-                t389,
-                T::fused(-t150, t334, t392 - T::fused(t153, t348, -t392)),
+                t395,
+                T::fused(-t150, t340, t398 - T::fused(t153, t354, -t398)),
             );
-            let t394 = T::fused(t168, t344, T::fused(-t169, t346, t393));
-            let t395 = k(2.0) * (t364 + t362);
-            let t396 = T::fused(
-                t111,
-                t384,
-                T::fused(t113, t376, k(2.0) * (t114 * (k(2.0) * t381))),
-            );
-            let t397 = T::fused(
-                -t147,
-                t391,
-                T::fused(t148, t394, T::fused(-t108, t395, t396)),
-            );
-            let t398 = t108 * (k(2.0) * t382);
-            let t399 = t398
-                - (T::fused(t114, t395, T::fused(t113, t370, t111 * t385)) - t398);
             (
                 t200,
                 t203,
@@ -6308,315 +6216,343 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
                 t247,
                 t248,
                 t249,
-                t258,
-                t259,
+                t250,
+                t251,
+                t252,
+                t253,
+                t262,
                 t263,
-                t264,
-                t265,
-                t266,
                 t267,
                 t268,
                 t269,
-                t278,
-                t289,
+                t270,
+                t271,
+                t272,
+                t273,
+                t274,
+                t275,
+                t284,
                 t295,
-                t296,
-                t297,
-                t341,
-                t344,
-                t346,
+                t301,
+                t302,
+                t303,
+                t347,
                 t350,
-                t359,
-                t360,
-                t363,
+                t352,
+                t356,
+                t365,
+                t366,
                 t368,
-                t371,
+                t369,
+                t370,
                 t374,
+                t376,
+                t377,
                 t380,
+                t382,
+                t386,
                 t387,
+                t388,
+                t390,
                 t391,
-                t394,
+                t393,
                 t397,
                 t399,
             )
         };
-        let (t419, t428, t435, t440, t441, t443, t444, t445, t462, t466, t467, t495) = {
-            let t400 = T::fused(t148, t391, T::fused(t147, t394, t399));
-            let t401 = T::fused(
-                -t107,
-                t380,
-                T::fused(-t109, t387, T::fused(t110, t397, t103 * t400)),
+        let (t425, t436, t444, t451, t452, t454, t455, t456, t473, t477, t478, t506) = {
+            let t400 = T::fused(t168, t350, T::fused(t169, t352, t399));
+            let t401 = k(2.0) * (t370 + t368);
+            let t402 = T::fused(
+                t111,
+                t390,
+                T::fused(t113, t382, k(2.0) * (t114 * (k(2.0) * t387))),
             );
-            let t402 = T::fused(t14, t207, T::fused(-t17, t236, k(2e-6) * t145));
-            let t403 = T::fused(u2, t216, t269 * t216);
-            let t404 = T::fused(u2, t224, t269 * t224);
-            let t405 = T::fused(-t152, t228, T::fused(-t157, t231, t160 * t234));
-            let t406 = T::fused(-t196, t228, T::fused(t198, t231, t200 * t234));
+            let t403 = T::fused(
+                -t147,
+                t397,
+                T::fused(t148, t400, T::fused(-t108, t401, t402)),
+            );
+            let t404 = t108 * (k(2.0) * t388);
+            let t405 = t404
+                - (T::fused(t114, t401, T::fused(t113, t376, t111 * t391)) - t404);
+            let t406 = T::fused(t148, t397, T::fused(t147, t400, t405));
             let t407 = T::fused(
-                -t265,
-                t404,
-                T::fused(-k(0.000125), T::fused(-t266, t405, t258 * t406), t297 * t405),
+                -t107,
+                t386,
+                T::fused(-t109, t393, T::fused(t110, t403, t103 * t406)),
             );
-            let t408 = T::fused(-t249, t206, T::fused(t267, t403, t407));
-            let t409 = T::fused(u0, t402, t408);
-            let t410 = T::fused(t184, t228, T::fused(t186, t231, t190 * t234));
-            let t411 = k(1e-6) * t203;
-            let t412 = T::fused(
-                k(0.000125),
-                T::fused(t249, t405, t258 * t410),
-                T::fused(t296, t405, t258 * t411),
-            );
+            let t408 = T::fused(t14, t207, T::fused(-t17, t236, k(2e-6) * t145));
+            let t409 = T::fused(u2, t216, t275 * t216);
+            let t410 = T::fused(u2, t224, t275 * t224);
+            let t411 = T::fused(-t152, t228, T::fused(-t157, t231, t160 * t234));
+            let t412 = T::fused(-t196, t228, T::fused(t198, t231, t200 * t234));
             let t413 = T::fused(
+                -t269,
+                t410,
+                T::fused(-k(0.000125), T::fused(-t270, t411, t262 * t412), t303 * t411),
+            );
+            let t414 = T::fused(t253, t206, T::fused(-t273, t409, t413));
+            let t415 = T::fused(u0, t408, t414);
+            let t416 = T::fused(t184, t228, T::fused(t186, t231, t190 * t234));
+            let t417 = k(1e-6) * t203;
+            let t418 = T::fused(
+                k(0.000125),
+                T::fused(-t253, t411, t262 * t416),
+                T::fused(-t302, t411, t262 * t417),
+            );
+            let t419 = T::fused(
                 u1,
                 t207,
-                T::fused(-t266, t206, T::fused(t265, t403, T::fused(t267, t404, t412))),
+                T::fused(-t270, t206, T::fused(t269, t409, T::fused(-t273, t410, t418))),
             );
-            let t414 = t268 * t216;
-            let t415 = t278 * t224;
-            let t416 = t415 - t414;
-            let t417 = T::fused(
-                -u1,
+            let t420 = t274 * t216;
+            let t421 = t284 * t224;
+            let t422 = t421 + t420;
+            let t423 = T::fused(
+                u1,
                 t236,
-                T::fused(t296, t410, T::fused(-t297, t406, t249 * t411)) + t416,
+                T::fused(t302, t416, T::fused(t303, t412, t253 * t417)) - t422,
             );
-            let t418 = T::fused(
+            let t424 = T::fused(
                 t217,
                 t224,
-                T::fused(t227, t228, T::fused(t230, t231, T::fused(t233, t234, t411))),
+                T::fused(t227, t228, T::fused(t230, t231, T::fused(t233, t234, t417))),
             );
-            let t419 = T::fused(t225, t216, t418);
-            let t420 = k(1e-6) * t164;
-            let t421 = t420 + t419;
-            let t422 = T::fused(
-                t247,
-                t413,
-                T::fused(-t248, t417, T::fused(u0, t421, t19 * t420)),
-            );
-            let t423 = T::fused(t12, t409, t9 * t422);
-            let t424 = T::fused(-t9, t409, t12 * t422);
-            let t425 = T::fused(
-                k(2.0),
-                T::fused(t104, t424, t98 * t423),
-                T::fused(t240, t423, t401),
-            );
-            let t426 = T::fused(
-                t103,
-                t380,
-                T::fused(t110, t387, T::fused(t109, t397, t107 * t400)),
-            );
-            let t427 = T::fused(
-                -t1,
-                T::fused(-t32, t402, t33 * t421),
-                t10 * T::fused(t33, t402, t32 * t421),
-            );
+            let t425 = T::fused(t225, t216, t424);
+            let t426 = k(1e-6) * t164;
+            let t427 = t426 + t425;
             let t428 = T::fused(
-                -k(0.5),
-                T::fused(-t104, t425, t98 * T::fused(t240, t424, -t426)),
-                t427,
+                t249,
+                t419,
+                T::fused(-t252, t423, T::fused(u0, t427, t19 * t426)),
             );
-            let t429 = T::fused(
-                -t113,
-                t341,
-                T::fused(-t114, t391, T::fused(t108, t394, t111 * t350)),
-            );
-            let t430 = T::fused(t19, t413, t245 * t417);
-            let t431 = T::fused(-t245, t413, t19 * t417);
-            let t432 = T::fused(
-                k(2.0),
-                T::fused(-t148, t431, t147 * t430),
-                T::fused(t246, t430, -t429),
-            );
+            let t429 = T::fused(t12, t415, t9 * t428);
+            let t430 = t242 * t429;
+            let t431 = t243 * t429;
+            let t432 = T::fused(-t9, t415, t12 * t428);
             let t433 = T::fused(
-                t111,
-                t341,
-                T::fused(t108, t391, T::fused(t114, t394, t113 * t350)),
+                t103,
+                t386,
+                T::fused(t110, t393, T::fused(t109, t403, t107 * t406)),
             );
             let t434 = T::fused(
-                -t17,
-                T::fused(t236, t239, t244 * t207),
-                k(0.5) * T::fused(t148, t432, t147 * T::fused(t246, t431, t433)),
+                -t104,
+                T::fused(k(2.0), t104 * t432, t431 + (t430 + t407)),
+                t98 * T::fused(t240, t432, t431 - (t430 + t433)),
             );
             let t435 = T::fused(
-                -t237,
-                t70,
-                T::fused(-t14, T::fused(-t207, t239, t244 * t236), t434),
+                -t1,
+                T::fused(-t32, t408, t33 * t427),
+                t10 * T::fused(t33, t408, t32 * t427),
             );
-            let t436 = T::fused(-t249, t403, t266 * t404);
-            let t437 = T::fused(t266, t403, t249 * t404);
-            let t438 = T::fused(
-                -t153,
-                t346,
-                T::fused(k(2.0), T::fused(t169, t436, t168 * t437), t264 * t437),
+            let t436 = T::fused(
+                -t205,
+                t91,
+                T::fused(t81, t425, T::fused(t237, t55, T::fused(-k(0.5), t434, t435))),
             );
-            let t439 = T::fused(
-                t150,
-                t295,
-                T::fused(-t153, t344, T::fused(t155, t346, t264 * t436)),
+            let t437 = T::fused(
+                -t113,
+                t347,
+                T::fused(-t114, t397, T::fused(t108, t400, t111 * t356)),
             );
-            let t440 = T::fused(
-                -t169,
-                T::fused(t150, t289, T::fused(-t149, t295, T::fused(-t155, t344, t438))),
-                t168 * T::fused(t149, t289, t439),
+            let t438 = T::fused(-t19, t419, t247 * t423);
+            let t439 = t250 * t438;
+            let t440 = t251 * t438;
+            let t441 = T::fused(t247, t419, t19 * t423);
+            let t442 = T::fused(
+                t111,
+                t347,
+                T::fused(t108, t397, T::fused(t114, t400, t113 * t356)),
             );
-            let t441 = T::fused(
-                -t225,
-                T::fused(-t216, t259, t263 * t224),
-                t217 * T::fused(t224, t259, t263 * t216),
-            );
-            let t442 = T::fused(-t248, t413, T::fused(-t247, t417, t245 * t420));
             let t443 = T::fused(
-                t89,
-                t419,
-                -T::fused(-t237, t73, T::fused(-t243, t402, T::fused(t245, t421, -t442))),
+                -t148,
+                T::fused(k(2.0), t148 * t441, -(t440 + (t439 + t437))),
+                t147 * T::fused(t248, t441, -(t440 - (t439 - t442))),
             );
             let t444 = T::fused(
+                t14,
+                T::fused(-t207, t239, t246 * t236),
+                T::fused(t17, T::fused(t236, t239, t246 * t207), k(0.5) * t443),
+            );
+            let t445 = T::fused(t253, t409, t270 * t410);
+            let t446 = T::fused(-t270, t409, t253 * t410);
+            let t447 = t272 * t446;
+            let t448 = t271 * t446;
+            let t449 = T::fused(
+                t155,
+                t350,
+                T::fused(-t153, t352, T::fused(-k(2.0), t169 * t445, t448 + t447)),
+            );
+            let t450 = T::fused(
+                -t153,
+                t350,
+                T::fused(-t155, t352, T::fused(t268, t445, t448 - t447)),
+            );
+            let t451 = T::fused(
+                t169,
+                T::fused(t150, t295, T::fused(-t149, t301, t449)),
+                t168 * T::fused(-t149, t295, T::fused(-t150, t301, t450)),
+            );
+            let t452 = T::fused(
+                -t225,
+                T::fused(-t216, t263, t267 * t224),
+                t217 * T::fused(t224, t263, t267 * t216),
+            );
+            let t453 = T::fused(t252, t419, T::fused(t249, t423, t247 * t426));
+            let t454 = T::fused(
+                t89,
+                t425,
+                -T::fused(-t237, t73, T::fused(t245, t408, T::fused(t247, t427, -t453))),
+            );
+            let t455 = T::fused(
                 t95,
                 t205,
-                T::fused(-t75, t237, T::fused(-t249, t207, T::fused(t258, t236, -t408))),
+                T::fused(-t75, t237, T::fused(t253, t207, T::fused(t262, t236, -t414))),
             );
-            let t445 = T::fused(
-                -t96,
+            let t456 = T::fused(
+                t96,
                 t205,
-                T::fused(-t90, t419, T::fused(t76, t237, t414 - (t415 + t416))),
+                T::fused(t90, t425, T::fused(-t76, t237, t420 + (t421 + t422))),
             );
-            let t446 = T::fused(t14, t64, t238 * t17);
-            let t447 = T::fused(
+            let t457 = T::fused(t14, t64, t238 * t17);
+            let t458 = T::fused(
                 k(1e-5),
-                T::fused(t20, k(0.000125) * t34, t22 * t446),
-                k(5e-6) * T::fused(u2, t34, T::fused(-t21, t446, t23 * t34)),
+                T::fused(t20, k(0.000125) * t34, t22 * t457),
+                k(5e-6) * T::fused(u2, t34, T::fused(-t21, t457, t23 * t34)),
             );
-            let t448 = T::fused(-t17, t64, t238 * t14);
-            let t449 = u1 * t448;
-            let t450 = T::fused(
+            let t459 = T::fused(-t17, t64, t238 * t14);
+            let t460 = u1 * t459;
+            let t461 = T::fused(
                 -t14,
-                T::fused(t446, t0, t447),
-                t17 * (k(1e-6) * (t449 - T::fused(t21, t448, t26 * t34))),
+                T::fused(t457, t0, t458),
+                t17 * (k(1e-6) * (t460 - T::fused(t21, t459, t26 * t34))),
             );
-            let t451 = k(334.86778814723806) * t11;
-            let t452 = k(198.44017075391884) * t7;
-            let t453 = t29 * t31;
-            let t454 = T::fused(t8, T::fused(-t12, t139, t18 * t33), t453)
-                + T::fused(-t5, t452, t453);
-            let t455 = T::fused(u0, t34, T::fused(t1, t451, t10 * t454));
-            let t456 = k(10.0) * t120;
-            let t457 = k(10.0) * t141;
-            let t458 = T::fused(-t40, t455, t48 * T::fused(t10, t456, t1 * t457))
-                + T::fused(k(1e-6), T::fused(t64, t13, t16 * t34), t450);
-            let t459 = t54 * t458;
-            let t460 = t139 * t31;
-            let t461 = T::fused(t8, T::fused(t12, t29, t5 * t33), t460)
-                + T::fused(t18, t452, t460);
-            let t462 = t461 + t459;
-            let t463 = T::fused(
+            let t462 = k(334.86778814723806) * t11;
+            let t463 = k(198.44017075391884) * t7;
+            let t464 = t29 * t31;
+            let t465 = T::fused(t8, T::fused(-t12, t139, t18 * t33), t464)
+                + T::fused(-t5, t463, t464);
+            let t466 = T::fused(u0, t34, T::fused(t1, t462, t10 * t465));
+            let t467 = k(10.0) * t120;
+            let t468 = k(10.0) * t141;
+            let t469 = T::fused(-t40, t466, t48 * T::fused(t10, t467, t1 * t468))
+                + T::fused(k(1e-6), T::fused(t64, t13, t16 * t34), t461);
+            let t470 = t54 * t469;
+            let t471 = t139 * t31;
+            let t472 = T::fused(t8, T::fused(t12, t29, t5 * t33), t471)
+                + T::fused(t18, t463, t471);
+            let t473 = t472 + t470;
+            let t474 = T::fused(
                 -t14,
                 k(10.0) * T::fused(t42, t29, t5 * t117),
-                t17 * T::fused(-t1, t456, t10 * t457),
+                t17 * T::fused(-t1, t467, t10 * t468),
             );
-            let t464 = t26 * t446;
-            let t465 = T::fused(
+            let t475 = t26 * t457;
+            let t476 = T::fused(
                 k(1e-5),
-                T::fused(t20, k(0.000125) * t448, t77 * t446),
-                k(5e-6) * T::fused(u2, t448, -T::fused(-t23, t448, t464)),
+                T::fused(t20, k(0.000125) * t459, t77 * t457),
+                k(5e-6) * T::fused(u2, t459, -T::fused(-t23, t459, t475)),
             );
-            let t466 = T::fused(
+            let t477 = T::fused(
                 -k(166631.95167673402),
                 T::fused(
                     -k(1e-5),
-                    t463,
-                    T::fused(k(1e-6), T::fused(t20, t448, t464), t465),
+                    t474,
+                    T::fused(k(1e-6), T::fused(t20, t459, t475), t476),
                 ),
-                T::fused(u0, t64, T::fused(-t10, t451, t1 * t454)),
+                T::fused(u0, t64, T::fused(-t10, t462, t1 * t465)),
             );
-            let t467 = t449 + T::fused(-t17, t459, t14 * t455);
-            let t468 = t116 * t363;
-            let t469 = t119 * t363;
-            let t470 = T::fused(t8, t237, T::fused(t45, t468, t42 * t469));
-            let t471 = T::fused(-t10, t402, t1 * t421);
-            let t472 = T::fused(t241, t409, t242 * t422);
-            let t473 = T::fused(
-                t8,
-                t472,
-                -T::fused(t31, t471, T::fused(t122, t359, t134 * t368)),
-            );
-            let t474 = T::fused(t142, t363, t8 * t471);
-            let t475 = T::fused(-t125, t359, t131 * t368);
-            let t476 = T::fused(t128, t359, t132 * t368);
-            let t477 = T::fused(
-                -t42,
-                t475,
-                T::fused(-t45, t476, T::fused(-t120, t468, t117 * t469)),
-            );
-            let t478 = T::fused(
-                t18,
-                T::fused(t12, t470, t473),
-                t5 * T::fused(t31, t237, T::fused(t12, t474, T::fused(t8, t442, t477))),
-            );
-            let t479 = T::fused(t98, t380, t104 * t400);
-            let t480 = T::fused(-t104, t387, t98 * t397);
-            let t481 = T::fused(-t104, t380, t98 * t400);
-            let t482 = T::fused(t98, t387, t104 * t397);
-            let t483 = T::fused(
-                t100,
-                T::fused(-t106, t479, t102 * t480),
-                t105 * T::fused(-t102, t481, t106 * t482),
-            );
+            let t478 = t460 + T::fused(-t17, t470, t14 * t466);
+            let t479 = t116 * t369;
+            let t480 = t119 * t369;
+            let t481 = T::fused(t8, t237, T::fused(t45, t479, t42 * t480));
+            let t482 = T::fused(-t10, t408, t1 * t427);
+            let t483 = T::fused(-t241, t415, t244 * t428);
             let t484 = T::fused(
-                k(0.05),
-                t478,
-                T::fused(
-                    -k(0.025),
-                    t483,
-                    k(17.765287921960844) * T::fused(t1, t402, t10 * t421),
-                ),
+                t8,
+                t483,
+                T::fused(t31, t482, T::fused(t122, t365, t134 * t374)),
             );
-            let t485 = T::fused(
-                t5,
-                t470,
-                T::fused(t242, t409, -T::fused(t18, t474, t241 * t422)),
-            );
-            let t486 = T::fused(-t116, t374, t18 * t469);
-            let t487 = T::fused(t119, t374, t18 * t468);
+            let t485 = T::fused(t142, t369, t8 * t482);
+            let t486 = T::fused(-t125, t365, t131 * t374);
+            let t487 = T::fused(t128, t365, t132 * t374);
             let t488 = T::fused(
-                t29,
-                t471,
-                T::fused(t18, t442, -T::fused(-t45, t486, t42 * t487)),
+                -t42,
+                t486,
+                T::fused(-t45, t487, T::fused(-t120, t479, t117 * t480)),
             );
             let t489 = T::fused(
-                t102,
-                T::fused(t105, t479, t100 * t482),
-                t106 * T::fused(t100, t481, t105 * t480),
+                -t18,
+                T::fused(-t12, t481, t484),
+                t5 * T::fused(t31, t237, T::fused(t12, t485, T::fused(t8, t453, t488))),
             );
-            let t490 = T::fused(
-                -t132,
-                t371,
-                T::fused(-t128, t360, T::fused(t8, t487, t139 * t469)),
-            );
-            let t491 = T::fused(
-                t131,
-                t371,
-                T::fused(-t125, t360, T::fused(-t8, t486, t139 * t468)),
-            );
-            let t492 = T::fused(
-                -t45,
-                T::fused(t18, t475, t490),
-                t42 * T::fused(t18, t476, t491),
-            );
-            let t493 = T::fused(
-                k(15.791367041742975),
-                T::fused(t18, t237, t5 * t471),
-                -T::fused(k(0.05), t489, k(0.1) * t492),
-            );
+            let t490 = T::fused(t98, t386, t104 * t406);
+            let t491 = T::fused(-t104, t393, t98 * t403);
+            let t492 = T::fused(-t104, t386, t98 * t406);
+            let t493 = T::fused(t98, t393, t104 * t403);
             let t494 = T::fused(
-                t30,
-                k(1.2566370614359172) * T::fused(t139, t237, T::fused(t5, t472, -t488)),
-                t7 * t493,
+                t100,
+                T::fused(-t106, t490, t102 * t491),
+                t105 * T::fused(-t102, t492, t106 * t493),
             );
             let t495 = T::fused(
-                k(18.84955592153876),
-                T::fused(t11, t484, t3 * (k(0.9424777960769379) * t485)),
-                k(12.566370614359172) * t494,
+                k(0.05),
+                t489,
+                T::fused(
+                    -k(0.025),
+                    t494,
+                    k(17.765287921960844) * T::fused(t1, t408, t10 * t427),
+                ),
             );
-            (t419, t428, t435, t440, t441, t443, t444, t445, t462, t466, t467, t495)
+            let t496 = T::fused(
+                -t5,
+                t481,
+                T::fused(t244, t415, T::fused(t18, t485, t241 * t428)),
+            );
+            let t497 = T::fused(-t116, t380, t18 * t480);
+            let t498 = T::fused(t119, t380, t18 * t479);
+            let t499 = T::fused(
+                t29,
+                t482,
+                T::fused(t18, t453, -T::fused(-t45, t497, t42 * t498)),
+            );
+            let t500 = T::fused(
+                t102,
+                T::fused(t105, t490, t100 * t493),
+                t106 * T::fused(t100, t492, t105 * t491),
+            );
+            let t501 = T::fused(
+                -t132,
+                t377,
+                T::fused(-t128, t366, T::fused(t8, t498, t139 * t480)),
+            );
+            let t502 = T::fused(
+                t131,
+                t377,
+                T::fused(-t125, t366, T::fused(-t8, t497, t139 * t479)),
+            );
+            let t503 = T::fused(
+                -t45,
+                T::fused(t18, t486, t501),
+                t42 * T::fused(t18, t487, t502),
+            );
+            let t504 = T::fused(
+                k(15.791367041742975),
+                T::fused(t18, t237, t5 * t482),
+                -T::fused(k(0.05), t500, k(0.1) * t503),
+            );
+            let t505 = T::fused(
+                t30,
+                k(1.2566370614359172) * T::fused(t139, t237, -T::fused(t5, t483, t499)),
+                t7 * t504,
+            );
+            let t506 = T::fused(
+                -k(18.84955592153876),
+                T::fused(-t11, t495, t3 * (k(0.9424777960769379) * t496)),
+                k(12.566370614359172) * t505,
+            );
+            (t425, t436, t444, t451, t452, t454, t455, t456, t473, t477, t478, t506)
         };
         *dfdx = [
             k(0.0),
@@ -6661,22 +6597,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             t95,
             t96,
             k(0.0),
-            T::fused(-t205, t91, T::fused(t81, t419, T::fused(t237, t55, t428))),
-            T::fused(-t205, t93, T::fused(t86, t419, t435)),
-            T::fused(-k(0.5), t440, t441),
-            -T::fused(t205, t94, t443),
-            t444,
-            -t445,
+            t436,
+            T::fused(-t205, t93, T::fused(t86, t425, -T::fused(t237, t70, t444))),
+            T::fused(-k(0.5), t451, t452),
+            -T::fused(t205, t94, t454),
+            t455,
+            t456,
             k(0.0),
         ];
         *dfdt = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t462,
-            -t466,
-            -t467,
-            T::fused(-t205, t467, T::fused(t466, t419, T::fused(-t237, t462, t495))),
+            -t473,
+            -t477,
+            -t478,
+            T::fused(-t205, t478, T::fused(t477, t425, T::fused(-t237, t473, t506))),
         ];
     }
     fn joint_input_jacobian(
@@ -6691,7 +6627,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 26]
     }
-    /// Writes the outputs: 525 operations (197 ±, 325 ×, 3 ÷) and 8 functions.
+    /// Writes the outputs: 515 operations (197 ±, 315 ×, 3 ÷) and 8 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -6733,237 +6669,250 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = k(0.08) * rotor_dsz;
-        let t1 = T::fused(k(0.01), inner_ring_dsz, t0);
-        let t2 = T::fused(k(0.01), outer_ring_dsz, t1);
+        let t0 = rotor_dsy + k(10.0);
+        let t1 = k(10.0) + T::fused(k(8.0), t0, inner_ring_dsy);
+        let t2 = k(10.0) + (outer_ring_dsy + t1);
         let t3 = k(12.566370614359172) * t;
         let t4 = k(0.1) * t3.sin();
-        let t5 = t4.cos();
-        let t6 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t7 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t6;
-        let t8 = T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t7;
-        let t9 = t4.sin();
-        let t10 = k(18.84955592153876) * t;
-        let t11 = k(0.05) * t10.sin();
-        let t12 = t11.sin();
-        let t13 = t9 * t12;
-        let t14 = t5 * t12;
-        let t15 = k(0.08) * rotor_dsx;
-        let t16 = T::fused(k(0.01), inner_ring_dsx, t15);
-        let t17 = T::fused(k(0.01), outer_ring_dsx, t16);
-        let t18 = t11.cos();
-        let t19 = t9 * t18;
-        let t20 = t5 * t18;
-        let t21 = k(2.0) * rotor_e1;
-        let t22 = k(2.0) * rotor_e0;
-        let t23 = T::fused(-rotor_e0, t22, k(1.0));
-        let t24 = T::fused(-rotor_e1, t21, t23);
-        let t25 = k(2.0) * inner_ring_e1;
-        let t26 = k(2.0) * inner_ring_e0;
-        let t27 = T::fused(-inner_ring_e0, t26, k(1.0));
-        let t28 = T::fused(-inner_ring_e1, t25, t27);
-        let t29 = rotor_e3 * t22;
-        let t30 = rotor_e2 * t21;
-        let t31 = t30 + t29;
-        let t32 = inner_ring_e3 * t26;
-        let t33 = inner_ring_e2 * t25;
-        let t34 = t33 + t32;
-        let t35 = rotor_e2 * t22;
-        let t36 = rotor_e3 * t21;
-        let t37 = t36 - t35;
-        let t38 = inner_ring_e2 * t26;
-        let t39 = inner_ring_e3 * t25;
-        let t40 = t39 - t38;
-        let t41 = k(1e-5) * rotor_dwx;
-        let t42 = t30 - t29;
-        let t43 = k(2.0) * rotor_e2;
-        let t44 = T::fused(-rotor_e2, t43, t23);
-        let t45 = rotor_e1 * t22;
-        let t46 = rotor_e3 * t43;
-        let t47 = t46 + t45;
-        let t48 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t49 = T::fused(
+        let t5 = t4.sin();
+        let t6 = T::fused(k(8.0), rotor_dsz, inner_ring_dsz);
+        let t7 = outer_ring_dsz + t6;
+        let t8 = t4.cos();
+        let t9 = T::fused(k(8.0), rotor_dsx, inner_ring_dsx);
+        let t10 = outer_ring_dsx + t9;
+        let t11 = k(18.84955592153876) * t;
+        let t12 = k(0.05) * t11.sin();
+        let t13 = t12.cos();
+        let t14 = t12.sin();
+        let t15 = t8 * t14;
+        let t16 = t5 * t14;
+        let t17 = t8 * t13;
+        let t18 = t5 * t13;
+        let t19 = k(2.0) * rotor_dwx;
+        let t20 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t21 = T::fused(rotor_e1, rotor_e1, -t20);
+        let t22 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t23 = T::fused(inner_ring_e1, inner_ring_e1, -t22);
+        let t24 = rotor_e0 * rotor_e2;
+        let t25 = rotor_e1 * rotor_e3;
+        let t26 = t25 - t24;
+        let t27 = inner_ring_e0 * inner_ring_e2;
+        let t28 = inner_ring_e1 * inner_ring_e3;
+        let t29 = t28 - t27;
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = t31 + t30;
+        let t33 = inner_ring_e0 * inner_ring_e3;
+        let t34 = inner_ring_e1 * inner_ring_e2;
+        let t35 = t34 + t33;
+        let t36 = T::fused(rotor_e3, rotor_e3, -t20);
+        let t37 = rotor_e0 * rotor_e1;
+        let t38 = rotor_e2 * rotor_e3;
+        let t39 = t38 - t37;
+        let t40 = t25 + t24;
+        let t41 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t42 = T::fused(
             t41,
-            T::fused(t40, t37, T::fused(t28, t24, t34 * t31)),
-            t48 * T::fused(t40, t47, -T::fused(t28, t42, t34 * t44)),
+            T::fused(t40, t23, T::fused(t29, t36, t35 * t39)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
         );
-        let t50 = t36 + t35;
-        let t51 = t46 - t45;
-        let t52 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t23);
-        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t54 = T::fused(
-            t53,
-            T::fused(t40, t52, -T::fused(-t28, t50, t34 * t51)),
-            t49,
+        let t43 = T::fused(rotor_e2, rotor_e2, -t20);
+        let t44 = t38 + t37;
+        let t45 = t31 - t30;
+        let t46 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t47 = T::fused(t46, T::fused(t45, t23, T::fused(t35, t43, t29 * t44)), -t42);
+        let t48 = T::fused(T::fused(t23, t21, T::fused(t29, t26, t35 * t32)), t19, t47);
+        let t49 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t50 = T::fused(outer_ring_e1, outer_ring_e1, -t49);
+        let t51 = outer_ring_e0 * outer_ring_e2;
+        let t52 = outer_ring_e1 * outer_ring_e3;
+        let t53 = t52 - t51;
+        let t54 = outer_ring_e0 * outer_ring_e3;
+        let t55 = outer_ring_e1 * outer_ring_e2;
+        let t56 = t55 + t54;
+        let t57 = T::fused(t50, t23, T::fused(t53, t29, t56 * t35));
+        let t58 = T::fused(inner_ring_e2, inner_ring_e2, -t22);
+        let t59 = inner_ring_e0 * inner_ring_e1;
+        let t60 = inner_ring_e2 * inner_ring_e3;
+        let t61 = t60 + t59;
+        let t62 = t34 - t33;
+        let t63 = T::fused(inner_ring_e3, inner_ring_e3, -t22);
+        let t64 = rotor_dsz * t63;
+        let t65 = t60 - t59;
+        let t66 = t65 * t0;
+        let t67 = t28 + t27;
+        let t68 = t67 * rotor_dsx;
+        let t69 = T::fused(t62, t40, T::fused(t61, t36, t39 * t58));
+        let t70 = T::fused(t62, t45, T::fused(t43, t58, t61 * t44));
+        let t71 = T::fused(
+            t46,
+            t70,
+            -T::fused(t41, t69, t68 + (t66 - T::fused(k(0.1), inner_ring_dwy, -t64))),
         );
-        let t55 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t54,
-        );
-        let t56 = k(2.0) * outer_ring_e1;
-        let t57 = k(2.0) * outer_ring_e0;
-        let t58 = T::fused(-outer_ring_e0, t57, k(1.0));
-        let t59 = T::fused(-outer_ring_e1, t56, t58);
-        let t60 = outer_ring_e3 * t57;
-        let t61 = outer_ring_e2 * t56;
-        let t62 = t61 + t60;
-        let t63 = outer_ring_e2 * t57;
-        let t64 = outer_ring_e3 * t56;
-        let t65 = t64 - t63;
-        let t66 = T::fused(t65, t40, T::fused(t59, t28, t62 * t34));
-        let t67 = t33 - t32;
-        let t68 = k(2.0) * inner_ring_e2;
-        let t69 = T::fused(-inner_ring_e2, t68, t27);
-        let t70 = inner_ring_e1 * t26;
-        let t71 = inner_ring_e3 * t68;
-        let t72 = t71 + t70;
-        let t73 = T::fused(t72, t47, T::fused(t67, t42, t69 * t44));
-        let t74 = T::fused(
+        let t72 = T::fused(T::fused(t62, t21, T::fused(t32, t58, t61 * t26)), t19, t71);
+        let t73 = T::fused(t62, t50, T::fused(t56, t58, t53 * t61));
+        let t74 = t58 * t0;
+        let t75 = t61 * rotor_dsz;
+        let t76 = t62 * rotor_dsx;
+        let t77 = T::fused(t67, t40, T::fused(t36, t63, t65 * t39));
+        let t78 = T::fused(
             t41,
-            T::fused(t72, t37, -T::fused(t67, t24, t69 * t31)),
-            t48 * t73,
+            t77,
+            -(t76
+                + (T::fused(
+                    k(0.05),
+                    T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                    t75,
+                ) + t74)),
         );
-        let t75 = T::fused(t72, t52, T::fused(-t67, t50, t69 * t51));
-        let t76 = t39 + t38;
-        let t77 = t71 - t70;
-        let t78 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t27);
-        let t79 = T::fused(
-            t0,
-            k(0.000125) * t78,
-            -T::fused(t15, k(0.000125) * t76, t6 * (k(0.000125) * t77)),
+        let t79 = T::fused(t67, t45, T::fused(t44, t63, t65 * t43));
+        let t80 = T::fused(
+            T::fused(t67, t21, T::fused(t26, t63, t65 * t32)),
+            t19,
+            T::fused(t46, t79, -t78),
         );
-        let t80 = T::fused(k(2e-6), inner_ring_dwy, t79 + T::fused(t53, t75, t74));
-        let t81 = T::fused(t65, t72, -T::fused(t59, t67, t62 * t69));
-        let t82 = T::fused(t78, t47, T::fused(-t76, t42, t77 * t44));
-        let t83 = T::fused(
-            t41,
-            T::fused(t78, t37, -T::fused(-t76, t24, t77 * t31)),
-            t48 * t82,
+        let t81 = T::fused(
+            T::fused(t67, t50, T::fused(t53, t63, t56 * t65)),
+            t80,
+            k(0.025) * outer_ring_dwx,
         );
-        let t84 = T::fused(t78, t52, T::fused(t76, t50, t77 * t51));
-        let t85 = T::fused(
-            t0,
-            k(0.000125) * t72,
-            -T::fused(-t15, k(0.000125) * t67, t6 * (k(0.000125) * t69)),
+        let t82 = T::fused(t57, t48, T::fused(t73, t72, t81));
+        let t83 = T::fused(outer_ring_e3, outer_ring_e3, -t49);
+        let t84 = outer_ring_e0 * outer_ring_e1;
+        let t85 = outer_ring_e2 * outer_ring_e3;
+        let t86 = t85 - t84;
+        let t87 = t52 + t51;
+        let t88 = T::fused(t13, t87, T::fused(t16, t83, t15 * t86));
+        let t89 = T::fused(-t5, t56, t8 * t53);
+        let t90 = T::fused(t13, t50, T::fused(t16, t53, t15 * t56));
+        let t91 = T::fused(-t8, t83, t5 * t86);
+        let t92 = k(1.0) / T::fused(t89, t88, t91 * t90);
+        let t93 = T::fused(
+            -T::fused(t87, t67, T::fused(t83, t63, t86 * t65)),
+            t80,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
         );
-        let t86 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t85 - T::fused(t53, t84, t83),
+        let t94 = T::fused(-T::fused(t87, t62, T::fused(t61, t83, t86 * t58)), t72, t93);
+        let t95 = T::fused(-T::fused(t87, t23, T::fused(t29, t83, t86 * t35)), t48, t94);
+        let t96 = T::fused(-(t90 * t92), t82, t88 * t92 * t95);
+        let t97 = T::fused(t89 * t92, t82, t91 * t92 * t95);
+        let t98 = T::fused(-t91, t96, t88 * t97);
+        let t99 = T::fused(t89, t96, t90 * t97);
+        let t100 = T::fused(-t56, t98, t86 * t99);
+        let t101 = T::fused(-t53, t98, t83 * t99);
+        let t102 = T::fused(-t50, t98, t87 * t99);
+        let t103 = T::fused(outer_ring_e2, outer_ring_e2, -t49);
+        let t104 = t85 + t84;
+        let t105 = t55 - t54;
+        let t106 = T::fused(t105, t62, T::fused(t103, t58, t104 * t61));
+        let t107 = T::fused(t105, t23, T::fused(t35, t103, t104 * t29));
+        let t108 = k(1.0) / T::fused(-t106, t57, t107 * t73);
+        let t109 = T::fused(t107 * t108, t48, t106 * t108 * t72);
+        let t110 = T::fused(t57 * t108, t48, t73 * t108 * t72);
+        let t111 = T::fused(-t73, t109, t106 * t110);
+        let t112 = T::fused(-t57, t109, t107 * t110);
+        let t113 = T::fused(-t23, t111, t62 * t112);
+        let t114 = T::fused(-t35, t111, t58 * t112);
+        let t115 = T::fused(-t29, t111, t61 * t112);
+        let t116 = k(1.0) / T::fused(-t77, t70, t79 * t69);
+        let t117 = T::fused(-t41, t69 * t116, t46 * (t70 * t116));
+        let t118 = T::fused(-t41, t77 * t116, t46 * (t79 * t116));
+        let t119 = T::fused(-t79, t117, t70 * t118);
+        let t120 = T::fused(-t77, t117, t69 * t118);
+        let t121 = T::fused(-t36, t119, t44 * t120);
+        let t122 = T::fused(-t39, t119, t43 * t120);
+        let t123 = T::fused(-t40, t119, t45 * t120);
+        let t124 = T::fused(-k(2.0), inner_ring_wy, inner_ring_wx);
+        let t125 = T::fused(k(0.2), inner_ring_wx, inner_ring_wz);
+        let t126 = T::fused(
+            k(2.0),
+            inner_ring_wz * t125,
+            -T::fused(
+                inner_ring_wy,
+                t124,
+                -T::fused(k(0.4), inner_ring_dwy, inner_ring_dwz),
+            ),
         );
-        let t87 = T::fused(
-            T::fused(t65, t78, -T::fused(-t59, t76, t62 * t77)),
-            t86,
-            -T::fused(-t66, t55, t81 * t80),
+        let t127 = k(0.01) * t126;
+        let t128 = T::fused(k(2.5), inner_ring_wz, inner_ring_wy);
+        let t129 = T::fused(
+            k(0.2),
+            inner_ring_wy * t128,
+            T::fused(
+                inner_ring_wx,
+                t125,
+                -T::fused(-k(0.5), inner_ring_dwx, inner_ring_dwy),
+            ),
         );
-        let t88 = T::fused(k(2e-6), outer_ring_dwx, -t87);
-        let t89 = T::fused(t13, t65, T::fused(-t18, t59, t14 * t62));
-        let t90 = outer_ring_e1 * t57;
-        let t91 = k(2.0) * outer_ring_e2;
-        let t92 = outer_ring_e3 * t91;
-        let t93 = t92 - t90;
-        let t94 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t58);
-        let t95 = T::fused(t9, t93, t5 * t94);
-        let t96 = T::fused(-t9, t62, t5 * t65);
-        let t97 = t64 + t63;
-        let t98 = T::fused(t13, t94, -T::fused(t18, t97, t14 * t93));
-        let t99 = k(1.0) / T::fused(-t95, t89, t98 * t96);
-        let t100 = T::fused(
-            -T::fused(t94, t40, -T::fused(-t97, t28, t93 * t34)),
-            t55,
-            T::fused(t94, t72, T::fused(-t97, t67, t93 * t69)) * t80,
+        let t130 = k(0.02) * t129;
+        let t131 = T::fused(
+            k(2.5),
+            inner_ring_wx * t124,
+            T::fused(
+                inner_ring_wz,
+                t128,
+                -T::fused(k(5.0), inner_ring_dwz, inner_ring_dwx),
+            ),
         );
-        let t101 = T::fused(
-            T::fused(t94, t78, T::fused(t97, t76, t93 * t77)),
-            t86,
-            -t100,
+        let t132 = k(0.004) * t131;
+        let t133 = T::fused(
+            t23,
+            t127,
+            T::fused(t62, t132, -T::fused(t67, t130, inner_ring_dsx)),
         );
-        let t102 = T::fused(
-            k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t101,
+        let t134 = k(10.0)
+            - T::fused(
+                t35,
+                t127,
+                -T::fused(-t58, t132, T::fused(t65, t130, inner_ring_dsy)),
+            );
+        let t135 = T::fused(
+            t29,
+            t127,
+            T::fused(t61, t132, -T::fused(t63, t130, inner_ring_dsz)),
         );
-        let t103 = T::fused(t89 * t99, t88, t98 * t99 * t102);
-        let t104 = T::fused(t96 * t99, t88, t95 * t99 * t102);
-        let t105 = T::fused(-t95, t103, t98 * t104);
-        let t106 = T::fused(-t96, t103, t89 * t104);
-        let t107 = T::fused(t62, t105, t93 * t106);
-        let t108 = T::fused(-t65, t105, t94 * t106);
-        let t109 = T::fused(-t59, t105, t97 * t106);
-        let t110 = t61 - t60;
-        let t111 = T::fused(-outer_ring_e2, t91, t58);
-        let t112 = t92 + t90;
-        let t113 = T::fused(t112, t40, -T::fused(t110, t28, t111 * t34));
-        let t114 = T::fused(t112, t72, T::fused(t110, t67, t111 * t69));
-        let t115 = k(1.0) / T::fused(-t113, t81, t114 * t66);
-        let t116 = T::fused(-(t113 * t115), t55, t114 * t115 * t80);
-        let t117 = T::fused(-(t66 * t115), t55, t81 * t115 * t80);
-        let t118 = T::fused(-t81, t116, t114 * t117);
-        let t119 = T::fused(-t66, t116, t113 * t117);
-        let t120 = T::fused(t28, t118, t67 * t119);
-        let t121 = T::fused(t34, t118, t69 * t119);
-        let t122 = T::fused(-t40, t118, t72 * t119);
-        let t123 = k(1.0) / T::fused(-t82, t75, t84 * t73);
-        let t124 = T::fused(t48, t82 * t123, t53 * (t84 * t123));
-        let t125 = T::fused(t48, t73 * t123, t53 * (t75 * t123));
-        let t126 = T::fused(-t75, t124, t84 * t125);
-        let t127 = T::fused(-t73, t124, t82 * t125);
-        let t128 = T::fused(t42, t126, t50 * t127);
-        let t129 = T::fused(-t44, t126, t51 * t127);
-        let t130 = T::fused(-t47, t126, t52 * t127);
-        let t131 = T::fused(k(0.002), inner_ring_wx, k(0.01) * inner_ring_wz);
-        let t132 = T::fused(-k(0.01), inner_ring_wy, k(0.005) * inner_ring_wx);
-        let t133 = T::fused(k(0.005), inner_ring_dwz, k(0.002) * inner_ring_dwy)
-            - T::fused(-inner_ring_wz, t131, inner_ring_wy * t132);
-        let t134 = T::fused(k(0.005), inner_ring_wz, k(0.002) * inner_ring_wy);
-        let t135 = T::fused(k(0.002), inner_ring_dwx, k(0.01) * inner_ring_dwz)
-            - T::fused(inner_ring_wx, t132, inner_ring_wz * t134);
-        let t136 = T::fused(-k(0.01), inner_ring_dwy, k(0.005) * inner_ring_dwx)
-            + T::fused(inner_ring_wy, t134, inner_ring_wx * t131);
-        let t137 = inner_ring_dsx + T::fused(t136, t76, T::fused(t133, t28, t135 * t67));
-        let t138 = k(10.0)
-            + (inner_ring_dsy + T::fused(t136, t77, -T::fused(t133, t34, t135 * t69)));
-        let t139 = inner_ring_dsz
-            - T::fused(t136, t78, -T::fused(-t133, t40, t135 * t72));
-        let t140 = k(1.2566370614359172) * t3.cos();
-        let t141 = t140 * t9;
-        let t142 = t140 * t5;
-        let t143 = k(0.9424777960769379) * t10.cos();
-        let t144 = t143 * t18;
-        let t145 = T::fused(-T::fused(-t5, t144, t12 * t141), t111, t143 * t12 * t110);
-        let t146 = T::fused(
-            T::fused(-t141, t112, t142 * t111),
+        let t136 = t3.cos();
+        let t137 = t136 * t8;
+        let t138 = t136 * t5;
+        let t139 = t11.cos();
+        let t140 = k(0.75) * (t139 * t13);
+        let t141 = T::fused(
             t103,
-            T::fused(-T::fused(t9, t144, t12 * t142), t112, t145) * t104,
+            T::fused(-t8, t140, t14 * t138),
+            k(0.75) * (t105 * (t139 * t14)),
+        );
+        let t142 = T::fused(
+            -t96,
+            T::fused(t103, t137, t104 * t138),
+            t97 * T::fused(t104, T::fused(t5, t140, t14 * t137), -t141),
         );
         *out = [
-            T::fused(-t9, t8, t5 * t2),
-            T::fused(t13, t2, T::fused(t14, t8, t18 * t17)),
-            T::fused(t19, t2, -T::fused(-t20, t8, t12 * t17)),
-            -T::fused(t9, t107, t5 * t108),
-            T::fused(-t13, t108, T::fused(t18, t109, t14 * t107)),
-            T::fused(-t19, t108, T::fused(-t12, t109, t20 * t107)),
-            T::fused(t1, t65, T::fused(-t16, t59, t7 * t62)),
-            T::fused(t1, t112, -T::fused(-t16, t110, t7 * t111)),
-            T::fused(-t1, t94, T::fused(t16, t97, t7 * t93)),
-            T::fused(-t65, t122, T::fused(t59, t120, t62 * t121)),
-            -T::fused(t112, t122, T::fused(t110, t120, t111 * t121)),
-            T::fused(t94, t122, T::fused(-t97, t120, t93 * t121)),
-            T::fused(t0, t72, -T::fused(-t15, t67, t6 * t69)),
-            T::fused(-t0, t78, T::fused(t15, t76, t6 * t77)),
-            T::fused(t0, t40, T::fused(-t15, t28, t6 * t34)),
-            -T::fused(t72, t130, T::fused(-t67, t128, t69 * t129)),
-            T::fused(t78, t130, T::fused(t76, t128, t77 * t129)),
-            T::fused(-t40, t130, T::fused(-t28, t128, t34 * t129)),
-            T::fused(t40, t139, T::fused(-t28, t137, t34 * t138)),
-            T::fused(t72, t139, -T::fused(-t67, t137, t69 * t138)),
-            T::fused(-t78, t139, T::fused(t76, t137, t77 * t138)),
+            k(0.01) * T::fused(-t5, t2, t8 * t7),
+            k(0.01) * T::fused(t16, t7, T::fused(t13, t10, t15 * t2)),
+            k(0.01) * T::fused(t18, t7, T::fused(-t14, t10, t17 * t2)),
+            -(k(0.00016) * T::fused(-t5, t100, t8 * t101)),
+            -(k(0.00016) * T::fused(t13, t102, T::fused(t15, t100, t16 * t101))),
+            -(k(0.00016) * T::fused(-t14, t102, T::fused(t17, t100, t18 * t101))),
+            k(0.02) * T::fused(t50, t9, T::fused(t53, t6, t56 * t1)),
+            k(0.02) * T::fused(t105, t9, T::fused(t103, t1, t104 * t6)),
+            k(0.02) * T::fused(t87, t9, T::fused(t83, t6, t86 * t1)),
+            k(8e-5) * T::fused(t50, t113, T::fused(t56, t114, t53 * t115)),
+            k(8e-5) * T::fused(t105, t113, T::fused(t103, t114, t104 * t115)),
+            k(8e-5) * T::fused(t87, t113, T::fused(t86, t114, t83 * t115)),
+            k(0.16) * (t76 + (t75 + t74)),
+            k(0.16) * (t68 + (t66 + t64)),
+            k(0.16) * T::fused(rotor_dsx, t23, T::fused(t29, rotor_dsz, t35 * t0)),
+            k(2e-5) * T::fused(t62, t123, T::fused(t61, t121, t58 * t122)),
+            k(2e-5) * T::fused(t67, t123, T::fused(t63, t121, t65 * t122)),
+            k(2e-5) * T::fused(t23, t123, T::fused(t29, t121, t35 * t122)),
+            -(k(2.0) * T::fused(t23, t133, T::fused(-t35, t134, t29 * t135))),
+            -(k(2.0) * T::fused(t62, t133, T::fused(-t58, t134, t61 * t135))),
+            -(k(2.0) * T::fused(t67, t133, T::fused(-t65, t134, t63 * t135))),
             inner_ring_wx,
             inner_ring_wy,
             inner_ring_wz,
             k(0.0),
-            -t146,
+            -(k(0.00010053096491487339) * t142),
         ];
     }
     fn n_outputs(&self) -> usize {

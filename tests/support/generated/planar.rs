@@ -11,39 +11,39 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 152 operations by rotations of the bodies, doubled; 152 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 120 operations by rotations of the bodies, doubled; 120 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 40 operations by normal form; 77 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 44 operations by normal form; 81 operations by recursion; 3 more compared
-//! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 152 operations by elimination in maximal coordinates; 9 more compared
+//! * accelerations: 126 operations by rotations of the bodies, doubled; 126 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 82 operations by rotations of the bodies, doubled; 82 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 38 operations by normal form; 74 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 42 operations by normal form; 79 operations by recursion; 3 more compared
+//! * corrected_accelerations: 121 operations by normal form in the bodies' frames; 126 operations by elimination in maximal coordinates; 9 more compared
 //! * joint_jacobian: 94 operations by derivatives of u̇, from its leaves; 94 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 13 | 13 | 0 | 26 | 0 of 4 | 32 | 26 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 12 | 0 | 18 | 0 of 17 | 28 | 18 |
+//! | phi | Φ | 12 | 13 | 0 | 25 | 0 of 4 | 32 | 25 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 8 | 0 | 14 | 0 of 17 | 26 | 14 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 20 | 0 | 31 | 0 of 8 | 63 | 31 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 25 | 38 | 0 | 63 | 0 of 3 | 135 | 63 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 27 | 0 | 43 | 0 of 3 | 75 | 43 |
+//! | gamma | γ | 25 | 36 | 0 | 61 | 0 of 3 | 107 | 61 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 25 | 0 | 41 | 0 of 3 | 57 | 41 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 61 | 89 | 2 | 152 | 0 of 6 | 3002 | 154 |
-//! | multipliers | λ, the accelerations being known | 30 | 51 | 1 | 82 | 0 of 3 | 366 | 82 |
-//! | project | (δr, δπ') that changes the rows as given | 43 | 75 | 2 | 120 | 0 of 6 | 3103 | 121 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 57 | 67 | 2 | 126 | 0 of 6 | 2118 | 128 |
+//! | multipliers | λ, the accelerations being known | 30 | 41 | 1 | 72 | 0 of 3 | 256 | 72 |
+//! | project | (δr, δπ') that changes the rows as given | 33 | 47 | 2 | 82 | 2 of 6 | 689 | 83 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 7 | 14 | 0 | 21 | 0 of 2 | 21 | 21 |
-//! | read_joints | joint coordinates and rates | 30 | 40 | 0 | 70 | 0 of 7 | 132 | 70 |
-//! | outputs | outputs, the accelerations being known | 51 | 75 | 1 | 127 | 2 of 6 | 2543 | 127 |
-//! | joint_accelerations | u̇ in joint coordinates | 14 | 24 | 2 | 40 | 0 of 3 | 474 | 41 |
+//! | energy | T and V | 7 | 13 | 0 | 20 | 0 of 2 | 20 | 20 |
+//! | read_joints | joint coordinates and rates | 30 | 36 | 0 | 66 | 0 of 7 | 120 | 66 |
+//! | outputs | outputs, the accelerations being known | 47 | 68 | 1 | 116 | 2 of 6 | 1777 | 116 |
+//! | joint_accelerations | u̇ in joint coordinates | 14 | 22 | 2 | 38 | 0 of 3 | 351 | 39 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 11 | 17 | 0 | 28 | 5 of 13 | 63 | 28 |
-//! | to_joints | (x, u) of a maximal state | 33 | 44 | 0 | 77 | 0 of 6 | 157 | 77 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 27 | 2 | 44 | 0 of 3 | 939 | 45 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 79 | 2 | 130 | 0 of 6 | 6358 | 131 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 32 | 44 | 0 | 76 | 0 of 3 | 198 | 76 |
-//! | corrected_solution | both | 66 | 106 | 2 | 174 | 0 of 9 | 31989 | 175 |
+//! | to_maximal | (q, v) of a joint state | 11 | 15 | 0 | 26 | 5 of 13 | 59 | 26 |
+//! | to_joints | (x, u) of a maximal state | 33 | 40 | 0 | 73 | 0 of 6 | 145 | 73 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 24 | 2 | 42 | 0 of 3 | 674 | 43 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 50 | 69 | 2 | 121 | 0 of 6 | 4600 | 122 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 33 | 37 | 0 | 70 | 0 of 3 | 175 | 70 |
+//! | corrected_solution | both | 67 | 91 | 2 | 160 | 0 of 9 | 23175 | 161 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 35 | 57 | 2 | 94 | 33 of 42 | 3092 | 94 |
 //!
 //! # Proof
@@ -62,7 +62,7 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-149.
+//! All of it holds but with a probability below 1e-148.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `planar`.
@@ -224,7 +224,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
             accelerations[5],
         ];
     }
-    /// Writes Φ: 26 operations (13 ±, 13 ×, 0 ÷).
+    /// Writes Φ: 25 operations (12 ±, 13 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let block_rz = y[2];
@@ -232,25 +232,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_e1 = y[4];
         let block_e2 = y[5];
         let block_e3 = y[6];
-        let t0 = block_e0 * block_e2;
-        let t1 = block_e1 * block_e3;
-        let t2 = block_e0 * block_e1;
-        let t3 = block_e2 * block_e3;
-        let t4 = block_e3 * block_e3;
-        let t5 = block_e0 * block_e0;
-        let t6 = T::fused(
-            k(0.1),
-            k(0.5) - (t5 + t4),
-            T::fused(-k(0.4), t1 - t0, k(0.2) * (t3 + t2)),
+        let t0 = T::fused(block_e3, block_e3, block_e0 * block_e0);
+        let t1 = block_e0 * block_e1;
+        let t2 = block_e2 * block_e3;
+        let t3 = block_e0 * block_e2;
+        let t4 = block_e1 * block_e3;
+        let t5 = T::fused(
+            k(0.4),
+            t4 - t3,
+            -T::fused(k(0.2), t2 + t1, -T::fused(-k(0.1), k(0.5) - t0, block_rz)),
         );
         *out = [
-            block_rz - t6,
-            k(2.0) * (t1 + t0),
-            k(2.0) * (t3 - t2),
-            t4 + T::fused(block_e2, block_e2, T::fused(block_e1, block_e1, t5)) - k(1.0),
+            t5,
+            k(2.0) * (t4 + t3),
+            k(2.0) * (t2 - t1),
+            T::fused(block_e2, block_e2, T::fused(block_e1, block_e1, t0)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 43 operations (16 ±, 27 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 41 operations (16 ±, 25 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -261,27 +260,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * block_e0;
-        let t1 = k(2.0) * block_e1;
-        let t2 = T::fused(-block_e2, t0, block_e3 * t1);
-        let t3 = k(2.0) * block_e2;
-        let t4 = T::fused(block_e1, t0, block_e3 * t3);
-        let t5 = T::fused(-block_e0, t0, k(1.0));
-        let t6 = T::fused(-block_e3, k(2.0) * block_e3, t5);
-        let t7 = T::fused(
-            k(0.1),
-            T::fused(block_wz, t2, block_wx * t6),
-            k(0.2) * T::fused(block_wz, t4, block_wy * t6),
+        let t0 = T::fused(-block_e0, block_e0, k(0.5));
+        let t1 = T::fused(block_e3, block_e3, -t0);
+        let t2 = T::fused(-block_e0, block_e2, block_e1 * block_e3);
+        let t3 = T::fused(block_e0, block_e1, block_e2 * block_e3);
+        let t4 = T::fused(
+            k(0.2),
+            T::fused(-block_wx, t1, t2 * block_wz),
+            T::fused(k(0.4), T::fused(-block_wy, t1, t3 * block_wz), block_sz),
         );
-        let t8 = block_e3 * t0;
-        let t9 = block_e2 * t1;
-        *out = [
-            block_sz + T::fused(-k(0.05), T::fused(-block_wy, t2, block_wx * t4), t7),
-            -T::fused(block_wy, T::fused(-block_e1, t1, t5), block_wx * (t9 - t8)),
-            T::fused(block_wy, t9 + t8, block_wx * T::fused(-block_e2, t3, t5)),
-        ];
+        let t5 = block_e0 * block_e3;
+        let t6 = block_e1 * block_e2;
+        let t7 = k(2.0)
+            * T::fused(
+                -block_wy,
+                T::fused(block_e1, block_e1, -t0),
+                (t6 - t5) * block_wx,
+            );
+        let t8 = k(2.0)
+            * T::fused(
+                -block_wx,
+                T::fused(block_e2, block_e2, -t0),
+                (t6 + t5) * block_wy,
+            );
+        *out = [T::fused(k(0.1), T::fused(-t3, block_wx, t2 * block_wy), t4), -t7, t8];
     }
-    /// Kinetic and potential energy: 21 operations (7 ±, 14 ×, 0 ÷).
+    /// Kinetic and potential energy: 20 operations (7 ±, 13 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let block_rx = y[0];
@@ -294,12 +298,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wy = y[11];
         let block_wz = y[12];
         let t0 = T::fused(
-            block_wz,
-            k(0.025) * block_wz,
-            T::fused(block_wy, k(0.02) * block_wy, block_wx * (k(0.01) * block_wx)),
+            k(2.5),
+            block_wz * block_wz,
+            T::fused(k(2.0), block_wy * block_wy, block_wx * block_wx),
         );
         let t1 = T::fused(
-            k(0.8),
+            k(80.0),
             T::fused(
                 block_sz,
                 block_sz,
@@ -308,15 +312,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
             t0,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
-            potential: T::fused(
-                k(6.4),
-                block_rz,
-                -T::fused(-k(3.2), block_ry, k(1.2) * block_rx),
-            ),
+            kinetic: k(0.005) * t1,
+            potential: -(k(1.2)
+                * T::fused(
+                    -k(5.333333333333333),
+                    block_rz,
+                    T::fused(-k(2.6666666666666665), block_ry, block_rx),
+                )),
         }
     }
-    /// Writes the joint readings: 70 operations (30 ±, 40 ×, 0 ÷).
+    /// Writes the joint readings: 66 operations (30 ±, 36 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let block_rx = y[0];
@@ -330,40 +335,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = block_e0 * block_e0;
-        let t1 = T::fused(block_e1, block_e1, t0);
-        let t2 = k(0.5) - t1;
-        let t3 = block_e0 * block_e3;
-        let t4 = block_e1 * block_e2;
-        let t5 = t4 - t3;
-        let t6 = T::fused(block_e0, block_e2, block_e1 * block_e3);
-        let t7 = k(2.0) * t2;
-        let t8 = k(2.0) * t5;
-        let t9 = k(2.0) * t6;
-        let t10 = T::fused(
-            k(0.1),
-            T::fused(t7, block_wz, t9 * block_wx),
-            k(0.2) * T::fused(-t8, block_wz, t9 * block_wy),
+        let t0 = T::fused(block_e0, block_e2, block_e1 * block_e3);
+        let t1 = block_e0 * block_e3;
+        let t2 = block_e1 * block_e2;
+        let t3 = t2 - t1;
+        let t4 = block_e0 * block_e0;
+        let t5 = T::fused(block_e1, block_e1, t4);
+        let t6 = k(0.5) - t5;
+        let t7 = T::fused(
+            -k(0.2),
+            T::fused(t0, block_wx, t6 * block_wz),
+            T::fused(k(0.4), T::fused(-t0, block_wy, t3 * block_wz), block_sx),
         );
-        let t11 = t4 + t3;
-        let t12 = block_e2 * block_e2;
-        let t13 = k(0.5) - (t0 + t12);
-        let t14 = T::fused(-block_e0, block_e1, block_e2 * block_e3);
-        let t15 = k(2.0) * t11;
-        let t16 = k(2.0) * t13;
-        let t17 = k(2.0) * t14;
-        let t18 = T::fused(
-            k(0.1),
-            T::fused(-t15, block_wz, t17 * block_wx),
-            k(0.2) * T::fused(t16, block_wz, t17 * block_wy),
+        let t8 = T::fused(-block_e0, block_e1, block_e2 * block_e3);
+        let t9 = block_e2 * block_e2;
+        let t10 = k(0.5) - (t4 + t9);
+        let t11 = t2 + t1;
+        let t12 = T::fused(
+            k(0.2),
+            T::fused(-t8, block_wx, t11 * block_wz),
+            T::fused(-k(0.4), T::fused(t8, block_wy, t10 * block_wz), block_sy),
         );
         *out = [
-            block_rx + T::fused(k(0.1), t6, -T::fused(k(0.4), t2, k(0.2) * t5)),
-            block_sx - T::fused(k(0.05), T::fused(t7, block_wy, t8 * block_wx), t10),
-            block_ry + T::fused(k(0.1), t14, T::fused(k(0.4), t11, k(0.2) * t13)),
-            block_sy - T::fused(-k(0.05), T::fused(t15, block_wy, t16 * block_wx), t18),
-            t15,
-            k(1.0) - T::fused(block_e3, block_e3, t1 + t12) - t7,
+            -T::fused(k(0.4), t6, T::fused(k(0.2), t3, -T::fused(k(0.1), t0, block_rx))),
+            T::fused(-k(0.1), T::fused(t3, block_wx, t6 * block_wy), t7),
+            T::fused(k(0.4), t11, T::fused(k(0.2), t10, T::fused(k(0.1), t8, block_ry))),
+            T::fused(k(0.1), T::fused(t10, block_wx, t11 * block_wy), t12),
+            k(2.0) * t11,
+            k(1.0) - (t9 + (t5 + T::fused(block_e3, block_e3, k(2.0) * t6))),
             block_wz,
         ];
     }
@@ -500,37 +499,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
     fn phi_pi_pattern(&self) -> &[(u16, u16)] {
         &[(0, 2), (0, 3), (0, 4), (0, 5), (1, 3), (1, 4), (2, 3), (2, 4)]
     }
-    /// Writes the non-zeros of Φ_q: 18 operations (6 ±, 12 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 14 operations (6 ±, 8 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let block_e0 = y[3];
         let block_e1 = y[4];
         let block_e2 = y[5];
         let block_e3 = y[6];
-        let t0 = k(0.2) * block_e0;
-        let t1 = k(0.2) * block_e3;
-        let t2 = k(2.0) * block_e2;
-        let t3 = k(2.0) * block_e3;
-        let t4 = k(2.0) * block_e0;
-        let t5 = k(2.0) * block_e1;
+        let t0 = k(2.0) * block_e2;
+        let t1 = k(2.0) * block_e3;
+        let t2 = k(2.0) * block_e0;
+        let t3 = k(2.0) * block_e1;
         *out = [
             k(1.0),
-            t0 - T::fused(k(0.4), block_e2, k(0.2) * block_e1),
-            T::fused(k(0.4), block_e3, -t0),
-            -T::fused(k(0.4), block_e0, t1),
-            t1 - T::fused(-k(0.4), block_e1, k(0.2) * block_e2),
+            -(k(0.2) * (t0 - (block_e0 - block_e1))),
+            -(k(0.2) * (block_e0 - t1)),
+            -(k(0.2) * (block_e3 + t2)),
+            k(0.2) * (t3 - (block_e2 - block_e3)),
+            t0,
+            t1,
             t2,
             t3,
-            t4,
-            t5,
-            -t5,
-            -t4,
-            t3,
-            t2,
-            t4,
-            t5,
+            -t3,
+            -t2,
+            t1,
+            t0,
             t2,
             t3,
+            t0,
+            t1,
         ];
     }
     /// Writes the non-zeros of (Φ_r, Φ_π'): 31 operations (11 ±, 20 ×, 0 ÷).
@@ -565,7 +562,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 63 operations (25 ±, 38 ×, 0 ÷).
+    /// Writes γ: 61 operations (25 ±, 36 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -575,47 +572,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * block_e0;
-        let t1 = block_e2 * t0;
-        let t2 = k(2.0) * block_e1;
-        let t3 = block_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = block_wy * block_wy;
-        let t6 = block_wz * block_wz;
-        let t7 = block_e1 * t0;
-        let t8 = k(2.0) * block_e2;
-        let t9 = block_e3 * t8;
-        let t10 = t9 + t7;
-        let t11 = block_wx * block_wy;
-        let t12 = T::fused(-block_e0, t0, k(1.0));
-        let t13 = T::fused(-block_e3, k(2.0) * block_e3, t12);
-        let t14 = block_wx * block_wz;
-        let t15 = block_wx * block_wx;
-        let t16 = block_wy * block_wz;
-        let t17 = T::fused(
-            -k(0.2),
-            T::fused(t14, t13, -T::fused(-(t6 + t5), t4, t11 * t10)),
-            k(0.1) * T::fused(t16, t13, T::fused(-t11, t4, (t6 + t15) * t10)),
+        let t0 = T::fused(-block_e0, block_e0, k(0.5));
+        let t1 = T::fused(block_e3, block_e3, -t0);
+        let t2 = block_wx * block_wz;
+        let t3 = block_wx * block_wy;
+        let t4 = block_e0 * block_e1;
+        let t5 = block_e2 * block_e3;
+        let t6 = t5 + t4;
+        let t7 = block_wy * block_wy;
+        let t8 = block_wz * block_wz;
+        let t9 = block_e0 * block_e2;
+        let t10 = block_e1 * block_e3;
+        let t11 = t10 - t9;
+        let t12 = block_wy * block_wz;
+        let t13 = block_wx * block_wx;
+        let t14 = t7 + t13;
+        let t15 = T::fused(
+            -k(2.0),
+            T::fused(t11, t3, -T::fused(-t12, t1, t6 * (t8 + t13))),
+            T::fused(t11, t2, T::fused(-t14, t1, t6 * t12)),
         );
-        let t18 = t5 + t15;
+        let t16 = T::fused(
+            -k(4.0),
+            T::fused(t11, t8 + t7, -T::fused(t2, t1, t6 * t3)),
+            t15,
+        );
+        let t17 = block_e0 * block_e3;
+        let t18 = block_e1 * block_e2;
         let t19 = T::fused(
-            k(0.05),
-            T::fused(t18, t13, T::fused(t14, t4, t16 * t10)),
-            t17,
+            t2,
+            T::fused(block_e1, block_e1, -t0),
+            T::fused(-(t10 + t9), t14, (t18 - t17) * t12),
         );
-        let t20 = block_e3 * t0;
-        let t21 = block_e2 * t2;
-        let t22 = T::fused(
-            t18,
-            t3 + t1,
-            -T::fused(-t14, T::fused(-block_e1, t2, t12), t16 * (t21 - t20)),
+        let t20 = T::fused(
+            t18 + t17,
+            t2,
+            -T::fused(-t12, T::fused(block_e2, block_e2, -t0), (t5 - t4) * t14),
         );
-        let t23 = T::fused(
-            t18,
-            t9 - t7,
-            T::fused(-t14, t21 + t20, t16 * T::fused(-block_e2, t8, t12)),
-        );
-        *out = [-t19, t22, t23];
+        *out = [-(k(0.1) * t16), -(k(2.0) * t19), -(k(2.0) * t20)];
     }
     /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -632,7 +626,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
             -(k(0.01) * (block_wx * block_wy)),
         ];
     }
-    /// Solves eq. (17): 152 operations (61 ±, 89 ×, 2 ÷).
+    /// Solves eq. (17): 126 operations (57 ±, 67 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -642,89 +636,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * block_e0;
-        let t1 = block_e3 * t0;
-        let t2 = k(2.0) * block_e1;
-        let t3 = block_e2 * t2;
-        let t4 = t3 - t1;
-        let t5 = block_e2 * t0;
-        let t6 = block_e3 * t2;
-        let t7 = t6 + t5;
-        let t8 = T::fused(k(0.05), t4, k(0.1) * t7);
-        let t9 = T::fused(-block_e0, t0, k(1.0));
-        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
-        let t11 = block_wx * block_wx;
-        let t12 = block_wy * block_wy;
-        let t13 = t12 + t11;
-        let t14 = t13 / t10;
-        let t15 = block_e1 * t0;
-        let t16 = k(2.0) * block_e2;
-        let t17 = block_e3 * t16;
-        let t18 = t17 + t15;
-        let t19 = block_wy * block_wz;
-        let t20 = T::fused(-t18, t14, t19);
-        let t21 = T::fused(-block_e1, t2, t9);
-        let t22 = T::fused(k(0.05), t21, k(0.2) * t7);
-        let t23 = t6 - t5;
-        let t24 = block_wx * block_wz;
-        let t25 = T::fused(-t23, t14, t24);
-        let t26 = T::fused(-k(0.1), t21, k(0.2) * t4);
-        let t27 = k(0.8) * t26;
-        let t28 = t3 + t1;
-        let t29 = T::fused(-block_e2, t16, t9);
-        let t30 = T::fused(-k(0.1), t28, k(0.2) * t29);
-        let t31 = k(0.8) * t30;
-        let t32 = k(1.2) * t26;
-        let t33 = k(3.2) * t30;
-        let t34 = T::fused(k(0.1), t23, k(0.2) * t18);
-        let t35 = block_wx * block_wy;
-        let t36 = t33
-            + (t32 - T::fused(k(0.01), t35, -T::fused(k(6.4), t34, -(t33 + t32))));
-        let t37 = block_wz * block_wz;
-        let t38 = T::fused(
-            -k(0.2),
-            T::fused(t24, t10, -T::fused(-(t37 + t12), t23, t35 * t18)),
-            k(0.1) * T::fused(t19, t10, T::fused(-t35, t23, (t37 + t11) * t18)),
+        let t0 = T::fused(-block_e0, block_e0, k(0.5));
+        let t1 = T::fused(block_e3, block_e3, -t0);
+        let t2 = block_wx * block_wx;
+        let t3 = block_wy * block_wy;
+        let t4 = t3 + t2;
+        let t5 = block_wy * block_wz;
+        let t6 = block_e0 * block_e1;
+        let t7 = block_e2 * block_e3;
+        let t8 = t7 + t6;
+        let t9 = block_wx * block_wz;
+        let t10 = block_e0 * block_e2;
+        let t11 = block_e1 * block_e3;
+        let t12 = t11 - t10;
+        let t13 = block_wz * block_wz;
+        let t14 = block_wx * block_wy;
+        let t15 = T::fused(
+            -k(0.25),
+            T::fused(t12, t9, T::fused(-t4, t1, t8 * t5)),
+            k(0.5) * T::fused(t12, t14, -T::fused(-t5, t1, t8 * (t13 + t2))),
         );
-        let t39 = T::fused(
-            k(0.05),
-            T::fused(t13, t10, T::fused(t24, t23, t19 * t18)),
-            t38,
-        );
-        let t40 = t17 - t15;
-        let t41 = T::fused(-k(0.05), t29, k(0.1) * t40);
-        let t42 = T::fused(-k(0.05), t28, k(0.2) * t40);
-        let t43 = T::fused(
-            -T::fused(t31, t41, T::fused(-t27, t8, k(0.008))),
-            t20,
-            T::fused(t31, t42, -T::fused(t27, t22, k(0.004))) * t25,
-        );
-        let t44 = (T::fused(k(0.8) * t34, t39, t43) - t36)
-            / T::fused(t30, t31, -T::fused(-t26, t27, k(0.065)));
-        let t45 = T::fused(t27, t44, T::fused(-t20, k(0.8) * t8, t25 * (k(0.8) * t22)));
-        let t46 = T::fused(
-            -k(1.25),
-            k(1.2) + t45,
-            T::fused(t26, t44, T::fused(-t8, t20, t22 * t25)),
-        );
-        let t47 = T::fused(
+        let t16 = T::fused(t12, t13 + t3, -T::fused(t9, t1, t8 * t14)) + t15;
+        let t17 = T::fused(k(2.0), t8, t12);
+        let t18 = T::fused(block_e2, block_e2, -t0);
+        let t19 = block_e0 * block_e3;
+        let t20 = block_e1 * block_e2;
+        let t21 = t20 + t19;
+        let t22 = T::fused(k(2.0), t18, t21);
+        let t23 = t7 - t6;
+        let t24 = T::fused(-k(4.0), t23, t21);
+        let t25 = T::fused(block_e1, block_e1, -t0);
+        let t26 = t20 - t19;
+        let t27 = T::fused(k(2.0), t26, t25);
+        let t28 = t11 + t10;
+        let t29 = T::fused(k(4.0), t28, -t25);
+        let t30 = t4 / t1;
+        let t31 = T::fused(t12, t30, t9);
+        let t32 = T::fused(k(2.0), t23, t18);
+        let t33 = T::fused(k(2.0), t28, t26);
+        let t34 = T::fused(t8, t30, t5);
+        let t35 = T::fused(
             t31,
-            t44,
-            -T::fused(-t20, k(0.8) * t41, t25 * (k(0.8) * t42)),
+            k(0.25) + T::fused(-t24, t22, t29 * t27),
+            t34 * (k(0.5) - T::fused(t22, t32, t33 * t27)),
         );
-        let t48 = T::fused(
-            -k(1.25),
-            k(3.2) + t47,
-            T::fused(t30, t44, -T::fused(-t41, t20, t42 * t25)),
+        let t36 = k(2.6666666666666665) * t22;
+        let t37 = T::fused(
+            k(0.041666666666666664),
+            t14,
+            -(t27
+                - (t36
+                    - T::fused(
+                        k(0.26666666666666666),
+                        t17 * t16,
+                        k(0.06666666666666667) * t35,
+                    ))),
         );
-        let t49 = T::fused(
-            -t20,
-            T::fused(-k(0.05), t18, k(0.1) * t10),
-            t25 * T::fused(k(0.05), t23, k(0.2) * t10),
+        let t38 = (t27 - (t36 + T::fused(k(5.333333333333333), t17, -t37)))
+            / (k(2.03125) - T::fused(t22, t22, t27 * t27));
+        let t39 = k(15.0) * t38;
+        let t40 = T::fused(t33, t34, -T::fused(-t27, t39, t31 * t29));
+        let t41 = T::fused(t34, t32, T::fused(t22, t39, t24 * t31));
+        let t42 = T::fused(
+            t31,
+            T::fused(-k(4.0), t1, t12),
+            T::fused(t17, t39, k(4.0) * t16),
         );
-        *out = [-t46, t48, -(t39 + T::fused(t34, t44, -t49)), t20, -t25, t44];
+        *out = [
+            k(0.1) * (t40 + (k(15.0) - t40)),
+            k(0.1) * (t41 - (k(40.0) + t41)),
+            k(0.1) * T::fused(t34, T::fused(k(2.0), t1, t8), t42),
+            t34,
+            -t31,
+            -(k(7.5) * t38),
+        ];
     }
-    /// Writes λ: 82 operations (30 ±, 51 ×, 1 ÷).
+    /// Writes λ: 72 operations (30 ±, 41 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -745,50 +732,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_dsz = accelerations[2];
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
-        let t0 = T::fused(k(0.8), block_dsz, k(6.4));
-        let t1 = k(2.0) * block_e0;
-        let t2 = block_e3 * t1;
-        let t3 = k(2.0) * block_e1;
-        let t4 = block_e2 * t3;
-        let t5 = t4 - t2;
-        let t6 = block_e2 * t1;
-        let t7 = block_e3 * t3;
-        let t8 = t7 + t6;
-        let t9 = T::fused(-k(0.8), block_dsx, k(1.2));
-        let t10 = k(2.0) * block_e2;
-        let t11 = T::fused(-block_e0, t1, k(1.0));
-        let t12 = T::fused(-block_e2, t10, t11);
-        let t13 = block_e1 * t1;
-        let t14 = block_e3 * t10;
-        let t15 = t14 - t13;
-        let t16 = T::fused(k(0.8), block_dsy, k(3.2));
-        let t17 = T::fused(
-            -t9,
-            T::fused(k(0.05), t5, k(0.1) * t8),
-            t16 * T::fused(-k(0.05), t12, k(0.1) * t15),
+        let t0 = block_dsz + k(8.0);
+        let t1 = T::fused(-block_e0, block_e0, k(0.5));
+        let t2 = T::fused(block_e3, block_e3, -t1);
+        let t3 = block_e0 * block_e2;
+        let t4 = block_e1 * block_e3;
+        let t5 = T::fused(
+            T::fused(-k(4.0), t2, t4 - t3),
+            t0,
+            T::fused(-k(0.25), block_dwy, k(0.1875) * (block_wx * block_wz)),
         );
-        let t18 = T::fused(-block_e3, k(2.0) * block_e3, t11);
-        let t19 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
-            - T::fused(t0, T::fused(-k(0.05), t14 + t13, k(0.1) * t18), -t17);
-        let t20 = t4 + t2;
-        let t21 = T::fused(-block_e1, t3, t11);
-        let t22 = k(1.0) / T::fused(-t5, t20, t21 * t12);
-        let t23 = T::fused(
-            -t9,
-            T::fused(k(0.05), t21, k(0.2) * t8),
-            t16 * T::fused(-k(0.05), t20, k(0.2) * t15),
+        let t6 = k(4.0) + block_dsy;
+        let t7 = block_e0 * block_e1;
+        let t8 = block_e2 * block_e3;
+        let t9 = t8 - t7;
+        let t10 = block_e0 * block_e3;
+        let t11 = block_e1 * block_e2;
+        let t12 = t11 + t10;
+        let t13 = k(1.5) - block_dsx;
+        let t14 = T::fused(block_e1, block_e1, -t1);
+        let t15 = t4 + t3;
+        let t16 = T::fused(
+            T::fused(k(4.0), t15, -t14),
+            t13,
+            T::fused(T::fused(-k(4.0), t9, t12), t6, t5),
         );
-        let t24 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
-            + T::fused(t0, T::fused(k(0.05), t7 - t6, k(0.2) * t18), -t23);
+        let t17 = T::fused(block_e2, block_e2, -t1);
+        let t18 = t11 - t10;
+        let t19 = k(1.0) / T::fused(-t14, t17, t18 * t12);
+        let t20 = T::fused(
+            T::fused(k(2.0), t2, t8 + t7),
+            t0,
+            T::fused(k(0.125), block_dwx, k(0.0625) * (block_wy * block_wz)),
+        );
+        let t21 = T::fused(
+            T::fused(k(2.0), t15, t18),
+            t13,
+            -T::fused(T::fused(k(2.0), t9, t17), t6, t20),
+        );
         *lambda = [
-            -t0,
-            -T::fused(t20 * t22, t19, t12 * t22 * t24),
-            -T::fused(t21 * t22, t19, t5 * t22 * t24),
+            -(k(0.8) * t0),
+            -(k(0.04) * T::fused(t17 * t19, t16, t12 * t19 * t21)),
+            k(0.04) * T::fused(t18 * t19, t16, t14 * t19 * t21),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Planar<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 120 operations (43 ±, 75 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 82 operations (33 ±, 47 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -804,66 +794,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Planar<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = k(2.0) * block_e0;
-        let t1 = block_e3 * t0;
-        let t2 = k(2.0) * block_e1;
-        let t3 = block_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = t3 - t1;
-        let t6 = k(2.0) * block_e2;
-        let t7 = T::fused(-block_e0, t0, k(1.0));
-        let t8 = T::fused(-block_e2, t6, t7);
-        let t9 = T::fused(-block_e1, t2, t7);
-        let t10 = k(1.0) / T::fused(-t5, t4, t9 * t8);
-        let t11 = T::fused(row1, t4 * t10, row2 * (t9 * t10));
-        let t12 = block_e2 * t0;
-        let t13 = block_e3 * t2;
-        let t14 = t13 + t12;
-        let t15 = T::fused(k(0.05), t5, k(0.1) * t14);
-        let t16 = T::fused(row1, t8 * t10, row2 * (t5 * t10));
-        let t17 = T::fused(k(0.05), t9, k(0.2) * t14);
-        let t18 = t13 - t12;
-        let t19 = block_e1 * t0;
-        let t20 = block_e3 * t6;
-        let t21 = t20 + t19;
-        let t22 = T::fused(k(0.1), t18, k(0.2) * t21);
-        let t23 = T::fused(-k(0.1), t9, k(0.2) * t5);
-        let t24 = k(0.8) * t23;
-        let t25 = t20 - t19;
-        let t26 = T::fused(-k(0.05), t8, k(0.1) * t25);
-        let t27 = T::fused(-k(0.1), t4, k(0.2) * t8);
-        let t28 = k(0.8) * t27;
-        let t29 = T::fused(-k(0.05), t4, k(0.2) * t25);
-        let t30 = T::fused(
-            -T::fused(t28, t26, T::fused(-t24, t15, k(0.008))),
-            t11,
-            T::fused(t28, t29, -T::fused(t24, t17, k(0.004))) * t16,
+        let t0 = T::fused(-block_e0, block_e0, k(0.5));
+        let t1 = T::fused(block_e2, block_e2, -t0);
+        let t2 = T::fused(block_e1, block_e1, -t0);
+        let t3 = block_e0 * block_e3;
+        let t4 = block_e1 * block_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(-row2, t6 * t7, row1 * (t1 * t7));
+        let t9 = T::fused(k(2.0), t1, t5);
+        let t10 = block_e0 * block_e1;
+        let t11 = block_e2 * block_e3;
+        let t12 = t11 - t10;
+        let t13 = T::fused(k(2.0), t6, t2);
+        let t14 = block_e0 * block_e2;
+        let t15 = block_e1 * block_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(
+            -T::fused(-k(4.0), t12, t5),
+            t9,
+            T::fused(k(4.0), t16, -t2) * t13,
         );
-        let t31 = T::fused(-(k(0.8) * t22), row0, t30)
-            / T::fused(t27, t28, -T::fused(-t23, t24, k(0.065)));
-        let t32 = T::fused(t24, t31, T::fused(-(k(0.8) * t15), t11, k(0.8) * t17 * t16));
-        let t33 = T::fused(
-            -k(1.25),
-            t32,
-            T::fused(t23, t31, T::fused(-t15, t11, t17 * t16)),
+        let t18 = T::fused(-row2, t2 * t7, row1 * (t5 * t7));
+        let t19 = T::fused(
+            t9,
+            T::fused(k(2.0), t12, t1),
+            T::fused(k(2.0), t16, t6) * t13,
         );
-        let t34 = T::fused(
-            t28,
-            t31,
-            -T::fused(-(k(0.8) * t26), t11, k(0.8) * t29 * t16),
+        let t20 = t11 + t10;
+        let t21 = t15 - t14;
+        let t22 = T::fused(k(2.0), t20, t21);
+        let t23 = T::fused(
+            k(20.0),
+            t22 * row0,
+            -T::fused(-(k(0.25) + t17), t8, (k(0.5) - t19) * t18),
         );
-        let t35 = T::fused(
-            -k(1.25),
-            t34,
-            T::fused(t27, t31, -T::fused(-t26, t11, t29 * t16)),
+        let t24 = t23 / (k(2.03125) - T::fused(t9, t9, t13 * t13));
+        let t25 = T::fused(block_e3, block_e3, -t0);
+        let t26 = T::fused(
+            T::fused(-k(4.0), t25, t21),
+            t8,
+            T::fused(-t22, t24, k(20.0) * row0),
         );
-        let t36 = T::fused(-block_e3, k(2.0) * block_e3, t7);
-        let t37 = T::fused(
-            -T::fused(-k(0.05), t21, k(0.1) * t36),
-            t11,
-            T::fused(k(0.05), t18, k(0.2) * t36) * t16,
-        );
-        *out = [-t33, t35, row0 - T::fused(t22, t31, -t37), t11, -t16, t31];
+        *out = [
+            k(0.0),
+            k(0.0),
+            -(k(0.05) * T::fused(T::fused(k(2.0), t25, t20), t18, -t26)),
+            -(k(0.5) * t18),
+            -(k(0.5) * t8),
+            k(0.25) * t24,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
@@ -880,30 +861,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 9]
     }
-    /// Writes u̇: 40 operations (14 ±, 24 ×, 2 ÷) and 2 functions.
+    /// Writes u̇: 38 operations (14 ±, 22 ×, 2 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x2 = x[2];
         let u2 = x[5];
-        let t0 = x2.sin();
-        let t1 = x2.cos();
-        let t2 = T::fused(k(0.08), t0, k(0.16) * t1);
-        let t3 = u2 * u2;
-        let t4 = T::fused(k(0.56), t0, k(0.52) * t1);
-        let t5 = T::fused(-k(0.08), t1, k(0.16) * t0);
-        let t6 = k(15.384615384615385) * t5;
-        let t7 = k(15.384615384615385) * t2;
-        let t8 = T::fused(t7, t4, -T::fused(t3, t5, k(3.2)));
-        let t9 = t5 * t7;
-        let t10 = k(1.0) / T::fused(-t2, t7, k(0.8));
-        let t11 = t10 * t9;
-        let t12 = T::fused(t11, t8, T::fused(t6, t4, -T::fused(-t3, t2, k(1.2))))
-            / T::fused(t9, t11, -T::fused(-t5, t6, k(0.8)));
-        let t13 = T::fused(-t10, t8, t11 * t12);
+        let t0 = k(0.125) * (u2 * u2);
+        let t1 = x2.sin();
+        let t2 = x2.cos();
+        let t3 = T::fused(k(0.5), t1, t2);
+        let t4 = T::fused(-k(0.5), t2, t1);
+        let t5 = T::fused(k(1.0769230769230769), t1, t2);
+        let t6 = k(2.5) - T::fused(-t4, t0, t3 * t5);
+        let t7 = k(1.0) / T::fused(-t3, t3, k(2.03125));
+        let t8 = t4 * t3;
+        let t9 = t8 * t7;
+        let t10 = (k(0.9375) - T::fused(t3, t0, T::fused(-t9, t6, t4 * t5)))
+            / (k(2.03125) - T::fused(t8, t9, t4 * t4));
+        let t11 = T::fused(t7, t6, t9 * t10);
         *out = [
-            t12,
-            -t13,
-            -T::fused(t7, t13, T::fused(-k(15.384615384615385), t4, t6 * t12)),
+            k(3.25) * t10,
+            -(k(3.25) * t11),
+            k(8.0) * (t5 - T::fused(t4, t10, t3 * t11)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -915,7 +894,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 28 operations (11 ±, 17 ×, 0 ÷) and 2 functions.
+    /// Writes the maximal state of a joint state: 26 operations (11 ±, 15 ×, 0 ÷) and 2 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -926,31 +905,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let u2 = x[5];
         let t0 = k(0.5) * x2;
         let t1 = t0.cos();
-        let t2 = t0.sin();
-        let t3 = t2 * t1;
-        let t4 = t1 * t1;
-        let t5 = k(0.5) - t4;
-        let t6 = k(0.2) * u2;
-        let t7 = k(2.0) * t3;
-        let t8 = k(0.1) * u2;
-        let t9 = k(2.0) * t5;
+        let t2 = t1 * t1;
+        let t3 = k(0.5) - t2;
+        let t4 = t0.sin();
+        let t5 = t4 * t1;
+        let t6 = u2 * t5;
+        let t7 = u2 * t3;
         *y = [
-            x0 + T::fused(-k(0.2), t3, k(0.4) * t5),
-            x1 - T::fused(k(0.2), t5, k(0.4) * t3),
-            k(0.1) * (k(0.5) - T::fused(t2, t2, t4)),
+            T::fused(-k(0.2), t5, T::fused(k(0.4), t3, x0)),
+            T::fused(-k(0.2), t3, T::fused(-k(0.4), t5, x1)),
+            k(0.1) * (k(0.5) - T::fused(t4, t4, t2)),
             t1,
             k(0.0),
             k(0.0),
-            t2,
-            u0 + T::fused(t7, t6, t9 * t8),
-            u1 - T::fused(-t9, t6, t7 * t8),
+            t4,
+            T::fused(k(0.4), t6, T::fused(k(0.2), t7, u0)),
+            T::fused(k(0.4), t7, T::fused(-k(0.2), t6, u1)),
             k(0.0),
             k(0.0),
             k(0.0),
             u2,
         ];
     }
-    /// Writes the joint state of a maximal state: 77 operations (33 ±, 44 ×, 0 ÷) and 3 functions.
+    /// Writes the joint state of a maximal state: 73 operations (33 ±, 40 ×, 0 ÷) and 3 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let block_rx = y[0];
@@ -965,75 +942,73 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wy = y[11];
         let block_wz = y[12];
         let x2 = x[2];
-        let t0 = block_e0 * block_e0;
-        let t1 = T::fused(block_e1, block_e1, t0);
-        let t2 = k(0.5) - t1;
-        let t3 = block_e0 * block_e3;
-        let t4 = block_e1 * block_e2;
-        let t5 = t4 - t3;
-        let t6 = T::fused(block_e0, block_e2, block_e1 * block_e3);
-        let t7 = t4 + t3;
+        let t0 = T::fused(block_e0, block_e2, block_e1 * block_e3);
+        let t1 = block_e0 * block_e3;
+        let t2 = block_e1 * block_e2;
+        let t3 = t2 - t1;
+        let t4 = block_e0 * block_e0;
+        let t5 = T::fused(block_e1, block_e1, t4);
+        let t6 = k(0.5) - t5;
+        let t7 = T::fused(-block_e0, block_e1, block_e2 * block_e3);
         let t8 = block_e2 * block_e2;
-        let t9 = k(0.5) - (t0 + t8);
-        let t10 = T::fused(-block_e0, block_e1, block_e2 * block_e3);
-        let t11 = x2.sin();
-        let t12 = k(2.0) * t7;
-        let t13 = x2.cos();
-        let t14 = k(2.0) * t2;
-        let t15 = t14 - (k(1.0) - T::fused(block_e3, block_e3, t1 + t8));
-        let t16 = T::fused(t12, t13, t15 * t11).atan2(T::fused(-t15, t13, t12 * t11));
-        let t17 = k(2.0) * t5;
-        let t18 = k(2.0) * t6;
-        let t19 = T::fused(
-            k(0.1),
-            T::fused(t14, block_wz, t18 * block_wx),
-            k(0.2) * T::fused(-t17, block_wz, t18 * block_wy),
+        let t9 = k(0.5) - (t4 + t8);
+        let t10 = t2 + t1;
+        let t11 = k(1.0) - (t8 + (t5 + T::fused(block_e3, block_e3, k(2.0) * t6)));
+        let t12 = x2.cos();
+        let t13 = x2.sin();
+        let t14 = k(2.0) * t10;
+        let t15 = T::fused(-t13, t11, t14 * t12).atan2(T::fused(t12, t11, t14 * t13));
+        let t16 = T::fused(
+            -k(0.2),
+            T::fused(t0, block_wx, t6 * block_wz),
+            T::fused(k(0.4), T::fused(-t0, block_wy, t3 * block_wz), block_sx),
         );
-        let t20 = k(2.0) * t9;
-        let t21 = k(2.0) * t10;
-        let t22 = T::fused(
-            k(0.1),
-            T::fused(-t12, block_wz, t21 * block_wx),
-            k(0.2) * T::fused(t20, block_wz, t21 * block_wy),
+        let t17 = T::fused(
+            k(0.2),
+            T::fused(-t7, block_wx, t10 * block_wz),
+            T::fused(-k(0.4), T::fused(t7, block_wy, t9 * block_wz), block_sy),
         );
-        x[0] = block_rx + T::fused(k(0.1), t6, -T::fused(k(0.4), t2, k(0.2) * t5));
-        x[1] = block_ry + T::fused(k(0.1), t10, T::fused(k(0.4), t7, k(0.2) * t9));
-        x[2] = x2 + t16;
-        x[3] = block_sx
-            - T::fused(k(0.05), T::fused(t14, block_wy, t17 * block_wx), t19);
-        x[4] = block_sy
-            - T::fused(-k(0.05), T::fused(t12, block_wy, t20 * block_wx), t22);
+        x[0] = -T::fused(
+            k(0.4),
+            t6,
+            T::fused(k(0.2), t3, -T::fused(k(0.1), t0, block_rx)),
+        );
+        x[1] = T::fused(
+            k(0.4),
+            t10,
+            T::fused(k(0.2), t9, T::fused(k(0.1), t7, block_ry)),
+        );
+        x[2] = x2 + t15;
+        x[3] = T::fused(-k(0.1), T::fused(t3, block_wx, t6 * block_wy), t16);
+        x[4] = T::fused(k(0.1), T::fused(t9, block_wx, t10 * block_wy), t17);
         x[5] = block_wz;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 44 operations (15 ±, 27 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 42 operations (16 ±, 24 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let block_e0 = y[3];
         let block_e3 = y[6];
         let block_wz = y[12];
-        let t0 = k(2.0) * block_e3;
-        let t1 = block_e0 * t0;
-        let t2 = T::fused(-block_e3, t0, k(1.0));
-        let t3 = T::fused(k(0.08), t1, k(0.16) * t2);
-        let t4 = block_wz * block_wz;
-        let t5 = T::fused(k(0.56), t1, k(0.52) * t2);
-        let t6 = T::fused(-k(0.08), t2, k(0.16) * t1);
-        let t7 = k(15.384615384615385) * t6;
-        let t8 = k(15.384615384615385) * t3;
-        let t9 = T::fused(t8, t5, -T::fused(t4, t6, k(3.2)));
-        let t10 = t6 * t8;
-        let t11 = k(1.0) / T::fused(-t3, t8, k(0.8));
-        let t12 = t11 * t10;
-        let t13 = T::fused(t12, t9, T::fused(t7, t5, -T::fused(-t4, t3, k(1.2))))
-            / T::fused(t10, t12, -T::fused(-t6, t7, k(0.8)));
-        let t14 = T::fused(-t11, t9, t12 * t13);
+        let t0 = (block_e0 - block_e3) * (block_e0 + block_e3);
+        let t1 = block_e0 * block_e3;
+        let t2 = t1 + t0;
+        let t3 = k(1.0) / T::fused(-t2, t2, k(2.03125));
+        let t4 = T::fused(-k(0.25), t0, t1);
+        let t5 = t4 * t2;
+        let t6 = t5 * t3;
+        let t7 = block_wz * block_wz;
+        let t8 = T::fused(k(2.1538461538461537), t1, t0);
+        let t9 = k(2.5) - T::fused(-k(0.25), t7 * t4, t2 * t8);
+        let t10 = k(0.46875) - T::fused(k(0.0625), t7 * t2, T::fused(-t9, t6, t4 * t8));
+        let t11 = t10 / (k(0.5078125) - T::fused(t5, t6, t4 * t4));
+        let t12 = T::fused(t6, t11, t9 * t3);
         *out = [
-            t13,
-            -t14,
-            -T::fused(t8, t14, T::fused(-k(15.384615384615385), t5, t7 * t13)),
+            k(1.625) * t11,
+            -(k(3.25) * t12),
+            k(8.0) * (t8 - T::fused(t2, t12, t4 * t11)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 130 operations (49 ±, 79 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 121 operations (50 ±, 69 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -1048,70 +1023,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * block_e3;
-        let t1 = T::fused(-block_e3, t0, k(1.0));
-        let t2 = block_e0 * t0;
-        let t3 = T::fused(-k(0.08), t1, k(0.16) * t2);
-        let t4 = block_wz * block_wz;
-        let t5 = T::fused(k(0.56), t2, k(0.52) * t1);
-        let t6 = T::fused(k(0.08), t2, k(0.16) * t1);
-        let t7 = k(15.384615384615385) * t6;
-        let t8 = T::fused(t7, t5, -T::fused(t4, t3, k(3.2)));
-        let t9 = k(1.0) / T::fused(-t6, t7, k(0.8));
-        let t10 = k(15.384615384615385) * t3;
-        let t11 = t3 * t7;
-        let t12 = t9 * t11;
-        let t13 = T::fused(t12, t8, T::fused(t10, t5, -T::fused(-t4, t6, k(1.2))))
-            / T::fused(t11, t12, -T::fused(-t3, t10, k(0.8)));
-        let t14 = T::fused(-t9, t8, t12 * t13);
-        let t15 = T::fused(-k(0.05), block_wx, k(0.2) * block_wz);
-        let t16 = T::fused(k(0.2), block_wy, k(0.1) * block_wx);
-        let t17 = T::fused(
-            t1,
-            t13,
-            T::fused(-t2, t14, T::fused(block_wz, t15, block_wy * t16)),
+        let t0 = k(2.0) * T::fused(k(2.0), block_wy, block_wx);
+        let t1 = (block_e0 - block_e3) * (block_e0 + block_e3);
+        let t2 = block_e0 * block_e3;
+        let t3 = t2 + t1;
+        let t4 = k(1.0) / T::fused(-t3, t3, k(2.03125));
+        let t5 = T::fused(-k(0.25), t1, t2);
+        let t6 = t5 * t3;
+        let t7 = t6 * t4;
+        let t8 = block_wz * block_wz;
+        let t9 = T::fused(k(2.1538461538461537), t2, t1);
+        let t10 = k(2.5) - T::fused(-k(0.25), t8 * t5, t3 * t9);
+        let t11 = k(0.46875) - T::fused(k(0.0625), t8 * t3, T::fused(-t10, t7, t5 * t9));
+        let t12 = t11 / (k(0.5078125) - T::fused(t6, t7, t5 * t5));
+        let t13 = T::fused(t7, t12, t10 * t4);
+        let t14 = t9 - T::fused(t3, t13, t5 * t12);
+        let t15 = block_wx * block_wz;
+        let t16 = T::fused(
+            block_wy,
+            t0,
+            T::fused(k(32.5), t1 * t12, T::fused(-k(16.0), t14, t15)),
         );
-        let t18 = T::fused(t7, t14, T::fused(-k(15.384615384615385), t5, t10 * t13));
-        let t19 = block_wx * block_wz;
-        let t20 = T::fused(k(0.1), t18, k(0.05) * t19) + t17;
-        let t21 = block_e0 * block_e0;
-        let t22 = T::fused(k(0.1), block_wz, k(0.05) * block_wy);
-        let t23 = T::fused(
-            t2,
-            t13,
-            T::fused(t1, t14, T::fused(block_wx, t16, block_wz * t22)),
+        let t17 = T::fused(-k(0.25), block_wx, block_wz);
+        let t18 = T::fused(k(130.0), t2 * t13, -T::fused(k(4.0), block_wz * t17, t16));
+        let t19 = block_e0 * block_e0;
+        let t20 = block_wy * block_wz;
+        let t21 = T::fused(k(2.0), block_wz, block_wy);
+        let t22 = T::fused(
+            block_wz,
+            t21,
+            -T::fused(-k(65.0), t2 * t12, T::fused(-k(32.0), t14, t20)),
         );
-        let t24 = block_wy * block_wz;
-        let t25 = T::fused(k(0.2), t18, k(0.05) * t24) - t23;
-        let t26 = block_e0 * block_e3;
-        let t27 = block_e1 * block_e2;
-        let t28 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t21))),
+        let t23 = T::fused(k(65.0), t1 * t13, T::fused(block_wx, t0, t22));
+        let t24 = block_e1 * block_e2;
+        let t25 = T::fused(
+            k(0.5),
             t20,
-            k(2.0) * (t27 - t26) * t25,
+            -(t15 + T::fused(-k(0.25), block_wy * t21, block_wx * t17)),
         );
-        let t29 = T::fused(-block_wy, t22, block_wx * t15)
-            + T::fused(-k(0.1), t24, k(0.2) * t19);
-        let t30 = block_e0 * block_e2;
-        let t31 = block_e1 * block_e3;
+        let t26 = k(4.0) * t25;
+        let t27 = block_e0 * block_e2;
+        let t28 = block_e1 * block_e3;
+        let t29 = T::fused(
+            k(0.5) - T::fused(block_e1, block_e1, t19),
+            t18,
+            T::fused(-(t24 - t2), t23, (t28 + t27) * t26),
+        );
+        let t30 = block_e0 * block_e1;
+        let t31 = block_e2 * block_e3;
         let t32 = T::fused(
-            -(k(2.0) * (t27 + t26)),
-            t20,
-            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t21)) * t25,
+            k(0.5) - T::fused(block_e2, block_e2, t19),
+            t23,
+            (t31 - t30) * t26,
         );
-        let t33 = block_e0 * block_e1;
-        let t34 = block_e2 * block_e3;
-        let t35 = T::fused(k(2.0) * (t31 - t30), t20, k(2.0) * (t34 + t33) * t25);
+        let t33 = T::fused(
+            t31 + t30,
+            t23,
+            (k(0.5) - T::fused(block_e3, block_e3, t19)) * t26,
+        );
         *out = [
-            T::fused(-(k(2.0) * (t31 + t30)), t29, t28),
-            -T::fused(k(2.0) * (t34 - t33), t29, t32),
-            T::fused(k(2.0) * (k(0.5) - T::fused(block_e3, block_e3, t21)), t29, t35),
-            t24,
-            -t19,
-            -t18,
+            k(0.1) * t29,
+            k(0.1) * T::fused(-(t24 + t2), t18, t32),
+            -(k(0.1) * T::fused(t28 - t27, t18, t33)),
+            t20,
+            -t15,
+            k(8.0) * t14,
         ];
     }
-    /// Writes λ: 76 operations (32 ±, 44 ×, 0 ÷).
+    /// Writes λ: 70 operations (33 ±, 37 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1132,44 +1111,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_dsz = accelerations[2];
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
-        let t0 = T::fused(k(0.8), block_dsz, k(6.4));
-        let t1 = block_e0 * block_e3;
-        let t2 = block_e1 * block_e2;
-        let t3 = block_e0 * block_e2;
-        let t4 = block_e1 * block_e3;
-        let t5 = t4 + t3;
-        let t6 = T::fused(-k(0.8), block_dsx, k(1.2));
-        let t7 = block_e0 * block_e0;
-        let t8 = block_e0 * block_e1;
-        let t9 = block_e2 * block_e3;
-        let t10 = t9 - t8;
-        let t11 = T::fused(k(0.8), block_dsy, k(3.2));
-        let t12 = T::fused(
-            -t6,
-            T::fused(k(0.1), t2 - t1, k(0.2) * t5),
-            t11
-                * T::fused(
-                    -k(0.1),
-                    k(0.5) - T::fused(block_e2, block_e2, t7),
-                    k(0.2) * t10,
-                ),
+        let t0 = block_dsz + k(8.0);
+        let t1 = block_e0 * block_e2;
+        let t2 = block_e1 * block_e3;
+        let t3 = block_e0 * block_e0;
+        let t4 = k(0.5) - T::fused(block_e3, block_e3, t3);
+        let t5 = T::fused(
+            T::fused(k(0.25), t2 - t1, t4),
+            t0,
+            T::fused(-k(0.0625), block_dwy, k(0.046875) * (block_wx * block_wz)),
         );
-        let t13 = k(0.5) - T::fused(block_e3, block_e3, t7);
-        let t14 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
-            - T::fused(t0, T::fused(-k(0.1), t9 + t8, k(0.2) * t13), -t12);
-        let t15 = k(2.0) * block_e3;
-        let t16 = block_e0 * t15;
+        let t6 = k(4.0) + block_dsy;
+        let t7 = block_e0 * block_e3;
+        let t8 = block_e1 * block_e2;
+        let t9 = block_e0 * block_e1;
+        let t10 = block_e2 * block_e3;
+        let t11 = t10 - t9;
+        let t12 = k(1.5) - block_dsx;
+        let t13 = t2 + t1;
+        let t14 = T::fused(
+            T::fused(k(0.25), k(0.5) - T::fused(block_e1, block_e1, t3), t13),
+            t12,
+            -T::fused(T::fused(-k(0.25), t8 + t7, t11), t6, -t5),
+        );
+        let t15 = (block_e0 - block_e3) * (block_e0 + block_e3);
+        let t16 = T::fused(
+            T::fused(-k(0.5), t10 + t9, t4),
+            t0,
+            -T::fused(k(0.0625), block_dwx, k(0.03125) * (block_wy * block_wz)),
+        );
         let t17 = T::fused(
-            -t6,
-            T::fused(k(0.1), k(0.5) - T::fused(block_e1, block_e1, t7), k(0.4) * t5),
-            t11 * T::fused(-k(0.1), t2 + t1, k(0.4) * t10),
+            T::fused(-k(0.5), k(0.5) - T::fused(block_e2, block_e2, t3), t11),
+            t6,
+            -t16,
         );
-        let t18 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
-            + T::fused(t0, T::fused(k(0.1), t4 - t3, k(0.4) * t13), -t17);
-        let t19 = T::fused(-block_e3, t15, k(1.0));
-        *lambda = [-t0, T::fused(-t16, t14, t19 * t18), T::fused(t19, t14, t16 * t18)];
+        let t18 = T::fused(T::fused(k(0.5), t8 - t7, t13), t12, -t17);
+        *lambda = [
+            -(k(0.8) * t0),
+            k(0.32) * T::fused(t15, t14, t7 * t18),
+            k(0.64) * T::fused(-k(0.25), t15 * t18, t7 * t14),
+        ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 174 operations (66 ±, 106 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 160 operations (67 ±, 91 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -1179,106 +1162,94 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * block_e3;
-        let t1 = T::fused(-block_e3, t0, k(1.0));
-        let t2 = block_e0 * t0;
-        let t3 = T::fused(-k(0.08), t1, k(0.16) * t2);
-        let t4 = block_wz * block_wz;
-        let t5 = T::fused(k(0.56), t2, k(0.52) * t1);
-        let t6 = T::fused(k(0.08), t2, k(0.16) * t1);
-        let t7 = k(15.384615384615385) * t6;
-        let t8 = T::fused(t7, t5, -T::fused(t4, t3, k(3.2)));
-        let t9 = k(1.0) / T::fused(-t6, t7, k(0.8));
-        let t10 = k(15.384615384615385) * t3;
-        let t11 = t3 * t7;
-        let t12 = t9 * t11;
-        let t13 = T::fused(t12, t8, T::fused(t10, t5, -T::fused(-t4, t6, k(1.2))))
-            / T::fused(t11, t12, -T::fused(-t3, t10, k(0.8)));
-        let t14 = T::fused(-t9, t8, t12 * t13);
-        let t15 = T::fused(-k(0.05), block_wx, k(0.2) * block_wz);
-        let t16 = T::fused(k(0.2), block_wy, k(0.1) * block_wx);
-        let t17 = T::fused(
-            t1,
-            t13,
-            T::fused(-t2, t14, T::fused(block_wz, t15, block_wy * t16)),
+        let t0 = k(2.0) * T::fused(k(2.0), block_wy, block_wx);
+        let t1 = (block_e0 - block_e3) * (block_e0 + block_e3);
+        let t2 = block_e0 * block_e3;
+        let t3 = t2 + t1;
+        let t4 = k(1.0) / T::fused(-t3, t3, k(2.03125));
+        let t5 = T::fused(-k(0.25), t1, t2);
+        let t6 = t5 * t3;
+        let t7 = t6 * t4;
+        let t8 = block_wz * block_wz;
+        let t9 = T::fused(k(2.1538461538461537), t2, t1);
+        let t10 = k(2.5) - T::fused(-k(0.25), t8 * t5, t3 * t9);
+        let t11 = k(0.46875) - T::fused(k(0.0625), t8 * t3, T::fused(-t10, t7, t5 * t9));
+        let t12 = t11 / (k(0.5078125) - T::fused(t6, t7, t5 * t5));
+        let t13 = T::fused(t7, t12, t10 * t4);
+        let t14 = t9 - T::fused(t3, t13, t5 * t12);
+        let t15 = block_wx * block_wz;
+        let t16 = T::fused(
+            block_wy,
+            t0,
+            T::fused(k(32.5), t1 * t12, T::fused(-k(16.0), t14, t15)),
         );
-        let t18 = T::fused(t7, t14, T::fused(-k(15.384615384615385), t5, t10 * t13));
-        let t19 = block_wx * block_wz;
-        let t20 = T::fused(k(0.1), t18, k(0.05) * t19) + t17;
-        let t21 = block_e0 * block_e0;
-        let t22 = k(0.5) - T::fused(block_e1, block_e1, t21);
-        let t23 = T::fused(k(0.1), block_wz, k(0.05) * block_wy);
-        let t24 = T::fused(
-            t2,
-            t13,
-            T::fused(t1, t14, T::fused(block_wx, t16, block_wz * t23)),
+        let t17 = T::fused(-k(0.25), block_wx, block_wz);
+        let t18 = T::fused(k(130.0), t2 * t13, -T::fused(k(4.0), block_wz * t17, t16));
+        let t19 = block_e0 * block_e0;
+        let t20 = k(0.5) - T::fused(block_e1, block_e1, t19);
+        let t21 = block_wy * block_wz;
+        let t22 = T::fused(k(2.0), block_wz, block_wy);
+        let t23 = T::fused(
+            block_wz,
+            t22,
+            -T::fused(-k(65.0), t2 * t12, T::fused(-k(32.0), t14, t21)),
         );
-        let t25 = block_wy * block_wz;
-        let t26 = T::fused(k(0.2), t18, k(0.05) * t25) - t24;
-        let t27 = block_e0 * block_e3;
-        let t28 = block_e1 * block_e2;
-        let t29 = t28 - t27;
-        let t30 = T::fused(-block_wy, t23, block_wx * t15)
-            + T::fused(-k(0.1), t25, k(0.2) * t19);
-        let t31 = block_e0 * block_e2;
-        let t32 = block_e1 * block_e3;
-        let t33 = t32 + t31;
-        let t34 = T::fused(
-            k(2.0) * t33,
-            t30,
-            -T::fused(-(k(2.0) * t22), t20, k(2.0) * t29 * t26),
+        let t24 = T::fused(k(65.0), t1 * t13, T::fused(block_wx, t0, t23));
+        let t25 = block_e1 * block_e2;
+        let t26 = t25 - t2;
+        let t27 = T::fused(
+            k(0.5),
+            t21,
+            -(t15 + T::fused(-k(0.25), block_wy * t22, block_wx * t17)),
         );
-        let t35 = t28 + t27;
-        let t36 = k(0.5) - T::fused(block_e2, block_e2, t21);
-        let t37 = block_e0 * block_e1;
-        let t38 = block_e2 * block_e3;
-        let t39 = t38 - t37;
-        let t40 = T::fused(
-            k(2.0) * t39,
-            t30,
-            T::fused(-(k(2.0) * t35), t20, k(2.0) * t36 * t26),
+        let t28 = k(4.0) * t27;
+        let t29 = block_e0 * block_e2;
+        let t30 = block_e1 * block_e3;
+        let t31 = t30 + t29;
+        let t32 = T::fused(t20, t18, T::fused(-t26, t24, t31 * t28));
+        let t33 = t25 + t2;
+        let t34 = k(0.5) - T::fused(block_e2, block_e2, t19);
+        let t35 = block_e0 * block_e1;
+        let t36 = block_e2 * block_e3;
+        let t37 = t36 - t35;
+        let t38 = T::fused(-t33, t18, T::fused(t34, t24, t37 * t28));
+        let t39 = t30 - t29;
+        let t40 = t36 + t35;
+        let t41 = k(0.5) - T::fused(block_e3, block_e3, t19);
+        let t42 = T::fused(t39, t18, T::fused(t40, t24, t41 * t28));
+        let t43 = k(80.0) - t42;
+        let t44 = k(40.0) + t38;
+        let t45 = k(15.0) - t32;
+        let t46 = T::fused(
+            -T::fused(-k(0.25), t33, t37),
+            t44,
+            T::fused(k(0.25), t20, t31) * t45,
         );
-        let t41 = t32 - t31;
-        let t42 = t38 + t37;
-        let t43 = k(0.5) - T::fused(block_e3, block_e3, t21);
-        let t44 = T::fused(
-            k(2.0) * t43,
-            t30,
-            T::fused(k(2.0) * t41, t20, k(2.0) * t42 * t26),
+        let t47 = T::fused(
+            k(1.09375),
+            t15,
+            T::fused(T::fused(k(0.25), t39, t41), t43, t46),
         );
-        let t45 = T::fused(k(0.8), t44, k(6.4));
-        let t46 = T::fused(-k(0.8), t40, k(3.2));
-        let t47 = T::fused(k(0.8), t34, k(1.2));
         let t48 = T::fused(
-            -T::fused(-k(0.1), t35, k(0.4) * t39),
-            t46,
-            T::fused(k(0.1), t22, k(0.4) * t33) * t47,
+            -T::fused(-k(0.5), t34, t37),
+            t44,
+            T::fused(k(0.5), t26, t31) * t45,
         );
         let t49 = T::fused(
-            k(0.035),
-            t19,
-            T::fused(T::fused(k(0.1), t41, k(0.4) * t43), t45, t48),
-        );
-        let t50 = T::fused(
-            -T::fused(-k(0.1), t36, k(0.2) * t39),
-            t46,
-            T::fused(k(0.1), t29, k(0.2) * t33) * t47,
-        );
-        let t51 = T::fused(
-            -k(0.015),
-            t25,
-            T::fused(T::fused(-k(0.1), t42, k(0.2) * t43), t45, t50),
+            k(0.9375),
+            t21,
+            -T::fused(T::fused(-k(0.5), t40, t41), t43, t48),
         );
         *out = [
-            -t34,
-            -t40,
-            t44,
-            t25,
-            -t19,
-            -t18,
-            -t45,
-            T::fused(t1, t49, t2 * t51),
-            T::fused(-t1, t51, t2 * t49),
+            k(0.1) * t32,
+            k(0.1) * t38,
+            -(k(0.1) * t42),
+            t21,
+            -t15,
+            k(8.0) * t14,
+            -(k(0.08) * t43),
+            -(k(0.032) * T::fused(-t1, t47, t2 * t49)),
+            k(0.016) * T::fused(t1, t49, k(4.0) * (t2 * t47)),
         ];
     }
 }
@@ -1394,13 +1365,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 127 operations (51 ±, 75 ×, 1 ÷).
+    /// Writes the outputs: 116 operations (47 ±, 68 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
-        let block_rx = y[0];
-        let block_ry = y[1];
         let block_e0 = y[3];
         let block_e1 = y[4];
         let block_e2 = y[5];
@@ -1413,67 +1382,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
         let block_dsz = accelerations[2];
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
-        let t0 = T::fused(k(0.8), block_dsz, k(6.4));
-        let t1 = k(2.0) * block_e0;
-        let t2 = block_e3 * t1;
-        let t3 = k(2.0) * block_e1;
-        let t4 = block_e2 * t3;
-        let t5 = t4 - t2;
-        let t6 = block_e2 * t1;
-        let t7 = block_e3 * t3;
-        let t8 = t7 + t6;
-        let t9 = T::fused(-k(0.8), block_dsx, k(1.2));
-        let t10 = k(2.0) * block_e2;
-        let t11 = T::fused(-block_e0, t1, k(1.0));
-        let t12 = T::fused(-block_e2, t10, t11);
-        let t13 = block_e1 * t1;
-        let t14 = block_e3 * t10;
-        let t15 = t14 - t13;
-        let t16 = T::fused(k(0.8), block_dsy, k(3.2));
-        let t17 = T::fused(
-            -t9,
-            T::fused(k(0.05), t5, k(0.1) * t8),
-            t16 * T::fused(-k(0.05), t12, k(0.1) * t15),
+        let t0 = block_dsz + k(8.0);
+        let t1 = T::fused(-block_e0, block_e0, k(0.5));
+        let t2 = T::fused(block_e3, block_e3, -t1);
+        let t3 = block_e0 * block_e1;
+        let t4 = block_e2 * block_e3;
+        let t5 = t4 + t3;
+        let t6 = T::fused(k(0.5), t5, t2) * t0;
+        let t7 = k(4.0) + block_dsy;
+        let t8 = T::fused(block_e2, block_e2, -t1);
+        let t9 = t4 - t3;
+        let t10 = T::fused(
+            T::fused(k(0.5), t8, t9),
+            t7,
+            T::fused(k(0.0625), block_dwx, k(0.03125) * (block_wy * block_wz)) + t6,
         );
-        let t18 = t14 + t13;
-        let t19 = T::fused(-block_e3, k(2.0) * block_e3, t11);
-        let t20 = t0 * T::fused(-k(0.05), t18, k(0.1) * t19);
-        let t21 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
-            - (t20 - t17);
-        let t22 = t4 + t2;
-        let t23 = T::fused(-block_e1, t3, t11);
-        let t24 = k(1.0) / T::fused(-t5, t22, t23 * t12);
-        let t25 = T::fused(
-            -t9,
-            T::fused(k(0.05), t23, k(0.2) * t8),
-            t16 * T::fused(-k(0.05), t22, k(0.2) * t15),
+        let t11 = k(1.5) - block_dsx;
+        let t12 = block_e0 * block_e3;
+        let t13 = block_e1 * block_e2;
+        let t14 = t13 - t12;
+        let t15 = block_e0 * block_e2;
+        let t16 = block_e1 * block_e3;
+        let t17 = t16 + t15;
+        let t18 = k(0.5) * T::fused(T::fused(k(0.5), t14, t17), t11, -t10);
+        let t19 = T::fused(block_e1, block_e1, -t1);
+        let t20 = t13 + t12;
+        let t21 = k(1.0) / T::fused(-t19, t8, t14 * t20);
+        let t22 = t16 - t15;
+        let t23 = T::fused(k(0.25), t22, -t2) * t0;
+        let t24 = T::fused(
+            T::fused(-k(0.25), t20, t9),
+            t7,
+            -(T::fused(-k(0.0625), block_dwy, k(0.046875) * (block_wx * block_wz)) + t23),
         );
-        let t26 = t7 - t6;
-        let t27 = t0 * T::fused(k(0.05), t26, k(0.2) * t19);
-        let t28 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
-            + (t27 - t25);
-        let t29 = T::fused(t22 * t24, t21, t12 * t24 * t28);
-        let t30 = T::fused(t23 * t24, t21, t5 * t24 * t28);
-        let t31 = T::fused(t12, t30, T::fused(-t5, t29, t20));
-        let t32 = T::fused(t22, t30, T::fused(-t23, t29, t27));
-        let t33 = t0 * T::fused(k(0.1), t26, k(0.2) * t18);
-        let t34 = block_ry
-            - (block_ry + T::fused(k(0.05), t15, T::fused(k(0.2), t22, k(0.1) * t12)));
-        let t35 = T::fused(t0, t34, T::fused(t8, t33, T::fused(-t23, t31, t5 * t32)));
-        let t36 = block_rx
-            - (block_rx + T::fused(k(0.05), t8, -T::fused(k(0.2), t23, k(0.1) * t5)));
-        let t37 = T::fused(
-            t0,
-            t36,
-            -T::fused(t15, t33, -T::fused(-t22, t31, t12 * t32)),
+        let t25 = T::fused(T::fused(-k(0.25), t19, t17), t11, -t24);
+        let t26 = T::fused(t20 * t21, t18, t8 * t21 * t25);
+        let t27 = T::fused(t19 * t21, t18, t14 * t21 * t25);
+        let t28 = T::fused(t14, t26, T::fused(-t8, t27, k(0.5) * t6));
+        let t29 = T::fused(t19, t26, T::fused(-t20, t27, t23));
+        let t30 = k(1.25) * t0;
+        let t31 = T::fused(k(0.5), t22, t5) * t0;
+        let t32 = T::fused(
+            -t30,
+            T::fused(k(0.4), t20, T::fused(-k(0.2), t8, k(0.1) * t9)),
+            t17 * t31,
+        );
+        let t33 = T::fused(
+            t30,
+            T::fused(k(0.4), t19, T::fused(-k(0.2), t14, k(0.1) * t17)),
+            t9 * t31,
         );
         *out = [
             k(0.0),
             k(0.0),
-            t0,
-            t35,
-            -t37,
-            T::fused(-t19, t33, T::fused(t26, t31, t18 * t32)),
+            k(0.8) * t0,
+            k(0.64) * T::fused(-t19, t28, T::fused(t14, t29, t32)),
+            k(0.64) * T::fused(-t20, t28, T::fused(t8, t29, t33)),
+            k(0.64) * T::fused(-t22, t28, T::fused(t5, t29, t2 * t31)),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -12,37 +12,37 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 6 operations by rotations of the bodies; 6 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 18 operations by rotations of the bodies; 18 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 6 operations by normal form; 66 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 6 operations by normal form; 66 operations by recursion; 3 more compared
-//! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 70 operations by normal form in the bodies' frames; 9 more compared
+//! * project: 17 operations by rotations of the bodies; 17 operations by rotations of the bodies, doubled; 2 more compared
+//! * joint_accelerations: 6 operations by normal form; 55 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 6 operations by normal form; 55 operations by recursion; 3 more compared
+//! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 55 operations by normal form in the bodies' frames; 9 more compared
 //! * joint_jacobian: 11 operations by derivatives of u̇, from its leaves; 11 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 8 | 9 | 0 | 17 | 0 of 3 | 17 | 17 |
+//! | phi | Φ | 8 | 8 | 0 | 16 | 0 of 3 | 16 | 16 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 10 | 4 | 4 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 2 of 2 | 0 | 0 |
 //! | gamma | γ | 0 | 0 | 0 | 0 | 2 of 2 | 0 | 0 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 4 | 5 | 0 | 9 | 0 of 2 | 9 | 9 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 4 | 4 | 0 | 8 | 0 of 2 | 8 | 8 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 1 of 6 | 6 | 6 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
-//! | multipliers | λ, the accelerations being known | 6 | 7 | 0 | 13 | 0 of 2 | 18 | 13 |
-//! | project | (δr, δπ') that changes the rows as given | 8 | 10 | 0 | 18 | 3 of 6 | 50 | 18 |
+//! | multipliers | λ, the accelerations being known | 6 | 4 | 0 | 10 | 0 of 2 | 12 | 10 |
+//! | project | (δr, δπ') that changes the rows as given | 8 | 9 | 0 | 17 | 3 of 6 | 38 | 17 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 6 | 13 | 0 | 19 | 0 of 2 | 19 | 19 |
-//! | read_joints | joint coordinates and rates | 4 | 6 | 0 | 10 | 0 of 2 | 10 | 10 |
-//! | outputs | outputs, the accelerations being known | 15 | 17 | 0 | 32 | 3 of 6 | 198 | 32 |
+//! | energy | T and V | 6 | 12 | 0 | 18 | 0 of 2 | 18 | 18 |
+//! | read_joints | joint coordinates and rates | 4 | 4 | 0 | 8 | 0 of 2 | 8 | 8 |
+//! | outputs | outputs, the accelerations being known | 15 | 10 | 0 | 25 | 3 of 6 | 117 | 25 |
 //! | joint_accelerations | u̇ in joint coordinates | 0 | 6 | 0 | 6 | 0 of 4 | 6 | 6 |
 //! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 5 | 24 | 24 |
 //! | to_maximal | (q, v) of a joint state | 0 | 4 | 0 | 4 | 0 of 13 | 6 | 4 |
-//! | to_joints | (x, u) of a maximal state | 4 | 6 | 0 | 10 | 0 of 9 | 10 | 10 |
+//! | to_joints | (x, u) of a maximal state | 4 | 4 | 0 | 8 | 0 of 9 | 8 | 8 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 6 | 0 | 6 | 0 of 4 | 6 | 6 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 7 | 0 | 13 | 0 of 2 | 18 | 13 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 4 | 0 | 10 | 0 of 2 | 12 | 10 |
 //! | corrected_solution | both | 0 | 6 | 0 | 6 | 0 of 8 | 6 | 6 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 11 | 0 | 11 | 59 of 90 | 30 | 11 |
 //!
@@ -224,7 +224,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
             accelerations[5],
         ];
     }
-    /// Writes Φ: 17 operations (8 ±, 9 ×, 0 ÷).
+    /// Writes Φ: 16 operations (8 ±, 8 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let bead_rx = y[0];
@@ -235,44 +235,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_e2 = y[5];
         let bead_e3 = y[6];
         let t0 = T::fused(
-            bead_e3,
-            bead_e3,
-            T::fused(bead_e2, bead_e2, T::fused(bead_e1, bead_e1, bead_e0 * bead_e0)),
+            bead_e2,
+            bead_e2,
+            T::fused(bead_e1, bead_e1, T::fused(bead_e3, bead_e3, bead_e0 * bead_e0)),
         );
         *out = [
-            T::fused(
-                k(0.6666666666666666),
-                bead_rz,
-                T::fused(k(0.3333333333333333), bead_ry, k(0.6666666666666666) * bead_rx),
-            ),
-            T::fused(
-                -k(0.3333333333333333),
-                bead_rz,
-                k(0.6666666666666666) * (bead_rx - bead_ry),
-            ),
+            k(0.6666666666666666) * (bead_rz + T::fused(k(0.5), bead_ry, bead_rx)),
+            k(0.6666666666666666) * T::fused(-k(0.5), bead_rz, bead_rx - bead_ry),
             t0 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 9 operations (4 ±, 5 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 8 operations (4 ±, 4 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let bead_sx = y[7];
         let bead_sy = y[8];
         let bead_sz = y[9];
         *out = [
-            T::fused(
-                k(0.6666666666666666),
-                bead_sz,
-                T::fused(k(0.6666666666666666), bead_sx, k(0.3333333333333333) * bead_sy),
-            ),
-            T::fused(
-                -k(0.3333333333333333),
-                bead_sz,
-                k(0.6666666666666666) * (bead_sx - bead_sy),
-            ),
+            k(0.6666666666666666) * (bead_sx + T::fused(k(0.5), bead_sy, bead_sz)),
+            -(k(0.3333333333333333) * T::fused(-k(2.0), bead_sx - bead_sy, bead_sz)),
         ];
     }
-    /// Kinetic and potential energy: 19 operations (6 ±, 13 ×, 0 ÷).
+    /// Kinetic and potential energy: 18 operations (6 ±, 12 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let bead_rx = y[0];
@@ -284,21 +268,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_wy = y[11];
         let bead_wz = y[12];
         let t0 = T::fused(
-            bead_wz,
-            k(0.04) * bead_wz,
-            T::fused(bead_wy, k(0.05) * bead_wy, bead_wx * (k(0.02) * bead_wx)),
+            k(2.0),
+            bead_wz * bead_wz,
+            T::fused(k(2.5), bead_wy * bead_wy, bead_wx * bead_wx),
         );
         let t1 = T::fused(
-            k(0.7),
+            k(35.0),
             T::fused(bead_sz, bead_sz, T::fused(bead_sy, bead_sy, bead_sx * bead_sx)),
             t0,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
-            potential: T::fused(-k(0.21), bead_rx, k(6.867) * bead_rz),
+            kinetic: k(0.01) * t1,
+            potential: -(k(0.21) * T::fused(-k(32.7), bead_rz, bead_rx)),
         }
     }
-    /// Writes the joint readings: 10 operations (4 ±, 6 ×, 0 ÷).
+    /// Writes the joint readings: 8 operations (4 ±, 4 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let bead_rx = y[0];
@@ -308,16 +292,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_sy = y[8];
         let bead_sz = y[9];
         *out = [
-            T::fused(
-                -k(0.6666666666666666),
-                bead_rz,
-                T::fused(k(0.3333333333333333), bead_rx, k(0.6666666666666666) * bead_ry),
-            ),
-            T::fused(
-                -k(0.6666666666666666),
-                bead_sz,
-                T::fused(k(0.6666666666666666), bead_sy, k(0.3333333333333333) * bead_sx),
-            ),
+            k(0.6666666666666666) * T::fused(k(0.5), bead_rx, bead_ry - bead_rz),
+            k(0.6666666666666666) * (bead_sy - T::fused(-k(0.5), bead_sx, bead_sz)),
         ];
     }
     fn n_bodies(&self) -> usize {
@@ -499,7 +475,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
             -(k(0.75) * (bead_wx * bead_wy)),
         ];
     }
-    /// Writes λ: 13 operations (6 ±, 7 ×, 0 ÷).
+    /// Writes λ: 10 operations (6 ±, 4 ×, 0 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -511,24 +487,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
         let bead_dsx = accelerations[0];
         let bead_dsy = accelerations[1];
         let bead_dsz = accelerations[2];
-        let t0 = T::fused(k(0.7), bead_dsz, k(6.867));
-        let t1 = k(0.6666666666666666) * T::fused(-k(0.7), bead_dsx, k(0.21));
+        let t0 = k(0.3) - bead_dsx;
+        let t1 = bead_dsz + k(9.81);
         *lambda = [
-            T::fused(
-                -k(0.6666666666666666),
-                t0,
-                T::fused(-k(0.23333333333333334), bead_dsy, t1),
-            ),
-            T::fused(
-                k(0.3333333333333333),
-                t0,
-                T::fused(k(0.4666666666666667), bead_dsy, t1),
-            ),
+            -(k(0.4666666666666667) * (t1 - T::fused(-k(0.5), bead_dsy, t0))),
+            k(0.4666666666666667) * T::fused(k(0.5), t1, bead_dsy + t0),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for PointOnLine<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 18 operations (8 ±, 10 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 17 operations (8 ±, 9 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -539,19 +507,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for PointOnLine<T> {
         let k = T::constant;
         let row0 = rows[0];
         let row1 = rows[1];
-        let t0 = T::fused(-k(0.3333333333333333), row1, k(0.6666666666666666) * row0);
-        let t1 = T::fused(-k(0.6666666666666666), row1, k(0.3333333333333333) * row0);
+        let t0 = T::fused(-k(0.5), row1, row0);
+        let t1 = T::fused(-k(2.0), row1, row0);
         let t2 = row0 + row1;
-        let t3 = T::fused(
-            -k(0.4666666666666667),
-            t0,
-            T::fused(k(0.4666666666666667), t1, k(0.15555555555555556) * t2),
-        );
-        let t4 = k(0.9523809523809523) * t3;
+        let t3 = T::fused(-k(2.0), t0, t2 + t1);
         *out = [
-            T::fused(-k(0.47619047619047616), t3, k(0.6666666666666666) * t2),
-            t1 - t4,
-            t0 + t4,
+            k(0.6666666666666666) * T::fused(-k(0.1111111111111111), t3, t2),
+            k(0.3333333333333333) * T::fused(-k(0.4444444444444444), t3, t1),
+            k(0.6666666666666666) * T::fused(k(0.2222222222222222), t3, t0),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -645,7 +608,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
             u3,
         ];
     }
-    /// Writes the joint state of a maximal state: 10 operations (4 ±, 6 ×, 0 ÷).
+    /// Writes the joint state of a maximal state: 8 operations (4 ±, 4 ×, 0 ÷).
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let bead_rx = y[0];
@@ -661,20 +624,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         let bead_wx = y[10];
         let bead_wy = y[11];
         let bead_wz = y[12];
-        x[0] = T::fused(
-            -k(0.6666666666666666),
-            bead_rz,
-            T::fused(k(0.3333333333333333), bead_rx, k(0.6666666666666666) * bead_ry),
-        );
+        x[0] = k(0.6666666666666666) * T::fused(k(0.5), bead_rx, bead_ry - bead_rz);
         x[1] = bead_e0;
         x[2] = bead_e1;
         x[3] = bead_e2;
         x[4] = bead_e3;
-        x[5] = T::fused(
-            -k(0.6666666666666666),
-            bead_sz,
-            T::fused(k(0.6666666666666666), bead_sy, k(0.3333333333333333) * bead_sx),
-        );
+        x[5] = k(0.6666666666666666) * (bead_sy - T::fused(-k(0.5), bead_sx, bead_sz));
         x[6] = bead_wx;
         x[7] = bead_wy;
         x[8] = bead_wz;
@@ -712,7 +667,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
             -(k(0.75) * (bead_wx * bead_wy)),
         ];
     }
-    /// Writes λ: 13 operations (6 ±, 7 ×, 0 ÷).
+    /// Writes λ: 10 operations (6 ±, 4 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -724,19 +679,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         let bead_dsx = accelerations[0];
         let bead_dsy = accelerations[1];
         let bead_dsz = accelerations[2];
-        let t0 = T::fused(k(0.7), bead_dsz, k(6.867));
-        let t1 = k(0.6666666666666666) * T::fused(-k(0.7), bead_dsx, k(0.21));
+        let t0 = k(0.3) - bead_dsx;
+        let t1 = bead_dsz + k(9.81);
         *lambda = [
-            T::fused(
-                -k(0.6666666666666666),
-                t0,
-                T::fused(-k(0.23333333333333334), bead_dsy, t1),
-            ),
-            T::fused(
-                k(0.3333333333333333),
-                t0,
-                T::fused(k(0.4666666666666667), bead_dsy, t1),
-            ),
+            -(k(0.4666666666666667) * (t1 - T::fused(-k(0.5), bead_dsy, t0))),
+            k(0.4666666666666667) * T::fused(k(0.5), t1, bead_dsy + t0),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 6 operations (0 ±, 6 ×, 0 ÷).
@@ -886,7 +833,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PointOnLine<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 32 operations (15 ±, 17 ×, 0 ÷).
+    /// Writes the outputs: 25 operations (15 ±, 10 ×, 0 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -894,28 +841,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PointOnLine<T> {
         let bead_dsx = accelerations[0];
         let bead_dsy = accelerations[1];
         let bead_dsz = accelerations[2];
-        let t0 = T::fused(k(0.7), bead_dsz, k(6.867));
-        let t1 = k(0.6666666666666666) * T::fused(-k(0.7), bead_dsx, k(0.21));
-        let t2 = T::fused(
-            k(0.3333333333333333),
-            t0,
-            T::fused(k(0.4666666666666667), bead_dsy, t1),
-        );
-        let t3 = T::fused(
-            -k(0.6666666666666666),
-            t0,
-            T::fused(-k(0.23333333333333334), bead_dsy, t1),
-        );
-        let t4 = T::fused(-k(0.3333333333333333), t2, k(0.6666666666666666) * t3);
-        let t5 = k(0.6666666666666666) * t4;
-        let t6 = T::fused(-k(0.6666666666666666), t2, k(0.3333333333333333) * t3);
-        let t7 = t3 + t2;
-        let t8 = k(0.4444444444444444) * t7;
-        let t9 = k(0.6666666666666666) * t6;
+        let t0 = bead_dsz + k(9.81);
+        let t1 = k(0.3) - bead_dsx;
+        let t2 = T::fused(k(0.5), t0, bead_dsy + t1);
+        let t3 = t0 - T::fused(-k(0.5), bead_dsy, t1);
+        let t4 = T::fused(k(2.0), t2, t3);
+        let t5 = t3 - t2;
+        let t6 = T::fused(k(0.5), t2, t3);
         *out = [
-            -(T::fused(k(0.3333333333333333), t6, t8) + t5),
-            T::fused(k(0.3333333333333333), t4, -(t8 - t9)),
-            t5 - T::fused(k(0.2222222222222222), t7, t9),
+            k(0.2074074074074074) * (t6 + T::fused(k(0.25), t4, t5)),
+            -(k(0.1037037037037037) * (t6 + T::fused(-k(2.0), t5, t4))),
+            k(0.1037037037037037) * (t5 + T::fused(-k(2.0), t6, t4)),
             k(0.0),
             k(0.0),
             k(0.0),

@@ -11,39 +11,39 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 260 operations by rotations of the bodies, doubled; 260 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 158 operations by rotations of the bodies; 158 operations by relative Euler parameters; 2 more compared
-//! * joint_accelerations: 2 operations by normal form; 4 operations by recursion
-//! * joint_accelerations_at: 34 operations by normal form; 36 operations by recursion; 1 more compared
-//! * corrected_accelerations: 85 operations by normal form in the bodies' frames; 86 operations by recursion in the bodies' frames; 5 more compared
+//! * accelerations: 235 operations by rotations of the bodies, doubled; 235 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 138 operations by rotations of the bodies, doubled; 138 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 2 operations by normal form; 3 operations by recursion
+//! * joint_accelerations_at: 33 operations by normal form; 34 operations by recursion; 1 more compared
+//! * corrected_accelerations: 79 operations by normal form in the bodies' frames; 80 operations by recursion in the bodies' frames; 5 more compared
 //! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 30 | 31 | 0 | 61 | 0 of 6 | 100 | 61 |
+//! | phi | Φ | 29 | 29 | 0 | 58 | 0 of 6 | 98 | 58 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 35 | 48 | 0 | 83 | 0 of 27 | 108 | 83 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 32 | 50 | 0 | 82 | 0 of 17 | 176 | 82 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 29 | 42 | 0 | 71 | 0 of 17 | 167 | 71 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 43 | 68 | 0 | 111 | 0 of 5 | 475 | 111 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 34 | 53 | 0 | 87 | 0 of 5 | 269 | 87 |
-//! | applied_force | (f, n' − w̃'J'w') | 38 | 52 | 0 | 90 | 1 of 6 | 295 | 90 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 97 | 162 | 1 | 260 | 0 of 6 | 62307 | 260 |
-//! | multipliers | λ, the accelerations being known | 92 | 142 | 1 | 235 | 0 of 5 | 3265 | 235 |
-//! | project | (δr, δπ') that changes the rows as given | 57 | 100 | 1 | 158 | 0 of 6 | 8853 | 158 |
+//! | gamma | γ | 43 | 60 | 0 | 103 | 0 of 5 | 369 | 103 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 34 | 47 | 0 | 81 | 0 of 5 | 199 | 81 |
+//! | applied_force | (f, n' − w̃'J'w') | 37 | 50 | 0 | 87 | 1 of 6 | 281 | 87 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 93 | 141 | 1 | 235 | 0 of 6 | 38360 | 235 |
+//! | multipliers | λ, the accelerations being known | 87 | 127 | 1 | 215 | 0 of 5 | 2711 | 215 |
+//! | project | (δr, δπ') that changes the rows as given | 51 | 86 | 1 | 138 | 0 of 6 | 7012 | 138 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 28 | 38 | 0 | 66 | 0 of 2 | 105 | 66 |
-//! | read_joints | joint coordinates and rates | 27 | 40 | 0 | 67 | 0 of 2 | 144 | 67 |
-//! | outputs | outputs, the accelerations being known | 124 | 187 | 1 | 312 | 1 of 6 | 59864 | 312 |
+//! | energy | T and V | 27 | 35 | 0 | 62 | 0 of 2 | 101 | 62 |
+//! | read_joints | joint coordinates and rates | 27 | 37 | 0 | 64 | 0 of 2 | 108 | 64 |
+//! | outputs | outputs, the accelerations being known | 119 | 169 | 1 | 289 | 1 of 6 | 38934 | 289 |
 //! | joint_accelerations | u̇ in joint coordinates | 1 | 1 | 0 | 2 | 0 of 1 | 2 | 2 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 2 | 4 | 0 | 6 | 7 of 13 | 6 | 6 |
-//! | to_joints | (x, u) of a maximal state | 28 | 43 | 0 | 71 | 0 of 2 | 120 | 71 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 18 | 0 | 34 | 0 of 1 | 37 | 34 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 34 | 51 | 0 | 85 | 3 of 6 | 369 | 85 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 74 | 98 | 0 | 172 | 0 of 5 | 1060 | 172 |
-//! | corrected_solution | both | 80 | 122 | 0 | 202 | 3 of 11 | 3613 | 202 |
+//! | to_joints | (x, u) of a maximal state | 28 | 37 | 0 | 65 | 0 of 2 | 108 | 65 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 17 | 0 | 33 | 0 of 1 | 36 | 33 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 34 | 45 | 0 | 79 | 3 of 6 | 348 | 79 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 74 | 84 | 0 | 158 | 0 of 5 | 997 | 158 |
+//! | corrected_solution | both | 80 | 105 | 0 | 185 | 3 of 11 | 3385 | 185 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 4 of 6 | 0 | 0 |
 //!
 //! # Proof
@@ -224,7 +224,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
             accelerations[5],
         ];
     }
-    /// Writes Φ: 61 operations (30 ±, 31 ×, 0 ÷).
+    /// Writes Φ: 58 operations (29 ±, 29 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -235,50 +235,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
         let carriage_e2 = y[5];
         let carriage_e3 = y[6];
         let t0 = carriage_e0 * carriage_e0;
-        let t1 = T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = k(0.5) - t1;
-        let t3 = carriage_e0 * carriage_e3;
-        let t4 = carriage_e1 * carriage_e2;
-        let t5 = t4 - t3;
-        let t6 = carriage_e0 * carriage_e2;
-        let t7 = carriage_e1 * carriage_e3;
-        let t8 = t7 + t6;
-        let t9 = t4 + t3;
+        let t1 = k(0.5) - t0;
+        let t2 = carriage_e1 * carriage_e1;
+        let t3 = t2 - t1;
+        let t4 = carriage_e0 * carriage_e2;
+        let t5 = carriage_e1 * carriage_e3;
+        let t6 = t5 + t4;
+        let t7 = carriage_e0 * carriage_e3;
+        let t8 = carriage_e1 * carriage_e2;
+        let t9 = t8 - t7;
         let t10 = carriage_e2 * carriage_e2;
-        let t11 = k(0.5) - (t0 + t10);
+        let t11 = t10 - t1;
         let t12 = carriage_e0 * carriage_e1;
         let t13 = carriage_e2 * carriage_e3;
         let t14 = t13 - t12;
-        let t15 = T::fused(
-            -k(0.6),
-            carriage_rx - T::fused(k(0.04), t8, -T::fused(-k(0.2), t2, k(0.1) * t5)),
-            k(0.8)
-                * (carriage_ry
-                    - T::fused(k(0.04), t14, T::fused(-k(0.2), t9, k(0.1) * t11))),
+        let t15 = t8 + t7;
+        let t16 = T::fused(
+            -k(0.75),
+            T::fused(
+                k(0.2),
+                t3,
+                T::fused(k(0.1), t9, T::fused(-k(0.04), t6, carriage_rx)),
+            ),
+            T::fused(
+                k(0.2),
+                t15,
+                T::fused(k(0.1), t11, T::fused(-k(0.04), t14, carriage_ry)),
+            ),
         );
-        let t16 = t7 - t6;
-        let t17 = t13 + t12;
-        let t18 = carriage_e3 * carriage_e3;
-        let t19 = T::fused(
-            k(0.04),
-            k(0.5) - (t0 + t18),
-            T::fused(k(0.2), t16, k(0.1) * t17),
-        );
+        let t17 = carriage_e3 * carriage_e3;
+        let t18 = t13 + t12;
+        let t19 = t5 - t4;
         let t20 = T::fused(
-            -k(0.6),
-            T::fused(-k(1.6), t2, k(1.2) * t5),
-            k(0.8) * T::fused(-k(1.2), t11, k(1.6) * t9),
+            k(0.2),
+            t19,
+            T::fused(k(0.1), t18, T::fused(-k(0.04), t17 - t1, carriage_rz)),
         );
+        let t21 = k(1.28)
+            * T::fused(
+                -k(0.5625),
+                T::fused(k(1.3333333333333333), t3, t9),
+                T::fused(k(0.75), t11, t15),
+            );
         *out = [
-            t15,
-            carriage_rz + t19,
+            k(0.8) * t16,
             t20,
-            T::fused(k(1.6), t16, k(1.2) * t17),
-            T::fused(-k(1.2), t8, k(1.6) * t14),
-            t18 + (t1 + t10) - k(1.0),
+            t21,
+            k(1.2) * T::fused(k(1.3333333333333333), t19, t18),
+            k(1.6) * T::fused(-k(0.75), t6, t14),
+            t10 + (t2 + (t0 + t17)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 87 operations (34 ±, 53 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 81 operations (34 ±, 47 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let carriage_e0 = y[3];
@@ -291,59 +299,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = k(2.0) * carriage_e0;
-        let t1 = carriage_e3 * t0;
-        let t2 = k(2.0) * carriage_e1;
-        let t3 = carriage_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = k(2.0) * carriage_e2;
-        let t6 = T::fused(-carriage_e0, t0, k(1.0));
-        let t7 = T::fused(-carriage_e2, t5, t6);
-        let t8 = T::fused(carriage_wy, t4, carriage_wx * t7);
-        let t9 = carriage_e1 * t0;
-        let t10 = carriage_e3 * t5;
-        let t11 = t10 - t9;
-        let t12 = T::fused(-carriage_wz, t4, carriage_wx * t11);
-        let t13 = T::fused(carriage_wz, t7, carriage_wy * t11);
-        let t14 = T::fused(-carriage_e1, t2, t6);
-        let t15 = t3 - t1;
-        let t16 = T::fused(carriage_wy, t14, carriage_wx * t15);
-        let t17 = carriage_e2 * t0;
-        let t18 = carriage_e3 * t2;
-        let t19 = t18 + t17;
-        let t20 = T::fused(carriage_wz, t14, carriage_wx * t19);
-        let t21 = T::fused(-carriage_wz, t15, carriage_wy * t19);
-        let t22 = T::fused(
-            -k(0.8),
-            carriage_sy - T::fused(k(0.02), t8, T::fused(-k(0.05), t12, k(0.1) * t13)),
-            k(0.6)
-                * (carriage_sx
-                    - T::fused(-k(0.02), t16, T::fused(-k(0.05), t20, k(0.1) * t21))),
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e2, carriage_e2, -t0);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 + t2;
+        let t5 = T::fused(-carriage_wx, t1, t4 * carriage_wy);
+        let t6 = carriage_e0 * carriage_e1;
+        let t7 = carriage_e2 * carriage_e3;
+        let t8 = t7 - t6;
+        let t9 = T::fused(-carriage_wz, t1, t8 * carriage_wy);
+        let t10 = T::fused(-t8, carriage_wx, t4 * carriage_wz);
+        let t11 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t12 = t3 - t2;
+        let t13 = T::fused(-carriage_wy, t11, t12 * carriage_wx);
+        let t14 = carriage_e0 * carriage_e2;
+        let t15 = carriage_e1 * carriage_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(-carriage_wz, t11, t16 * carriage_wx);
+        let t18 = T::fused(-t16, carriage_wy, t12 * carriage_wz);
+        let t19 = T::fused(
+            k(1.3333333333333333),
+            T::fused(
+                k(0.04),
+                t5,
+                T::fused(k(0.1), t10, -T::fused(-k(0.2), t9, carriage_sy)),
+            ),
+            T::fused(
+                k(0.04),
+                t13,
+                T::fused(k(0.1), t17, T::fused(k(0.2), t18, carriage_sx)),
+            ),
         );
-        let t23 = t18 - t17;
-        let t24 = t10 + t9;
-        let t25 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t6);
-        let t26 = T::fused(carriage_wz, t23, carriage_wx * t25);
-        let t27 = T::fused(carriage_wz, t24, carriage_wy * t25);
-        let t28 = T::fused(
-            k(0.02),
-            T::fused(-carriage_wy, t23, carriage_wx * t24),
-            T::fused(-k(0.05), t26, k(0.1) * t27),
+        let t20 = T::fused(carriage_e3, carriage_e3, -t0);
+        let t21 = t15 - t14;
+        let t22 = T::fused(-carriage_wx, t20, t21 * carriage_wz);
+        let t23 = t7 + t6;
+        let t24 = T::fused(-carriage_wy, t20, t23 * carriage_wz);
+        let t25 = T::fused(
+            k(0.04),
+            T::fused(-t23, carriage_wx, t21 * carriage_wy),
+            -T::fused(-k(0.1), t22, T::fused(k(0.2), t24, carriage_sz)),
         );
-        let t29 = T::fused(
-            -k(0.8),
-            T::fused(-k(0.6), t12, k(0.8) * t13),
-            k(0.6) * T::fused(-k(0.6), t20, k(0.8) * t21),
-        );
+        let t26 = k(0.96)
+            * T::fused(
+                k(1.3333333333333333),
+                T::fused(k(0.75), t10, t9),
+                T::fused(k(0.75), t17, t18),
+            );
         *out = [
-            -t22,
-            carriage_sz + t28,
-            t29,
-            T::fused(-k(0.6), t26, k(0.8) * t27),
-            T::fused(k(0.8), t8, k(0.6) * t16),
+            -(k(0.6) * t19),
+            -t25,
+            -t26,
+            k(1.6) * T::fused(-k(0.75), t22, t24),
+            k(1.2) * T::fused(k(1.3333333333333333), t5, t13),
         ];
     }
-    /// Kinetic and potential energy: 66 operations (28 ±, 38 ×, 0 ÷).
+    /// Kinetic and potential energy: 62 operations (27 ±, 35 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -359,30 +371,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
         let carriage_wy = y[11];
         let carriage_wz = y[12];
         let t0 = T::fused(
-            carriage_wy,
-            T::fused(
-                k(0.003),
-                carriage_wz,
-                T::fused(k(0.02), carriage_wy, k(0.001) * carriage_wx),
-            ),
+            k(0.1),
+            carriage_wy
+                * T::fused(
+                    k(3.0),
+                    carriage_wz,
+                    T::fused(k(20.0), carriage_wy, carriage_wx),
+                ),
             carriage_wx
                 * T::fused(
-                    -k(0.002),
+                    -k(0.2),
                     carriage_wz,
-                    T::fused(k(0.001), carriage_wy, k(0.01) * carriage_wx),
+                    T::fused(k(0.1), carriage_wy, carriage_wx),
                 ),
         );
         let t1 = T::fused(
-            -carriage_wz,
-            T::fused(
-                -k(0.015),
-                carriage_wz,
-                T::fused(-k(0.003), carriage_wy, k(0.002) * carriage_wx),
-            ),
+            -k(0.2),
+            carriage_wz
+                * T::fused(
+                    -k(7.5),
+                    carriage_wz,
+                    T::fused(-k(1.5), carriage_wy, carriage_wx),
+                ),
             t0,
         );
         let t2 = T::fused(
-            k(1.3),
+            k(130.0),
             T::fused(
                 carriage_sz,
                 carriage_sz,
@@ -390,42 +404,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
             ),
             t1,
         );
-        let t3 = carriage_e0 * carriage_e0;
+        let t3 = T::fused(-carriage_e0, carriage_e0, k(0.5));
         let t4 = carriage_e0 * carriage_e3;
         let t5 = carriage_e1 * carriage_e2;
         let t6 = T::fused(
-            -k(0.2),
-            k(0.5) - T::fused(carriage_e1, carriage_e1, t3),
-            k(0.1) * (t5 - t4),
+            k(0.1),
+            t5 - t4,
+            T::fused(
+                -k(0.04),
+                T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3),
+                carriage_rx,
+            ),
         );
         let t7 = T::fused(
-            -k(0.2),
-            t5 + t4,
-            k(0.1) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t3)),
+            k(0.1),
+            T::fused(carriage_e2, carriage_e2, -t3),
+            T::fused(
+                -k(0.04),
+                T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
+                carriage_ry,
+            ),
         );
         let t8 = T::fused(
-            k(0.8),
-            carriage_rx
-                - T::fused(
-                    k(0.04),
-                    T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3),
-                    -t6,
-                ),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(
-                        k(0.04),
-                        T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
-                        t7,
-                    )),
+            k(1.3333333333333333),
+            T::fused(k(0.2), T::fused(carriage_e1, carriage_e1, -t3), t6),
+            T::fused(k(0.2), t5 + t4, t7),
         );
-        let t9 = k(0.2) - t8;
+        let t9 = k(0.3333333333333333) - t8;
         gyro_sim::Energy {
-            kinetic: k(0.5) * t2,
-            potential: T::fused(k(0.5), t9 * (k(37.0) * t9), k(12.753) * carriage_ry),
+            kinetic: k(0.005) * t2,
+            potential: k(12.753) * T::fused(k(0.5222300635144672), t9 * t9, carriage_ry),
         }
     }
-    /// Writes the joint readings: 67 operations (27 ±, 40 ×, 0 ÷).
+    /// Writes the joint readings: 64 operations (27 ±, 37 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -439,48 +450,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = k(2.0) * carriage_e1;
-        let t1 = k(2.0) * carriage_e0;
-        let t2 = T::fused(-carriage_e0, t1, k(1.0));
-        let t3 = T::fused(-carriage_e1, t0, t2);
-        let t4 = carriage_e3 * t1;
-        let t5 = carriage_e2 * t0;
-        let t6 = t5 - t4;
-        let t7 = T::fused(carriage_e2, t1, carriage_e3 * t0);
-        let t8 = t5 + t4;
-        let t9 = k(2.0) * carriage_e2;
-        let t10 = T::fused(-carriage_e2, t9, t2);
-        let t11 = T::fused(-carriage_e1, t1, carriage_e3 * t9);
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t2 = T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
+        let t3 = carriage_e0 * carriage_e3;
+        let t4 = carriage_e1 * carriage_e2;
+        let t5 = t4 - t3;
+        let t6 = T::fused(carriage_e2, carriage_e2, -t0);
+        let t7 = T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
+        let t8 = t4 + t3;
+        let t9 = T::fused(
+            k(1.3333333333333333),
+            T::fused(
+                k(0.2),
+                t1,
+                T::fused(k(0.1), t5, T::fused(-k(0.04), t2, carriage_rx)),
+            ),
+            T::fused(
+                k(0.2),
+                t8,
+                T::fused(k(0.1), t6, T::fused(-k(0.04), t7, carriage_ry)),
+            ),
+        );
+        let t10 = T::fused(
+            k(0.1),
+            T::fused(-t7, carriage_wx, t8 * carriage_wz),
+            -T::fused(-k(0.2), T::fused(-carriage_wz, t6, t7 * carriage_wy), carriage_sy),
+        );
+        let t11 = T::fused(
+            k(0.1),
+            T::fused(-carriage_wz, t1, t2 * carriage_wx),
+            T::fused(k(0.2), T::fused(-t2, carriage_wy, t5 * carriage_wz), carriage_sx),
+        );
         let t12 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.02), t7, -T::fused(-k(0.1), t3, k(0.05) * t6)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.02), t11, T::fused(-k(0.1), t8, k(0.05) * t10))),
+            -k(0.75),
+            T::fused(k(0.04), T::fused(-carriage_wx, t6, t8 * carriage_wy), t10),
+            T::fused(k(0.04), T::fused(-carriage_wy, t1, t5 * carriage_wx), t11),
         );
-        let t13 = T::fused(
-            -k(0.05),
-            T::fused(-carriage_wz, t8, carriage_wx * t11),
-            k(0.1) * T::fused(carriage_wz, t10, carriage_wy * t11),
-        );
-        let t14 = T::fused(
-            -k(0.05),
-            T::fused(carriage_wz, t3, carriage_wx * t7),
-            k(0.1) * T::fused(-carriage_wz, t6, carriage_wy * t7),
-        );
-        let t15 = T::fused(
-            k(0.6),
-            carriage_sy
-                - T::fused(k(0.02), T::fused(carriage_wy, t8, carriage_wx * t10), t13),
-            k(0.8)
-                * (carriage_sx
-                    - T::fused(
-                        -k(0.02),
-                        T::fused(carriage_wy, t3, carriage_wx * t6),
-                        t14,
-                    )),
-        );
-        *out = [t12, t15];
+        *out = [k(0.6) * t9, k(0.8) * t12];
     }
     fn n_bodies(&self) -> usize {
         1
@@ -723,15 +730,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
             k(2.0) * carriage_e3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 82 operations (32 ±, 50 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 71 operations (29 ±, 42 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let carriage_e0 = y[3];
         let carriage_e1 = y[4];
         let carriage_e2 = y[5];
         let carriage_e3 = y[6];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e2, carriage_e2, -t0);
         let t2 = carriage_e0 * carriage_e1;
         let t3 = carriage_e2 * carriage_e3;
         let t4 = t3 - t2;
@@ -741,51 +748,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t8 = carriage_e0 * carriage_e2;
         let t9 = carriage_e1 * carriage_e3;
         let t10 = t9 + t8;
-        let t11 = T::fused(
-            -k(0.8),
-            T::fused(-k(0.04), t1, k(0.1) * t4),
-            k(0.6) * T::fused(k(0.04), t7, k(0.1) * t10),
-        );
-        let t12 = t6 + t5;
-        let t13 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t14 = T::fused(
-            -k(0.8),
-            T::fused(k(0.04), t12, k(0.2) * t4),
-            k(0.6) * T::fused(-k(0.04), t13, k(0.2) * t10),
-        );
-        let t15 = T::fused(
-            k(0.8),
-            T::fused(k(0.1), t12, k(0.2) * t1),
-            k(0.6) * T::fused(k(0.1), t13, k(0.2) * t7),
-        );
+        let t11 = k(0.06)
+            * T::fused(
+                -k(1.3333333333333333),
+                T::fused(k(0.4), t1, t4),
+                T::fused(k(0.4), t7, t10),
+            );
+        let t12 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t13 = t6 + t5;
+        let t14 = k(0.12)
+            * T::fused(
+                k(1.3333333333333333),
+                T::fused(k(0.2), t13, t4),
+                -T::fused(k(0.2), t12, t10),
+            );
+        let t15 = k(0.12)
+            * T::fused(
+                -k(1.3333333333333333),
+                T::fused(-k(0.5), t13, t1),
+                T::fused(-k(0.5), t12, t7),
+            );
         let t16 = t3 + t2;
-        let t17 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
+        let t17 = T::fused(carriage_e3, carriage_e3, -t0);
         let t18 = t9 - t8;
-        let t19 = k(1.6) * t1;
-        let t20 = k(1.2) * t13;
-        let t21 = T::fused(
-            k(0.8),
-            T::fused(k(1.2), t12, t19),
-            k(0.6) * T::fused(k(1.6), t7, t20),
-        );
+        let t19 = T::fused(-k(1.3333333333333333), t4, t10);
         *out = [
             k(-0.6),
             k(0.8),
             -t11,
-            t14,
+            -t14,
             -t15,
             k(1.0),
-            T::fused(-k(0.1), t17, k(0.04) * t16),
-            T::fused(-k(0.04), t18, k(0.2) * t17),
-            T::fused(-k(0.1), t18, k(0.2) * t16),
-            T::fused(-k(0.72), t10, k(0.96) * t4),
-            T::fused(-k(1.28), t4, k(0.96) * t10),
-            -t21,
-            -(k(1.2) * t17),
-            k(1.6) * t17,
-            T::fused(-k(1.2), t18, k(1.6) * t16),
-            T::fused(k(1.2), t7, t19),
-            T::fused(k(1.6), t12, t20),
+            k(0.1) * T::fused(k(0.4), t16, t17),
+            -(k(0.2) * T::fused(k(0.2), t18, t17)),
+            k(0.2) * T::fused(-k(0.5), t18, t16),
+            -(k(0.72) * t19),
+            k(0.96) * t19,
+            -(k(0.96)
+                * (T::fused(-k(1.3333333333333333), t1, t13)
+                    + T::fused(-k(0.75), t12, t7))),
+            k(1.2) * t17,
+            -(k(1.6) * t17),
+            k(1.6) * T::fused(-k(0.75), t18, t16),
+            k(1.6) * T::fused(k(0.75), t7, -t1),
+            k(1.2) * T::fused(k(1.3333333333333333), t13, -t12),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -793,7 +799,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 111 operations (43 ±, 68 ×, 0 ÷).
+    /// Writes γ: 103 operations (43 ±, 60 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let carriage_e0 = y[3];
@@ -803,66 +809,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = k(2.0) * carriage_e1;
-        let t1 = k(2.0) * carriage_e0;
-        let t2 = T::fused(-carriage_e0, t1, k(1.0));
-        let t3 = T::fused(-carriage_e1, t0, t2);
-        let t4 = carriage_wy * carriage_wy;
-        let t5 = carriage_wz * carriage_wz;
-        let t6 = t5 + t4;
-        let t7 = carriage_e3 * t1;
-        let t8 = carriage_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = carriage_wx * carriage_wy;
-        let t11 = carriage_e2 * t1;
-        let t12 = carriage_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = carriage_wx * carriage_wz;
-        let t15 = T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
-        let t16 = carriage_wx * carriage_wx;
-        let t17 = t5 + t16;
-        let t18 = carriage_wy * carriage_wz;
-        let t19 = T::fused(t18, t13, -T::fused(t10, t3, t17 * t9));
-        let t20 = t4 + t16;
-        let t21 = T::fused(t20, t13, -T::fused(-t14, t3, t18 * t9));
-        let t22 = t8 + t7;
-        let t23 = k(2.0) * carriage_e2;
-        let t24 = T::fused(-carriage_e2, t23, t2);
-        let t25 = carriage_e1 * t1;
-        let t26 = carriage_e3 * t23;
-        let t27 = t26 - t25;
-        let t28 = T::fused(t14, t27, -T::fused(t6, t22, t10 * t24));
-        let t29 = T::fused(t18, t27, T::fused(t10, t22, t17 * t24));
-        let t30 = T::fused(t20, t27, T::fused(-t14, t22, t18 * t24));
-        let t31 = T::fused(
-            -k(0.6),
-            T::fused(k(0.02), t21, T::fused(k(0.1), t15, k(0.05) * t19)),
-            k(0.8) * T::fused(k(0.02), t30, T::fused(k(0.1), t28, k(0.05) * t29)),
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t2 = carriage_wy * carriage_wy;
+        let t3 = carriage_wz * carriage_wz;
+        let t4 = t3 + t2;
+        let t5 = carriage_wx * carriage_wz;
+        let t6 = carriage_e0 * carriage_e2;
+        let t7 = carriage_e1 * carriage_e3;
+        let t8 = t7 + t6;
+        let t9 = carriage_wx * carriage_wy;
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t4, t1, T::fused(t8, t5, t12 * t9));
+        let t14 = carriage_wy * carriage_wz;
+        let t15 = carriage_wx * carriage_wx;
+        let t16 = t3 + t15;
+        let t17 = T::fused(-t9, t1, T::fused(-t8, t14, t12 * t16));
+        let t18 = t2 + t15;
+        let t19 = T::fused(t5, t1, T::fused(-t8, t18, t12 * t14));
+        let t20 = T::fused(carriage_e2, carriage_e2, -t0);
+        let t21 = carriage_e0 * carriage_e1;
+        let t22 = carriage_e2 * carriage_e3;
+        let t23 = t22 - t21;
+        let t24 = t11 + t10;
+        let t25 = T::fused(t24, t4, -T::fused(t9, t20, t23 * t5));
+        let t26 = T::fused(t24, t9, T::fused(-t16, t20, t23 * t14));
+        let t27 = T::fused(t24, t5, -T::fused(-t14, t20, t23 * t18));
+        let t28 = T::fused(
+            -k(0.75),
+            T::fused(-k(5.0), t13, T::fused(k(2.5), t17, t19)),
+            T::fused(k(5.0), t25, T::fused(-k(2.5), t26, t27)),
         );
-        let t32 = t12 - t11;
-        let t33 = t26 + t25;
-        let t34 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t2);
-        let t35 = T::fused(t14, t34, -T::fused(-t6, t32, t10 * t33));
-        let t36 = T::fused(t18, t34, T::fused(-t10, t32, t17 * t33));
-        let t37 = T::fused(
-            k(0.02),
-            T::fused(t20, t34, T::fused(t14, t32, t18 * t33)),
-            T::fused(k(0.1), t35, k(0.05) * t36),
+        let t29 = T::fused(carriage_e3, carriage_e3, -t0);
+        let t30 = t22 + t21;
+        let t31 = t7 - t6;
+        let t32 = T::fused(t31, t4, -T::fused(t5, t29, t30 * t9));
+        let t33 = T::fused(t31, t9, -T::fused(-t14, t29, t30 * t16));
+        let t34 = T::fused(
+            -k(2.5),
+            t33,
+            T::fused(t31, t5, T::fused(-t18, t29, t30 * t14)),
         );
-        let t38 = T::fused(
-            -k(0.6),
-            T::fused(k(0.8), t15, k(0.6) * t19),
-            k(0.8) * T::fused(k(0.8), t28, k(0.6) * t29),
-        );
+        let t35 = k(0.96)
+            * T::fused(
+                k(0.75),
+                T::fused(-k(1.3333333333333333), t13, t17),
+                T::fused(-k(1.3333333333333333), t25, t26),
+            );
         *out = [
-            -t31,
-            t37,
-            -t38,
-            T::fused(k(0.8), t35, k(0.6) * t36),
-            T::fused(-k(0.6), t21, k(0.8) * t30),
+            k(0.032) * t28,
+            k(0.04) * T::fused(k(5.0), t32, t34),
+            -t35,
+            -(k(1.2) * T::fused(-k(1.3333333333333333), t32, t33)),
+            -(k(1.6) * T::fused(-k(0.75), t19, t27)),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 90 operations (38 ±, 52 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 87 operations (37 ±, 50 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -874,59 +878,78 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
-        let t6 = t3 + t2;
-        let t7 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t8 = T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t2 = T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
+        let t3 = carriage_e0 * carriage_e3;
+        let t4 = carriage_e1 * carriage_e2;
+        let t5 = t4 - t3;
+        let t6 = T::fused(carriage_e2, carriage_e2, -t0);
+        let t7 = T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
+        let t8 = t4 + t3;
         let t9 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.04), t5, -T::fused(-k(0.2), t1, k(0.1) * t4)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.04), t8, T::fused(-k(0.2), t6, k(0.1) * t7))),
+            k(1.3333333333333333),
+            T::fused(
+                k(0.2),
+                t1,
+                T::fused(k(0.1), t5, T::fused(-k(0.04), t2, carriage_rx)),
+            ),
+            T::fused(
+                k(0.2),
+                t8,
+                T::fused(k(0.1), t6, T::fused(-k(0.04), t7, carriage_ry)),
+            ),
         );
-        let t10 = k(0.2) - t9;
-        let t11 = k(0.005) * carriage_wz;
-        let t12 = carriage_wy * carriage_wy;
-        let t13 = carriage_wz * carriage_wz;
-        let t14 = k(0.001) * carriage_wz;
-        let t15 = k(0.002) * carriage_wy;
-        let t16 = T::fused(
-            carriage_wx,
-            t15 + t14,
-            T::fused(carriage_wy, t11, k(0.003) * (t13 - t12)),
+        let t10 = k(0.3333333333333333) - t9;
+        let t11 = T::fused(k(0.75), t6, t5);
+        let t12 = T::fused(k(0.75), t7, t2);
+        let t13 = carriage_wy * carriage_wy;
+        let t14 = carriage_wz * carriage_wz;
+        let t15 = T::fused(
+            k(1.5),
+            t14 - t13,
+            T::fused(
+                k(2.5),
+                carriage_wy * carriage_wz,
+                carriage_wx * T::fused(k(0.5), carriage_wz, carriage_wy),
+            ),
         );
-        let t17 = T::fused(k(1.2), t8, k(1.6) * t5);
-        let t18 = T::fused(-k(1.2), t7, k(1.6) * t4);
-        let t19 = k(37.0) * t10;
-        let t20 = carriage_wx * carriage_wx;
-        let t21 = k(0.003) * carriage_wx;
-        let t22 = T::fused(
-            carriage_wy,
-            t14 - t21,
-            -T::fused(carriage_wx, t11, k(0.002) * (t13 - t20)),
+        let t16 = T::fused(k(1.3333333333333333), t1, t8);
+        let t17 = k(5.0) * carriage_wx;
+        let t18 = carriage_wx * carriage_wx;
+        let t19 = T::fused(
+            k(2.0),
+            t14 - t18,
+            -T::fused(
+                -carriage_wz,
+                t17,
+                carriage_wy * T::fused(-k(3.0), carriage_wx, carriage_wz),
+            ),
         );
-        let t23 = T::fused(-k(1.6), t1, k(1.2) * t6);
-        let t24 = T::fused(
-            carriage_wz,
-            t15 + t21,
-            T::fused(-k(0.001), t12 - t20, k(0.01) * (carriage_wx * carriage_wy)),
+        let t20 = T::fused(
+            k(0.5),
+            t13 - t18,
+            -T::fused(
+                carriage_wy,
+                t17,
+                carriage_wz * T::fused(k(1.5), carriage_wx, carriage_wy),
+            ),
         );
         *out = [
-            k(29.6) * t10,
-            T::fused(k(22.2), t10, -k(12.753)),
+            k(17.76) * t10,
+            -(k(13.32) * (k(0.9574324324324325) - t10)),
             k(0.0),
-            T::fused(t19, T::fused(k(0.05), t17, k(0.02) * t18), t16),
-            -T::fused(t19, T::fused(k(0.02), t23, k(0.1) * t17), t22),
-            -T::fused(t19, T::fused(-k(0.1), t18, k(0.05) * t23), t24),
+            k(0.002) * T::fused(k(355.2), t10 * T::fused(k(2.5), t12, t11), t15),
+            k(0.001) * T::fused(-k(3552.0), t10 * T::fused(k(0.15), t16, t12), t19),
+            k(0.002)
+                * T::fused(
+                    -k(666.0),
+                    t10 * T::fused(-k(2.6666666666666665), t11, t16),
+                    t20,
+                ),
         ];
     }
-    /// Solves eq. (17): 260 operations (97 ±, 162 ×, 1 ÷).
+    /// Solves eq. (17): 235 operations (93 ±, 141 ×, 1 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -938,108 +961,114 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = k(2.0) * carriage_e1;
-        let t1 = k(2.0) * carriage_e0;
-        let t2 = T::fused(-carriage_e0, t1, k(1.0));
-        let t3 = T::fused(-carriage_e1, t0, t2);
-        let t4 = carriage_e3 * t1;
-        let t5 = carriage_e2 * t0;
-        let t6 = t5 - t4;
-        let t7 = carriage_e2 * t1;
-        let t8 = carriage_e3 * t0;
-        let t9 = t8 + t7;
-        let t10 = T::fused(k(0.02), t9, -T::fused(-k(0.1), t3, k(0.05) * t6));
-        let t11 = t5 + t4;
-        let t12 = k(2.0) * carriage_e2;
-        let t13 = T::fused(-carriage_e2, t12, t2);
-        let t14 = carriage_e1 * t1;
-        let t15 = carriage_e3 * t12;
-        let t16 = t15 - t14;
-        let t17 = T::fused(k(0.02), t16, T::fused(-k(0.1), t11, k(0.05) * t13));
-        let t18 = k(0.2)
-            - T::fused(k(0.8), carriage_rx - t10, k(0.6) * (carriage_ry - t17));
-        let t19 = carriage_wy * carriage_wy;
-        let t20 = carriage_wz * carriage_wz;
-        let t21 = t20 + t19;
-        let t22 = carriage_wx * carriage_wy;
-        let t23 = carriage_wx * carriage_wz;
-        let t24 = T::fused(t23, t9, T::fused(t21, t3, t22 * t6));
-        let t25 = carriage_wx * carriage_wx;
-        let t26 = t20 + t25;
-        let t27 = carriage_wy * carriage_wz;
-        let t28 = T::fused(t27, t9, -T::fused(t22, t3, t26 * t6));
-        let t29 = t19 + t25;
-        let t30 = T::fused(t29, t9, -T::fused(-t23, t3, t27 * t6));
-        let t31 = T::fused(t23, t16, -T::fused(t21, t11, t22 * t13));
-        let t32 = T::fused(t27, t16, T::fused(t22, t11, t26 * t13));
-        let t33 = T::fused(t29, t16, T::fused(-t23, t11, t27 * t13));
-        let t34 = T::fused(
-            -k(0.6),
-            T::fused(k(0.02), t30, T::fused(k(0.1), t24, k(0.05) * t28)),
-            k(0.8) * T::fused(k(0.02), t33, T::fused(k(0.1), t31, k(0.05) * t32)),
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e2, carriage_e2, -t0);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 - t2;
+        let t5 = T::fused(k(0.75), t4, -t1);
+        let t6 = k(1.7777777777777777) * t5;
+        let t7 = carriage_e0 * carriage_e1;
+        let t8 = carriage_e2 * carriage_e3;
+        let t9 = t8 - t7;
+        let t10 = carriage_e0 * carriage_e2;
+        let t11 = carriage_e1 * carriage_e3;
+        let t12 = t11 + t10;
+        let t13 = T::fused(-k(1.3333333333333333), t9, t12);
+        let t14 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t15 = t3 + t2;
+        let t16 = T::fused(k(1.3333333333333333), t15, -t14);
+        let t17 = T::fused(-k(1.3333333333333333), t1, t15)
+            + T::fused(-k(0.75), t14, t4);
+        let t18 = T::fused(carriage_e3, carriage_e3, -t0);
+        let t19 = t11 - t10;
+        let t20 = t8 + t7;
+        let t21 = T::fused(-k(0.75), t19, t20);
+        let t22 = T::fused(-t18, t17, t13 * t21);
+        let t23 = k(1.0) / T::fused(t22, t6, t22 * t16);
+        let t24 = carriage_wx * carriage_wz;
+        let t25 = carriage_wx * carriage_wy;
+        let t26 = carriage_wy * carriage_wy;
+        let t27 = carriage_wz * carriage_wz;
+        let t28 = t27 + t26;
+        let t29 = T::fused(t19, t28, -T::fused(t24, t18, t20 * t25));
+        let t30 = carriage_wy * carriage_wz;
+        let t31 = carriage_wx * carriage_wx;
+        let t32 = t27 + t31;
+        let t33 = T::fused(t19, t25, -T::fused(-t30, t18, t20 * t32));
+        let t34 = T::fused(-k(1.3333333333333333), t29, t33);
+        let t35 = T::fused(-t28, t14, T::fused(t12, t24, t4 * t25));
+        let t36 = T::fused(-t25, t14, T::fused(-t12, t30, t4 * t32));
+        let t37 = T::fused(t15, t28, -T::fused(t25, t1, t9 * t24));
+        let t38 = T::fused(t15, t25, T::fused(-t32, t1, t9 * t30));
+        let t39 = T::fused(
+            k(0.75),
+            T::fused(-k(1.3333333333333333), t35, t36),
+            T::fused(-k(1.3333333333333333), t37, t38),
         );
-        let t35 = k(0.8) * t13;
-        let t36 = T::fused(k(0.6), t6, t35);
-        let t37 = T::fused(-k(0.64), t16, k(0.48) * t9);
-        let t38 = t8 - t7;
-        let t39 = t15 + t14;
-        let t40 = T::fused(-k(0.6), t38, k(0.8) * t39);
-        let t41 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t2);
-        let t42 = k(0.8) * t41;
-        let t43 = k(0.6) * t3;
-        let t44 = T::fused(
-            k(0.8),
-            T::fused(k(0.6), t11, t35),
-            k(0.6) * T::fused(k(0.8), t6, t43),
+        let t40 = T::fused(
+            t34,
+            t23 * T::fused(t13, t6, t13 * t16),
+            k(2.3703703703703702)
+                * (t39 * (T::fused(k(0.5625), t18 * t16, t5 * t18) * t23)),
         );
-        let t45 = T::fused(t40, t37, t44 * t42);
-        let t46 = T::fused(k(0.8), t11, t43);
-        let t47 = k(0.6) * t41;
-        let t48 = T::fused(-k(0.48), t16, k(0.36) * t9);
-        let t49 = T::fused(t44, t47, t40 * t48);
-        let t50 = k(1.0) / T::fused(t45, t36, t49 * t46);
-        let t51 = T::fused(-k(0.6), t30, k(0.8) * t33);
-        let t52 = T::fused(
-            -k(0.6),
-            T::fused(k(0.8), t24, k(0.6) * t28),
-            k(0.8) * T::fused(k(0.8), t31, k(0.6) * t32),
+        let t41 = k(1.3333333333333333) * t39;
+        let t42 = T::fused(t34, t5 * t17 * t23, t41 * (t21 * t5 * t23));
+        let t43 = t26 + t31;
+        let t44 = T::fused(t24, t14, T::fused(-t12, t43, t4 * t30));
+        let t45 = T::fused(t15, t24, -T::fused(-t30, t1, t9 * t43));
+        let t46 = T::fused(-k(0.75), t44, t45) * (t22 * t23);
+        let t47 = k(1.7777777777777777) * (t46 + t42);
+        let t48 = T::fused(t34, t17 * t16 * t23, t21 * t16 * t23 * t41);
+        let t49 = k(1.3333333333333333) * T::fused(k(1.7777777777777777), t46, -t48);
+        let t50 = T::fused(t14, t49, T::fused(t12, t40, t4 * t47));
+        let t51 = T::fused(k(5.0), t19, T::fused(k(2.5), t20, -t18));
+        let t52 = T::fused(t19, t49, T::fused(t18, t40, t20 * t47));
+        let t53 = T::fused(-k(5.0), t14, T::fused(-k(2.5), t4, t12));
+        let t54 = T::fused(
+            -k(0.75),
+            T::fused(-k(5.0), t35, T::fused(k(2.5), t36, t44)),
+            T::fused(k(5.0), t37, T::fused(-k(2.5), t38, t45)),
         );
-        let t53 = T::fused(t23, t41, -T::fused(-t21, t38, t22 * t39));
-        let t54 = T::fused(t27, t41, T::fused(-t22, t38, t26 * t39));
-        let t55 = T::fused(k(0.8), t53, k(0.6) * t54);
-        let t56 = T::fused(-t52, t50 * (t40 * t46), t55 * (t50 * (t44 * t46)));
-        let t57 = T::fused(-t51, t45 * t50, t56);
-        let t58 = T::fused(-t52, t50 * (t40 * t36), t55 * (t50 * (t44 * t36)));
-        let t59 = T::fused(t51, t49 * t50, t58);
+        let t55 = T::fused(k(0.4266666666666667), t54, -T::fused(t51, t50, t53 * t52));
+        let t56 = T::fused(k(5.0), t15, -T::fused(-k(2.5), t1, t9));
+        let t57 = T::fused(t15, t49, T::fused(t9, t40, t1 * t47));
+        let t58 = T::fused(k(0.32), t54, -T::fused(-t56, t52, t51 * t57));
+        let t59 = k(0.3333333333333333)
+            - T::fused(
+                k(1.3333333333333333),
+                T::fused(-k(0.04), t53, carriage_rx),
+                T::fused(k(0.04), t56, carriage_ry),
+            );
         let t60 = T::fused(
-            t50 * T::fused(t47, t46, t42 * t36),
-            t52,
-            t50 * T::fused(t37, t36, t48 * t46) * t55,
+            k(303.5897435897436),
+            t59,
+            -T::fused(
+                k(170.76923076923077),
+                k(0.9574324324324325) - t59,
+                -T::fused(k(1.3333333333333333), t58, -t55),
+            ),
         );
-        let t61 = T::fused(t50 * T::fused(-t48, t42, t47 * t37), t51, t60);
-        let t62 = T::fused(t41, t61, -T::fused(-t38, t57, t39 * t59));
-        let t63 = T::fused(t16, t61, -T::fused(t11, t57, t13 * t59));
-        let t64 = T::fused(k(0.02), t41, T::fused(k(0.1), t38, k(0.05) * t39));
-        let t65 = T::fused(-k(0.6), t34, T::fused(-t62, t17, t64 * t63));
-        let t66 = T::fused(t9, t61, T::fused(t3, t57, t6 * t59));
-        let t67 = T::fused(k(0.8), t34, T::fused(-t66, t64, t62 * t10));
-        let t68 = T::fused(k(1.04), t65, k(0.78) * t67)
-            - T::fused(-k(23.68), t18, k(0.6) * T::fused(-k(22.2), t18, k(12.753)));
-        let t69 = T::fused(
-            k(0.02),
-            T::fused(t29, t41, T::fused(t23, t38, t27 * t39)),
-            T::fused(k(0.1), t53, k(0.05) * t54),
+        let t61 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t19, t24, T::fused(-t43, t18, t20 * t30)),
+            T::fused(t53, t57, t56 * t50),
         );
         *out = [
-            T::fused(k(0.6153846153846154), t68, -t65),
-            T::fused(k(0.46153846153846156), t68, -t67),
-            T::fused(-t10, t63, t66 * t17) + t69,
-            T::fused(-t38, t62, T::fused(-t3, t66, t11 * t63)),
-            -T::fused(t39, t62, T::fused(-t6, t66, t13 * t63)),
-            T::fused(t41, t62, T::fused(t9, t66, t16 * t63)),
+            -(k(0.06) * T::fused(-k(0.48), t60, t58)),
+            k(0.06) * T::fused(k(0.36), t60, t55),
+            k(0.06)
+                * T::fused(
+                    k(3.3333333333333335),
+                    t29,
+                    -T::fused(k(1.6666666666666667), t33, -t61),
+                ),
+            -(k(3.0) * T::fused(t14, t50, T::fused(t15, t57, t19 * t52))),
+            -(k(3.0) * T::fused(t4, t50, T::fused(t1, t57, t20 * t52))),
+            -(k(3.0) * T::fused(t12, t50, T::fused(t9, t57, t18 * t52))),
         ];
     }
-    /// Writes λ: 235 operations (92 ±, 142 ×, 1 ÷).
+    /// Writes λ: 215 operations (87 ±, 127 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1063,125 +1092,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_dwx = accelerations[3];
         let carriage_dwy = accelerations[4];
         let carriage_dwz = accelerations[5];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = carriage_e0 * carriage_e2;
-        let t6 = carriage_e1 * carriage_e3;
+        let t0 = carriage_e0 * carriage_e1;
+        let t1 = carriage_e2 * carriage_e3;
+        let t2 = t1 - t0;
+        let t3 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t4 = T::fused(carriage_e2, carriage_e2, -t3);
+        let t5 = carriage_e0 * carriage_e3;
+        let t6 = carriage_e1 * carriage_e2;
         let t7 = t6 + t5;
-        let t8 = t3 + t2;
-        let t9 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t10 = carriage_e0 * carriage_e1;
-        let t11 = carriage_e2 * carriage_e3;
-        let t12 = t11 - t10;
+        let t8 = carriage_e0 * carriage_e2;
+        let t9 = carriage_e1 * carriage_e3;
+        let t10 = t9 + t8;
+        let t11 = t6 - t5;
+        let t12 = T::fused(carriage_e1, carriage_e1, -t3);
         let t13 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.04), t7, -T::fused(-k(0.2), t1, k(0.1) * t4)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.04), t12, T::fused(-k(0.2), t8, k(0.1) * t9))),
+            k(0.75),
+            t7 + T::fused(k(0.5), t4, -T::fused(-k(5.0), carriage_ry, k(0.2) * t2)),
+            t12 + T::fused(k(0.5), t11, -T::fused(-k(5.0), carriage_rx, k(0.2) * t10)),
         );
-        let t14 = k(0.2) - t13;
-        let t15 = T::fused(-k(29.6), t14, k(1.3) * carriage_dsx);
-        let t16 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t14, k(12.753)));
-        let t17 = k(1.3) * carriage_dsz;
-        let t18 = k(0.005) * carriage_wz;
-        let t19 = carriage_wx * carriage_wx;
-        let t20 = carriage_wz * carriage_wz;
-        let t21 = k(0.003) * carriage_wx;
-        let t22 = k(0.001) * carriage_wz;
-        let t23 = T::fused(
-            carriage_wy,
-            t22 - t21,
-            -T::fused(carriage_wx, t18, k(0.002) * (t20 - t19)),
+        let t14 = k(1.25) - t13;
+        let t15 = k(3.5903716216216215)
+            - T::fused(-k(0.36599099099099097), carriage_dsy, t14);
+        let t16 = T::fused(-k(0.27449324324324326), carriage_dsx, t14);
+        let t17 = T::fused(carriage_e3, carriage_e3, -t3);
+        let t18 = t9 - t8;
+        let t19 = T::fused(
+            k(0.27449324324324326),
+            carriage_dsz * T::fused(k(5.0), t17, t18),
+            k(0.75) * (T::fused(k(5.0), t2, t7) * t15),
         );
-        let t24 = k(1.2) * t8;
-        let t25 = T::fused(-k(1.6), t1, t24);
-        let t26 = T::fused(k(1.2), t12, k(1.6) * t7);
-        let t27 = k(37.0) * t14;
-        let t28 = T::fused(
-            k(0.003),
-            carriage_dwz,
-            T::fused(k(0.02), carriage_dwy, k(0.001) * carriage_dwx),
-        ) + T::fused(t27, T::fused(k(0.02), t25, k(0.1) * t26), t23);
-        let t29 = T::fused(
-            t15,
-            T::fused(-k(0.04), t1, k(0.2) * t7),
-            t16 * T::fused(k(0.04), t8, k(0.2) * t12),
+        let t20 = T::fused(
+            k(0.10557432432432433),
+            carriage_dwy,
+            T::fused(
+                k(0.005278716216216216),
+                carriage_dwx,
+                -T::fused(T::fused(k(5.0), t10, t12), t16, -t19),
+            ),
         );
-        let t30 = t6 - t5;
-        let t31 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t32 = T::fused(t17, T::fused(-k(0.04), t30, k(0.2) * t31), -t29) - t28;
-        let t33 = k(1.6) * t9;
-        let t34 = T::fused(k(1.2), t4, t33);
-        let t35 = t11 + t10;
-        let t36 = T::fused(-k(1.2), t30, k(1.6) * t35);
-        let t37 = T::fused(-k(1.28), t12, k(0.96) * t7);
-        let t38 = k(1.6) * t31;
-        let t39 = k(1.2) * t1;
-        let t40 = k(1.6) * t4;
-        let t41 = T::fused(k(0.8), t24 + t33, k(0.6) * (t40 + t39));
-        let t42 = T::fused(t36, t37, t41 * t38);
-        let t43 = T::fused(k(1.6), t8, t39);
-        let t44 = k(1.2) * t31;
-        let t45 = T::fused(-k(0.96), t12, k(0.72) * t7);
-        let t46 = T::fused(t41, t44, t36 * t45);
-        let t47 = k(1.0) / T::fused(t42, t34, t46 * t43);
-        let t48 = carriage_wy * carriage_wy;
-        let t49 = k(0.002) * carriage_wy;
+        let t21 = T::fused(
+            k(0.01583614864864865),
+            carriage_wy * T::fused(-k(0.3333333333333333), carriage_wz, carriage_wx),
+            -T::fused(k(0.01583614864864865), carriage_dwz, t20),
+        );
+        let t22 = carriage_wx * carriage_wx;
+        let t23 = carriage_wz * carriage_wz;
+        let t24 = k(0.75) * t7;
+        let t25 = t24 + t12;
+        let t26 = T::fused(k(1.3333333333333333), t10, t2);
+        let t27 = T::fused(
+            t14,
+            T::fused(k(3.75), t26, t25),
+            -T::fused(
+                k(0.010557432432432432),
+                t23 - t22,
+                T::fused(k(0.026393581081081082), carriage_wx * carriage_wz, t21),
+            ),
+        );
+        let t28 = k(142.08) * t27;
+        let t29 = T::fused(-k(1.3333333333333333), t4, t11);
+        let t30 = t1 + t0;
+        let t31 = T::fused(-k(1.3333333333333333), t30, t18);
+        let t32 = k(1.3333333333333333) * t11;
+        let t33 = T::fused(k(0.5625), t32 - t12, t24 - t4);
+        let t34 = t17 * t33;
+        let t35 = T::fused(-k(0.75), t10, t2);
+        let t36 = t35 * t31;
+        let t37 = T::fused(k(0.75), t36, -t34);
+        let t38 = T::fused(-k(0.75), t12, t7);
+        let t39 = T::fused(-k(1.3333333333333333), t34, t36);
+        let t40 = k(1.0) / T::fused(k(1.3333333333333333), t38 * t37, t29 * t39);
+        let t41 = T::fused(
+            k(118.4),
+            T::fused(-k(2.0), t4, t7) * t15,
+            k(43.333333333333336) * (carriage_dsz * T::fused(-k(2.0), t30, t18)),
+        );
+        let t42 = T::fused(
+            k(0.6666666666666666),
+            carriage_dwx,
+            -T::fused(k(157.86666666666667), T::fused(k(2.0), t11, -t12) * t16, t41),
+        );
+        let t43 = T::fused(
+            carriage_wz,
+            T::fused(k(0.6666666666666666), carriage_wy, carriage_wx),
+            T::fused(k(5.0), carriage_dwz, carriage_dwy - t42),
+        );
+        let t44 = carriage_wy * carriage_wy;
+        let t45 = t32 + t4;
+        let t46 = T::fused(
+            k(236.8),
+            t14 * T::fused(-k(0.6666666666666666), t25, t45),
+            T::fused(
+                k(0.3333333333333333),
+                t44 - t22,
+                -T::fused(k(3.3333333333333335), carriage_wx * carriage_wy, t43),
+            ),
+        );
+        let t47 = T::fused(
+            t40 * (t31 * t29),
+            t28,
+            k(3.0) * (t40 * T::fused(t17, t29, t17 * t38) * t46),
+        );
+        let t48 = T::fused(
+            k(142.08),
+            T::fused(k(2.5), t2, t4) * t15,
+            k(52.0) * (carriage_dsz * T::fused(k(2.5), t17, t30)),
+        );
+        let t49 = T::fused(
+            k(10.0),
+            carriage_dwx,
+            -T::fused(-k(189.44), T::fused(k(2.5), t10, t11) * t16, t48),
+        );
         let t50 = T::fused(
             carriage_wx,
-            t49 + t22,
-            T::fused(carriage_wy, t18, k(0.003) * (t20 - t48)),
+            T::fused(k(2.0), carriage_wy, carriage_wz),
+            T::fused(k(2.0), carriage_dwz, -(carriage_dwy + t49)),
         );
-        let t51 = T::fused(-k(1.2), t9, t40);
+        let t51 = T::fused(
+            k(355.2),
+            t14 * T::fused(k(0.4), t45, t26),
+            T::fused(k(3.0), t23 - t44, T::fused(k(5.0), carriage_wy * carriage_wz, t50)),
+        );
         let t52 = T::fused(
-            -k(0.002),
-            carriage_dwz,
-            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
-        ) - T::fused(t27, T::fused(k(0.05), t26, k(0.02) * t51), t50);
-        let t53 = T::fused(
-            t15,
-            T::fused(k(0.04), t4, k(0.1) * t7),
-            t16 * T::fused(-k(0.04), t9, k(0.1) * t12),
+            t40 * (t29 * t33),
+            t28,
+            k(2.25) * (t40 * T::fused(t35, t38, t35 * t29) * t46),
         );
-        let t54 = T::fused(t17, T::fused(-k(0.04), t35, k(0.1) * t31), -t53) + t52;
-        let t55 = T::fused(t47 * (t36 * t34), t32, t47 * (t36 * t43) * t54);
-        let t56 = T::fused(
-            carriage_wz,
-            t49 + t21,
-            T::fused(-k(0.001), t48 - t19, k(0.01) * (carriage_wx * carriage_wy)),
-        );
-        let t57 = T::fused(
-            -k(0.015),
-            carriage_dwz,
-            T::fused(-k(0.003), carriage_dwy, k(0.002) * carriage_dwx),
-        ) - T::fused(t27, T::fused(-k(0.1), t51, k(0.05) * t25), t56);
-        let t58 = T::fused(
-            -t15,
-            T::fused(k(0.1), t1, k(0.2) * t4),
-            t16 * T::fused(k(0.1), t8, k(0.2) * t9),
-        );
-        let t59 = T::fused(t17, T::fused(-k(0.1), t30, k(0.2) * t35), -t58) + t57;
-        let t60 = T::fused(t47 * (t41 * t34), t32, t47 * (t41 * t43) * t54);
-        let t61 = T::fused(
-            t47 * T::fused(-t45, t38, t44 * t37),
-            t59,
-            -T::fused(-(t46 * t47), t32, t42 * t47 * t54),
-        );
+        let t53 = k(0.0008333333333333334)
+            * T::fused(-k(189.44), t37 * t40 * t27, t39 * t40 * t51);
         *lambda = [
-            T::fused(-k(0.8), t16, k(0.6) * t15),
-            -t17,
-            T::fused(-(t47 * T::fused(t44, t43, t38 * t34)), t59, t55),
-            T::fused(t47 * T::fused(t37, t34, t45 * t43), t59, t60),
-            t61,
+            -(k(2.8416) * (t16 + t15)),
+            -(k(1.3) * carriage_dsz),
+            k(0.0010416666666666667) * T::fused(t40 * (t31 * t38), t51, t47),
+            -(k(0.0011111111111111111) * T::fused(t40 * (t33 * t38), t51, t52)),
+            t53,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Prismatic<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 158 operations (57 ±, 100 ×, 1 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 138 operations (51 ±, 86 ×, 1 ÷).
     fn project(
         &self,
         _t: T,
@@ -1199,77 +1248,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Prismatic<T> {
         let row2 = rows[2];
         let row3 = rows[3];
         let row4 = rows[4];
-        let t0 = carriage_e0 * carriage_e3;
-        let t1 = carriage_e1 * carriage_e2;
-        let t2 = t1 - t0;
-        let t3 = carriage_e0 * carriage_e2;
-        let t4 = carriage_e1 * carriage_e3;
-        let t5 = t4 + t3;
-        let t6 = T::fused(k(0.04), t2, k(0.1) * t5);
-        let t7 = carriage_e0 * carriage_e0;
-        let t8 = k(0.5) - T::fused(carriage_e2, carriage_e2, t7);
-        let t9 = carriage_e0 * carriage_e1;
-        let t10 = carriage_e2 * carriage_e3;
-        let t11 = t10 - t9;
-        let t12 = T::fused(-k(0.04), t8, k(0.1) * t11);
-        let t13 = k(1.6) * t8;
-        let t14 = T::fused(k(1.2), t2, t13);
-        let t15 = T::fused(-k(1.28), t11, k(0.96) * t5);
-        let t16 = t4 - t3;
-        let t17 = t10 + t9;
-        let t18 = T::fused(-k(1.2), t16, k(1.6) * t17);
-        let t19 = k(0.5) - T::fused(carriage_e3, carriage_e3, t7);
-        let t20 = k(1.6) * t19;
-        let t21 = t1 + t0;
-        let t22 = k(0.5) - T::fused(carriage_e1, carriage_e1, t7);
-        let t23 = k(1.2) * t22;
+        let t0 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t1 = T::fused(carriage_e2, carriage_e2, -t0);
+        let t2 = carriage_e0 * carriage_e3;
+        let t3 = carriage_e1 * carriage_e2;
+        let t4 = t3 - t2;
+        let t5 = T::fused(k(0.75), t4, -t1);
+        let t6 = k(1.7777777777777777) * t5;
+        let t7 = carriage_e0 * carriage_e1;
+        let t8 = carriage_e2 * carriage_e3;
+        let t9 = t8 - t7;
+        let t10 = carriage_e0 * carriage_e2;
+        let t11 = carriage_e1 * carriage_e3;
+        let t12 = t11 + t10;
+        let t13 = T::fused(-k(1.3333333333333333), t9, t12);
+        let t14 = T::fused(carriage_e1, carriage_e1, -t0);
+        let t15 = t3 + t2;
+        let t16 = T::fused(k(1.3333333333333333), t15, -t14);
+        let t17 = T::fused(-k(1.3333333333333333), t1, t15)
+            + T::fused(-k(0.75), t14, t4);
+        let t18 = T::fused(carriage_e3, carriage_e3, -t0);
+        let t19 = t11 - t10;
+        let t20 = t8 + t7;
+        let t21 = T::fused(-k(0.75), t19, t20);
+        let t22 = T::fused(-t18, t17, t13 * t21);
+        let t23 = k(1.0) / T::fused(t22, t6, t22 * t16);
         let t24 = T::fused(
-            k(0.8),
-            T::fused(k(1.2), t21, t13),
-            k(0.6) * T::fused(k(1.6), t2, t23),
+            t23 * T::fused(t13, t6, t13 * t16),
+            row3,
+            k(2.962962962962963)
+                * (T::fused(k(0.5625), t18 * t16, t5 * t18) * t23 * row2),
         );
-        let t25 = T::fused(t18, t15, t24 * t20);
-        let t26 = T::fused(k(1.6), t21, t23);
-        let t27 = k(1.2) * t19;
-        let t28 = T::fused(-k(0.96), t11, k(0.72) * t5);
-        let t29 = T::fused(t24, t27, t18 * t28);
-        let t30 = k(1.0) / T::fused(t25, t14, t29 * t26);
-        let t31 = T::fused(t30 * (t18 * t26), row2, t30 * (t24 * t26) * row3);
-        let t32 = T::fused(-(t25 * t30), row4, t31);
-        let t33 = T::fused(-k(0.04), t22, k(0.2) * t5);
-        let t34 = T::fused(k(0.04), t21, k(0.2) * t11);
-        let t35 = T::fused(t30 * (t18 * t14), row2, t30 * (t24 * t14) * row3);
-        let t36 = T::fused(t29 * t30, row4, t35);
-        let t37 = T::fused(
-            t32,
-            T::fused(k(1.04), t6, k(0.78) * t12),
-            t36 * T::fused(k(1.04), t33, k(0.78) * t34),
+        let t25 = T::fused(-k(0.5), t14, t4);
+        let t26 = k(1.6666666666666667) * row2;
+        let t27 = T::fused(t5 * t17 * t23, row3, t21 * t5 * t23 * t26);
+        let t28 = t22 * t23 * row4;
+        let t29 = T::fused(k(0.75), t28, t27);
+        let t30 = k(1.7777777777777777) * t29;
+        let t31 = T::fused(k(0.2), t14, t12);
+        let t32 = T::fused(t17 * t16 * t23, row3, t21 * t16 * t23 * t26);
+        let t33 = T::fused(k(1.3333333333333333), t28, -t32);
+        let t34 = k(0.6666666666666666) * t33;
+        let t35 = T::fused(k(0.4), t4, t12);
+        let t36 = T::fused(
+            k(4.8),
+            row0,
+            T::fused(t35, t34, -T::fused(-t25, t24, t31 * t30)),
         );
-        let t38 = T::fused(k(0.1), t22, k(0.2) * t2);
-        let t39 = T::fused(k(0.1), t21, k(0.2) * t8);
-        let t40 = T::fused(
-            -(t30 * T::fused(t27, t26, t20 * t14)),
-            row2,
-            t30 * T::fused(t15, t14, t28 * t26) * row3,
+        let t37 = T::fused(-k(0.5), t15, t1);
+        let t38 = T::fused(k(0.2), t15, t9);
+        let t39 = T::fused(
+            -T::fused(k(1.3333333333333333), t25, t37),
+            t24,
+            T::fused(k(1.3333333333333333), t31, t38) * t30,
         );
-        let t41 = T::fused(t30 * T::fused(-t28, t20, t27 * t15), row4, t40);
-        let t42 = T::fused(t41, T::fused(-k(1.04), t38, k(0.78) * t39), t37);
-        let t43 = T::fused(t38, t41, -T::fused(t6, t32, t33 * t36))
-            + T::fused(k(0.6153846153846154), t42, k(0.6) * row0);
-        let t44 = T::fused(t39, t41, T::fused(t12, t32, t34 * t36))
-            + T::fused(-k(0.46153846153846156), t42, k(0.8) * row0);
-        let t45 = T::fused(
-            T::fused(-k(0.04), t17, k(0.1) * t19),
-            t32,
-            T::fused(-k(0.04), t16, k(0.2) * t19) * t36,
+        let t40 = T::fused(k(0.4), t1, t9);
+        let t41 = T::fused(T::fused(k(1.3333333333333333), t35, t40), t34, -t39);
+        let t42 = T::fused(
+            k(6.4),
+            row0,
+            -T::fused(t40, t34, -T::fused(-t37, t24, t38 * t30)),
+        );
+        let t43 = T::fused(
+            k(0.2222222222222222),
+            T::fused(k(0.2), t19, t18) * t29,
+            T::fused(-k(0.125), T::fused(-k(0.5), t19, t20) * t24, row1),
         );
         *out = [
-            -t43,
-            t44,
-            row1 - T::fused(T::fused(-k(0.1), t16, k(0.2) * t17), t41, t45),
-            -t32,
-            t36,
-            t41,
+            k(0.125) * T::fused(k(0.48), t41, -t36),
+            k(0.125) * T::fused(k(0.36), t41, t42),
+            T::fused(-k(0.08333333333333333), T::fused(k(0.4), t20, t18) * t33, t43),
+            k(0.8333333333333334) * t33,
+            k(1.1111111111111112) * t29,
+            k(0.625) * t24,
         ];
     }
 }
@@ -1321,7 +1372,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             k(0.0),
         ];
     }
-    /// Writes the joint state of a maximal state: 71 operations (28 ±, 43 ×, 0 ÷).
+    /// Writes the joint state of a maximal state: 65 operations (28 ±, 37 ×, 0 ÷).
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -1335,54 +1386,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
-        let t6 = t3 + t2;
-        let t7 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t8 = T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
+        let t0 = T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
+        let t1 = carriage_e0 * carriage_e3;
+        let t2 = carriage_e1 * carriage_e2;
+        let t3 = t2 - t1;
+        let t4 = carriage_e0 * carriage_e0;
+        let t5 = k(0.5) - T::fused(carriage_e1, carriage_e1, t4);
+        let t6 = T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
+        let t7 = k(0.5) - T::fused(carriage_e2, carriage_e2, t4);
+        let t8 = t2 + t1;
         let t9 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.04), t5, -T::fused(-k(0.2), t1, k(0.1) * t4)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.04), t8, T::fused(-k(0.2), t6, k(0.1) * t7))),
+            -k(1.3333333333333333),
+            T::fused(
+                k(0.2),
+                t5,
+                -T::fused(k(0.1), t3, T::fused(-k(0.04), t0, carriage_rx)),
+            ),
+            T::fused(
+                k(0.2),
+                t8,
+                -T::fused(k(0.1), t7, -T::fused(-k(0.04), t6, carriage_ry)),
+            ),
         );
-        let t10 = k(2.0) * t6;
-        let t11 = k(2.0) * t7;
-        let t12 = k(2.0) * t8;
-        let t13 = T::fused(
-            -k(0.05),
-            T::fused(-t10, carriage_wz, t12 * carriage_wx),
-            k(0.1) * T::fused(t11, carriage_wz, t12 * carriage_wy),
+        let t10 = T::fused(
+            -k(0.1),
+            T::fused(-t6, carriage_wx, t8 * carriage_wz),
+            T::fused(-k(0.2), T::fused(t6, carriage_wy, t7 * carriage_wz), carriage_sy),
         );
-        let t14 = k(2.0) * t1;
-        let t15 = k(2.0) * t4;
-        let t16 = k(2.0) * t5;
-        let t17 = T::fused(
-            -k(0.05),
-            T::fused(t14, carriage_wz, t16 * carriage_wx),
-            k(0.1) * T::fused(-t15, carriage_wz, t16 * carriage_wy),
+        let t11 = T::fused(
+            k(0.1),
+            T::fused(t0, carriage_wx, t5 * carriage_wz),
+            T::fused(k(0.2), T::fused(-t0, carriage_wy, t3 * carriage_wz), carriage_sx),
         );
-        let t18 = T::fused(
-            k(0.6),
-            carriage_sy
-                - T::fused(k(0.02), T::fused(t10, carriage_wy, t11 * carriage_wx), t13),
-            k(0.8)
-                * (carriage_sx
-                    - T::fused(
-                        -k(0.02),
-                        T::fused(t14, carriage_wy, t15 * carriage_wx),
-                        t17,
-                    )),
+        let t12 = T::fused(
+            k(0.75),
+            T::fused(-k(0.04), T::fused(t7, carriage_wx, t8 * carriage_wy), t10),
+            T::fused(k(0.04), T::fused(t3, carriage_wx, t5 * carriage_wy), t11),
         );
-        x[0] = t9;
-        x[1] = t18;
+        x[0] = k(0.6) * t9;
+        x[1] = k(0.8) * t12;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 34 operations (16 ±, 18 ×, 0 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 33 operations (16 ±, 17 ×, 0 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -1391,38 +1435,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         let carriage_e1 = y[4];
         let carriage_e2 = y[5];
         let carriage_e3 = y[6];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = carriage_e0 * carriage_e3;
-        let t2 = carriage_e1 * carriage_e2;
-        let t3 = T::fused(
-            -k(0.2),
-            k(0.5) - T::fused(carriage_e1, carriage_e1, t0),
-            k(0.1) * (t2 - t1),
+        let t0 = carriage_e0 * carriage_e3;
+        let t1 = carriage_e1 * carriage_e2;
+        let t2 = T::fused(
+            k(0.1),
+            t1 - t0,
+            T::fused(
+                -k(0.04),
+                T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3),
+                carriage_rx,
+            ),
         );
+        let t3 = carriage_e0 * carriage_e0;
         let t4 = T::fused(
-            -k(0.2),
-            t2 + t1,
-            k(0.1) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t0)),
+            k(0.1),
+            k(0.5) - T::fused(carriage_e2, carriage_e2, t3),
+            -T::fused(
+                -k(0.04),
+                T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
+                carriage_ry,
+            ),
         );
         let t5 = T::fused(
-            k(0.8),
-            carriage_rx
-                - T::fused(
-                    k(0.04),
-                    T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3),
-                    -t3,
-                ),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(
-                        k(0.04),
-                        T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
-                        t4,
-                    )),
+            -k(1.3333333333333333),
+            T::fused(k(0.2), k(0.5) - T::fused(carriage_e1, carriage_e1, t3), -t2),
+            T::fused(k(0.2), t1 + t0, -t4),
         );
-        *out = [-T::fused(k(28.46153846153846), t5, k(0.1936923076923077))];
+        *out = [-(k(17.076923076923077) * (t5 + k(0.011342342342342342)))];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 85 operations (34 ±, 51 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 79 operations (34 ±, 45 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -1439,58 +1480,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = carriage_e0 * carriage_e2;
-        let t6 = carriage_e1 * carriage_e3;
-        let t7 = t6 + t5;
-        let t8 = t3 + t2;
-        let t9 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t10 = carriage_e0 * carriage_e1;
-        let t11 = carriage_e2 * carriage_e3;
-        let t12 = t11 - t10;
+        let t0 = carriage_e0 * carriage_e2;
+        let t1 = carriage_e1 * carriage_e3;
+        let t2 = t1 + t0;
+        let t3 = carriage_e0 * carriage_e3;
+        let t4 = carriage_e1 * carriage_e2;
+        let t5 = t4 - t3;
+        let t6 = carriage_e0 * carriage_e0;
+        let t7 = k(0.5) - T::fused(carriage_e1, carriage_e1, t6);
+        let t8 = carriage_e0 * carriage_e1;
+        let t9 = carriage_e2 * carriage_e3;
+        let t10 = t9 - t8;
+        let t11 = k(0.5) - T::fused(carriage_e2, carriage_e2, t6);
+        let t12 = t4 + t3;
         let t13 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.04), t7, -T::fused(-k(0.2), t1, k(0.1) * t4)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.04), t12, T::fused(-k(0.2), t8, k(0.1) * t9))),
-        );
-        let t14 = T::fused(k(28.46153846153846), t13, k(0.1936923076923077));
-        let t15 = T::fused(k(0.02), carriage_wx, k(0.1) * carriage_wz);
-        let t16 = T::fused(-k(0.1), carriage_wy, k(0.05) * carriage_wx);
-        let t17 = T::fused(k(0.8), t14, T::fused(-carriage_wz, t15, carriage_wy * t16));
-        let t18 = T::fused(k(0.05), carriage_wz, k(0.02) * carriage_wy);
-        let t19 = T::fused(-k(0.6), t14, T::fused(carriage_wx, t16, carriage_wz * t18));
-        let t20 = T::fused(carriage_wy, t18, carriage_wx * t15);
-        let t21 = T::fused(
-            k(2.0) * t7,
-            t20,
-            -T::fused(k(2.0) * t1, t17, k(2.0) * t4 * t19),
-        );
-        let t22 = T::fused(
-            k(2.0) * t12,
-            t20,
-            T::fused(k(2.0) * t8, t17, k(2.0) * t9 * t19),
-        );
-        let t23 = T::fused(-(k(2.0) * (t6 - t5)), t17, k(2.0) * (t11 + t10) * t19);
-        *out = [
-            -t21,
-            -t22,
+            -k(1.3333333333333333),
             T::fused(
-                k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t0)),
-                t20,
-                t23,
+                k(0.2),
+                t7,
+                -T::fused(k(0.1), t5, T::fused(-k(0.04), t2, carriage_rx)),
             ),
+            T::fused(
+                k(0.2),
+                t12,
+                -T::fused(k(0.1), t11, -T::fused(-k(0.04), t10, carriage_ry)),
+            ),
+        );
+        let t14 = t13 + k(0.011342342342342342);
+        let t15 = T::fused(-k(2.0), carriage_wy, carriage_wx);
+        let t16 = T::fused(k(2.5), carriage_wz, carriage_wy);
+        let t17 = k(0.2)
+            * T::fused(
+                -k(512.3076923076923),
+                t14,
+                T::fused(k(2.5), carriage_wx * t15, carriage_wz * t16),
+            );
+        let t18 = T::fused(k(0.2), carriage_wx, carriage_wz);
+        let t19 = T::fused(k(0.2), carriage_wy * t16, carriage_wx * t18);
+        let t20 = k(0.5)
+            * T::fused(
+                k(273.2307692307692),
+                t14,
+                T::fused(-k(2.0), carriage_wz * t18, carriage_wy * t15),
+            );
+        let t21 = T::fused(
+            t9 + t8,
+            t17,
+            (k(0.5) - T::fused(carriage_e3, carriage_e3, t6)) * t19,
+        );
+        *out = [
+            k(0.2) * T::fused(t7, t20, -T::fused(-t5, t17, t2 * t19)),
+            -(k(0.2) * T::fused(t12, t20, T::fused(t11, t17, t10 * t19))),
+            -(k(0.2) * T::fused(t1 - t0, t20, -t21)),
             k(0.0),
             k(0.0),
             k(0.0),
         ];
     }
-    /// Writes λ: 172 operations (74 ±, 98 ×, 0 ÷).
+    /// Writes λ: 158 operations (74 ±, 84 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1514,100 +1561,127 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         let carriage_dwx = accelerations[3];
         let carriage_dwy = accelerations[4];
         let carriage_dwz = accelerations[5];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = carriage_e0 * carriage_e2;
-        let t6 = carriage_e1 * carriage_e3;
-        let t7 = t6 + t5;
-        let t8 = t3 + t2;
-        let t9 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t10 = carriage_e0 * carriage_e1;
-        let t11 = carriage_e2 * carriage_e3;
-        let t12 = t11 - t10;
-        let t13 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.04), t7, -T::fused(-k(0.2), t1, k(0.1) * t4)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.04), t12, T::fused(-k(0.2), t8, k(0.1) * t9))),
+        let t0 = carriage_e0 * carriage_e2;
+        let t1 = carriage_e1 * carriage_e3;
+        let t2 = t1 + t0;
+        let t3 = carriage_e0 * carriage_e3;
+        let t4 = carriage_e1 * carriage_e2;
+        let t5 = t4 - t3;
+        let t6 = carriage_e0 * carriage_e0;
+        let t7 = k(0.5) - T::fused(carriage_e1, carriage_e1, t6);
+        let t8 = k(0.2) * t7;
+        let t9 = carriage_e0 * carriage_e1;
+        let t10 = carriage_e2 * carriage_e3;
+        let t11 = t10 - t9;
+        let t12 = k(0.5) - T::fused(carriage_e2, carriage_e2, t6);
+        let t13 = t4 + t3;
+        let t14 = k(0.2) * t13;
+        let t15 = T::fused(
+            -k(1.3333333333333333),
+            t8 - T::fused(k(0.1), t5, T::fused(-k(0.04), t2, carriage_rx)),
+            t14 - T::fused(k(0.1), t12, -T::fused(-k(0.04), t11, carriage_ry)),
         );
-        let t14 = k(0.2) - t13;
-        let t15 = T::fused(-k(29.6), t14, k(1.3) * carriage_dsx);
-        let t16 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t14, k(12.753)));
-        let t17 = k(1.3) * carriage_dsz;
-        let t18 = T::fused(-k(1.2), t9, k(1.6) * t4);
-        let t19 = T::fused(-k(1.6), t1, k(1.2) * t8);
-        let t20 = k(37.0) * t14;
-        let t21 = carriage_wx * carriage_wx;
-        let t22 = carriage_wy * carriage_wy;
-        let t23 = k(0.003) * carriage_wx;
-        let t24 = k(0.002) * carriage_wy;
-        let t25 = T::fused(
-            carriage_wz,
-            t24 + t23,
-            T::fused(-k(0.001), t22 - t21, k(0.01) * (carriage_wx * carriage_wy)),
+        let t16 = k(0.3333333333333333) - t15;
+        let t17 = T::fused(-k(13.661538461538461), t16, carriage_dsx);
+        let t18 = k(9.81) + T::fused(-k(10.246153846153845), t16, carriage_dsy);
+        let t19 = k(0.038461538461538464) * carriage_wy;
+        let t20 = t1 - t0;
+        let t21 = t10 + t9;
+        let t22 = T::fused(
+            -carriage_dsz,
+            T::fused(-k(0.5), t20, t21),
+            T::fused(k(0.5), t13, t12) * t18,
         );
-        let t26 = T::fused(
-            -k(0.015),
-            carriage_dwz,
-            T::fused(-k(0.003), carriage_dwy, k(0.002) * carriage_dwx),
-        ) - T::fused(t20, T::fused(-k(0.1), t18, k(0.05) * t19), t25);
-        let t27 = T::fused(
-            -t15,
-            T::fused(k(0.1), t1, k(0.2) * t4),
-            t16 * T::fused(k(0.1), t8, k(0.2) * t9),
+        let t23 = T::fused(
+            -k(0.011538461538461539),
+            carriage_dwy,
+            T::fused(
+                k(0.007692307692307693),
+                carriage_dwx,
+                T::fused(T::fused(k(0.5), t7, t5), t17, -t22),
+            ),
         );
-        let t28 = t6 - t5;
-        let t29 = t11 + t10;
-        let t30 = k(0.005) * carriage_wz;
-        let t31 = carriage_wz * carriage_wz;
-        let t32 = k(0.001) * carriage_wz;
+        let t24 = T::fused(
+            -k(0.007692307692307693),
+            carriage_wz * T::fused(k(1.5), carriage_wx, carriage_wy),
+            T::fused(-k(0.057692307692307696), carriage_dwz, t23),
+        );
+        let t25 = carriage_wx * carriage_wx;
+        let t26 = carriage_wy * carriage_wy;
+        let t27 = T::fused(-k(0.75), t12, t5);
+        let t28 = T::fused(-k(1.3333333333333333), t7, t13);
+        let t29 = T::fused(
+            k(5.123076923076923),
+            t16 * T::fused(-k(2.6666666666666665), t27, t28),
+            -T::fused(
+                k(0.0038461538461538464),
+                t26 - t25,
+                T::fused(-carriage_wx, t19, t24),
+            ),
+        );
+        let t30 = k(0.5) - T::fused(carriage_e3, carriage_e3, t6);
+        let t31 = T::fused(
+            -carriage_dsz,
+            T::fused(-k(0.4), t21, t30),
+            T::fused(-k(0.4), t12, t11) * t18,
+        );
+        let t32 = T::fused(
+            -k(0.007692307692307693),
+            carriage_dwy,
+            T::fused(
+                -k(0.07692307692307693),
+                carriage_dwx,
+                T::fused(T::fused(k(0.4), t5, t2), t17, t31),
+            ),
+        );
         let t33 = T::fused(
-            carriage_wy,
-            t32 - t23,
-            -T::fused(carriage_wx, t30, k(0.002) * (t31 - t21)),
+            k(0.015384615384615385),
+            carriage_wx * T::fused(k(0.5), carriage_wz, carriage_wy),
+            T::fused(k(0.015384615384615385), carriage_dwz, t32),
         );
-        let t34 = T::fused(k(1.2), t12, k(1.6) * t7);
-        let t35 = T::fused(
-            k(0.003),
-            carriage_dwz,
-            T::fused(k(0.02), carriage_dwy, k(0.001) * carriage_dwx),
-        ) + T::fused(t20, T::fused(k(0.02), t19, k(0.1) * t34), t33);
+        let t34 = carriage_wz * carriage_wz;
+        let t35 = T::fused(k(0.75), t11, t2);
         let t36 = T::fused(
-            t15,
-            T::fused(-k(0.04), t1, k(0.2) * t7),
-            t16 * T::fused(k(0.04), t8, k(0.2) * t12),
+            k(5.464615384615384),
+            t16 * T::fused(k(2.5), t35, t27),
+            T::fused(k(0.023076923076923078), t34 - t26, T::fused(carriage_wz, t19, t33)),
         );
-        let t37 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t38 = T::fused(t17, T::fused(-k(0.04), t28, k(0.2) * t37), -t36) - t35;
+        let t37 = T::fused(
+            t2 - t8,
+            t17,
+            T::fused(-carriage_dsz, T::fused(-k(0.2), t20, t30), (t11 + t14) * t18),
+        );
+        let t38 = T::fused(
+            k(0.0038461538461538464),
+            carriage_wy * T::fused(-k(3.0), carriage_wx, carriage_wz),
+            T::fused(
+                k(0.011538461538461539),
+                carriage_dwz,
+                T::fused(
+                    k(0.07692307692307693),
+                    carriage_dwy,
+                    T::fused(k(0.0038461538461538464), carriage_dwx, t37),
+                ),
+            ),
+        );
         let t39 = T::fused(
-            carriage_wx,
-            t24 + t32,
-            T::fused(carriage_wy, t30, k(0.003) * (t31 - t22)),
+            k(13.661538461538461),
+            t16 * T::fused(k(0.15), t28, t35),
+            T::fused(
+                -k(0.007692307692307693),
+                t34 - t25,
+                T::fused(-k(0.019230769230769232), carriage_wx * carriage_wz, t38),
+            ),
         );
-        let t40 = T::fused(
-            -k(0.002),
-            carriage_dwz,
-            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
-        ) - T::fused(t20, T::fused(k(0.05), t34, k(0.02) * t18), t39);
-        let t41 = T::fused(
-            t15,
-            T::fused(k(0.04), t4, k(0.1) * t7),
-            t16 * T::fused(-k(0.04), t9, k(0.1) * t12),
-        );
-        let t42 = T::fused(t17, T::fused(-k(0.04), t29, k(0.1) * t37), -t41) + t40;
         *lambda = [
-            T::fused(-k(0.8), t16, k(0.6) * t15),
-            -t17,
-            T::fused(t17, T::fused(-k(0.1), t28, k(0.2) * t29), -t27) + t26,
-            -T::fused(k(0.8), t38, k(0.6) * t42),
-            T::fused(-k(0.6), t38, k(0.8) * t42),
+            -(k(1.04) * T::fused(-k(0.75), t17, t18)),
+            -(k(1.3) * carriage_dsz),
+            -(k(0.26) * t29),
+            k(0.208) * T::fused(k(0.375), t36, t39),
+            k(0.156) * T::fused(-k(0.6666666666666666), t36, t39),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 202 operations (80 ±, 122 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 185 operations (80 ±, 105 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -1619,114 +1693,129 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = carriage_e0 * carriage_e2;
-        let t6 = carriage_e1 * carriage_e3;
-        let t7 = t6 + t5;
-        let t8 = t3 + t2;
-        let t9 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t10 = carriage_e0 * carriage_e1;
-        let t11 = carriage_e2 * carriage_e3;
-        let t12 = t11 - t10;
-        let t13 = T::fused(
-            k(0.8),
-            carriage_rx - T::fused(k(0.04), t7, -T::fused(-k(0.2), t1, k(0.1) * t4)),
-            k(0.6)
-                * (carriage_ry
-                    - T::fused(k(0.04), t12, T::fused(-k(0.2), t8, k(0.1) * t9))),
+        let t0 = T::fused(k(5.0), carriage_wz, carriage_wx);
+        let t1 = T::fused(k(0.4), carriage_wy, carriage_wz);
+        let t2 = k(0.013724662162162162)
+            * T::fused(k(0.4), carriage_wx * t0, carriage_wy * t1);
+        let t3 = carriage_e0 * carriage_e2;
+        let t4 = carriage_e1 * carriage_e3;
+        let t5 = t4 + t3;
+        let t6 = T::fused(-k(0.5), carriage_wx, carriage_wy);
+        let t7 = carriage_e0 * carriage_e1;
+        let t8 = carriage_e2 * carriage_e3;
+        let t9 = t8 - t7;
+        let t10 = carriage_e0 * carriage_e0;
+        let t11 = k(0.5) - T::fused(carriage_e2, carriage_e2, t10);
+        let t12 = carriage_e0 * carriage_e3;
+        let t13 = carriage_e1 * carriage_e2;
+        let t14 = t13 + t12;
+        let t15 = t13 - t12;
+        let t16 = k(0.5) - T::fused(carriage_e1, carriage_e1, t10);
+        let t17 = T::fused(
+            -k(0.75),
+            t14 - T::fused(k(0.5), t11, T::fused(-k(5.0), carriage_ry, k(0.2) * t9)),
+            t16 - T::fused(k(0.5), t15, -T::fused(-k(5.0), carriage_rx, k(0.2) * t5)),
         );
-        let t14 = T::fused(k(28.46153846153846), t13, k(0.1936923076923077));
-        let t15 = T::fused(k(0.02), carriage_wx, k(0.1) * carriage_wz);
-        let t16 = T::fused(-k(0.1), carriage_wy, k(0.05) * carriage_wx);
-        let t17 = T::fused(k(0.8), t14, T::fused(-carriage_wz, t15, carriage_wy * t16));
-        let t18 = T::fused(k(0.05), carriage_wz, k(0.02) * carriage_wy);
-        let t19 = T::fused(-k(0.6), t14, T::fused(carriage_wx, t16, carriage_wz * t18));
-        let t20 = T::fused(carriage_wy, t18, carriage_wx * t15);
-        let t21 = T::fused(
-            k(2.0) * t7,
-            t20,
-            -T::fused(k(2.0) * t1, t17, k(2.0) * t4 * t19),
+        let t18 = t17 - k(0.042533783783783786);
+        let t19 = k(0.75)
+            * (t18
+                + T::fused(
+                    -k(0.0365990990990991),
+                    carriage_wx * t6,
+                    k(0.01829954954954955) * (carriage_wz * t1),
+                ));
+        let t20 = t18
+            + T::fused(
+                k(0.005489864864864865),
+                carriage_wz * t0,
+                k(0.027449324324324325) * (carriage_wy * t6),
+            );
+        let t21 = T::fused(t16, t20, -T::fused(-t5, t2, t15 * t19));
+        let t22 = T::fused(t14, t20, -T::fused(t9, t2, t11 * t19));
+        let t23 = k(0.5) - T::fused(carriage_e3, carriage_e3, t10);
+        let t24 = t8 + t7;
+        let t25 = t4 - t3;
+        let t26 = T::fused(t25, t20, T::fused(t23, t2, t24 * t19));
+        let t27 = k(1.25) + t17;
+        let t28 = k(1.3463893581081081) - T::fused(k(0.375), t27, -t22);
+        let t29 = T::fused(k(0.5), t27, t21);
+        let t30 = T::fused(-k(0.75), t14, t16);
+        let t31 = T::fused(-k(1.3333333333333333), t15, t11);
+        let t32 = carriage_wx * carriage_wx;
+        let t33 = carriage_wy * carriage_wy;
+        let t34 = T::fused(
+            k(0.010557432432432432),
+            carriage_wx * carriage_wy,
+            k(0.00316722972972973)
+                * (carriage_wz
+                    * T::fused(k(0.6666666666666666), carriage_wy, carriage_wx)),
         );
-        let t22 = T::fused(
-            k(2.0) * t12,
-            t20,
-            T::fused(k(2.0) * t8, t17, k(2.0) * t9 * t19),
+        let t35 = T::fused(
+            k(0.75),
+            t27 * T::fused(-k(0.6666666666666666), t30, t31),
+            T::fused(-k(0.0010557432432432433), t33 - t32, t34),
         );
-        let t23 = t6 - t5;
-        let t24 = t11 + t10;
-        let t25 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t26 = T::fused(
-            k(2.0) * t25,
-            t20,
-            T::fused(-(k(2.0) * t23), t17, k(2.0) * t24 * t19),
-        );
-        let t27 = k(0.2) - t13;
-        let t28 = T::fused(-k(1.3), t22, T::fused(-k(22.2), t27, k(12.753)));
-        let t29 = T::fused(k(1.3), t21, k(29.6) * t27);
-        let t30 = k(1.3) * t26;
-        let t31 = T::fused(
-            T::fused(k(0.1), t8, k(0.2) * t9),
+        let t36 = T::fused(
+            T::fused(k(2.0), t11, t14),
             t28,
-            T::fused(k(0.1), t1, k(0.2) * t4) * t29,
+            T::fused(T::fused(k(2.0), t15, t16), t29, t35),
         );
-        let t32 = T::fused(-k(1.2), t9, k(1.6) * t4);
-        let t33 = T::fused(-k(1.6), t1, k(1.2) * t8);
-        let t34 = k(37.0) * t27;
-        let t35 = carriage_wx * carriage_wx;
-        let t36 = carriage_wy * carriage_wy;
-        let t37 = k(0.003) * carriage_wx;
-        let t38 = k(0.002) * carriage_wy;
+        let t37 = k(0.013196790540540541) * carriage_wz;
+        let t38 = carriage_wz * carriage_wz;
         let t39 = T::fused(
-            carriage_wz,
-            t38 + t37,
-            T::fused(-k(0.001), t36 - t35, k(0.01) * (carriage_wx * carriage_wy)),
+            k(0.005278716216216216),
+            t38 - t32,
+            T::fused(
+                carriage_wx,
+                t37,
+                k(0.007918074324324325)
+                    * (carriage_wy
+                        * T::fused(-k(0.3333333333333333), carriage_wz, carriage_wx)),
+            ),
         );
-        let t40 = T::fused(t34, T::fused(-k(0.1), t32, k(0.05) * t33), t39)
-            + T::fused(-T::fused(-k(0.1), t23, k(0.2) * t24), t30, t31);
-        let t41 = k(0.005) * carriage_wz;
-        let t42 = carriage_wz * carriage_wz;
-        let t43 = k(0.001) * carriage_wz;
-        let t44 = T::fused(
-            carriage_wx,
-            t38 + t43,
-            T::fused(carriage_wy, t41, k(0.003) * (t42 - t36)),
+        let t40 = T::fused(k(1.3333333333333333), t5, t9);
+        let t41 = T::fused(
+            -T::fused(-k(5.0), t5, t16),
+            t29,
+            T::fused(k(0.5), t27 * T::fused(-k(3.75), t40, t30), t39),
         );
-        let t45 = T::fused(k(1.2), t12, k(1.6) * t7);
-        let t46 = T::fused(
-            -T::fused(-k(0.04), t9, k(0.1) * t12),
-            t28,
-            T::fused(k(0.04), t4, k(0.1) * t7) * t29,
-        );
-        let t47 = T::fused(T::fused(-k(0.04), t24, k(0.1) * t25), t30, t46)
-            - T::fused(t34, T::fused(k(0.05), t45, k(0.02) * t32), t44);
-        let t48 = T::fused(
-            carriage_wy,
-            t43 - t37,
-            -T::fused(carriage_wx, t41, k(0.002) * (t42 - t35)),
-        );
-        let t49 = T::fused(
-            -T::fused(k(0.04), t8, k(0.2) * t12),
-            t28,
-            T::fused(-k(0.04), t1, k(0.2) * t7) * t29,
-        );
-        let t50 = T::fused(T::fused(-k(0.04), t23, k(0.2) * t25), t30, t49)
-            - T::fused(t34, T::fused(k(0.02), t33, k(0.1) * t45), t48);
-        *out = [
-            -t21,
-            -t22,
+        let t42 = T::fused(
+            -T::fused(-k(5.0), t23, t25),
             t26,
+            T::fused(-T::fused(k(5.0), t9, t14), t28, t41),
+        );
+        let t43 = T::fused(
+            k(0.007918074324324325),
+            t38 - t33,
+            T::fused(
+                carriage_wy,
+                t37,
+                k(0.002639358108108108)
+                    * (carriage_wx * T::fused(k(2.0), carriage_wy, carriage_wz)),
+            ),
+        );
+        let t44 = T::fused(
+            -T::fused(k(2.5), t5, t15),
+            t29,
+            T::fused(k(0.9375), t27 * T::fused(-k(0.4), t31, t40), t43),
+        );
+        let t45 = T::fused(
+            T::fused(-k(2.5), t23, t24),
+            t26,
+            T::fused(-T::fused(-k(2.5), t9, t11), t28, t44),
+        );
+        *out = [
+            -(k(7.286153846153846) * t21),
+            k(7.286153846153846) * t22,
+            k(7.286153846153846) * t26,
             k(0.0),
             k(0.0),
             k(0.0),
-            -T::fused(k(0.8), t28, k(0.6) * t29),
-            -t30,
-            -t40,
-            -T::fused(k(0.6), t47, k(0.8) * t50),
-            T::fused(-k(0.6), t50, k(0.8) * t47),
+            -(k(7.5776) * T::fused(k(0.75), t29, t28)),
+            -(k(9.472) * t26),
+            -(k(0.9472) * T::fused(T::fused(-k(2.0), t24, t25), t26, t36)),
+            k(0.303104) * T::fused(k(0.75), t45, -t42),
+            -(k(0.227328) * T::fused(k(1.3333333333333333), t45, t42)),
         ];
     }
 }
@@ -1763,14 +1852,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 312 operations (124 ±, 187 ×, 1 ÷).
+    /// Writes the outputs: 289 operations (119 ±, 169 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let carriage_rx = y[0];
         let carriage_ry = y[1];
-        let carriage_rz = y[2];
         let carriage_e0 = y[3];
         let carriage_e1 = y[4];
         let carriage_e2 = y[5];
@@ -1784,149 +1872,184 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let carriage_dwx = accelerations[3];
         let carriage_dwy = accelerations[4];
         let carriage_dwz = accelerations[5];
-        let t0 = k(2.0) * carriage_e1;
-        let t1 = k(2.0) * carriage_e0;
-        let t2 = T::fused(-carriage_e0, t1, k(1.0));
-        let t3 = T::fused(-carriage_e1, t0, t2);
-        let t4 = carriage_e3 * t1;
-        let t5 = carriage_e2 * t0;
-        let t6 = t5 - t4;
-        let t7 = carriage_e2 * t1;
-        let t8 = carriage_e3 * t0;
-        let t9 = t8 + t7;
-        let t10 = carriage_rx
-            - T::fused(k(0.02), t9, -T::fused(-k(0.1), t3, k(0.05) * t6));
-        let t11 = t5 + t4;
-        let t12 = k(2.0) * carriage_e2;
-        let t13 = T::fused(-carriage_e2, t12, t2);
-        let t14 = carriage_e1 * t1;
-        let t15 = carriage_e3 * t12;
-        let t16 = t15 - t14;
-        let t17 = carriage_ry
-            - T::fused(k(0.02), t16, T::fused(-k(0.1), t11, k(0.05) * t13));
-        let t18 = k(0.2) - T::fused(k(0.8), t10, k(0.6) * t17);
-        let t19 = T::fused(-k(29.6), t18, k(1.3) * carriage_dsx);
-        let t20 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t18, k(12.753)));
-        let t21 = T::fused(-k(0.6), t19, k(0.8) * t20);
-        let t22 = k(1.3) * carriage_dsz;
-        let t23 = k(0.005) * carriage_wz;
-        let t24 = carriage_wx * carriage_wx;
-        let t25 = carriage_wz * carriage_wz;
-        let t26 = k(0.003) * carriage_wx;
-        let t27 = k(0.001) * carriage_wz;
-        let t28 = T::fused(
-            carriage_wy,
-            t27 - t26,
-            -T::fused(carriage_wx, t23, k(0.002) * (t25 - t24)),
+        let t0 = k(5.0) * carriage_ry;
+        let t1 = carriage_e0 * carriage_e1;
+        let t2 = carriage_e2 * carriage_e3;
+        let t3 = t2 - t1;
+        let t4 = T::fused(-carriage_e0, carriage_e0, k(0.5));
+        let t5 = T::fused(carriage_e2, carriage_e2, -t4);
+        let t6 = carriage_e0 * carriage_e3;
+        let t7 = carriage_e1 * carriage_e2;
+        let t8 = t7 + t6;
+        let t9 = t8 + T::fused(k(0.5), t5, -T::fused(k(0.2), t3, -t0));
+        let t10 = k(5.0) * carriage_rx;
+        let t11 = carriage_e0 * carriage_e2;
+        let t12 = carriage_e1 * carriage_e3;
+        let t13 = t12 + t11;
+        let t14 = t7 - t6;
+        let t15 = T::fused(carriage_e1, carriage_e1, -t4);
+        let t16 = t15 + T::fused(k(0.5), t14, -T::fused(k(0.2), t13, -t10));
+        let t17 = k(1.25) - T::fused(k(0.75), t9, t16);
+        let t18 = k(3.5903716216216215)
+            - T::fused(-k(0.36599099099099097), carriage_dsy, t17);
+        let t19 = T::fused(-k(0.27449324324324326), carriage_dsx, t17);
+        let t20 = t19 + t18;
+        let t21 = T::fused(carriage_e3, carriage_e3, -t4);
+        let t22 = t12 - t11;
+        let t23 = carriage_dsz * T::fused(k(5.0), t21, t22);
+        let t24 = T::fused(k(5.0), t3, t8);
+        let t25 = T::fused(k(5.0), t13, t15);
+        let t26 = T::fused(
+            k(0.005278716216216216),
+            carriage_dwx,
+            -T::fused(
+                t25,
+                t19,
+                -T::fused(k(0.27449324324324326), t23, k(0.75) * (t24 * t18)),
+            ),
         );
-        let t29 = k(0.6) * t11;
-        let t30 = T::fused(-k(0.8), t3, t29);
-        let t31 = T::fused(k(0.6), t16, k(0.8) * t9);
-        let t32 = k(37.0) * t18;
+        let t27 = T::fused(
+            k(0.01583614864864865),
+            carriage_wy * T::fused(-k(0.3333333333333333), carriage_wz, carriage_wx),
+            -T::fused(
+                k(0.01583614864864865),
+                carriage_dwz,
+                T::fused(k(0.10557432432432433), carriage_dwy, t26),
+            ),
+        );
+        let t28 = carriage_wx * carriage_wx;
+        let t29 = carriage_wz * carriage_wz;
+        let t30 = k(0.75) * t8;
+        let t31 = t30 + t15;
+        let t32 = T::fused(k(1.3333333333333333), t13, t3);
         let t33 = T::fused(
-            k(0.003),
-            carriage_dwz,
-            T::fused(k(0.02), carriage_dwy, k(0.001) * carriage_dwx),
-        ) + T::fused(t32, T::fused(k(0.02), t30, k(0.1) * t31), t28);
-        let t34 = T::fused(-k(0.02), t3, k(0.1) * t9);
-        let t35 = T::fused(k(0.02), t11, k(0.1) * t16);
-        let t36 = t8 - t7;
-        let t37 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t2);
-        let t38 = t22 * T::fused(-k(0.02), t36, k(0.1) * t37);
-        let t39 = t38 - T::fused(t34, t19, t35 * t20) - t33;
-        let t40 = k(0.8) * t13;
-        let t41 = T::fused(k(0.6), t6, t40);
-        let t42 = k(0.6) * t3;
-        let t43 = k(0.8) * t6;
-        let t44 = T::fused(k(0.8), t29 + t40, k(0.6) * (t43 + t42));
-        let t45 = T::fused(-k(0.64), t16, k(0.48) * t9);
-        let t46 = t15 + t14;
-        let t47 = T::fused(-k(0.6), t36, k(0.8) * t46);
-        let t48 = k(0.8) * t37;
-        let t49 = T::fused(t47, t45, t44 * t48);
-        let t50 = T::fused(k(0.8), t11, t42);
-        let t51 = k(0.6) * t37;
-        let t52 = T::fused(-k(0.48), t16, k(0.36) * t9);
-        let t53 = T::fused(t44, t51, t47 * t52);
-        let t54 = k(1.0) / T::fused(t49, t41, t53 * t50);
-        let t55 = carriage_wy * carriage_wy;
-        let t56 = k(0.002) * carriage_wy;
-        let t57 = T::fused(
-            carriage_wx,
-            t56 + t27,
-            T::fused(carriage_wy, t23, k(0.003) * (t25 - t55)),
+            t17,
+            T::fused(k(3.75), t32, t31),
+            -T::fused(
+                k(0.010557432432432432),
+                t29 - t28,
+                T::fused(k(0.026393581081081082), carriage_wx * carriage_wz, t27),
+            ),
         );
-        let t58 = T::fused(-k(0.6), t13, t43);
-        let t59 = T::fused(
-            -k(0.002),
-            carriage_dwz,
-            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
-        ) - T::fused(t32, T::fused(k(0.05), t31, k(0.02) * t58), t57);
-        let t60 = T::fused(k(0.02), t6, k(0.05) * t9);
-        let t61 = T::fused(-k(0.02), t13, k(0.05) * t16);
-        let t62 = t22 * T::fused(-k(0.02), t46, k(0.05) * t37);
-        let t63 = t62 - T::fused(t60, t19, t61 * t20) + t59;
-        let t64 = T::fused(t54 * (t44 * t41), t39, t54 * (t44 * t50) * t63);
-        let t65 = T::fused(
+        let t34 = k(142.08) * t33;
+        let t35 = k(1.3333333333333333) * t14;
+        let t36 = T::fused(k(0.5625), t35 - t15, t30 - t5);
+        let t37 = T::fused(-k(1.3333333333333333), t5, t14);
+        let t38 = t21 * t36;
+        let t39 = t2 + t1;
+        let t40 = T::fused(-k(1.3333333333333333), t39, t22);
+        let t41 = T::fused(-k(0.75), t13, t3);
+        let t42 = t41 * t40;
+        let t43 = T::fused(k(0.75), t42, -t38);
+        let t44 = T::fused(-k(0.75), t15, t8);
+        let t45 = T::fused(-k(1.3333333333333333), t38, t42);
+        let t46 = k(1.0) / T::fused(k(1.3333333333333333), t44 * t43, t37 * t45);
+        let t47 = T::fused(k(2.0), t14, -t15);
+        let t48 = T::fused(-k(2.0), t5, t8);
+        let t49 = carriage_dsz * T::fused(-k(2.0), t39, t22);
+        let t50 = T::fused(
+            k(157.86666666666667),
+            t47 * t19,
+            T::fused(k(118.4), t48 * t18, k(43.333333333333336) * t49),
+        );
+        let t51 = T::fused(
             carriage_wz,
-            t56 + t26,
-            T::fused(-k(0.001), t55 - t24, k(0.01) * (carriage_wx * carriage_wy)),
+            T::fused(k(0.6666666666666666), carriage_wy, carriage_wx),
+            T::fused(
+                k(5.0),
+                carriage_dwz,
+                carriage_dwy - T::fused(k(0.6666666666666666), carriage_dwx, -t50),
+            ),
         );
-        let t66 = T::fused(
-            -k(0.015),
-            carriage_dwz,
-            T::fused(-k(0.003), carriage_dwy, k(0.002) * carriage_dwx),
-        ) - T::fused(t32, T::fused(-k(0.1), t58, k(0.05) * t30), t65);
-        let t67 = T::fused(k(0.05), t3, k(0.1) * t6);
-        let t68 = T::fused(k(0.05), t11, k(0.1) * t13);
-        let t69 = t22 * T::fused(-k(0.05), t36, k(0.1) * t46);
-        let t70 = t69 - T::fused(-t67, t19, t68 * t20) + t66;
-        let t71 = T::fused(t54 * T::fused(t45, t41, t52 * t50), t70, t64);
-        let t72 = T::fused(t54 * (t47 * t41), t39, t54 * (t47 * t50) * t63);
-        let t73 = T::fused(t54 * T::fused(t51, t50, t48 * t41), t70, -t72);
-        let t74 = T::fused(
-            -t44,
-            t73,
-            T::fused(-T::fused(k(0.8), t68, k(0.6) * t67), t21, t69),
+        let t52 = carriage_wy * carriage_wy;
+        let t53 = t35 + t5;
+        let t54 = T::fused(
+            k(236.8),
+            t17 * T::fused(-k(0.6666666666666666), t31, t53),
+            T::fused(
+                k(0.3333333333333333),
+                t52 - t28,
+                -T::fused(k(3.3333333333333335), carriage_wx * carriage_wy, t51),
+            ),
         );
-        let t75 = T::fused(-t47, t71, t74);
+        let t55 = T::fused(
+            t46 * (t37 * t36),
+            t34,
+            k(2.25) * (t46 * T::fused(t41, t44, t41 * t37) * t54),
+        );
+        let t56 = T::fused(k(2.5), t13, t14);
+        let t57 = T::fused(k(2.5), t3, t5);
+        let t58 = k(52.0) * (carriage_dsz * T::fused(k(2.5), t21, t39));
+        let t59 = T::fused(
+            k(10.0),
+            carriage_dwx,
+            -T::fused(-k(189.44), t56 * t19, T::fused(k(142.08), t57 * t18, t58)),
+        );
+        let t60 = T::fused(
+            carriage_wx,
+            T::fused(k(2.0), carriage_wy, carriage_wz),
+            T::fused(k(2.0), carriage_dwz, -(carriage_dwy + t59)),
+        );
+        let t61 = T::fused(
+            k(355.2),
+            t17 * T::fused(k(0.4), t53, t32),
+            T::fused(k(3.0), t29 - t52, T::fused(k(5.0), carriage_wy * carriage_wz, t60)),
+        );
+        let t62 = T::fused(t46 * (t36 * t44), t61, t55);
+        let t63 = k(1.3333333333333333) * (t21 * t62);
+        let t64 = T::fused(-k(189.44), t43 * t46 * t33, t45 * t46 * t61);
+        let t65 = T::fused(
+            t46 * (t40 * t37),
+            t34,
+            k(3.0) * (t46 * T::fused(t21, t37, t21 * t44) * t54),
+        );
+        let t66 = T::fused(t46 * (t40 * t44), t61, t65);
+        let t67 = t41 * t66;
+        let t68 = T::fused(
+            k(90.9312),
+            T::fused(k(0.75), t56, -t57) * t20,
+            -(t58 - (t67 + T::fused(t37, t64, -t63))),
+        );
+        let t69 = k(0.75) * t68;
+        let t70 = T::fused(
+            k(68.1984),
+            T::fused(-k(0.75), t25, t24) * t20,
+            T::fused(k(39.0), t23, T::fused(t44, t64, t63) - t67),
+        );
+        let t71 = k(170.496) * t20;
+        let t72 = T::fused(
+            T::fused(k(0.75), t47, t48),
+            t71,
+            T::fused(k(97.5), t49, T::fused(-t36, t66, t40 * t62)),
+        );
+        let t73 = t0 - t9;
+        let t74 = k(97.5) * carriage_dsz;
+        let t75 = t20 * T::fused(k(0.2), t22, T::fused(-k(0.04), t21, k(0.1) * t39));
         let t76 = T::fused(
-            t54 * T::fused(-t52, t48, t51 * t45),
+            -t14,
             t70,
-            -T::fused(-(t53 * t54), t39, t49 * t54 * t63),
+            T::fused(-t13, t72, T::fused(t74, t73, k(852.48) * t75)),
         );
-        let t77 = T::fused(
-            t45,
-            t73,
-            T::fused(T::fused(-k(0.8), t35, k(0.6) * t34), t21, t38),
-        );
-        let t78 = T::fused(-t50, t76, T::fused(-t48, t71, t77));
+        let t77 = T::fused(-t15, t69, t76);
+        let t78 = t10 - t16;
         let t79 = T::fused(
-            t52,
-            t73,
-            T::fused(T::fused(-k(0.8), t61, k(0.6) * t60), t21, t62),
+            -t5,
+            t70,
+            T::fused(-t3, t72, T::fused(-t74, t78, k(639.36) * t75)),
         );
-        let t80 = T::fused(t41, t76, T::fused(-t51, t71, t79));
-        let t81 = k(0.6) * t21;
-        let t82 = carriage_rz
-            - (carriage_rz
-                + T::fused(k(0.02), t37, T::fused(k(0.1), t36, k(0.05) * t46)));
-        let t83 = carriage_rx - t10;
-        let t84 = T::fused(t82, t81, t22 * t83)
-            + T::fused(-t16, t75, T::fused(t13, t78, t11 * t80));
-        let t85 = carriage_ry - t17;
-        let t86 = k(0.8) * t21;
-        let t87 = T::fused(-t22, t85, t82 * t86)
-            - T::fused(t9, t75, T::fused(t6, t78, t3 * t80));
-        let t88 = T::fused(t83, t86, t81 * t85)
-            - T::fused(t37, t75, T::fused(-t46, t78, t36 * t80));
+        let t80 = T::fused(-t8, t69, t79);
+        let t81 = T::fused(
+            -t39,
+            t70,
+            T::fused(-t21, t72, T::fused(t78, t71, k(127.872) * (t20 * t73))),
+        );
         *out = [
-            t21,
-            t22,
+            k(2.8416) * t20,
+            k(1.3) * carriage_dsz,
             k(0.0),
-            T::fused(-k(0.8), t84, k(0.6) * t87),
-            t88,
-            -T::fused(k(0.6), t84, k(0.8) * t87),
+            k(0.0016) * T::fused(k(1.3333333333333333), t80, -t77),
+            k(0.0026666666666666666) * T::fused(-t22, t69, t81),
+            k(0.0021333333333333334) * T::fused(k(0.75), t80, t77),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -11,8 +11,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 114 operations by rotations of the bodies, doubled; 114 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 57 operations by rotations of the bodies, doubled; 57 operations by relative Euler parameters, doubled; 2 more compared
+//! * accelerations: 108 operations by rotations of the bodies, doubled; 108 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 56 operations by rotations of the bodies, doubled; 56 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 0 operations by recursion; 0 operations by normal form
 //! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 1 more compared
 //! * corrected_accelerations: 15 operations by recursion in the bodies' frames; 15 operations by recursion in the global frame; 5 more compared
@@ -26,24 +26,24 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 22 | 1 | 29 | 0 of 19 | 172 | 30 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 10 | 20 | 1 | 31 | 0 of 9 | 127 | 32 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 26 | 49 | 1 | 76 | 2 of 5 | 343 | 76 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 14 | 25 | 1 | 40 | 0 of 5 | 98 | 41 |
+//! | gamma | γ | 26 | 48 | 1 | 75 | 2 of 5 | 253 | 75 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 14 | 24 | 1 | 39 | 0 of 5 | 72 | 40 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 5 | 0 | 5 | 2 of 6 | 6 | 5 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 36 | 75 | 3 | 114 | 2 of 6 | 2291 | 115 |
-//! | multipliers | λ, the accelerations being known | 17 | 40 | 2 | 59 | 0 of 5 | 335 | 60 |
-//! | project | (δr, δπ') that changes the rows as given | 16 | 38 | 3 | 57 | 0 of 6 | 1044 | 58 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 36 | 69 | 3 | 108 | 2 of 6 | 1636 | 109 |
+//! | multipliers | λ, the accelerations being known | 18 | 38 | 2 | 58 | 0 of 5 | 241 | 59 |
+//! | project | (δr, δπ') that changes the rows as given | 16 | 37 | 3 | 56 | 0 of 6 | 730 | 57 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 8 | 24 | 24 |
-//! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
-//! | outputs | outputs, the accelerations being known | 29 | 58 | 2 | 89 | 0 of 6 | 2473 | 90 |
+//! | outputs | outputs, the accelerations being known | 29 | 57 | 2 | 88 | 0 of 6 | 1750 | 88 |
 //! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 0 | 3 | 0 | 3 | 8 of 14 | 4 | 3 |
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 4 | 11 | 0 | 15 | 0 of 6 | 15 | 15 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 19 | 44 | 2 | 65 | 0 of 5 | 189 | 66 |
-//! | corrected_solution | both | 19 | 46 | 2 | 67 | 0 of 11 | 214 | 68 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 20 | 38 | 2 | 60 | 0 of 5 | 158 | 61 |
+//! | corrected_solution | both | 20 | 41 | 2 | 63 | 0 of 11 | 184 | 64 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 5 of 6 | 0 | 0 |
 //!
 //! # Proof
@@ -221,7 +221,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
             T::fused(nut_e3, nut_e3, T::fused(nut_e2, nut_e2, t1)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 40 operations (14 ±, 25 ×, 1 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 39 operations (14 ±, 24 ×, 1 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -234,31 +234,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = k(2.0) * nut_e2;
-        let t1 = k(2.0) * nut_e0;
-        let t2 = T::fused(-nut_e0, t1, k(1.0));
-        let t3 = T::fused(-nut_e2, t0, t2);
-        let t4 = k(2.0) * nut_e1;
-        let t5 = T::fused(-nut_e1, t4, t2);
-        let t6 = nut_e3 * t1;
-        let t7 = nut_e2 * t4;
-        let t8 = t7 - t6;
-        let t9 = t7 + t6;
-        let t10 = T::fused(
-            t5,
-            T::fused(nut_wz, t3, nut_wy * T::fused(-nut_e1, t1, nut_e3 * t0)),
-            t9 * T::fused(-nut_wz, t8, nut_wy * T::fused(nut_e2, t1, nut_e3 * t4)),
+        let t0 = T::fused(-nut_e0, nut_e0, k(0.5));
+        let t1 = T::fused(nut_e2, nut_e2, -t0);
+        let t2 = T::fused(nut_e1, nut_e1, -t0);
+        let t3 = nut_e0 * nut_e3;
+        let t4 = nut_e1 * nut_e2;
+        let t5 = t4 - t3;
+        let t6 = t4 + t3;
+        let t7 = T::fused(
+            t2,
+            T::fused(-nut_wz, t1, T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3) * nut_wy),
+            t6
+                * T::fused(
+                    -T::fused(nut_e0, nut_e2, nut_e1 * nut_e3),
+                    nut_wy,
+                    t5 * nut_wz,
+                ),
         );
-        let t11 = T::fused(-k(0.02), t10 / T::fused(t5, t5, t9 * t9), nut_sz);
+        let t8 = T::fused(k(0.02), t7 / T::fused(t2, t2, t6 * t6), nut_sz);
         *out = [
             nut_sx,
             nut_sy,
-            t11,
-            -T::fused(nut_wy, t5, nut_wx * t8),
-            T::fused(nut_wy, t9, nut_wx * t3),
+            t8,
+            -(k(2.0) * T::fused(-nut_wy, t2, t5 * nut_wx)),
+            k(2.0) * T::fused(-nut_wx, t1, t6 * nut_wy),
         ];
     }
-    /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
+    /// Kinetic and potential energy: 15 operations (5 ±, 10 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let nut_rz = y[2];
@@ -269,17 +271,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_wy = y[11];
         let nut_wz = y[12];
         let t0 = T::fused(
-            nut_wz,
-            k(0.003) * nut_wz,
-            T::fused(nut_wy, k(0.0025) * nut_wy, nut_wx * (k(0.002) * nut_wx)),
-        );
-        let t1 = T::fused(
-            k(2.0),
-            T::fused(nut_sz, nut_sz, T::fused(nut_sy, nut_sy, nut_sx * nut_sx)),
-            t0,
+            k(0.0015),
+            nut_wz * nut_wz,
+            T::fused(k(0.00125), nut_wy * nut_wy, k(0.001) * (nut_wx * nut_wx)),
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
+            kinetic: T::fused(nut_sz, nut_sz, T::fused(nut_sy, nut_sy, nut_sx * nut_sx))
+                + t0,
             potential: k(19.62) * nut_rz,
         }
     }
@@ -448,30 +446,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let t0 = k(2.0) * nut_e1;
         let t1 = k(2.0) * nut_e0;
         let t2 = T::fused(-nut_e1, t0, T::fused(-nut_e0, t1, k(1.0)));
-        let t3 = T::fused(nut_e3, t1, nut_e2 * t0);
-        let t4 = k(0.02) / T::fused(t2, t2, t3 * t3);
-        let t5 = k(2.0) * nut_e3;
+        let t3 = k(2.0) * nut_e3;
+        let t4 = T::fused(nut_e3, t1, nut_e2 * t0);
+        let t5 = k(0.02) / T::fused(t2, t2, t4 * t4);
         let t6 = k(2.0) * nut_e2;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            T::fused(t5, t2, k(4.0) * nut_e0 * t3) * t4,
-            T::fused(t6, t2, k(4.0) * nut_e1 * t3) * t4,
-            t0 * t2 * t4,
-            t1 * t2 * t4,
+            t5 * T::fused(t3, t2, k(4.0) * nut_e0 * t4),
+            t5 * T::fused(t6, t2, k(4.0) * nut_e1 * t4),
+            t5 * (t0 * t2),
+            t5 * (t1 * t2),
             t6,
-            t5,
+            t3,
             t1,
             t0,
             -t0,
             -t1,
-            t5,
+            t3,
             t6,
             t1,
             t0,
             t6,
-            t5,
+            t3,
         ];
     }
     /// Writes the non-zeros of (Φ_r, Φ_π'): 31 operations (10 ±, 20 ×, 1 ÷).
@@ -514,7 +512,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 76 operations (26 ±, 49 ×, 1 ÷).
+    /// Writes γ: 75 operations (26 ±, 48 ×, 1 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -524,41 +522,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = k(2.0) * nut_e2;
-        let t1 = k(2.0) * nut_e0;
-        let t2 = T::fused(-nut_e0, t1, k(1.0));
-        let t3 = T::fused(-nut_e2, t0, t2);
-        let t4 = T::fused(-nut_e1, t1, nut_e3 * t0);
-        let t5 = T::fused(nut_wz, t3, nut_wy * t4);
-        let t6 = k(2.0) * nut_e1;
-        let t7 = T::fused(-nut_e1, t6, t2);
-        let t8 = nut_e3 * t1;
-        let t9 = nut_e2 * t6;
-        let t10 = t9 - t8;
-        let t11 = T::fused(nut_e2, t1, nut_e3 * t6);
-        let t12 = T::fused(-nut_wz, t10, nut_wy * t11);
-        let t13 = t9 + t8;
-        let t14 = k(1.0) / T::fused(t7, t7, t13 * t13);
+        let t0 = T::fused(-nut_e0, nut_e0, k(0.5));
+        let t1 = T::fused(nut_e1, nut_e1, -t0);
+        let t2 = nut_e0 * nut_e3;
+        let t3 = nut_e1 * nut_e2;
+        let t4 = t3 + t2;
+        let t5 = k(1.0) / T::fused(t1, t1, t4 * t4);
+        let t6 = T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
+        let t7 = t3 - t2;
+        let t8 = T::fused(-t6, nut_wy, t7 * nut_wz);
+        let t9 = T::fused(nut_e2, nut_e2, -t0);
+        let t10 = T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
+        let t11 = T::fused(-nut_wz, t9, t10 * nut_wy);
+        let t12 = T::fused(t1, t11, t4 * t8) * (T::fused(-t8, t1, t4 * t11) * (t5 * t5));
+        let t13 = nut_wx * nut_wy;
+        let t14 = nut_wx * nut_wz;
         let t15 = nut_wy * nut_wy;
         let t16 = T::fused(nut_wz, nut_wz, t15);
-        let t17 = nut_wx * nut_wy;
-        let t18 = nut_wx * nut_wz;
-        let t19 = t5 * t12;
-        let t20 = T::fused(t13, T::fused(t18, t11, T::fused(t16, t7, t17 * t10)), t19);
-        let t21 = T::fused(t7, T::fused(t18, t4, -T::fused(t16, t13, t17 * t3)), -t19);
-        let t22 = T::fused(
-            t14 * t14 * (k(2.0) * T::fused(-t13, t5, t7 * t12)),
-            T::fused(t7, t5, t13 * t12),
-            t14 * (t21 + t20),
+        let t17 = t8 * t11;
+        let t18 = T::fused(t1, T::fused(t4, t16, -T::fused(t13, t9, t10 * t14)), t17);
+        let t19 = T::fused(
+            t4,
+            T::fused(-t16, t1, T::fused(t6, t14, t7 * t13)),
+            -(t17 - t18),
         );
-        let t23 = nut_wy * nut_wz;
-        let t24 = T::fused(nut_wx, nut_wx, t15);
+        let t20 = T::fused(nut_wx, nut_wx, t15);
+        let t21 = nut_wy * nut_wz;
         *out = [
             k(0.0),
             k(0.0),
-            -(k(0.02) * t22),
-            T::fused(t24, t11, -T::fused(-t18, t7, t23 * t10)),
-            T::fused(t24, t4, T::fused(-t18, t13, t23 * t3)),
+            -(k(0.02) * T::fused(k(2.0), t12, t5 * t19)),
+            -(k(2.0) * T::fused(t14, t1, T::fused(-t6, t20, t7 * t21))),
+            -(k(2.0) * T::fused(t4, t14, -T::fused(-t21, t9, t10 * t20))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 5 operations (0 ±, 5 ×, 0 ÷).
@@ -577,7 +572,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
             -(nut_wx * t0),
         ];
     }
-    /// Solves eq. (17): 114 operations (36 ±, 75 ×, 3 ÷).
+    /// Solves eq. (17): 108 operations (36 ±, 69 ×, 3 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -587,58 +582,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = k(2.0) * nut_e1;
-        let t1 = k(2.0) * nut_e0;
-        let t2 = T::fused(-nut_e0, t1, k(1.0));
-        let t3 = T::fused(-nut_e1, t0, t2);
-        let t4 = nut_e3 * t1;
-        let t5 = nut_e2 * t0;
-        let t6 = t5 + t4;
-        let t7 = k(1.0) / T::fused(t3, t3, t6 * t6);
-        let t8 = k(2.0) * nut_e2;
-        let t9 = T::fused(-nut_e2, t8, t2);
-        let t10 = t5 - t4;
-        let t11 = T::fused(-t3, t9, t10 * t6);
-        let t12 = t11 * t7;
-        let t13 = k(0.02) * t12;
-        let t14 = k(0.04) * t12;
-        let t15 = nut_wx * nut_wy;
-        let t16 = nut_wx * nut_wz;
-        let t17 = nut_wy * nut_wz;
-        let t18 = T::fused(-nut_e1, t1, nut_e3 * t8);
-        let t19 = nut_wy * nut_wy;
-        let t20 = T::fused(nut_wx, nut_wx, t19);
-        let t21 = T::fused(t20, t18, T::fused(-t16, t6, t17 * t9));
-        let t22 = k(1.0) / t11;
-        let t23 = t10 * t22;
-        let t24 = T::fused(nut_e2, t1, nut_e3 * t0);
-        let t25 = k(0.02) * (t7 * T::fused(t3, t18, t24 * t6));
-        let t26 = T::fused(nut_wz, t9, nut_wy * t18);
-        let t27 = T::fused(-nut_wz, t10, nut_wy * t24);
-        let t28 = T::fused(nut_wz, nut_wz, t19);
-        let t29 = t26 * t27;
-        let t30 = T::fused(t6, T::fused(t16, t24, T::fused(t28, t3, t15 * t10)), t29);
-        let t31 = T::fused(t3, T::fused(t16, t18, -T::fused(t28, t6, t15 * t9)), -t29);
-        let t32 = T::fused(
-            t7 * t7 * (k(2.0) * T::fused(-t6, t26, t3 * t27)),
-            T::fused(t3, t26, t6 * t27),
-            t7 * (t31 + t30),
+        let t0 = T::fused(-nut_e0, nut_e0, k(0.5));
+        let t1 = T::fused(nut_e2, nut_e2, -t0);
+        let t2 = T::fused(nut_e1, nut_e1, -t0);
+        let t3 = nut_e0 * nut_e3;
+        let t4 = nut_e1 * nut_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = T::fused(-t2, t1, t6 * t5);
+        let t8 = k(1.0) / T::fused(t2, t2, t5 * t5);
+        let t9 = t8 * t7;
+        let t10 = k(1.0) / t7;
+        let t11 = t1 * t10;
+        let t12 = T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
+        let t13 = T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
+        let t14 = t8 * T::fused(-t12, t2, t13 * t5);
+        let t15 = nut_wx * nut_wz;
+        let t16 = nut_wy * nut_wy;
+        let t17 = T::fused(nut_wx, nut_wx, t16);
+        let t18 = nut_wy * nut_wz;
+        let t19 = T::fused(t15, t2, T::fused(-t13, t17, t6 * t18));
+        let t20 = T::fused(-t13, nut_wy, t6 * nut_wz);
+        let t21 = T::fused(-nut_wz, t1, t12 * nut_wy);
+        let t22 = T::fused(t2, t21, t5 * t20)
+            * (T::fused(-t20, t2, t5 * t21) * (t8 * t8));
+        let t23 = nut_wx * nut_wy;
+        let t24 = T::fused(nut_wz, nut_wz, t16);
+        let t25 = t20 * t21;
+        let t26 = T::fused(t2, T::fused(t5, t24, -T::fused(t23, t1, t12 * t15)), t25);
+        let t27 = T::fused(
+            t5,
+            T::fused(-t24, t2, T::fused(t13, t15, t6 * t23)),
+            -(t25 - t26),
         );
-        let t33 = T::fused(t20, t24, -T::fused(-t16, t3, t17 * t10));
-        let t34 = t9 * t22;
-        let t35 = T::fused(t25 * t23, t21, T::fused(-k(0.02), t32, t34 * t25 * t33));
-        let t36 = T::fused(t14, t35, -T::fused(-k(0.3924), t12, k(0.0005) * t15))
-            / T::fused(t14, t13, k(0.003));
+        let t28 = t6 * t10;
+        let t29 = T::fused(t5, t15, -T::fused(-t18, t1, t12 * t17));
+        let t30 = T::fused(
+            t29,
+            t28 * t14,
+            T::fused(-t19, t14 * t11, T::fused(k(2.0), t22, t8 * t27)),
+        );
+        let t31 = T::fused(-k(490.5), t9, T::fused(t9, t30, k(0.625) * t23))
+            / T::fused(t9, t9, k(3.75));
         *out = [
             k(0.0),
             k(0.0),
-            T::fused(-t13, t36, t35),
-            -T::fused(t33, t6 * t22, t21 * (t3 * t22)),
-            T::fused(t34, t33, t23 * t21),
-            t36,
+            -(k(0.02) * T::fused(-t9, t31, t30)),
+            T::fused(-t29, t2 * t10, t19 * (t5 * t10)),
+            T::fused(-t29, t28, t19 * t11),
+            -t31,
         ];
     }
-    /// Writes λ: 59 operations (17 ±, 40 ×, 2 ÷).
+    /// Writes λ: 58 operations (18 ±, 38 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -659,35 +654,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_dsz = accelerations[2];
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
-        let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
-        let t1 = k(2.0) * nut_e0;
-        let t2 = k(2.0) * nut_e2;
-        let t3 = k(2.0) * nut_e1;
-        let t4 = T::fused(-nut_e0, t1, k(1.0));
-        let t5 = T::fused(-nut_e1, t3, t4);
-        let t6 = nut_e3 * t1;
-        let t7 = nut_e2 * t3;
-        let t8 = t7 + t6;
-        let t9 = T::fused(
-            t5,
-            T::fused(-nut_e1, t1, nut_e3 * t2),
-            T::fused(nut_e2, t1, nut_e3 * t3) * t8,
+        let t0 = nut_dsz + k(9.81);
+        let t1 = k(0.025) * T::fused(-k(2.5), nut_dwy, nut_wx * nut_wz);
+        let t2 = nut_e0 * nut_e3;
+        let t3 = nut_e1 * nut_e2;
+        let t4 = t3 + t2;
+        let t5 = t3 - t2;
+        let t6 = nut_e0 * nut_e0;
+        let t7 = k(0.5) - T::fused(nut_e2, nut_e2, t6);
+        let t8 = k(0.5) - T::fused(nut_e1, nut_e1, t6);
+        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
+        let t10 = t7 * t9;
+        let t11 = T::fused(
+            T::fused(nut_e0, nut_e2, nut_e1 * nut_e3),
+            t4,
+            t8 * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
         );
-        let t10 = k(0.02) * (t9 / T::fused(t5, t5, t8 * t8));
-        let t11 = T::fused(-nut_e2, t2, t4);
-        let t12 = t7 - t6;
-        let t13 = k(1.0) / T::fused(-t5, t11, t12 * t8);
-        let t14 = t11 * t13;
-        let t15 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
-        let t16 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
-        let t17 = T::fused(-t0, t14 * t10, T::fused(t15, t8 * t13, t16 * t14));
-        let t18 = t12 * t13;
-        let t19 = T::fused(-t0, t10 * t18, T::fused(t15, t5 * t13, t16 * t18));
-        *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, t17, t19];
+        let t12 = t11 / T::fused(t4, t4, t8 * t8);
+        let t13 = k(0.0125) * T::fused(k(4.0), nut_dwx, nut_wy * nut_wz);
+        let t14 = T::fused(t4 * t9, t13, -T::fused(-t10, t1, t12 * t10 * t0));
+        let t15 = t5 * t9;
+        let t16 = T::fused(t8 * t9, t13, -T::fused(-t15, t1, t15 * t12 * t0));
+        *lambda = [
+            -(k(2.0) * nut_dsx),
+            -(k(2.0) * nut_dsy),
+            -(k(2.0) * t0),
+            -(k(0.02) * t14),
+            -(k(0.02) * t16),
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Screw<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 57 operations (16 ±, 38 ×, 3 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 56 operations (16 ±, 37 ×, 3 ÷).
     fn project(
         &self,
         _t: T,
@@ -705,39 +703,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Screw<T> {
         let row2 = rows[2];
         let row3 = rows[3];
         let row4 = rows[4];
-        let t0 = k(2.0) * nut_e2;
-        let t1 = k(2.0) * nut_e0;
-        let t2 = T::fused(-nut_e0, t1, k(1.0));
-        let t3 = T::fused(-nut_e2, t0, t2);
-        let t4 = k(2.0) * nut_e1;
-        let t5 = T::fused(-nut_e1, t4, t2);
-        let t6 = nut_e3 * t1;
-        let t7 = nut_e2 * t4;
-        let t8 = t7 + t6;
-        let t9 = t7 - t6;
-        let t10 = T::fused(-t5, t3, t9 * t8);
-        let t11 = k(1.0) / t10;
-        let t12 = t9 * t11;
-        let t13 = T::fused(
-            t5,
-            T::fused(-nut_e1, t1, nut_e3 * t0),
-            T::fused(nut_e2, t1, nut_e3 * t4) * t8,
+        let t0 = T::fused(-nut_e0, nut_e0, k(0.5));
+        let t1 = T::fused(nut_e2, nut_e2, -t0);
+        let t2 = T::fused(nut_e1, nut_e1, -t0);
+        let t3 = nut_e0 * nut_e3;
+        let t4 = nut_e1 * nut_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = T::fused(-t2, t1, t6 * t5);
+        let t8 = k(1.0) / t7;
+        let t9 = t1 * t8;
+        let t10 = T::fused(
+            -T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
+            t2,
+            T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t5,
         );
-        let t14 = k(1.0) / T::fused(t5, t5, t8 * t8);
-        let t15 = k(0.02) * (t14 * t13);
-        let t16 = t3 * t11;
-        let t17 = T::fused(t15 * t12, row4, T::fused(t16 * t15, row3, row2));
-        let t18 = t10 * t14;
-        let t19 = k(0.04) * t18;
-        let t20 = k(0.02) * t18;
-        let t21 = t19 * t17 / T::fused(t19, t20, k(0.003));
+        let t11 = k(1.0) / T::fused(t2, t2, t5 * t5);
+        let t12 = t11 * t10;
+        let t13 = t6 * t8;
+        let t14 = T::fused(
+            t13 * t12,
+            row4,
+            T::fused(-(t12 * t9), row3, k(100.0) * row2),
+        );
+        let t15 = t11 * t7;
+        let t16 = t15 * t14 / T::fused(t15, t15, k(3.75));
         *out = [
             row0,
             row1,
-            T::fused(-t20, t21, t17),
-            -T::fused(t8 * t11, row3, t5 * t11 * row4),
-            T::fused(t16, row3, t12 * row4),
-            t21,
+            k(0.01) * T::fused(-t15, t16, t14),
+            -(k(0.5) * T::fused(-(t2 * t8), row4, t5 * t8 * row3)),
+            -(k(0.5) * T::fused(-t13, row4, t9 * row3)),
+            k(0.5) * t16,
         ];
     }
 }
@@ -841,7 +838,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
             k(-103.26315789473684),
         ];
     }
-    /// Writes λ: 65 operations (19 ±, 44 ×, 2 ÷).
+    /// Writes λ: 60 operations (20 ±, 38 ×, 2 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -862,31 +859,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let nut_dsz = accelerations[2];
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
-        let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
-        let t1 = nut_e0 * nut_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t1));
-        let t3 = nut_e0 * nut_e3;
-        let t4 = nut_e1 * nut_e2;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = T::fused(
-            t2,
-            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
-            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t5,
+        let t0 = nut_dsz + k(9.81);
+        let t1 = T::fused(-k(2.5), nut_dwy, nut_wx * nut_wz);
+        let t2 = (nut_e0 - nut_e3) * (nut_e0 + nut_e3);
+        let t3 = T::fused(k(4.0), nut_dwx, nut_wy * nut_wz);
+        let t4 = nut_e0 * nut_e3;
+        let t5 = nut_e1 * nut_e2;
+        let t6 = t5 + t4;
+        let t7 = t5 - t4;
+        let t8 = nut_e0 * nut_e0;
+        let t9 = k(0.5) - T::fused(nut_e2, nut_e2, t8);
+        let t10 = k(0.5) - T::fused(nut_e1, nut_e1, t8);
+        let t11 = k(1.0) / T::fused(-t7, t6, t10 * t9);
+        let t12 = T::fused(
+            T::fused(nut_e0, nut_e2, nut_e1 * nut_e3),
+            t6,
+            t10 * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
         );
-        let t7 = k(0.02) * (t6 / T::fused(t2, t2, t5 * t5));
-        let t8 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t1));
-        let t9 = k(2.0) * (t4 - t3);
-        let t10 = k(1.0) / T::fused(-t2, t8, t9 * t5);
-        let t11 = k(2.0) * nut_e3;
-        let t12 = nut_e0 * t11;
-        let t13 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
-        let t14 = T::fused(-nut_e3, t11, k(1.0));
-        let t15 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
-        let t16 = T::fused(-t0, t8 * t10 * t7, T::fused(-t13, t12, t15 * t14));
-        let t17 = T::fused(-t0, t7 * (t9 * t10), T::fused(t13, t14, t15 * t12));
-        *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, t16, t17];
+        let t13 = t12 / T::fused(t6, t6, t10 * t10);
+        let t14 = T::fused(k(20.0), t13 * (t9 * t11) * t0, -T::fused(-t2, t1, t4 * t3));
+        let t15 = T::fused(
+            k(10.0),
+            t7 * t11 * t13 * t0,
+            T::fused(k(0.25), t2 * t3, t4 * t1),
+        );
+        *lambda = [
+            -(k(2.0) * nut_dsx),
+            -(k(2.0) * nut_dsy),
+            -(k(2.0) * t0),
+            k(0.001) * t14,
+            k(0.002) * t15,
+        ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 67 operations (19 ±, 46 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 63 operations (20 ±, 41 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -902,24 +907,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let t3 = k(0.5) - T::fused(nut_e3, nut_e3, t2);
         let t4 = nut_wy * nut_wz;
         let t5 = nut_wx * nut_wz;
-        let t6 = T::fused(k(8.261052631578947), t3, k(19.62));
-        let t7 = k(0.0035) * t5;
-        let t8 = k(2.0) * nut_e3;
-        let t9 = T::fused(-nut_e3, t8, k(1.0));
-        let t10 = k(0.0025) * t4;
-        let t11 = nut_e0 * t8;
-        let t12 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t2));
-        let t13 = nut_e0 * nut_e3;
-        let t14 = nut_e1 * nut_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = T::fused(t12, k(2.0) * t1, k(2.0) * t0 * t15)
-            / T::fused(t12, t12, t15 * t15);
-        let t17 = k(0.02) * t16;
-        let t18 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t2));
-        let t19 = k(2.0) * (t14 - t13);
-        let t20 = k(1.0) / T::fused(-t12, t18, t19 * t15);
-        let t21 = T::fused(t18 * t20 * t17, t6, T::fused(-t9, t7, t11 * t10));
-        let t22 = T::fused(t17 * (t19 * t20), t6, -T::fused(t11, t7, t9 * t10));
+        let t6 = t3 + k(2.375);
+        let t7 = (nut_e0 - nut_e3) * (nut_e0 + nut_e3);
+        let t8 = nut_e0 * nut_e3;
+        let t9 = nut_e1 * nut_e2;
+        let t10 = t9 + t8;
+        let t11 = t9 - t8;
+        let t12 = k(0.5) - T::fused(nut_e2, nut_e2, t2);
+        let t13 = k(0.5) - T::fused(nut_e1, nut_e1, t2);
+        let t14 = k(1.0) / T::fused(-t11, t10, t13 * t12);
+        let t15 = T::fused(t0, t10, t13 * t1) / T::fused(t10, t10, t13 * t13);
+        let t16 = T::fused(
+            k(0.04236748216106014),
+            t5 * t7,
+            T::fused(-k(0.0605249745158002), t8 * t4, t15 * (t12 * t14) * t6),
+        );
+        let t17 = T::fused(
+            k(0.08473496432212028),
+            t8 * t5,
+            T::fused(k(0.0302624872579001), t4 * t7, t11 * t14 * t15 * t6),
+        );
         *out = [
             -(k(4.130526315789473) * t0),
             -(k(4.130526315789473) * t1),
@@ -929,9 +936,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
             k(-103.26315789473684),
             k(8.261052631578947) * t0,
             k(8.261052631578947) * t1,
-            -t6,
-            -t21,
-            -t22,
+            -(k(8.261052631578947) * t6),
+            k(0.08261052631578947) * t16,
+            k(0.08261052631578947) * t17,
         ];
     }
 }
@@ -968,7 +975,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 89 operations (29 ±, 58 ×, 2 ÷).
+    /// Writes the outputs: 88 operations (29 ±, 57 ×, 2 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -985,48 +992,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
         let nut_dsz = accelerations[2];
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
-        let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
-        let t1 = k(2.0) * nut_e1;
-        let t2 = k(2.0) * nut_e0;
-        let t3 = T::fused(-nut_e0, t2, k(1.0));
-        let t4 = T::fused(-nut_e1, t1, t3);
-        let t5 = nut_e3 * t2;
-        let t6 = nut_e2 * t1;
+        let t0 = nut_dsz + k(9.81);
+        let t1 = k(0.0625) * T::fused(-k(0.4), nut_wx * nut_wz, nut_dwy);
+        let t2 = T::fused(-nut_e0, nut_e0, k(0.5));
+        let t3 = T::fused(nut_e2, nut_e2, -t2);
+        let t4 = T::fused(nut_e1, nut_e1, -t2);
+        let t5 = nut_e0 * nut_e3;
+        let t6 = nut_e1 * nut_e2;
         let t7 = t6 + t5;
-        let t8 = k(0.02) / T::fused(t4, t4, t7 * t7);
-        let t9 = k(2.0) * nut_e2;
-        let t10 = T::fused(-nut_e2, t9, t3);
-        let t11 = t6 - t5;
-        let t12 = T::fused(-t4, t10, t11 * t7);
-        let t13 = t0 * (t12 * t8);
-        let t14 = nut_e2 * t2;
-        let t15 = nut_e3 * t1;
-        let t16 = t15 + t14;
-        let t17 = nut_e1 * t2;
-        let t18 = nut_e3 * t9;
-        let t19 = t18 - t17;
-        let t20 = T::fused(t4, t19, t16 * t7) * t8;
-        let t21 = k(1.0) / t12;
-        let t22 = t11 * t21;
-        let t23 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
-        let t24 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
-        let t25 = T::fused(-t0, t22 * t20, T::fused(t23, t4 * t21, t24 * t22));
-        let t26 = t10 * t21;
-        let t27 = T::fused(-t0, t26 * t20, T::fused(t23, t7 * t21, t24 * t26));
-        let t28 = T::fused(t7, t25, T::fused(-t4, t27, t0 * t20));
-        let t29 = T::fused(-t10, t25, t11 * t27);
-        let t30 = T::fused(
-            -T::fused(-nut_e3, k(2.0) * nut_e3, t3),
-            t13,
-            T::fused(-(t18 + t17), t28, (t15 - t14) * t29),
+        let t8 = t6 - t5;
+        let t9 = T::fused(-t4, t3, t8 * t7);
+        let t10 = k(1.0) / t9;
+        let t11 = t3 * t10;
+        let t12 = k(0.05) * T::fused(k(0.25), nut_wy * nut_wz, nut_dwx);
+        let t13 = nut_e0 * nut_e1;
+        let t14 = nut_e2 * nut_e3;
+        let t15 = t14 - t13;
+        let t16 = nut_e0 * nut_e2;
+        let t17 = nut_e1 * nut_e3;
+        let t18 = t17 + t16;
+        let t19 = k(1.0) / T::fused(t4, t4, t7 * t7);
+        let t20 = t19 * T::fused(-t15, t4, t18 * t7);
+        let t21 = T::fused(t20 * t11, t0, T::fused(t11, t1, t7 * t10 * t12));
+        let t22 = t8 * t10;
+        let t23 = T::fused(t22 * t20, t0, T::fused(t22, t1, t4 * t10 * t12));
+        let t24 = T::fused(-t8, t21, t3 * t23);
+        let t25 = T::fused(t20, t0, -T::fused(-t4, t21, t7 * t23));
+        let t26 = t19 * t9 * t0;
+        let t27 = T::fused(
+            -(t17 - t16),
+            t24,
+            T::fused(-(t14 + t13), t25, t26 * T::fused(nut_e3, nut_e3, -t2)),
         );
         *out = [
             k(2.0) * nut_dsx,
             k(2.0) * nut_dsy,
-            t0,
-            T::fused(t16, t13, -T::fused(t11, t28, t4 * t29)),
-            T::fused(t19, t13, T::fused(t10, t28, t7 * t29)),
-            t30,
+            k(2.0) * t0,
+            k(0.08) * T::fused(-t4, t24, T::fused(-t8, t25, t18 * t26)),
+            k(0.08) * T::fused(-t7, t24, T::fused(-t3, t25, t15 * t26)),
+            k(0.08) * t27,
         ];
     }
     fn n_outputs(&self) -> usize {

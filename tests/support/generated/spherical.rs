@@ -10,42 +10,42 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 202 operations by rotations of the bodies, doubled; 202 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 88 operations by rotations of the bodies, doubled; 88 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 61 operations by normal form; 95 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 61 operations by normal form; 95 operations by recursion; 3 more compared
-//! * corrected_accelerations: 129 operations by normal form in the bodies' frames; 143 operations by recursion in the bodies' frames; 9 more compared
-//! * joint_jacobian: 100 operations by normal form of that; 169 operations by derivatives of u̇, from its leaves; 1 more compared
+//! * accelerations: 197 operations by rotations of the bodies, doubled; 197 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 84 operations by rotations of the bodies, doubled; 84 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 59 operations by normal form; 94 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 60 operations by normal form; 93 operations by recursion; 3 more compared
+//! * corrected_accelerations: 117 operations by normal form in the bodies' frames; 131 operations by recursion in the bodies' frames; 9 more compared
+//! * joint_jacobian: 100 operations by normal form of that; 157 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 24 | 16 | 0 | 40 | 0 of 4 | 53 | 40 |
+//! | phi | Φ | 23 | 16 | 0 | 39 | 0 of 4 | 53 | 39 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 16 | 0 | 34 | 0 of 19 | 44 | 34 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 22 | 0 | 43 | 0 of 12 | 81 | 43 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 19 | 22 | 0 | 41 | 0 of 12 | 81 | 41 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 37 | 56 | 0 | 93 | 0 of 3 | 249 | 93 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 41 | 0 | 69 | 0 of 3 | 141 | 69 |
+//! | gamma | γ | 37 | 49 | 0 | 86 | 0 of 3 | 192 | 86 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 34 | 0 | 62 | 0 of 3 | 102 | 62 |
 //! | applied_force | (f, n' − w̃'J'w') | 12 | 17 | 0 | 29 | 2 of 6 | 36 | 29 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 87 | 115 | 0 | 202 | 0 of 6 | 44805 | 202 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 87 | 110 | 0 | 197 | 0 of 6 | 34668 | 197 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 36 | 52 | 0 | 88 | 0 of 6 | 3518 | 88 |
+//! | project | (δr, δπ') that changes the rows as given | 36 | 48 | 0 | 84 | 0 of 6 | 2560 | 84 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 11 | 18 | 0 | 29 | 0 of 2 | 29 | 29 |
+//! | energy | T and V | 11 | 17 | 0 | 28 | 0 of 2 | 28 | 28 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
-//! | outputs | outputs, the accelerations being known | 52 | 64 | 0 | 116 | 0 of 6 | 498 | 116 |
+//! | outputs | outputs, the accelerations being known | 44 | 59 | 0 | 103 | 0 of 6 | 444 | 103 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 29 | 29 | 1 | 59 | 0 of 7 | 842 | 60 |
-//! | solve_velocities | dependent velocities, eq. (19) | 27 | 46 | 0 | 73 | 0 of 6 | 120 | 73 |
-//! | joint_accelerations | u̇ in joint coordinates | 25 | 36 | 0 | 61 | 0 of 3 | 491 | 61 |
+//! | solve_velocities | dependent velocities, eq. (19) | 27 | 34 | 0 | 61 | 0 of 6 | 99 | 61 |
+//! | joint_accelerations | u̇ in joint coordinates | 25 | 34 | 0 | 59 | 0 of 3 | 463 | 59 |
 //! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 | 24 | 24 |
-//! | to_maximal | (q, v) of a joint state | 27 | 40 | 0 | 67 | 0 of 13 | 123 | 67 |
+//! | to_maximal | (q, v) of a joint state | 27 | 30 | 0 | 57 | 0 of 13 | 111 | 57 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 36 | 0 | 61 | 0 of 3 | 491 | 61 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 | 3602 | 129 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 35 | 0 | 60 | 0 of 3 | 465 | 60 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 64 | 0 | 117 | 0 of 6 | 3390 | 117 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | corrected_solution | both | 54 | 79 | 0 | 133 | 0 of 9 | 6717 | 133 |
+//! | corrected_solution | both | 54 | 67 | 0 | 121 | 0 of 9 | 6319 | 121 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 36 | 64 | 0 | 100 | 11 of 56 | 117 | 100 |
 //!
 //! # Proof
@@ -196,7 +196,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
             accelerations[5],
         ];
     }
-    /// Writes Φ: 40 operations (24 ±, 16 ×, 0 ÷).
+    /// Writes Φ: 39 operations (23 ±, 16 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let top_rx = y[0];
@@ -206,30 +206,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
-        let t0 = top_e0 * top_e0;
-        let t1 = T::fused(top_e1, top_e1, t0);
+        let t0 = top_e0 * top_e2;
+        let t1 = top_e1 * top_e3;
         let t2 = top_e0 * top_e3;
         let t3 = top_e1 * top_e2;
-        let t4 = top_e0 * top_e2;
-        let t5 = top_e1 * top_e3;
-        let t6 = T::fused(k(0.4), t5 + t4, -T::fused(-k(0.6), k(0.5) - t1, t3 - t2));
-        let t7 = top_e2 * top_e2;
+        let t4 = top_e0 * top_e0;
+        let t5 = k(0.5) - t4;
+        let t6 = top_e1 * top_e1;
+        let t7 = T::fused(k(0.6), t6 - t5, t3 - t2 - T::fused(k(0.4), t1 + t0, top_rx));
         let t8 = top_e0 * top_e1;
         let t9 = top_e2 * top_e3;
-        let t10 = T::fused(
-            k(0.4),
-            t9 - t8,
-            T::fused(-k(0.6), t3 + t2, k(0.5) - (t0 + t7)),
+        let t10 = top_e2 * top_e2;
+        let t11 = T::fused(
+            k(0.6),
+            t3 + t2,
+            t10 - t5 - T::fused(k(0.4), t9 - t8, top_ry),
         );
-        let t11 = top_e3 * top_e3;
-        let t12 = T::fused(
-            k(0.4),
-            k(0.5) - (t0 + t11),
-            T::fused(k(0.6), t5 - t4, t9 + t8),
+        let t12 = top_e3 * top_e3;
+        let t13 = T::fused(
+            k(0.6),
+            t1 - t0,
+            t9 + t8 - T::fused(k(0.4), t12 - t5, top_rz),
         );
-        *out = [top_rx + t6, top_ry + t10, top_rz - t12, t11 + (t1 + t7) - k(1.0)];
+        *out = [-t7, -t11, -t13, t10 + (t6 + (t4 + t12)) - k(1.0)];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 69 operations (28 ±, 41 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 62 operations (28 ±, 34 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -242,47 +243,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e1;
-        let t1 = k(2.0) * top_e0;
-        let t2 = T::fused(-top_e0, t1, k(1.0));
-        let t3 = T::fused(-top_e1, t0, t2);
-        let t4 = top_e3 * t1;
-        let t5 = top_e2 * t0;
-        let t6 = t5 - t4;
-        let t7 = top_e2 * t1;
-        let t8 = top_e3 * t0;
-        let t9 = t8 + t7;
-        let t10 = T::fused(
-            -k(0.5),
-            T::fused(top_wz, t3, top_wx * t9),
-            k(0.3) * T::fused(-top_wz, t6, top_wy * t9),
-        );
-        let t11 = t5 + t4;
-        let t12 = k(2.0) * top_e2;
-        let t13 = T::fused(-top_e2, t12, t2);
-        let t14 = top_e1 * t1;
-        let t15 = top_e3 * t12;
-        let t16 = t15 - t14;
-        let t17 = T::fused(
-            -k(0.5),
-            T::fused(-top_wz, t11, top_wx * t16),
-            k(0.3) * T::fused(top_wz, t13, top_wy * t16),
-        );
-        let t18 = t8 - t7;
-        let t19 = t15 + t14;
-        let t20 = T::fused(-top_e3, k(2.0) * top_e3, t2);
-        let t21 = T::fused(
-            -k(0.5),
-            T::fused(top_wz, t18, top_wx * t20),
-            k(0.3) * T::fused(top_wz, t19, top_wy * t20),
-        );
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e1, top_e1, -t0);
+        let t2 = top_e0 * top_e2;
+        let t3 = top_e1 * top_e3;
+        let t4 = t3 + t2;
+        let t5 = top_e0 * top_e3;
+        let t6 = top_e1 * top_e2;
+        let t7 = t6 - t5;
+        let t8 = T::fused(-k(0.6), T::fused(-t4, top_wy, t7 * top_wz), top_sx)
+            - T::fused(-top_wz, t1, t4 * top_wx);
+        let t9 = T::fused(top_e2, top_e2, -t0);
+        let t10 = top_e0 * top_e1;
+        let t11 = top_e2 * top_e3;
+        let t12 = t11 - t10;
+        let t13 = t6 + t5;
+        let t14 = T::fused(-t12, top_wx, t13 * top_wz)
+            + T::fused(k(0.6), T::fused(-top_wz, t9, t12 * top_wy), top_sy);
+        let t15 = T::fused(top_e3, top_e3, -t0);
+        let t16 = t11 + t10;
+        let t17 = t3 - t2;
+        let t18 = T::fused(-top_wx, t15, t17 * top_wz)
+            + T::fused(-k(0.6), T::fused(-top_wy, t15, t16 * top_wz), top_sz);
         *out = [
-            top_sx + T::fused(-k(0.2), T::fused(top_wy, t3, top_wx * t6), t10),
-            top_sy + T::fused(k(0.2), T::fused(top_wy, t11, top_wx * t13), t17),
-            top_sz - T::fused(k(0.2), T::fused(-top_wy, t18, top_wx * t19), t21),
+            T::fused(-k(0.4), T::fused(-top_wy, t1, t7 * top_wx), t8),
+            T::fused(k(0.4), T::fused(-top_wx, t9, t13 * top_wy), t14),
+            T::fused(k(0.4), T::fused(-t16, top_wx, t17 * top_wy), t18),
         ];
     }
-    /// Kinetic and potential energy: 29 operations (11 ±, 18 ×, 0 ÷).
+    /// Kinetic and potential energy: 28 operations (11 ±, 17 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let top_rz = y[2];
@@ -293,23 +282,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = T::fused(
-            top_wy,
-            T::fused(k(0.03), top_wz, T::fused(k(0.5), top_wy, k(0.01) * top_wx)),
-            top_wx
-                * T::fused(-k(0.02), top_wz, T::fused(k(0.01), top_wy, k(0.25) * top_wx)),
+            k(0.04),
+            top_wy * T::fused(k(3.0), top_wz, T::fused(k(50.0), top_wy, top_wx)),
+            top_wx * T::fused(-k(0.08), top_wz, T::fused(k(0.04), top_wy, top_wx)),
         );
         let t1 = T::fused(
-            -top_wz,
-            T::fused(-k(0.375), top_wz, T::fused(-k(0.03), top_wy, k(0.02) * top_wx)),
+            -k(0.08),
+            top_wz * T::fused(-k(18.75), top_wz, T::fused(-k(1.5), top_wy, top_wx)),
             t0,
         );
         let t2 = T::fused(
-            k(15.0),
+            k(60.0),
             T::fused(top_sz, top_sz, T::fused(top_sy, top_sy, top_sx * top_sx)),
             t1,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * t2,
+            kinetic: k(0.125) * t2,
             potential: k(147.15) * top_rz,
         }
     }
@@ -452,7 +440,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Spherical<T> {
         y[5] = t6;
         y[6] = t8;
     }
-    /// Solves eq. (19) for the dependent velocities: 73 operations (27 ±, 46 ×, 0 ÷).
+    /// Solves eq. (19) for the dependent velocities: 61 operations (27 ±, 34 ×, 0 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -462,40 +450,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0));
-        let t2 = top_e0 * top_e3;
-        let t3 = top_e1 * top_e2;
-        let t4 = k(2.0) * (t3 - t2);
+        let t0 = top_e0 * top_e3;
+        let t1 = top_e1 * top_e2;
+        let t2 = t1 - t0;
+        let t3 = top_e0 * top_e0;
+        let t4 = k(0.5) - T::fused(top_e1, top_e1, t3);
         let t5 = top_e0 * top_e2;
         let t6 = top_e1 * top_e3;
-        let t7 = k(2.0) * (t6 + t5);
+        let t7 = t6 + t5;
         let t8 = T::fused(
-            -k(0.5),
-            T::fused(t1, top_wz, t7 * top_wx),
-            k(0.3) * T::fused(-t4, top_wz, t7 * top_wy),
+            k(0.6),
+            T::fused(-t7, top_wy, t2 * top_wz),
+            T::fused(t7, top_wx, t4 * top_wz),
         );
-        let t9 = k(2.0) * (t3 + t2);
-        let t10 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0));
+        let t9 = k(0.5) - T::fused(top_e2, top_e2, t3);
+        let t10 = t1 + t0;
         let t11 = top_e0 * top_e1;
         let t12 = top_e2 * top_e3;
-        let t13 = k(2.0) * (t12 - t11);
+        let t13 = t12 - t11;
         let t14 = T::fused(
-            -k(0.5),
-            T::fused(-t9, top_wz, t13 * top_wx),
-            k(0.3) * T::fused(t10, top_wz, t13 * top_wy),
+            k(0.6),
+            T::fused(t13, top_wy, t9 * top_wz),
+            T::fused(-t13, top_wx, t10 * top_wz),
         );
-        let t15 = k(2.0) * (t6 - t5);
-        let t16 = k(2.0) * (t12 + t11);
-        let t17 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0));
+        let t15 = t12 + t11;
+        let t16 = t6 - t5;
+        let t17 = k(0.5) - T::fused(top_e3, top_e3, t3);
         let t18 = T::fused(
-            -k(0.5),
-            T::fused(t15, top_wz, t17 * top_wx),
-            k(0.3) * T::fused(t16, top_wz, t17 * top_wy),
+            -k(0.6),
+            T::fused(t17, top_wy, t15 * top_wz),
+            T::fused(t17, top_wx, t16 * top_wz),
         );
-        y[7] = T::fused(k(0.2), T::fused(t1, top_wy, t4 * top_wx), -t8);
-        y[8] = -T::fused(k(0.2), T::fused(t9, top_wy, t10 * top_wx), t14);
-        y[9] = T::fused(k(0.2), T::fused(-t15, top_wy, t16 * top_wx), t18);
+        y[7] = T::fused(k(0.4), T::fused(t2, top_wx, t4 * top_wy), t8);
+        y[8] = -T::fused(k(0.4), T::fused(t9, top_wx, t10 * top_wy), t14);
+        y[9] = -T::fused(k(0.4), T::fused(-t15, top_wx, t16 * top_wy), t18);
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
@@ -631,7 +619,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
             k(2.0) * top_e3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 43 operations (21 ±, 22 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 41 operations (19 ±, 22 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -644,29 +632,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t3 = top_e0 * top_e2;
         let t4 = top_e1 * top_e3;
         let t5 = t4 + t3;
-        let t6 = top_e0 * top_e0;
-        let t7 = k(0.5) - T::fused(top_e1, top_e1, t6);
-        let t8 = k(0.5) - T::fused(top_e2, top_e2, t6);
+        let t6 = T::fused(-top_e0, top_e0, k(0.5));
+        let t7 = T::fused(top_e1, top_e1, -t6);
+        let t8 = T::fused(top_e2, top_e2, -t6);
         let t9 = top_e0 * top_e1;
         let t10 = top_e2 * top_e3;
         let t11 = t10 - t9;
         let t12 = t1 + t0;
-        let t13 = t10 + t9;
-        let t14 = k(0.5) - T::fused(top_e3, top_e3, t6);
+        let t13 = T::fused(top_e3, top_e3, -t6);
+        let t14 = t10 + t9;
         let t15 = t4 - t3;
         *out = [
             k(1.0),
             -T::fused(k(0.4), t2, t5),
-            T::fused(-k(0.4), t7, k(0.6) * t5),
-            -T::fused(k(0.6), t2, t7),
+            k(0.6) * T::fused(k(0.6666666666666666), t7, t5),
+            T::fused(-k(0.6), t2, t7),
             k(1.0),
-            T::fused(k(0.4), t8, -t11),
-            T::fused(k(0.4), t12, k(0.6) * t11),
-            T::fused(k(0.6), t8, t12),
+            -T::fused(k(0.4), t8, t11),
+            k(0.6) * T::fused(k(0.6666666666666666), t12, t11),
+            T::fused(-k(0.6), t8, t12),
             k(1.0),
-            T::fused(-k(0.4), t13, t14),
-            T::fused(-k(0.6), t14, k(0.4) * t15),
-            T::fused(-k(0.6), t13, t15),
+            -T::fused(k(0.4), t14, t13),
+            k(0.6) * T::fused(k(0.6666666666666666), t15, t13),
+            T::fused(-k(0.6), t14, t15),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -674,7 +662,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 93 operations (37 ±, 56 ×, 0 ÷).
+    /// Writes γ: 86 operations (37 ±, 49 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -684,65 +672,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e1;
-        let t1 = k(2.0) * top_e0;
-        let t2 = T::fused(-top_e0, t1, k(1.0));
-        let t3 = T::fused(-top_e1, t0, t2);
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e1, top_e1, -t0);
+        let t2 = top_wx * top_wz;
+        let t3 = top_wx * top_wx;
         let t4 = top_wy * top_wy;
-        let t5 = top_wz * top_wz;
-        let t6 = t5 + t4;
-        let t7 = top_e3 * t1;
-        let t8 = top_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = top_wx * top_wy;
-        let t11 = top_e2 * t1;
-        let t12 = top_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = top_wx * top_wz;
-        let t15 = top_wx * top_wx;
-        let t16 = t5 + t15;
-        let t17 = top_wy * top_wz;
+        let t5 = t4 + t3;
+        let t6 = top_e0 * top_e2;
+        let t7 = top_e1 * top_e3;
+        let t8 = t7 + t6;
+        let t9 = top_wy * top_wz;
+        let t10 = top_e0 * top_e3;
+        let t11 = top_e1 * top_e2;
+        let t12 = t11 - t10;
+        let t13 = top_wx * top_wy;
+        let t14 = top_wz * top_wz;
+        let t15 = t14 + t3;
+        let t16 = T::fused(
+            k(0.4),
+            T::fused(t2, t1, T::fused(-t8, t5, t12 * t9)),
+            T::fused(-t13, t1, T::fused(-t8, t9, t12 * t15)),
+        );
+        let t17 = t14 + t4;
         let t18 = T::fused(
-            k(0.3),
-            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
-            k(0.5) * T::fused(t17, t13, -T::fused(t10, t3, t16 * t9)),
+            k(0.6),
+            T::fused(-t17, t1, T::fused(t8, t2, t12 * t13)),
+            -t16,
         );
-        let t19 = t4 + t15;
-        let t20 = T::fused(
-            k(0.2),
-            T::fused(t19, t13, -T::fused(-t14, t3, t17 * t9)),
-            t18,
+        let t19 = T::fused(top_e2, top_e2, -t0);
+        let t20 = top_e0 * top_e1;
+        let t21 = top_e2 * top_e3;
+        let t22 = t21 - t20;
+        let t23 = t11 + t10;
+        let t24 = T::fused(
+            -k(0.4),
+            T::fused(t23, t2, -T::fused(-t9, t19, t22 * t5)),
+            T::fused(t23, t13, T::fused(-t15, t19, t22 * t9)),
         );
-        let t21 = t8 + t7;
-        let t22 = k(2.0) * top_e2;
-        let t23 = T::fused(-top_e2, t22, t2);
-        let t24 = top_e1 * t1;
-        let t25 = top_e3 * t22;
-        let t26 = t25 - t24;
-        let t27 = T::fused(
-            k(0.3),
-            T::fused(t14, t26, -T::fused(t6, t21, t10 * t23)),
-            k(0.5) * T::fused(t17, t26, T::fused(t10, t21, t16 * t23)),
+        let t25 = T::fused(
+            k(0.6),
+            T::fused(t23, t17, -T::fused(t13, t19, t22 * t2)),
+            -t24,
         );
-        let t28 = T::fused(
-            k(0.2),
-            T::fused(t19, t26, T::fused(-t14, t21, t17 * t23)),
-            t27,
+        let t26 = T::fused(top_e3, top_e3, -t0);
+        let t27 = t21 + t20;
+        let t28 = t7 - t6;
+        let t29 = T::fused(
+            -k(0.4),
+            T::fused(t28, t2, T::fused(-t5, t26, t27 * t9)),
+            T::fused(t28, t13, -T::fused(-t9, t26, t27 * t15)),
         );
-        let t29 = t12 - t11;
-        let t30 = t25 + t24;
-        let t31 = T::fused(-top_e3, k(2.0) * top_e3, t2);
-        let t32 = T::fused(
-            k(0.3),
-            T::fused(t14, t31, -T::fused(-t6, t29, t10 * t30)),
-            k(0.5) * T::fused(t17, t31, T::fused(-t10, t29, t16 * t30)),
+        let t30 = T::fused(
+            k(0.6),
+            T::fused(t28, t17, -T::fused(t2, t26, t27 * t13)),
+            -t29,
         );
-        let t33 = T::fused(
-            k(0.2),
-            T::fused(t19, t31, T::fused(t14, t29, t17 * t30)),
-            t32,
-        );
-        *out = [t20, t28, -t33];
+        *out = [t18, -t25, -t30];
     }
     /// Writes (f, n' − w̃'J'w'): 29 operations (12 ±, 17 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -766,7 +751,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         );
         *out = [k(0.0), k(0.0), k(-147.15), t5, -t8, -t9];
     }
-    /// Solves eq. (17): 202 operations (87 ±, 115 ×, 0 ÷).
+    /// Solves eq. (17): 197 operations (87 ±, 110 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -776,131 +761,161 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(2.0) * top_e1;
-        let t1 = k(2.0) * top_e0;
-        let t2 = T::fused(-top_e0, t1, k(1.0));
-        let t3 = T::fused(-top_e1, t0, t2);
-        let t4 = top_wy * top_wy;
-        let t5 = top_wz * top_wz;
-        let t6 = t5 + t4;
-        let t7 = top_e3 * t1;
-        let t8 = top_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = top_wx * top_wy;
-        let t11 = top_e2 * t1;
-        let t12 = top_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = top_wx * top_wz;
-        let t15 = top_wx * top_wx;
-        let t16 = t5 + t15;
-        let t17 = top_wy * top_wz;
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e3, top_e3, -t0);
+        let t2 = top_wx * top_wx;
+        let t3 = top_wy * top_wy;
+        let t4 = t3 + t2;
+        let t5 = top_wy * top_wz;
+        let t6 = top_e0 * top_e1;
+        let t7 = top_e2 * top_e3;
+        let t8 = t7 + t6;
+        let t9 = top_wx * top_wz;
+        let t10 = top_e0 * top_e2;
+        let t11 = top_e1 * top_e3;
+        let t12 = t11 - t10;
+        let t13 = top_wz * top_wz;
+        let t14 = t13 + t2;
+        let t15 = top_wx * top_wy;
+        let t16 = T::fused(
+            -k(0.4),
+            T::fused(t12, t9, T::fused(-t4, t1, t8 * t5)),
+            T::fused(t12, t15, -T::fused(-t5, t1, t8 * t14)),
+        );
+        let t17 = t13 + t3;
         let t18 = T::fused(
-            k(0.3),
-            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
-            k(0.5) * T::fused(t17, t13, -T::fused(t10, t3, t16 * t9)),
+            k(0.6),
+            T::fused(t12, t17, -T::fused(t9, t1, t8 * t15)),
+            -t16,
         );
-        let t19 = t4 + t15;
-        let t20 = T::fused(
-            k(0.2),
-            T::fused(t19, t13, -T::fused(-t14, t3, t17 * t9)),
-            t18,
+        let t19 = T::fused(top_e2, top_e2, -t0);
+        let t20 = t7 - t6;
+        let t21 = top_e0 * top_e3;
+        let t22 = top_e1 * top_e2;
+        let t23 = t22 + t21;
+        let t24 = T::fused(
+            -k(0.4),
+            T::fused(t23, t9, -T::fused(-t5, t19, t20 * t4)),
+            T::fused(t23, t15, T::fused(-t14, t19, t20 * t5)),
         );
-        let t21 = t8 + t7;
-        let t22 = k(2.0) * top_e2;
-        let t23 = T::fused(-top_e2, t22, t2);
-        let t24 = top_e1 * t1;
-        let t25 = top_e3 * t22;
-        let t26 = t25 - t24;
-        let t27 = T::fused(
-            k(0.3),
-            T::fused(t14, t26, -T::fused(t6, t21, t10 * t23)),
-            k(0.5) * T::fused(t17, t26, T::fused(t10, t21, t16 * t23)),
+        let t25 = T::fused(
+            k(0.6),
+            T::fused(t23, t17, -T::fused(t15, t19, t20 * t9)),
+            -t24,
         );
-        let t28 = T::fused(
-            k(0.2),
-            T::fused(t19, t26, T::fused(-t14, t21, t17 * t23)),
-            t27,
+        let t26 = T::fused(top_e1, top_e1, -t0);
+        let t27 = t11 + t10;
+        let t28 = t22 - t21;
+        let t29 = T::fused(
+            k(0.4),
+            T::fused(t9, t26, T::fused(-t27, t4, t28 * t5)),
+            T::fused(-t15, t26, T::fused(-t27, t5, t28 * t14)),
         );
-        let t29 = t12 - t11;
-        let t30 = t25 + t24;
-        let t31 = T::fused(-top_e3, k(2.0) * top_e3, t2);
-        let t32 = T::fused(
-            k(0.3),
-            T::fused(t14, t31, -T::fused(-t6, t29, t10 * t30)),
-            k(0.5) * T::fused(t17, t31, T::fused(-t10, t29, t16 * t30)),
+        let t30 = T::fused(
+            k(0.6),
+            T::fused(-t17, t26, T::fused(t27, t9, t28 * t15)),
+            -t29,
         );
-        let t33 = T::fused(
-            k(0.2),
-            T::fused(t19, t31, T::fused(t14, t29, t17 * t30)),
-            t32,
+        let t31 = T::fused(t27, t30, -T::fused(t1, t18, t20 * t25));
+        let t32 = T::fused(t26, t30, -T::fused(t12, t18, t23 * t25));
+        let t33 = T::fused(t28, t30, -T::fused(t8, t18, t19 * t25));
+        let t34 = k(300.0) * t33;
+        let t35 = T::fused(
+            k(1.5),
+            t13 - t3,
+            T::fused(k(6.25), t5, top_wx * T::fused(k(0.5), top_wz, top_wy)),
         );
-        let t34 = T::fused(t29, t33, -T::fused(-t3, t20, t21 * t28));
-        let t35 = T::fused(t30, t33, T::fused(-t9, t20, t23 * t28));
-        let t36 = T::fused(t31, t33, T::fused(t13, t20, t26 * t28));
-        let t37 = k(0.03) * top_wx;
-        let t38 = k(0.02) * top_wy;
+        let t36 = T::fused(k(2943.0), t8, -T::fused(-k(7357.5), t1, t35));
+        let t37 = T::fused(
+            k(12.834821428571429),
+            t9,
+            -T::fused(
+                k(1.0267857142857142),
+                top_wy * T::fused(-k(3.0), top_wx, top_wz),
+                t36,
+            ),
+        );
+        let t38 = T::fused(
+            k(6043.660714285715),
+            t12,
+            T::fused(
+                k(9065.49107142857),
+                t1,
+                T::fused(k(2.0535714285714284), t13 - t2, t37),
+            ),
+        );
         let t39 = T::fused(
-            top_wz,
-            t38 + t37,
-            T::fused(-k(0.01), t4 - t15, k(0.25) * t10),
+            k(0.008975771456909996),
+            t36,
+            T::fused(
+                -k(0.032921271916945626),
+                t38,
+                T::fused(
+                    k(14.907248986942818),
+                    t32,
+                    T::fused(-k(8.54434939216569), t33, t31),
+                ),
+            ),
         );
-        let t40 = k(0.01) * top_wz;
+        let t40 = T::fused(
+            k(0.5864850667867327),
+            t15,
+            T::fused(
+                k(0.046918805342938616),
+                top_wz * T::fused(k(1.5), top_wx, top_wy),
+                -t39,
+            ),
+        );
         let t41 = T::fused(
-            top_wx,
-            t38 + t40,
-            T::fused(k(0.03), t5 - t4, k(0.125) * t17),
+            k(345.2051103106709),
+            t12,
+            -T::fused(
+                k(207.12306618640253),
+                t8,
+                -T::fused(k(0.023459402671469308), t3 - t2, -t40),
+            ),
         );
-        let t42 = t41 + T::fused(-k(29.43), t30, k(73.575) * t31);
-        let t43 = T::fused(
-            top_wy,
-            t40 - t37,
-            -T::fused(k(0.02), t5 - t15, k(0.125) * t14),
+        let t42 = T::fused(
+            k(616.0714285714286),
+            t32,
+            T::fused(
+                k(174.10714285714286),
+                t31,
+                T::fused(-k(34.501501790666595), t41, t38),
+            ) - t34,
         );
+        let t43 = t34
+            + T::fused(
+                k(750.0),
+                t31,
+                T::fused(
+                    -k(0.8025078369905956),
+                    t42,
+                    T::fused(k(7.548878960369621), t41, t36),
+                ),
+            );
         let t44 = T::fused(
-            k(0.48695652173913045),
-            t42,
-            -(t43 + T::fused(-k(29.43), t29, k(44.145) * t31)),
+            -k(0.0010869565217391304),
+            t43,
+            T::fused(-k(0.0010747872816838334), t42, t31),
         );
         let t45 = T::fused(
-            k(1.440918687224106),
-            t44,
-            T::fused(
-                k(0.19130434782608696),
-                t42,
-                t39 + T::fused(-k(73.575), t29, k(44.145) * t30),
-            ),
+            -k(0.0004347826086956522),
+            t43,
+            T::fused(k(0.02573481463762371), t41, t33),
         );
         let t46 = T::fused(
-            k(0.21313415648391018),
-            t36,
-            T::fused(-k(3.177243938327682), t34, k(1.8210927004030453) * t35),
-        ) - t45;
-        let t47 = T::fused(
-            k(0.7882702418008584),
-            t46,
-            -T::fused(
-                k(0.8478260869565217),
-                t36,
-                T::fused(-k(3.0), t34, k(1.4608695652173913) * t35),
-            ),
+            -k(0.0007165248544558889),
+            t42,
+            T::fused(-k(0.04289135772937285), t41, t32),
         );
-        let t48 = t44 - t47;
-        let t49 = t34
-            + T::fused(k(0.14714349689719147), t48, k(0.20124112641987904) * t46);
-        let t50 = T::fused(-k(1.6480071652485446), t48, k(0.3541843824989871) * t46)
-            + T::fused(-k(3.0), t35, k(7.5) * t36);
-        let t51 = t42 - t50;
-        let t52 = t35
-            - T::fused(k(0.043478260869565216), t51, k(0.12074467585192743) * t46);
-        let t53 = t36
-            - T::fused(-k(0.10869565217391304), t51, k(0.2207152453457872) * t48);
         *out = [
-            T::fused(t13, t53, -T::fused(-t3, t49, t9 * t52)),
-            T::fused(t26, t53, T::fused(-t21, t49, t23 * t52)),
-            -T::fused(t31, t53, T::fused(t29, t49, t30 * t52)),
-            k(0.21739130434782608) * t51,
-            k(0.7357174844859574) * t48,
-            k(0.4024822528397581) * t46,
+            k(4.0) * T::fused(t26, t46, T::fused(t27, t44, t28 * t45)),
+            k(4.0) * T::fused(t23, t46, T::fused(t20, t44, t19 * t45)),
+            k(4.0) * T::fused(t12, t46, T::fused(t1, t44, t8 * t45)),
+            -(k(0.004347826086956522) * t43),
+            k(0.007165248544558889) * t42,
+            k(0.1715654309174914) * t41,
         ];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
@@ -923,7 +938,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Spherical<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 88 operations (36 ±, 52 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 84 operations (36 ±, 48 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -939,57 +954,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Spherical<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = k(2.0) * top_e0;
-        let t1 = top_e2 * t0;
-        let t2 = k(2.0) * top_e1;
-        let t3 = top_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-top_e0, t0, k(1.0));
-        let t6 = T::fused(-top_e1, t2, t5);
-        let t7 = top_e3 * t0;
-        let t8 = top_e2 * t2;
-        let t9 = t8 + t7;
-        let t10 = T::fused(t4, row2, T::fused(-t6, row0, t9 * row1));
-        let t11 = top_e1 * t0;
-        let t12 = k(2.0) * top_e2;
-        let t13 = top_e3 * t12;
-        let t14 = t13 + t11;
-        let t15 = t8 - t7;
-        let t16 = T::fused(-top_e2, t12, t5);
-        let t17 = T::fused(-t14, row2, T::fused(-t15, row0, t16 * row1));
-        let t18 = T::fused(-top_e3, k(2.0) * top_e3, t5);
-        let t19 = t3 + t1;
-        let t20 = t13 - t11;
-        let t21 = T::fused(-t18, row2, T::fused(t19, row0, t20 * row1));
+        let t0 = T::fused(-top_e0, top_e0, k(0.5));
+        let t1 = T::fused(top_e2, top_e2, -t0);
+        let t2 = top_e0 * top_e3;
+        let t3 = top_e1 * top_e2;
+        let t4 = t3 - t2;
+        let t5 = top_e0 * top_e1;
+        let t6 = top_e2 * top_e3;
+        let t7 = t6 + t5;
+        let t8 = T::fused(t7, row2, T::fused(t1, row1, t4 * row0));
+        let t9 = T::fused(top_e3, top_e3, -t0);
+        let t10 = t6 - t5;
+        let t11 = top_e0 * top_e2;
+        let t12 = top_e1 * top_e3;
+        let t13 = t12 + t11;
+        let t14 = T::fused(t9, row2, T::fused(t10, row1, t13 * row0));
+        let t15 = T::fused(top_e1, top_e1, -t0);
+        let t16 = t3 + t2;
+        let t17 = t12 - t11;
+        let t18 = T::fused(t17, row2, T::fused(t15, row0, t16 * row1));
+        let t19 = T::fused(
+            k(14.907248986942818),
+            t18,
+            T::fused(-k(8.54434939216569), t8, t14),
+        );
+        let t20 = T::fused(
+            -k(17.856365566616848),
+            t18,
+            T::fused(k(8.695273667222118), t8, T::fused(-k(5.046364181869979), t14, t19)),
+        );
+        let t21 = T::fused(
+            k(39.74100016372641),
+            t8,
+            T::fused(k(99.35250040931604), t14, T::fused(k(3.667793022024997), t20, t19)),
+        );
         let t22 = T::fused(
-            k(0.21313415648391018),
+            -k(0.008205303217793067),
             t21,
-            T::fused(k(3.177243938327682), t10, k(1.8210927004030453) * t17),
+            T::fused(k(0.03708177532360046), t20, t14),
         );
         let t23 = T::fused(
-            k(0.7882702418008584),
-            t22,
-            -T::fused(
-                k(0.8478260869565217),
-                t21,
-                T::fused(k(3.0), t10, k(1.4608695652173913) * t17),
-            ),
+            -k(0.0032821212871172265),
+            t21,
+            T::fused(k(0.02573481463762371), t19, t8),
         );
-        let t24 = t10
-            - T::fused(-k(0.14714349689719147), t23, k(0.20124112641987904) * t22);
-        let t25 = T::fused(k(1.6480071652485446), t23, k(0.3541843824989871) * t22)
-            + T::fused(-k(3.0), t17, k(7.5) * t21);
-        let t26 = t17
-            - T::fused(-k(0.043478260869565216), t25, k(0.12074467585192743) * t22);
-        let t27 = t21
-            + T::fused(-k(0.10869565217391304), t25, k(0.2207152453457872) * t23);
+        let t24 = T::fused(
+            k(0.024721183549066973),
+            t20,
+            T::fused(-k(0.04289135772937285), t19, t18),
+        );
         *out = [
-            T::fused(t19, t27, -T::fused(t6, t24, t15 * t26)),
-            T::fused(t20, t27, T::fused(t9, t24, t16 * t26)),
-            -T::fused(t18, t27, T::fused(-t4, t24, t14 * t26)),
-            -(k(0.21739130434782608) * t25),
-            -(k(0.7357174844859574) * t23),
-            k(0.4024822528397581) * t22,
+            k(4.0) * T::fused(t15, t24, T::fused(t13, t22, t4 * t23)),
+            k(4.0) * T::fused(t16, t24, T::fused(t10, t22, t1 * t23)),
+            k(4.0) * T::fused(t17, t24, T::fused(t9, t22, t7 * t23)),
+            -(k(0.03282121287117227) * t21),
+            -(k(0.24721183549066975) * t20),
+            k(0.1715654309174914) * t19,
         ];
     }
 }
@@ -1007,7 +1027,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 9]
     }
-    /// Writes u̇: 61 operations (25 ±, 36 ×, 0 ÷).
+    /// Writes u̇: 59 operations (25 ±, 34 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -1017,42 +1037,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let u0 = x[4];
         let u1 = x[5];
         let u2 = x[6];
-        let t0 = T::fused(-x0, x2, x1 * x3);
-        let t1 = T::fused(x0, x1, x2 * x3);
-        let t2 = T::fused(-k(2.24), u1, k(0.88) * u2);
-        let t3 = T::fused(-k(1.53), u2, k(2.24) * u0);
-        let t4 = T::fused(
-            u0,
-            T::fused(k(2.15), u1, t3),
-            T::fused(u1, t2, -T::fused(-k(147.15), t0, k(88.29) * t1)),
-        );
-        let t5 = k(0.5) - T::fused(x2, x2, x1 * x1);
-        let t6 = T::fused(k(1.53), u1, k(0.88) * u0);
-        let t7 = T::fused(
-            u0,
-            T::fused(k(0.875), u2, t6),
-            T::fused(k(88.29), t5, T::fused(-u2, t2, k(58.86) * t0)),
-        );
-        let t8 = T::fused(-k(0.27945205479452057), t4, t7);
-        let t9 = T::fused(
-            u2,
-            T::fused(k(3.025), u1, t3),
-            T::fused(k(147.15), t5, T::fused(u1, t6, k(58.86) * t1)),
-        );
-        let t10 = T::fused(
-            -k(1.2291686422194827),
-            t8,
-            T::fused(k(0.16073059360730593), t4, t9),
-        );
-        let t11 = T::fused(-k(0.876134676932097), t10, k(0.49445264769232855) * t8);
-        *out = [
-            -(k(0.7127863881640194) * t10),
-            t11,
+        let t0 = k(0.39285714285714285) * u1;
+        let t1 = T::fused(k(1.7386363636363635), u1, u0);
+        let t2 = T::fused(x0, x1, x2 * x3);
+        let t3 = k(0.5) - T::fused(x2, x2, x1 * x1);
+        let t4 = T::fused(-k(0.6830357142857143), u2, u0);
+        let t5 = T::fused(
+            k(26.276785714285715),
+            t2,
             T::fused(
-                -k(0.27945205479452057),
-                t11,
-                T::fused(k(0.11456657928481043), t10, k(0.182648401826484) * t4),
+                k(65.69196428571429),
+                t3,
+                u2 * T::fused(k(1.3504464285714286), u1, t4),
             ),
+        );
+        let t6 = T::fused(-k(2.5454545454545454), u1, u2);
+        let t7 = T::fused(
+            k(39.41517857142857),
+            t2,
+            -T::fused(t6, t0, u0 * T::fused(k(0.9598214285714286), u1, t4)),
+        );
+        let t8 = T::fused(-x0, x2, x1 * x3);
+        let t9 = T::fused(k(65.69196428571429), t8, -t7);
+        let t10 = T::fused(
+            k(66.88636363636364),
+            t8,
+            T::fused(
+                k(100.32954545454545),
+                t3,
+                u0 * T::fused(k(0.9943181818181818), u2, t1),
+            ),
+        );
+        let t11 = T::fused(k(0.7113325031133251), t9, T::fused(u2, t6, -t10));
+        let t12 = T::fused(
+            k(0.4828876808719397),
+            t11,
+            T::fused(k(0.16073059360730593), t9, T::fused(t1, t0, t5)),
+        );
+        let t13 = T::fused(k(4.510363138382598), t12, t11);
+        *out = [
+            -(k(1.5966415094874036) * t12),
+            -(k(0.4351183299692491) * t13),
+            k(0.4091324200913242)
+                * T::fused(
+                    k(0.2972013593093532),
+                    t13,
+                    T::fused(k(0.6272520215843371), t12, t9),
+                ),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
@@ -1077,7 +1108,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             rates[2],
         ];
     }
-    /// Writes the maximal state of a joint state: 67 operations (27 ±, 40 ×, 0 ÷).
+    /// Writes the maximal state of a joint state: 57 operations (27 ±, 30 ×, 0 ÷).
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -1103,24 +1134,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t13 = k(0.5) - T::fused(x3, x3, t3);
         let t14 = t1 - t0;
         let t15 = t9 + t8;
-        let t16 = T::fused(-k(0.3), u1, k(0.5) * u0);
-        let t17 = T::fused(k(0.2), u0, k(0.3) * u2);
-        let t18 = T::fused(k(0.5), u2, k(0.2) * u1);
-        let t19 = T::fused(
-            k(2.0) * t2,
-            t16,
-            T::fused(k(2.0) * t7, t17, k(2.0) * t4 * t18),
-        );
-        let t20 = T::fused(
-            -(k(2.0) * t10),
-            t16,
-            T::fused(k(2.0) * t12, t17, k(2.0) * t11 * t18),
-        );
-        let t21 = T::fused(
-            k(2.0) * t13,
-            t16,
-            T::fused(-(k(2.0) * t15), t17, k(2.0) * t14 * t18),
-        );
+        let t16 = k(0.4) * T::fused(k(2.5), u2, u1);
+        let t17 = k(0.6) * T::fused(k(0.6666666666666666), u0, u2);
+        let t18 = T::fused(-k(0.6), u1, u0);
         *y = [
             T::fused(-k(0.4), t2, T::fused(-k(0.6), t4, t7)),
             -T::fused(k(0.4), t10, T::fused(-k(0.6), t11, t12)),
@@ -1129,9 +1145,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             x1,
             x2,
             x3,
-            t19,
-            -t20,
-            -t21,
+            T::fused(t2, t18, T::fused(t4, t16, t7 * t17)),
+            T::fused(t10, t18, -T::fused(t11, t16, t12 * t17)),
+            T::fused(-t13, t18, T::fused(-t14, t16, t15 * t17)),
             u0,
             u1,
             u2,
@@ -1154,7 +1170,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         x[5] = top_wy;
         x[6] = top_wz;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 61 operations (25 ±, 36 ×, 0 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 60 operations (25 ±, 35 ×, 0 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -1164,45 +1180,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
+        let t0 = T::fused(k(0.5751633986928104), top_wx, top_wy);
         let t1 = k(0.5) - T::fused(top_e2, top_e2, top_e1 * top_e1);
-        let t2 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
-        let t3 = T::fused(top_e0, top_e1, top_e2 * top_e3);
-        let t4 = T::fused(
-            -top_wz,
-            T::fused(-k(3.025), top_wy, t0),
-            T::fused(k(147.15), t1, T::fused(top_wy, t2, k(58.86) * t3)),
+        let t2 = T::fused(-k(0.39285714285714285), top_wz, top_wy);
+        let t3 = T::fused(-top_e0, top_e2, top_e1 * top_e3);
+        let t4 = T::fused(-k(1.4640522875816993), top_wx, top_wz);
+        let t5 = T::fused(top_e0, top_e1, top_e2 * top_e3);
+        let t6 = T::fused(
+            -k(0.02435156869407634),
+            top_wx * T::fused(-k(0.7116279069767442), t4, top_wy),
+            T::fused(
+                k(0.025370936685921396),
+                top_wy * t2,
+                T::fused(-k(1.6666666666666667), t3, t5),
+            ),
         );
-        let t5 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
-        let t6 = T::fused(-top_e0, top_e2, top_e1 * top_e3);
         let t7 = T::fused(
-            -top_wx,
-            T::fused(k(2.15), top_wy, -t0),
-            T::fused(top_wy, t5, T::fused(-k(147.15), t6, k(88.29) * t3)),
+            k(3.5784313725490198),
+            t1,
+            T::fused(
+                k(0.09078815578785597),
+                top_wz * t2,
+                T::fused(k(2.3856209150326797), t3, t6),
+            ),
         );
         let t8 = T::fused(
-            top_wx,
-            T::fused(k(0.875), top_wz, t2),
-            T::fused(k(88.29), t1, T::fused(top_wz, t5, k(58.86) * t6)),
+            k(0.03546412335463124),
+            top_wx * T::fused(k(1.7485714285714287), t0, top_wz),
+            t7,
         );
-        let t9 = T::fused(k(0.27945205479452057), t7, t8);
-        let t10 = T::fused(
-            k(1.2291686422194827),
-            t9,
-            T::fused(k(0.16073059360730593), t7, -t4),
-        );
-        let t11 = T::fused(k(0.49445264769232855), t9, k(0.876134676932097) * t10);
-        *out = [
-            k(0.7127863881640194) * t10,
-            t11,
-            -T::fused(
-                k(0.27945205479452057),
-                t11,
-                T::fused(k(0.182648401826484), t7, k(0.11456657928481043) * t10),
+        let t9 = T::fused(
+            top_wy,
+            t0,
+            T::fused(
+                k(38.470588235294116),
+                t5,
+                -T::fused(k(19.821607200284593), t8, k(9.275100725221595) * t6),
             ),
+        );
+        let t10 = T::fused(
+            top_wz,
+            T::fused(-k(1.977124183006536), top_wy, t4),
+            -T::fused(k(96.17647058823529), t1, t9),
+        );
+        let t11 = T::fused(k(9.100834784048098), t8, t10);
+        *out = [
+            k(1.0905631738909498) * t10,
+            k(1.3404860557061085) * t11,
+            -(k(0.3746015826904741)
+                * T::fused(
+                    k(43.04847641443334),
+                    t6,
+                    T::fused(k(0.46792879263031845), t10, t11),
+                )),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 129 operations (53 ±, 76 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 117 operations (53 ±, 64 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -1217,80 +1250,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
+        let t0 = T::fused(k(0.5751633986928104), top_wx, top_wy);
         let t1 = top_e2 * top_e2;
         let t2 = top_e1 * top_e1;
         let t3 = k(0.5) - (t2 + t1);
-        let t4 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t4 = T::fused(-k(0.39285714285714285), top_wz, top_wy);
         let t5 = top_e0 * top_e2;
         let t6 = top_e1 * top_e3;
         let t7 = t6 - t5;
-        let t8 = T::fused(
-            top_wx,
-            T::fused(k(0.875), top_wz, t0),
-            T::fused(k(88.29), t3, T::fused(top_wz, t4, k(58.86) * t7)),
+        let t8 = T::fused(-k(1.4640522875816993), top_wx, top_wz);
+        let t9 = top_e0 * top_e1;
+        let t10 = top_e2 * top_e3;
+        let t11 = t10 + t9;
+        let t12 = T::fused(
+            -k(0.02435156869407634),
+            top_wx * T::fused(-k(0.7116279069767442), t8, top_wy),
+            T::fused(
+                k(0.025370936685921396),
+                top_wy * t4,
+                T::fused(-k(1.6666666666666667), t7, t11),
+            ),
         );
-        let t9 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
-        let t10 = top_e0 * top_e1;
-        let t11 = top_e2 * top_e3;
-        let t12 = t11 + t10;
         let t13 = T::fused(
-            -top_wx,
-            T::fused(k(2.15), top_wy, -t9),
-            T::fused(top_wy, t4, T::fused(-k(147.15), t7, k(88.29) * t12)),
+            k(3.5784313725490198),
+            t3,
+            T::fused(
+                k(0.09078815578785597),
+                top_wz * t4,
+                T::fused(k(2.3856209150326797), t7, t12),
+            ),
         );
-        let t14 = T::fused(k(0.27945205479452057), t13, t8);
+        let t14 = T::fused(
+            k(0.03546412335463124),
+            top_wx * T::fused(k(1.7485714285714287), t0, top_wz),
+            t13,
+        );
         let t15 = T::fused(
-            -top_wz,
-            T::fused(-k(3.025), top_wy, t9),
-            T::fused(k(147.15), t3, T::fused(top_wy, t0, k(58.86) * t12)),
+            top_wy,
+            t0,
+            T::fused(
+                k(38.470588235294116),
+                t11,
+                -T::fused(k(19.821607200284593), t14, k(9.275100725221595) * t12),
+            ),
         );
         let t16 = T::fused(
-            k(1.2291686422194827),
-            t14,
-            T::fused(k(0.16073059360730593), t13, -t15),
+            top_wz,
+            T::fused(-k(1.977124183006536), top_wy, t8),
+            -T::fused(k(96.17647058823529), t3, t15),
         );
-        let t17 = T::fused(k(0.49445264769232855), t14, k(0.876134676932097) * t16);
-        let t18 = T::fused(
-            k(0.27945205479452057),
-            t17,
-            T::fused(k(0.182648401826484), t13, k(0.11456657928481043) * t16),
+        let t17 = T::fused(k(9.100834784048098), t14, t16);
+        let t18 = k(1.3404860557061085) * t17;
+        let t19 = T::fused(k(0.4), top_wy, top_wz);
+        let t20 = T::fused(k(0.6666666666666666), top_wx, top_wz);
+        let t21 = T::fused(
+            k(1.8176052898182495),
+            t16,
+            T::fused(k(1.6666666666666667), top_wy * t19, top_wx * t20) - t18,
         );
-        let t19 = T::fused(k(0.2), top_wx, k(0.3) * top_wz);
-        let t20 = T::fused(-k(0.3), top_wy, k(0.5) * top_wx);
-        let t21 = T::fused(-top_wz, t19, top_wy * t20)
-            + T::fused(-k(0.2), t17, k(0.5) * t18);
-        let t22 = top_e0 * top_e0;
-        let t23 = T::fused(k(0.5), top_wz, k(0.2) * top_wy);
-        let t24 = T::fused(top_wx, t20, top_wz * t23)
-            + T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
-        let t25 = top_e0 * top_e3;
-        let t26 = top_e1 * top_e2;
-        let t27 = T::fused(
-            k(2.0) * (k(0.5) - (t22 + t2)),
-            t21,
-            k(2.0) * (t26 - t25) * t24,
+        let t22 = k(0.6) * t21;
+        let t23 = T::fused(
+            k(43.04847641443334),
+            t12,
+            T::fused(k(0.46792879263031845), t16, t17),
         );
-        let t28 = T::fused(top_wy, t23, top_wx * t19)
-            - T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
+        let t24 = T::fused(-k(0.6), top_wy, top_wx);
+        let t25 = T::fused(
+            -k(0.4362252695563799),
+            t16,
+            T::fused(k(0.22476094961428447), t23, T::fused(top_wz, t19, top_wx * t24)),
+        );
+        let t26 = top_e0 * top_e3;
+        let t27 = top_e1 * top_e2;
+        let t28 = k(0.3746015826904741) * t23;
         let t29 = T::fused(
-            k(2.0) * (t26 + t25),
-            t21,
-            k(2.0) * (k(0.5) - (t22 + t1)) * t24,
-        );
-        let t30 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t22)),
-            t28,
-            T::fused(-(k(2.0) * t7), t21, k(2.0) * t12 * t24),
-        );
-        *out = [
-            T::fused(k(2.0) * (t6 + t5), t28, -t27),
-            T::fused(k(2.0) * (t11 - t10), t28, t29),
-            -t30,
-            k(0.7127863881640194) * t16,
+            -k(0.5361944222824434),
             t17,
-            -t18,
-        ];
+            T::fused(-k(0.6), top_wz * t20, top_wy * t24) + t28,
+        );
+        let t30 = top_e0 * top_e0;
+        let t31 = T::fused(
+            k(0.5) - (t30 + t2),
+            t29,
+            T::fused(-(t6 + t5), t22, (t27 - t26) * t25),
+        );
+        let t32 = T::fused(
+            t27 + t26,
+            t29,
+            T::fused(t10 - t9, t22, (k(0.5) - (t30 + t1)) * t25),
+        );
+        let t33 = T::fused(
+            t7,
+            t29,
+            -T::fused(k(0.5) - T::fused(top_e3, top_e3, t30), t22, t11 * t25),
+        );
+        *out = [-t31, t32, t33, k(1.0905631738909498) * t16, t18, -t28];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
     fn corrected_multipliers(
@@ -1310,7 +1364,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             -T::fused(k(15.0), top_dsz, k(147.15)),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 133 operations (54 ±, 79 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (54 ±, 67 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -1320,84 +1374,110 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
+        let t0 = T::fused(k(0.5751633986928104), top_wx, top_wy);
         let t1 = top_e2 * top_e2;
         let t2 = top_e1 * top_e1;
         let t3 = k(0.5) - (t2 + t1);
-        let t4 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t4 = T::fused(-k(0.39285714285714285), top_wz, top_wy);
         let t5 = top_e0 * top_e2;
         let t6 = top_e1 * top_e3;
         let t7 = t6 - t5;
-        let t8 = T::fused(
-            top_wx,
-            T::fused(k(0.875), top_wz, t0),
-            T::fused(k(88.29), t3, T::fused(top_wz, t4, k(58.86) * t7)),
+        let t8 = T::fused(-k(1.4640522875816993), top_wx, top_wz);
+        let t9 = top_e0 * top_e1;
+        let t10 = top_e2 * top_e3;
+        let t11 = t10 + t9;
+        let t12 = T::fused(
+            -k(0.02435156869407634),
+            top_wx * T::fused(-k(0.7116279069767442), t8, top_wy),
+            T::fused(
+                k(0.025370936685921396),
+                top_wy * t4,
+                T::fused(-k(1.6666666666666667), t7, t11),
+            ),
         );
-        let t9 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
-        let t10 = top_e0 * top_e1;
-        let t11 = top_e2 * top_e3;
-        let t12 = t11 + t10;
         let t13 = T::fused(
-            -top_wx,
-            T::fused(k(2.15), top_wy, -t9),
-            T::fused(top_wy, t4, T::fused(-k(147.15), t7, k(88.29) * t12)),
+            k(3.5784313725490198),
+            t3,
+            T::fused(
+                k(0.09078815578785597),
+                top_wz * t4,
+                T::fused(k(2.3856209150326797), t7, t12),
+            ),
         );
-        let t14 = T::fused(k(0.27945205479452057), t13, t8);
+        let t14 = T::fused(
+            k(0.03546412335463124),
+            top_wx * T::fused(k(1.7485714285714287), t0, top_wz),
+            t13,
+        );
         let t15 = T::fused(
-            -top_wz,
-            T::fused(-k(3.025), top_wy, t9),
-            T::fused(k(147.15), t3, T::fused(top_wy, t0, k(58.86) * t12)),
+            top_wy,
+            t0,
+            T::fused(
+                k(38.470588235294116),
+                t11,
+                -T::fused(k(19.821607200284593), t14, k(9.275100725221595) * t12),
+            ),
         );
         let t16 = T::fused(
-            k(1.2291686422194827),
-            t14,
-            T::fused(k(0.16073059360730593), t13, -t15),
+            top_wz,
+            T::fused(-k(1.977124183006536), top_wy, t8),
+            -T::fused(k(96.17647058823529), t3, t15),
         );
-        let t17 = T::fused(k(0.49445264769232855), t14, k(0.876134676932097) * t16);
-        let t18 = T::fused(
-            k(0.27945205479452057),
+        let t17 = T::fused(k(9.100834784048098), t14, t16);
+        let t18 = k(1.3404860557061085) * t17;
+        let t19 = T::fused(k(0.4), top_wy, top_wz);
+        let t20 = T::fused(k(0.6666666666666666), top_wx, top_wz);
+        let t21 = T::fused(
+            k(1.8176052898182495),
+            t16,
+            T::fused(k(1.6666666666666667), top_wy * t19, top_wx * t20) - t18,
+        );
+        let t22 = k(0.6) * t21;
+        let t23 = T::fused(
+            k(43.04847641443334),
+            t12,
+            T::fused(k(0.46792879263031845), t16, t17),
+        );
+        let t24 = T::fused(-k(0.6), top_wy, top_wx);
+        let t25 = T::fused(
+            -k(0.4362252695563799),
+            t16,
+            T::fused(k(0.22476094961428447), t23, T::fused(top_wz, t19, top_wx * t24)),
+        );
+        let t26 = top_e0 * top_e3;
+        let t27 = top_e1 * top_e2;
+        let t28 = k(0.3746015826904741) * t23;
+        let t29 = T::fused(
+            -k(0.5361944222824434),
             t17,
-            T::fused(k(0.182648401826484), t13, k(0.11456657928481043) * t16),
+            T::fused(-k(0.6), top_wz * t20, top_wy * t24) + t28,
         );
-        let t19 = T::fused(k(0.2), top_wx, k(0.3) * top_wz);
-        let t20 = T::fused(-k(0.3), top_wy, k(0.5) * top_wx);
-        let t21 = T::fused(-top_wz, t19, top_wy * t20)
-            + T::fused(-k(0.2), t17, k(0.5) * t18);
-        let t22 = top_e0 * top_e0;
-        let t23 = T::fused(k(0.5), top_wz, k(0.2) * top_wy);
-        let t24 = T::fused(top_wx, t20, top_wz * t23)
-            + T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
-        let t25 = top_e0 * top_e3;
-        let t26 = top_e1 * top_e2;
-        let t27 = T::fused(
-            k(2.0) * (k(0.5) - (t22 + t2)),
-            t21,
-            k(2.0) * (t26 - t25) * t24,
+        let t30 = top_e0 * top_e0;
+        let t31 = T::fused(
+            k(0.5) - (t30 + t2),
+            t29,
+            T::fused(-(t6 + t5), t22, (t27 - t26) * t25),
         );
-        let t28 = T::fused(top_wy, t23, top_wx * t19)
-            - T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
-        let t29 = T::fused(k(2.0) * (t6 + t5), t28, -t27);
-        let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t21,
-            k(2.0) * (k(0.5) - (t22 + t1)) * t24,
-        );
-        let t31 = T::fused(k(2.0) * (t11 - t10), t28, t30);
         let t32 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t22)),
-            t28,
-            T::fused(-(k(2.0) * t7), t21, k(2.0) * t12 * t24),
+            t27 + t26,
+            t29,
+            T::fused(t10 - t9, t22, (k(0.5) - (t30 + t1)) * t25),
+        );
+        let t33 = T::fused(
+            t7,
+            t29,
+            -T::fused(k(0.5) - T::fused(top_e3, top_e3, t30), t22, t11 * t25),
         );
         *out = [
-            t29,
-            t31,
-            -t32,
-            k(0.7127863881640194) * t16,
-            t17,
-            -t18,
-            -(k(15.0) * t29),
-            -(k(15.0) * t31),
-            T::fused(k(15.0), t32, -k(147.15)),
+            -t31,
+            t32,
+            t33,
+            k(1.0905631738909498) * t16,
+            t18,
+            -t28,
+            k(15.0) * t31,
+            -(k(15.0) * t32),
+            -(k(15.0) * (k(9.81) + t33)),
         ];
     }
 }
@@ -1558,14 +1638,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Spherical<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 116 operations (52 ±, 64 ×, 0 ÷).
+    /// Writes the outputs: 103 operations (44 ±, 59 ×, 0 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
-        let top_rx = y[0];
-        let top_ry = y[1];
-        let top_rz = y[2];
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
@@ -1573,68 +1650,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Spherical<T> {
         let top_dsx = accelerations[0];
         let top_dsy = accelerations[1];
         let top_dsz = accelerations[2];
-        let t0 = k(15.0) * top_dsx;
-        let t1 = k(15.0) * top_dsy;
-        let t2 = T::fused(k(15.0), top_dsz, k(147.15));
+        let t0 = top_dsz + k(9.81);
+        let t1 = T::fused(-top_e0, top_e0, k(0.5));
+        let t2 = T::fused(top_e2, top_e2, -t1);
         let t3 = top_e0 * top_e3;
         let t4 = top_e1 * top_e2;
-        let t5 = t4 - t3;
-        let t6 = top_e0 * top_e2;
-        let t7 = top_e1 * top_e3;
+        let t5 = t4 + t3;
+        let t6 = top_e0 * top_e1;
+        let t7 = top_e2 * top_e3;
         let t8 = t7 + t6;
-        let t9 = top_e0 * top_e0;
-        let t10 = k(0.5) - T::fused(top_e2, top_e2, t9);
-        let t11 = top_e0 * top_e1;
-        let t12 = top_e2 * top_e3;
-        let t13 = t12 - t11;
-        let t14 = T::fused(
-            t0,
-            T::fused(k(0.4), t5, t8),
-            t1 * T::fused(-k(0.4), t10, t13),
+        let t9 = top_e0 * top_e2;
+        let t10 = top_e1 * top_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(
+            top_dsy,
+            T::fused(-k(0.6), t2, t5),
+            T::fused(-k(0.6), t8, t11) * t0,
         );
-        let t15 = t12 + t11;
-        let t16 = k(0.5) - T::fused(top_e3, top_e3, t9);
-        let t17 = T::fused(t2, T::fused(-k(0.4), t15, t16), -t14);
-        let t18 = k(0.5) - T::fused(top_e1, top_e1, t9);
-        let t19 = t4 + t3;
-        let t20 = T::fused(
+        let t13 = t4 - t3;
+        let t14 = T::fused(top_e1, top_e1, -t1);
+        let t15 = k(2.5) * T::fused(top_dsx, T::fused(-k(0.6), t13, t14), t12);
+        let t16 = t10 + t9;
+        let t17 = T::fused(top_e3, top_e3, -t1);
+        let t18 = T::fused(k(0.6), t11, T::fused(-k(0.4), t17, t8));
+        let t19 = t7 - t6;
+        let t20 = T::fused(k(0.6), t5, T::fused(-k(0.4), t19, t2));
+        let t21 = T::fused(
+            T::fused(k(1.5), t17, t11),
             t0,
-            T::fused(-k(0.4), t18, k(0.6) * t8),
-            t1 * T::fused(k(0.4), t19, k(0.6) * t13),
+            top_dsy * T::fused(k(1.5), t19, t5),
         );
-        let t21 = t7 - t6;
-        let t22 = T::fused(t2, T::fused(-k(0.4), t21, k(0.6) * t16), -t20);
+        let t22 = T::fused(top_dsx, T::fused(k(1.5), t16, t14), t21);
         let t23 = T::fused(
-            -t0,
-            T::fused(k(0.6), t5, t18),
-            t1 * T::fused(k(0.6), t10, t19),
+            t13,
+            t22,
+            T::fused(t16, t15, k(1.25) * T::fused(-top_dsy, t18, t20 * t0)),
         );
-        let t24 = T::fused(t2, T::fused(-k(0.6), t15, t21), t23);
-        let t25 = T::fused(
-            k(2.0) * t8,
-            t24,
-            -T::fused(k(2.0) * t18, t17, k(2.0) * t5 * t22),
+        let t24 = T::fused(
+            T::fused(k(2.5), t17, t8),
+            t0,
+            top_dsy * T::fused(k(2.5), t19, t2),
         );
-        let t26 = top_ry - (top_ry + T::fused(k(0.4), t13, T::fused(-k(0.6), t19, t10)));
-        let t27 = top_rz - (top_rz - T::fused(k(0.4), t16, T::fused(k(0.6), t21, t15)));
+        let t25 = T::fused(top_dsx, T::fused(k(2.5), t16, t13), t24);
+        let t26 = T::fused(k(0.6), t14, T::fused(-k(0.4), t16, t13));
+        let t27 = T::fused(
+            t2,
+            t22,
+            T::fused(t19, t15, k(1.25) * T::fused(-t26, t0, top_dsx * t18)),
+        );
         let t28 = T::fused(
-            k(2.0) * t13,
-            t24,
-            T::fused(k(2.0) * t19, t17, k(2.0) * t10 * t22),
-        );
-        let t29 = top_rx - (top_rx + T::fused(k(0.4), t8, -T::fused(-k(0.6), t18, t5)));
-        let t30 = T::fused(
-            k(2.0) * t16,
-            t24,
-            T::fused(-(k(2.0) * t21), t17, k(2.0) * t15 * t22),
+            t8,
+            t22,
+            T::fused(t17, t15, k(1.25) * T::fused(-top_dsx, t20, top_dsy * t26)),
         );
         *out = [
-            t0,
-            t1,
-            t2,
-            t25 - T::fused(-t2, t26, t1 * t27),
-            t28 - T::fused(-t0, t27, t2 * t29),
-            -(T::fused(-t1, t29, t0 * t26) + t30),
+            k(15.0) * top_dsx,
+            k(15.0) * top_dsy,
+            k(15.0) * t0,
+            -(k(12.0) * T::fused(t14, t25, -t23)),
+            -(k(12.0) * T::fused(t5, t25, -t27)),
+            -(k(12.0) * T::fused(t11, t25, -t28)),
         ];
     }
     fn n_outputs(&self) -> usize {

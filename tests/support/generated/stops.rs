@@ -12,12 +12,12 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 144 operations by rotations of the bodies, doubled; 144 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 71 operations by rotations of the bodies, doubled; 71 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 38 operations by recursion; 38 operations by normal form; 1 more compared
-//! * joint_accelerations_at: 54 operations by recursion; 54 operations by normal form; 3 more compared
-//! * corrected_accelerations: 72 operations by recursion in the bodies' frames; 72 operations by recursion in the global frame; 9 more compared
-//! * joint_jacobian: 83 operations by normal form of that; 129 operations by derivatives of u̇, from its leaves; 7 more compared
+//! * accelerations: 138 operations by rotations of the bodies, doubled; 138 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 70 operations by rotations of the bodies, doubled; 70 operations by relative Euler parameters, doubled; 2 more compared
+//! * joint_accelerations: 37 operations by recursion; 37 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 53 operations by recursion; 53 operations by normal form; 3 more compared
+//! * corrected_accelerations: 68 operations by recursion in the bodies' frames; 68 operations by recursion in the global frame; 9 more compared
+//! * joint_jacobian: 83 operations by normal form of that; 123 operations by derivatives of u̇, from its leaves; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -27,23 +27,23 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 33 | 28 | 8 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 18 | 0 | 29 | 0 of 15 | 55 | 29 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 10 of 10 | 0 | 0 |
-//! | gamma | γ | 27 | 49 | 0 | 76 | 5 of 10 | 130 | 76 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 28 | 0 | 44 | 0 of 10 | 70 | 44 |
+//! | gamma | γ | 27 | 48 | 0 | 75 | 5 of 10 | 105 | 75 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 27 | 0 | 43 | 0 of 10 | 55 | 43 |
 //! | applied_force | (f, n' − w̃'J'w') | 26 | 26 | 3 | 55 | 7 of 12 | 286 | 58 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 87 | 5 | 144 | 5 of 12 | 887 | 148 |
-//! | multipliers | λ, the accelerations being known | 22 | 62 | 2 | 86 | 0 of 10 | 508 | 86 |
-//! | project | (δr, δπ') that changes the rows as given | 19 | 50 | 2 | 71 | 2 of 12 | 483 | 71 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 81 | 5 | 138 | 5 of 12 | 680 | 142 |
+//! | multipliers | λ, the accelerations being known | 22 | 56 | 2 | 80 | 0 of 10 | 360 | 80 |
+//! | project | (δr, δπ') that changes the rows as given | 19 | 49 | 2 | 70 | 2 of 12 | 346 | 70 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 | 334 | 107 |
-//! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 | 35 | 35 |
+//! | energy | T and V | 12 | 20 | 0 | 32 | 0 of 2 | 32 | 32 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 5 | 18 | 15 |
-//! | joint_accelerations | u̇ in joint coordinates | 20 | 15 | 3 | 38 | 0 of 2 | 59 | 41 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 14 | 3 | 37 | 0 of 2 | 58 | 40 |
 //! | joint_derivative | ẋ but for u̇ | 20 | 17 | 3 | 40 | 0 of 3 | 61 | 43 |
 //! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 19 of 27 | 2 | 1 |
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 4 | 43 | 22 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 26 | 25 | 3 | 54 | 0 of 2 | 284 | 57 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 39 | 3 | 72 | 6 of 12 | 366 | 75 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 19 | 0 | 25 | 0 of 10 | 37 | 25 |
-//! | corrected_solution | both | 33 | 50 | 3 | 86 | 11 of 22 | 466 | 89 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 26 | 24 | 3 | 53 | 0 of 2 | 265 | 56 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 35 | 3 | 68 | 6 of 12 | 344 | 71 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 7 | 19 | 0 | 26 | 0 of 10 | 37 | 26 |
+//! | corrected_solution | both | 34 | 48 | 3 | 85 | 11 of 22 | 438 | 88 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 33 | 46 | 4 | 83 | 20 of 30 | 310 | 84 |
 //!
 //! # Proof
@@ -62,7 +62,7 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-140.
+//! All of it holds but with a probability below 1e-139.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `stops`.
@@ -426,7 +426,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
             t1 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (16 ±, 28 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 43 operations (16 ±, 27 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let hammer_e0 = y[3];
@@ -447,41 +447,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let hammer_wz = y[19];
         let disc_wx = y[23];
         let disc_wy = y[24];
-        let t0 = k(2.0) * hammer_e1;
-        let t1 = k(2.0) * hammer_e0;
-        let t2 = T::fused(-hammer_e0, t1, k(1.0));
-        let t3 = T::fused(-hammer_e1, t0, t2);
-        let t4 = hammer_e3 * t1;
-        let t5 = hammer_e2 * t0;
-        let t6 = T::fused(
-            hammer_wy,
-            t5 + t4,
-            hammer_wx * T::fused(-hammer_e2, k(2.0) * hammer_e2, t2),
-        );
-        let t7 = k(2.0) * disc_e1;
-        let t8 = k(2.0) * disc_e0;
-        let t9 = T::fused(-disc_e0, t8, k(1.0));
-        let t10 = disc_e3 * t8;
-        let t11 = disc_e2 * t7;
-        let t12 = T::fused(
-            disc_wy,
-            t11 + t10,
-            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t9),
-        );
+        let t0 = T::fused(-hammer_e0, hammer_e0, k(0.5));
+        let t1 = T::fused(hammer_e1, hammer_e1, -t0);
+        let t2 = hammer_e0 * hammer_e3;
+        let t3 = hammer_e1 * hammer_e2;
+        let t4 = k(2.0)
+            * T::fused(
+                -hammer_wx,
+                T::fused(hammer_e2, hammer_e2, -t0),
+                (t3 + t2) * hammer_wy,
+            );
+        let t5 = k(2.0)
+            * T::fused(
+                -hammer_wz,
+                t1,
+                T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * hammer_wx,
+            );
+        let t6 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t7 = disc_e0 * disc_e3;
+        let t8 = disc_e1 * disc_e2;
+        let t9 = k(2.0)
+            * T::fused(-disc_wy, T::fused(disc_e1, disc_e1, -t6), (t8 - t7) * disc_wx);
+        let t10 = k(2.0)
+            * T::fused(-disc_wx, T::fused(disc_e2, disc_e2, -t6), (t8 + t7) * disc_wy);
         *out = [
             hammer_sx,
             hammer_sy,
-            -T::fused(hammer_wy, t3, hammer_wx * (t5 - t4)),
-            t6,
-            T::fused(hammer_wz, t3, hammer_wx * T::fused(hammer_e2, t1, hammer_e3 * t0)),
+            -(k(2.0) * T::fused(-hammer_wy, t1, (t3 - t2) * hammer_wx)),
+            t4,
+            t5,
             disc_sx,
             disc_sy,
             disc_sz,
-            -T::fused(disc_wy, T::fused(-disc_e1, t7, t9), disc_wx * (t11 - t10)),
-            t12,
+            -t9,
+            t10,
         ];
     }
-    /// Kinetic and potential energy: 35 operations (12 ±, 23 ×, 0 ÷).
+    /// Kinetic and potential energy: 32 operations (12 ±, 20 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -499,32 +501,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let disc_wy = y[24];
         let disc_wz = y[25];
         let t0 = T::fused(
-            disc_wz,
-            k(0.02) * disc_wz,
-            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
-        );
-        let t1 = T::fused(
-            k(4.0),
-            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
-            t0,
-        );
-        let t2 = T::fused(
-            hammer_wz,
-            k(0.001) * hammer_wz,
-            T::fused(hammer_wy, k(0.001) * hammer_wy, hammer_wx * (k(0.001) * hammer_wx)),
-        );
-        let t3 = T::fused(
-            k(0.5),
+            k(500.0),
             T::fused(
                 hammer_sz,
                 hammer_sz,
                 T::fused(hammer_sy, hammer_sy, hammer_sx * hammer_sx),
             ),
-            t2,
+            T::fused(
+                hammer_wz,
+                hammer_wz,
+                T::fused(hammer_wx, hammer_wx, hammer_wy * hammer_wy),
+            ),
+        );
+        let t1 = T::fused(
+            k(20.0),
+            disc_wz * disc_wz,
+            T::fused(
+                k(10.0),
+                disc_wy * disc_wy,
+                T::fused(k(10.0), disc_wx * disc_wx, t0),
+            ),
+        );
+        let t2 = T::fused(
+            k(4000.0),
+            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
+            t1,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t3 + t1),
-            potential: T::fused(k(39.24), disc_rz, k(4.905) * hammer_rz),
+            kinetic: k(0.0005) * t2,
+            potential: k(4.905) * T::fused(k(8.0), disc_rz, hammer_rz),
         }
     }
     /// Writes the joint readings: 15 operations (7 ±, 8 ×, 0 ÷).
@@ -855,7 +860,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 76 operations (27 ±, 49 ×, 0 ÷).
+    /// Writes γ: 75 operations (27 ±, 48 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let hammer_e0 = y[3];
@@ -872,63 +877,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_wx = y[23];
         let disc_wy = y[24];
         let disc_wz = y[25];
-        let t0 = k(2.0) * hammer_e1;
-        let t1 = k(2.0) * hammer_e0;
-        let t2 = T::fused(-hammer_e0, t1, k(1.0));
-        let t3 = T::fused(-hammer_e1, t0, t2);
-        let t4 = hammer_wx * hammer_wz;
-        let t5 = hammer_e3 * t1;
-        let t6 = hammer_e2 * t0;
-        let t7 = t6 - t5;
-        let t8 = hammer_wy * hammer_wz;
-        let t9 = T::fused(hammer_e2, t1, hammer_e3 * t0);
-        let t10 = hammer_wx * hammer_wx;
-        let t11 = T::fused(hammer_wy, hammer_wy, t10);
-        let t12 = k(2.0) * hammer_e2;
-        let t13 = T::fused(
-            t11,
-            T::fused(-hammer_e1, t1, hammer_e3 * t12),
-            T::fused(-t4, t6 + t5, t8 * T::fused(-hammer_e2, t12, t2)),
+        let t0 = T::fused(-hammer_e0, hammer_e0, k(0.5));
+        let t1 = T::fused(hammer_e1, hammer_e1, -t0);
+        let t2 = hammer_wx * hammer_wz;
+        let t3 = hammer_wx * hammer_wx;
+        let t4 = T::fused(hammer_wy, hammer_wy, t3);
+        let t5 = T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t6 = hammer_wy * hammer_wz;
+        let t7 = hammer_e0 * hammer_e3;
+        let t8 = hammer_e1 * hammer_e2;
+        let t9 = t8 - t7;
+        let t10 = T::fused(
+            -t6,
+            T::fused(hammer_e2, hammer_e2, -t0),
+            T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t4,
         );
-        let t14 = T::fused(
-            t8,
-            t9,
-            -T::fused(
-                hammer_wx * hammer_wy,
-                t3,
-                T::fused(hammer_wz, hammer_wz, t10) * t7,
-            ),
+        let t11 = T::fused(
+            -(hammer_wx * hammer_wy),
+            t1,
+            T::fused(-t5, t6, t9 * T::fused(hammer_wz, hammer_wz, t3)),
         );
-        let t15 = k(2.0) * disc_e1;
-        let t16 = k(2.0) * disc_e0;
-        let t17 = T::fused(-disc_e0, t16, k(1.0));
-        let t18 = disc_wx * disc_wz;
-        let t19 = disc_e3 * t16;
-        let t20 = disc_e2 * t15;
-        let t21 = disc_wy * disc_wz;
-        let t22 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t23 = T::fused(
-            t22,
-            T::fused(disc_e2, t16, disc_e3 * t15),
-            -T::fused(-t18, T::fused(-disc_e1, t15, t17), t21 * (t20 - t19)),
+        let t12 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t13 = disc_wx * disc_wz;
+        let t14 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t15 = disc_wy * disc_wz;
+        let t16 = disc_e0 * disc_e3;
+        let t17 = disc_e1 * disc_e2;
+        let t18 = T::fused(
+            -T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            t14,
+            (t17 - t16) * t15,
         );
-        let t24 = k(2.0) * disc_e2;
-        let t25 = T::fused(
-            t22,
-            T::fused(-disc_e1, t16, disc_e3 * t24),
-            T::fused(-t18, t20 + t19, t21 * T::fused(-disc_e2, t24, t17)),
+        let t19 = T::fused(
+            -t15,
+            T::fused(disc_e2, disc_e2, -t12),
+            T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3) * t14,
         );
         *out = [
             k(0.0),
             k(0.0),
-            T::fused(t11, t9, -T::fused(-t4, t3, t8 * t7)),
-            t13,
-            -t14,
+            -(k(2.0) * T::fused(t2, t1, T::fused(-t5, t4, t9 * t6))),
+            -(k(2.0) * T::fused(t8 + t7, t2, -t10)),
+            k(2.0) * t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            t23,
-            t25,
+            -(k(2.0) * T::fused(t13, T::fused(disc_e1, disc_e1, -t12), t18)),
+            -(k(2.0) * T::fused(t17 + t16, t13, -t19)),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 55 operations (26 ±, 26 ×, 3 ÷) and 7 functions.
@@ -983,7 +978,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             -T::fused(k(20.0), t15 - T::fused(t15, t15, k(0.0025)).sqrt(), t14),
         ];
     }
-    /// Solves eq. (17): 144 operations (52 ±, 87 ×, 5 ÷) and 7 functions.
+    /// Solves eq. (17): 138 operations (52 ±, 81 ×, 5 ÷) and 7 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -1003,92 +998,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_wy = y[24];
         let disc_wz = y[25];
         let turn0 = y[27];
-        let t0 = hammer_rz - k(0.8);
-        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
-        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
-        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
-        let t4 = T::fused(
-            hammer_sz,
-            k(2.5) * (k(1.0) - hammer_rz / t3),
-            k(2000.0) * (hammer_rz - t3),
+        let t0 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t1 = T::fused(
+            k(2.5),
+            hammer_sz * (k(1.0) - hammer_rz / t0),
+            k(2000.0) * (hammer_rz - t0),
         );
-        let t5 = k(2.0) * hammer_e1;
-        let t6 = k(2.0) * hammer_e0;
-        let t7 = T::fused(-hammer_e0, t6, k(1.0));
-        let t8 = T::fused(-hammer_e1, t5, t7);
-        let t9 = hammer_wx * hammer_wz;
-        let t10 = hammer_e3 * t6;
-        let t11 = hammer_e2 * t5;
-        let t12 = t11 - t10;
-        let t13 = hammer_wy * hammer_wz;
-        let t14 = T::fused(hammer_e2, t6, hammer_e3 * t5);
-        let t15 = hammer_wx * hammer_wx;
-        let t16 = T::fused(hammer_wy, hammer_wy, t15);
-        let t17 = T::fused(t16, t14, -T::fused(-t9, t8, t13 * t12));
-        let t18 = t11 + t10;
-        let t19 = k(2.0) * hammer_e2;
-        let t20 = T::fused(-hammer_e2, t19, t7);
-        let t21 = t8 * t20;
-        let t22 = T::fused(t12, t18, -t21);
-        let t23 = k(1.0) / (t8 * t22);
-        let t24 = T::fused(
-            t16,
-            T::fused(-hammer_e1, t6, hammer_e3 * t19),
-            T::fused(-t9, t18, t13 * t20),
-        );
-        let t25 = T::fused(t23 * (t8 * t18), t17, t23 * (t8 * t8) * t24);
-        let t26 = T::fused(
-            t13,
-            t14,
+        let t2 = hammer_rz - k(0.8);
+        let t3 = T::fused(t2, t2, k(0.0004)).sqrt();
+        let t4 = T::fused(hammer_sz, k(1.0) + t2 / t3, T::fused(k(1500.0), t2 + t3, t1));
+        let t5 = T::fused(-hammer_e0, hammer_e0, k(0.5));
+        let t6 = T::fused(hammer_e1, hammer_e1, -t5);
+        let t7 = T::fused(hammer_e2, hammer_e2, -t5);
+        let t8 = t6 * t7;
+        let t9 = hammer_e0 * hammer_e3;
+        let t10 = hammer_e1 * hammer_e2;
+        let t11 = t10 + t9;
+        let t12 = t10 - t9;
+        let t13 = T::fused(t12, t11, -t8);
+        let t14 = k(1.0) / (t6 * t13);
+        let t15 = hammer_wy * hammer_wz;
+        let t16 = hammer_wx * hammer_wx;
+        let t17 = T::fused(hammer_wy, hammer_wy, t16);
+        let t18 = hammer_wx * hammer_wz;
+        let t19 = T::fused(
+            t11,
+            t18,
             -T::fused(
-                hammer_wx * hammer_wy,
-                t8,
-                T::fused(hammer_wz, hammer_wz, t15) * t12,
+                -t15,
+                t7,
+                T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t17,
             ),
         );
-        let t27 = T::fused(t17, t23 * (t14 * t18), t24 * (t23 * (t8 * t14)));
-        let t28 = k(2.0) * disc_e0;
-        let t29 = T::fused(-disc_e0, t28, k(1.0));
-        let t30 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
-            / T::fused(-disc_e3, k(2.0) * disc_e3, t29);
-        let t31 = T::fused(
-            -T::fused(disc_e1, t28, disc_e3 * (k(2.0) * disc_e2)),
-            t30,
-            disc_wy * disc_wz,
+        let t20 = T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t21 = T::fused(t18, t6, T::fused(-t20, t17, t12 * t15));
+        let t22 = T::fused(-t19, t14 * (t6 * t6), t21 * (t11 * t6 * t14));
+        let t23 = T::fused(-t19, t14 * (t20 * t6), t21 * (t20 * t11 * t14));
+        let t24 = T::fused(
+            -(hammer_wx * hammer_wy),
+            t6,
+            T::fused(-t20, t15, t12 * T::fused(hammer_wz, hammer_wz, t16)),
         );
-        let t32 = k(2.0) * disc_e1;
-        let t33 = T::fused(-disc_e1, t32, t29);
-        let t34 = turn0.cos();
-        let t35 = T::fused(disc_e3, t28, disc_e2 * t32);
-        let t36 = turn0.sin();
-        let t37 = T::fused(t36, t33, t34 * t35).atan2(T::fused(-t34, t33, t36 * t35));
-        let t38 = turn0 + t37;
-        let t39 = k(15.7) - t38;
-        let t40 = T::fused(t39, t39, k(0.0025)).sqrt();
-        let t41 = T::fused(
-            -k(25.0),
-            t39 - t40,
-            disc_wz * (k(0.05) * (k(1.0) - t39 / t40)),
+        let t25 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t26 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            / T::fused(disc_e3, disc_e3, -t25);
+        let t27 = T::fused(disc_e1, disc_e1, -t25);
+        let t28 = turn0.cos();
+        let t29 = turn0.sin();
+        let t30 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t31 = (k(2.0) * T::fused(-t29, t27, t30 * t28))
+            .atan2(k(2.0) * T::fused(t28, t27, t30 * t29));
+        let t32 = turn0 + t31;
+        let t33 = k(15.7) - t32;
+        let t34 = T::fused(t33, t33, k(0.0025)).sqrt();
+        let t35 = k(9.5) + t32;
+        let t36 = T::fused(
+            k(0.0025),
+            disc_wz * (k(1.0) - t33 / t34),
+            t35 - T::fused(t35, t35, k(0.0025)).sqrt(),
         );
-        let t42 = k(9.5) + t38;
-        let t43 = k(50.0)
-            * T::fused(k(20.0), t42 - T::fused(t42, t42, k(0.0025)).sqrt(), t41);
         *out = [
             k(0.0),
             k(0.0),
-            -(k(2.0) * (t4 + t2 + k(4.905))),
-            -t25,
-            T::fused(t17, t21 * t23, t24 * (t23 * (t8 * t12))),
-            T::fused(-(t22 * t23), t26, t27),
+            -(k(2.0) * (k(4.905) + t4)),
+            t22,
+            T::fused(-t19, t14 * (t12 * t6), t21 * (t8 * t14)),
+            T::fused(-t24, t13 * t14, t23),
             k(0.0),
             k(0.0),
             k(0.0),
-            t31,
-            T::fused(-disc_wx, disc_wz, T::fused(-disc_e2, t28, disc_e3 * t32) * t30),
-            -t43,
+            T::fused(
+                T::fused(disc_e0, disc_e1, disc_e2 * disc_e3),
+                t26,
+                disc_wy * disc_wz,
+            ),
+            -T::fused(
+                T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3),
+                t26,
+                disc_wx * disc_wz,
+            ),
+            -(k(1000.0) * T::fused(-k(1.25), t33 - t34, t36)),
         ];
     }
-    /// Writes λ: 86 operations (22 ±, 62 ×, 2 ÷).
+    /// Writes λ: 80 operations (22 ±, 56 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1118,55 +1110,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_dsz = accelerations[8];
         let disc_dwx = accelerations[9];
         let disc_dwy = accelerations[10];
-        let t0 = k(2.0) * hammer_e0;
-        let t1 = hammer_e3 * t0;
-        let t2 = k(2.0) * hammer_e1;
-        let t3 = hammer_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = T::fused(-hammer_e0, t0, k(1.0));
-        let t6 = T::fused(-hammer_e1, t2, t5);
-        let t7 = t6 * T::fused(-hammer_e2, k(2.0) * hammer_e2, t5);
-        let t8 = t3 - t1;
-        let t9 = T::fused(t8, t4, -t7);
-        let t10 = k(1.0) / (t6 * t9);
-        let t11 = k(0.001) * hammer_dwx;
-        let t12 = k(0.001) * hammer_dwy;
-        let t13 = T::fused(hammer_e2, t0, hammer_e3 * t2);
-        let t14 = k(0.001) * hammer_dwz;
-        let t15 = T::fused(
-            t14,
-            t10 * (t13 * t4),
-            T::fused(-t11, t10 * (t6 * t4), t12 * (t7 * t10)),
+        let t0 = T::fused(-hammer_e0, hammer_e0, k(0.5));
+        let t1 = T::fused(hammer_e1, hammer_e1, -t0);
+        let t2 = t1 * T::fused(hammer_e2, hammer_e2, -t0);
+        let t3 = hammer_e0 * hammer_e3;
+        let t4 = hammer_e1 * hammer_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = T::fused(t6, t5, -t2);
+        let t8 = k(1.0) / (t1 * t7);
+        let t9 = T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t10 = T::fused(
+            hammer_dwx,
+            t5 * t1 * t8,
+            T::fused(hammer_dwz, t9 * t5 * t8, hammer_dwy * (t2 * t8)),
         );
-        let t16 = T::fused(-t11, t10 * (t6 * t6), t12 * (t10 * (t6 * t8)));
-        let t17 = k(2.0) * disc_e0;
-        let t18 = disc_e3 * t17;
-        let t19 = k(2.0) * disc_e1;
-        let t20 = disc_e2 * t19;
-        let t21 = t20 + t18;
-        let t22 = t20 - t18;
-        let t23 = T::fused(-disc_e0, t17, k(1.0));
-        let t24 = T::fused(-disc_e2, k(2.0) * disc_e2, t23);
-        let t25 = T::fused(-disc_e1, t19, t23);
-        let t26 = k(1.0) / T::fused(-t22, t21, t25 * t24);
-        let t27 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t28 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t11 = T::fused(hammer_dwz, t8 * (t9 * t1), hammer_dwy * (t8 * (t6 * t1)));
+        let t12 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t13 = T::fused(disc_e2, disc_e2, -t12);
+        let t14 = T::fused(disc_e1, disc_e1, -t12);
+        let t15 = disc_e0 * disc_e3;
+        let t16 = disc_e1 * disc_e2;
+        let t17 = t16 + t15;
+        let t18 = t16 - t15;
+        let t19 = k(1.0) / T::fused(-t14, t13, t18 * t17);
+        let t20 = T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t21 = T::fused(disc_wy, disc_wz, disc_dwx);
         *lambda = [
             -(k(0.5) * hammer_dsx),
             -(k(0.5) * hammer_dsy),
-            -t15,
-            -T::fused(t14, t10 * (t6 * t13), t16),
-            -(t14 * (t9 * t10)),
+            k(0.0005) * t10,
+            -(k(0.0005) * T::fused(hammer_dwx, t8 * (t1 * t1), t11)),
+            k(0.0005) * (hammer_dwz * (t7 * t8)),
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
-            -T::fused(k(4.0), disc_dsz, k(39.24)),
-            -T::fused(t27, t21 * t26, t28 * (t24 * t26)),
-            -T::fused(t27, t25 * t26, t28 * (t22 * t26)),
+            -(k(4.0) * (disc_dsz + k(9.81))),
+            k(0.005) * T::fused(-t20, t13 * t19, t21 * (t17 * t19)),
+            -(k(0.005) * T::fused(-t20, t18 * t19, t21 * (t14 * t19))),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Stops<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 71 operations (19 ±, 50 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 70 operations (19 ±, 49 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -1193,42 +1178,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Stops<T> {
         let row7 = rows[7];
         let row8 = rows[8];
         let row9 = rows[9];
-        let t0 = k(2.0) * hammer_e0;
-        let t1 = hammer_e3 * t0;
-        let t2 = k(2.0) * hammer_e1;
-        let t3 = hammer_e2 * t2;
-        let t4 = t3 + t1;
-        let t5 = T::fused(-hammer_e0, t0, k(1.0));
-        let t6 = T::fused(-hammer_e1, t2, t5);
-        let t7 = t6 * T::fused(-hammer_e2, k(2.0) * hammer_e2, t5);
-        let t8 = t3 - t1;
-        let t9 = T::fused(t8, t4, -t7);
-        let t10 = k(1.0) / (t6 * t9);
-        let t11 = T::fused(t10 * (t6 * t4), row2, t10 * (t6 * t6) * row3);
-        let t12 = T::fused(hammer_e2, t0, hammer_e3 * t2);
-        let t13 = T::fused(t10 * (t12 * t4), row2, t10 * (t6 * t12) * row3);
-        let t14 = k(2.0) * disc_e0;
-        let t15 = disc_e3 * t14;
-        let t16 = k(2.0) * disc_e1;
-        let t17 = disc_e2 * t16;
-        let t18 = t17 + t15;
-        let t19 = t17 - t15;
-        let t20 = T::fused(-disc_e0, t14, k(1.0));
-        let t21 = T::fused(-disc_e2, k(2.0) * disc_e2, t20);
-        let t22 = T::fused(-disc_e1, t16, t20);
-        let t23 = k(1.0) / T::fused(-t19, t18, t22 * t21);
+        let t0 = T::fused(-hammer_e0, hammer_e0, k(0.5));
+        let t1 = T::fused(hammer_e1, hammer_e1, -t0);
+        let t2 = t1 * T::fused(hammer_e2, hammer_e2, -t0);
+        let t3 = hammer_e0 * hammer_e3;
+        let t4 = hammer_e1 * hammer_e2;
+        let t5 = t4 + t3;
+        let t6 = t4 - t3;
+        let t7 = T::fused(t6, t5, -t2);
+        let t8 = k(1.0) / (t1 * t7);
+        let t9 = T::fused(-(t8 * (t1 * t1)), row3, t5 * t1 * t8 * row2);
+        let t10 = k(0.5) * T::fused(-(t8 * (t6 * t1)), row3, t2 * t8 * row2);
+        let t11 = T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t12 = T::fused(-(t8 * (t11 * t1)), row3, t11 * t5 * t8 * row2);
+        let t13 = T::fused(-disc_e0, disc_e0, k(0.5));
+        let t14 = T::fused(disc_e2, disc_e2, -t13);
+        let t15 = T::fused(disc_e1, disc_e1, -t13);
+        let t16 = disc_e0 * disc_e3;
+        let t17 = disc_e1 * disc_e2;
+        let t18 = t17 + t16;
+        let t19 = t17 - t16;
+        let t20 = k(1.0) / T::fused(-t15, t14, t19 * t18);
         *out = [
             row0,
             row1,
             k(0.0),
-            -t11,
-            T::fused(t7 * t10, row2, t10 * (t6 * t8) * row3),
-            T::fused(t9 * t10, row4, t13),
+            -(k(0.5) * t9),
+            -t10,
+            -(k(0.5) * T::fused(t7 * t8, row4, t12)),
             row5,
             row6,
             row7,
-            T::fused(row8, t18 * t23, row9 * (t22 * t23)),
-            -T::fused(row8, t21 * t23, row9 * (t19 * t23)),
+            -(k(0.5) * T::fused(-row9, t15 * t20, row8 * (t18 * t20))),
+            -(k(0.5) * T::fused(-row9, t19 * t20, row8 * (t14 * t20))),
             k(0.0),
         ];
     }
@@ -1247,25 +1229,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 22]
     }
-    /// Writes u̇: 38 operations (20 ±, 15 ×, 3 ÷) and 4 functions.
+    /// Writes u̇: 37 operations (20 ±, 14 ×, 3 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = k(0.8) - x0;
-        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
-        let t2 = T::fused(-u0, k(1.0) - t0 / t1, k(1500.0) * (t0 - t1));
-        let t3 = T::fused(x0, x0, k(0.0001)).sqrt();
-        let t4 = T::fused(u0, k(2.5) * (k(1.0) - x0 / t3), k(2000.0) * (x0 - t3));
+        let t0 = T::fused(x0, x0, k(0.0001)).sqrt();
+        let t1 = T::fused(k(2.5), u0 * (k(1.0) - x0 / t0), k(2000.0) * (x0 - t0));
+        let t2 = k(0.8) - x0;
+        let t3 = T::fused(t2, t2, k(0.0004)).sqrt();
+        let t4 = T::fused(u0, k(1.0) - t2 / t3, -T::fused(k(1500.0), t2 - t3, -t1));
         let t5 = k(9.5) + x1;
         let t6 = k(15.7) - x1;
         let t7 = T::fused(t6, t6, k(0.0025)).sqrt();
-        let t8 = T::fused(-u1, k(0.05) * (k(1.0) - t6 / t7), k(25.0) * (t6 - t7));
-        let t9 = k(50.0)
-            * T::fused(-k(20.0), t5 - T::fused(t5, t5, k(0.0025)).sqrt(), t8);
-        *out = [-T::fused(k(2.0), t4 - t2, k(9.81)), t9];
+        let t8 = T::fused(-k(0.002), u1 * (k(1.0) - t6 / t7), t6 - t7);
+        let t9 = k(1250.0)
+            * T::fused(-k(0.8), t5 - T::fused(t5, t5, k(0.0025)).sqrt(), t8);
+        *out = [-(k(2.0) * (k(4.905) + t4)), t9];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (20 ±, 17 ×, 3 ÷) and 4 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -1358,7 +1340,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         x[3] = disc_wz;
         x[4] = y[26];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 54 operations (26 ±, 25 ×, 3 ÷) and 7 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 53 operations (26 ±, 24 ×, 3 ÷) and 7 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -1369,34 +1351,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let hammer_sz = y[16];
         let disc_wz = y[25];
         let turn0 = y[27];
-        let t0 = hammer_rz - k(0.8);
-        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
-        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
-        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
-        let t4 = T::fused(
-            hammer_sz,
-            k(2.5) * (k(1.0) - hammer_rz / t3),
-            k(2000.0) * (hammer_rz - t3),
+        let t0 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t1 = T::fused(
+            k(2.5),
+            hammer_sz * (k(1.0) - hammer_rz / t0),
+            k(2000.0) * (hammer_rz - t0),
         );
-        let t5 = turn0.cos();
-        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t7 = turn0.sin();
-        let t8 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t9 = T::fused(t6, t7, t8 * t5).atan2(T::fused(-t6, t5, t8 * t7));
+        let t2 = hammer_rz - k(0.8);
+        let t3 = T::fused(t2, t2, k(0.0004)).sqrt();
+        let t4 = T::fused(hammer_sz, k(1.0) + t2 / t3, T::fused(k(1500.0), t2 + t3, t1));
+        let t5 = turn0.sin();
+        let t6 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t7 = turn0.cos();
+        let t8 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t9 = (k(2.0) * T::fused(t6, t7, t8 * t5))
+            .atan2(-(k(2.0) * T::fused(-t6, t5, t8 * t7)));
         let t10 = turn0 + t9;
         let t11 = k(15.7) - t10;
         let t12 = T::fused(t11, t11, k(0.0025)).sqrt();
-        let t13 = T::fused(
-            -k(25.0),
-            t11 - t12,
-            disc_wz * (k(0.05) * (k(1.0) - t11 / t12)),
+        let t13 = k(9.5) + t10;
+        let t14 = T::fused(
+            k(0.0025),
+            disc_wz * (k(1.0) - t11 / t12),
+            t13 - T::fused(t13, t13, k(0.0025)).sqrt(),
         );
-        let t14 = k(9.5) + t10;
-        let t15 = k(50.0)
-            * T::fused(k(20.0), t14 - T::fused(t14, t14, k(0.0025)).sqrt(), t13);
-        *out = [-T::fused(k(2.0), t4 + t2, k(9.81)), -t15];
+        *out = [
+            -(k(2.0) * (k(4.905) + t4)),
+            -(k(1000.0) * T::fused(-k(1.25), t11 - t12, t14)),
+        ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 72 operations (30 ±, 39 ×, 3 ÷) and 7 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 68 operations (30 ±, 35 ×, 3 ÷) and 7 functions.
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -1418,37 +1402,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_wy = y[24];
         let disc_wz = y[25];
         let turn0 = y[27];
-        let t0 = hammer_rz - k(0.8);
-        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
-        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
-        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
-        let t4 = T::fused(
-            hammer_sz,
-            k(2.5) * (k(1.0) - hammer_rz / t3),
-            k(2000.0) * (hammer_rz - t3),
+        let t0 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t1 = T::fused(
+            k(2.5),
+            hammer_sz * (k(1.0) - hammer_rz / t0),
+            k(2000.0) * (hammer_rz - t0),
         );
-        let t5 = T::fused(k(2.0), t4 + t2, k(9.81));
-        let t6 = turn0.cos();
-        let t7 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t8 = turn0.sin();
-        let t9 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t10 = T::fused(t7, t8, t9 * t6).atan2(T::fused(-t7, t6, t9 * t8));
+        let t2 = hammer_rz - k(0.8);
+        let t3 = T::fused(t2, t2, k(0.0004)).sqrt();
+        let t4 = T::fused(hammer_sz, k(1.0) + t2 / t3, T::fused(k(1500.0), t2 + t3, t1));
+        let t5 = k(4.0) * (k(4.905) + t4);
+        let t6 = turn0.sin();
+        let t7 = T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t8 = turn0.cos();
+        let t9 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t10 = (k(2.0) * T::fused(t7, t8, t9 * t6))
+            .atan2(-(k(2.0) * T::fused(-t7, t6, t9 * t8)));
         let t11 = turn0 + t10;
         let t12 = k(15.7) - t11;
         let t13 = T::fused(t12, t12, k(0.0025)).sqrt();
-        let t14 = T::fused(
-            -k(25.0),
-            t12 - t13,
-            disc_wz * (k(0.05) * (k(1.0) - t12 / t13)),
+        let t14 = k(9.5) + t11;
+        let t15 = T::fused(
+            k(0.0025),
+            disc_wz * (k(1.0) - t12 / t13),
+            t14 - T::fused(t14, t14, k(0.0025)).sqrt(),
         );
-        let t15 = k(9.5) + t11;
-        let t16 = k(50.0)
-            * T::fused(k(20.0), t15 - T::fused(t15, t15, k(0.0025)).sqrt(), t14);
         *out = [
-            -(k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * t5),
-            -(k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t5),
-            k(2.0) * (k(0.5) - T::fused(hammer_e3, hammer_e3, hammer_e0 * hammer_e0))
-                * t5,
+            -(T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * t5),
+            -(T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t5),
+            (k(0.5) - T::fused(hammer_e3, hammer_e3, hammer_e0 * hammer_e0)) * t5,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1457,10 +1439,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             k(0.0),
             disc_wy * disc_wz,
             -(disc_wx * disc_wz),
-            -t16,
+            -(k(1000.0) * T::fused(-k(1.25), t12 - t13, t15)),
         ];
     }
-    /// Writes λ: 25 operations (6 ±, 19 ×, 0 ÷).
+    /// Writes λ: 26 operations (7 ±, 19 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1484,11 +1466,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_dsz = accelerations[8];
         let disc_dwx = accelerations[9];
         let disc_dwy = accelerations[10];
-        let t0 = k(2.0) * disc_e3;
-        let t1 = disc_e0 * t0;
-        let t2 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t3 = T::fused(-disc_e3, t0, k(1.0));
-        let t4 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t0 = disc_e0 * (k(2.0) * disc_e3);
+        let t1 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t2 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
+        let t3 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(0.5) * hammer_dsx),
             -(k(0.5) * hammer_dsy),
@@ -1498,11 +1479,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -T::fused(k(4.0), disc_dsz, k(39.24)),
-            T::fused(-t2, t1, t4 * t3),
-            T::fused(t2, t3, t4 * t1),
+            T::fused(-t1, t0, t3 * t2),
+            T::fused(t1, t2, t3 * t0),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 86 operations (33 ±, 50 ×, 3 ÷) and 7 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 85 operations (34 ±, 48 ×, 3 ÷) and 7 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -1519,46 +1500,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_wy = y[24];
         let disc_wz = y[25];
         let turn0 = y[27];
-        let t0 = hammer_rz - k(0.8);
-        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
-        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
-        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
-        let t4 = T::fused(
-            hammer_sz,
-            k(2.5) * (k(1.0) - hammer_rz / t3),
-            k(2000.0) * (hammer_rz - t3),
+        let t0 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t1 = T::fused(
+            k(2.5),
+            hammer_sz * (k(1.0) - hammer_rz / t0),
+            k(2000.0) * (hammer_rz - t0),
         );
-        let t5 = T::fused(k(2.0), t4 + t2, k(9.81));
-        let t6 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * t5;
-        let t7 = k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t5;
+        let t2 = hammer_rz - k(0.8);
+        let t3 = T::fused(t2, t2, k(0.0004)).sqrt();
+        let t4 = T::fused(hammer_sz, k(1.0) + t2 / t3, T::fused(k(1500.0), t2 + t3, t1));
+        let t5 = k(4.905) + t4;
+        let t6 = T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * t5;
+        let t7 = T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t5;
         let t8 = disc_wy * disc_wz;
         let t9 = disc_wx * disc_wz;
-        let t10 = turn0.cos();
-        let t11 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t12 = turn0.sin();
-        let t13 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t14 = T::fused(t11, t12, t13 * t10).atan2(T::fused(-t11, t10, t13 * t12));
-        let t15 = turn0 + t14;
-        let t16 = k(15.7) - t15;
-        let t17 = T::fused(t16, t16, k(0.0025)).sqrt();
-        let t18 = T::fused(
-            -k(25.0),
-            t16 - t17,
-            disc_wz * (k(0.05) * (k(1.0) - t16 / t17)),
+        let t10 = turn0.sin();
+        let t11 = disc_e0 * disc_e3;
+        let t12 = T::fused(disc_e1, disc_e2, t11);
+        let t13 = turn0.cos();
+        let t14 = k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t15 = (k(2.0) * T::fused(t12, t13, t14 * t10))
+            .atan2(-(k(2.0) * T::fused(-t12, t10, t14 * t13)));
+        let t16 = turn0 + t15;
+        let t17 = k(15.7) - t16;
+        let t18 = T::fused(t17, t17, k(0.0025)).sqrt();
+        let t19 = k(9.5) + t16;
+        let t20 = T::fused(
+            k(0.0025),
+            disc_wz * (k(1.0) - t17 / t18),
+            t19 - T::fused(t19, t19, k(0.0025)).sqrt(),
         );
-        let t19 = k(9.5) + t15;
-        let t20 = k(50.0)
-            * T::fused(k(20.0), t19 - T::fused(t19, t19, k(0.0025)).sqrt(), t18);
-        let t21 = k(0.02) * t9;
-        let t22 = k(2.0) * disc_e3;
-        let t23 = T::fused(-disc_e3, t22, k(1.0));
-        let t24 = k(0.02) * t8;
-        let t25 = disc_e0 * t22;
+        let t21 = (disc_e0 - disc_e3) * (disc_e0 + disc_e3);
         *out = [
-            -t6,
-            -t7,
-            k(2.0) * (k(0.5) - T::fused(hammer_e3, hammer_e3, hammer_e0 * hammer_e0))
-                * t5,
+            -(k(4.0) * t6),
+            -(k(4.0) * t7),
+            k(4.0)
+                * ((k(0.5) - T::fused(hammer_e3, hammer_e3, hammer_e0 * hammer_e0))
+                    * t5),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1567,17 +1545,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             k(0.0),
             t8,
             -t9,
-            -t20,
-            k(0.5) * t6,
-            k(0.5) * t7,
+            -(k(1000.0) * T::fused(-k(1.25), t17 - t18, t20)),
+            k(2.0) * t6,
+            k(2.0) * t7,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             k(-39.24),
-            T::fused(-t25, t24, t23 * t21),
-            T::fused(t25, t21, t23 * t24),
+            -(k(0.04) * T::fused(-k(0.5), t9 * t21, t11 * t8)),
+            k(0.02) * T::fused(k(2.0), t11 * t9, t8 * t21),
         ];
     }
 }

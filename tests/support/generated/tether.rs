@@ -10,12 +10,12 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 31 operations by rotations of the bodies; 31 operations by rotations of the bodies, doubled; 2 more compared
+//! * accelerations: 29 operations by rotations of the bodies; 29 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 0 operations by rotations of the bodies; 0 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 174 operations by orthogonal motions; 215 operations by recursion
-//! * joint_accelerations_at: 174 operations by orthogonal motions; 174 operations by orthogonal motions on the bodies' spins; 2 more compared
-//! * corrected_accelerations: 31 operations by elimination in maximal coordinates; 204 operations by orthogonal motions in the bodies' frames; 7 more compared
-//! * joint_jacobian: 1121 operations by derivatives of u̇, from its roots; 1381 operations by derivatives of u̇, from its leaves
+//! * joint_accelerations: 161 operations by orthogonal motions; 204 operations by recursion
+//! * joint_accelerations_at: 161 operations by orthogonal motions; 161 operations by orthogonal motions on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 29 operations by elimination in maximal coordinates; 191 operations by orthogonal motions in the bodies' frames; 7 more compared
+//! * joint_jacobian: 1046 operations by derivatives of u̇, from its roots; 1315 operations by derivatives of u̇, from its leaves
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -24,21 +24,21 @@
 //! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 | 8 | 8 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 | 4 | 4 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 1 | 27 | 0 of 6 | 136 | 27 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 21 | 1 | 29 | 0 of 6 | 136 | 29 |
 //! | project | (δr, δπ') that changes the rows as given | 0 | 0 | 0 | 0 | 6 of 6 | 0 | 0 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
-//! | energy | T and V | 9 | 18 | 0 | 27 | 0 of 2 | 33 | 27 |
+//! | energy | T and V | 9 | 16 | 0 | 25 | 0 of 2 | 31 | 25 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 | 80 | 26 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
-//! | joint_accelerations | u̇ in joint coordinates | 63 | 107 | 4 | 174 | 0 of 6 | 83213 | 175 |
+//! | joint_accelerations | u̇ in joint coordinates | 63 | 94 | 4 | 161 | 0 of 6 | 75938 | 162 |
 //! | joint_derivative | ẋ but for u̇ | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
 //! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 63 | 107 | 4 | 174 | 0 of 6 | 83213 | 175 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
-//! | corrected_solution | both | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 449 | 658 | 4 | 1111 | 141 of 210 | 6.2e8 | 1111 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 63 | 94 | 4 | 161 | 0 of 6 | 75938 | 162 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 21 | 1 | 29 | 0 of 6 | 136 | 29 |
+//! | corrected_solution | both | 7 | 21 | 1 | 29 | 0 of 6 | 136 | 29 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 440 | 602 | 4 | 1046 | 141 of 210 | 4.0e8 | 1046 |
 //!
 //! # Proof
 //!
@@ -229,7 +229,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
     fn velocity_residual(&self, _t: T, _y: &Self::State, out: &mut Self::Rows) {
         *out = [];
     }
-    /// Kinetic and potential energy: 27 operations (9 ±, 18 ×, 0 ÷) and 1 functions.
+    /// Kinetic and potential energy: 25 operations (9 ±, 16 ×, 0 ÷) and 1 functions.
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let bob_rx = y[0];
@@ -242,20 +242,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let t0 = T::fused(
-            bob_wz,
-            k(0.004) * bob_wz,
-            T::fused(bob_wy, k(0.003) * bob_wy, bob_wx * (k(0.002) * bob_wx)),
+            k(2.0),
+            bob_wz * bob_wz,
+            T::fused(k(1.5), bob_wy * bob_wy, bob_wx * bob_wx),
         );
         let t1 = T::fused(
-            k(0.5),
+            k(250.0),
             T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx)),
             t0,
         );
         let t2 = k(0.6)
             - T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx)).sqrt();
         gyro_sim::Energy {
-            kinetic: k(0.5) * t1,
-            potential: T::fused(k(4.905), bob_rz, k(0.5) * (t2 * (k(40.0) * t2))),
+            kinetic: k(0.001) * t1,
+            potential: k(20.0) * T::fused(k(0.24525), bob_rz, t2 * t2),
         }
     }
     /// Writes the joint readings: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -461,7 +461,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
             -(bob_wx * t6),
         ];
     }
-    /// Solves eq. (17): 30 operations (7 ±, 22 ×, 1 ÷) and 1 functions.
+    /// Solves eq. (17): 29 operations (7 ±, 21 ×, 1 ÷) and 1 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -480,15 +480,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
         let t5 = T::fused(
-            -k(0.3),
+            -k(0.0075),
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
-            k(40.0) * (k(0.6) - t0),
+            k(0.6) - t0,
         );
-        let t6 = k(2.0) * t5;
+        let t6 = k(80.0) * t5;
         *out = [
             t4 * t6,
             t3 * t6,
-            k(2.0) * T::fused(t2, t5, -k(4.905)),
+            k(80.0) * T::fused(t2, t5, -k(0.122625)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
@@ -547,7 +547,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 6]
     }
-    /// Writes u̇: 174 operations (63 ±, 107 ×, 4 ÷) and 1 functions.
+    /// Writes u̇: 161 operations (63 ±, 94 ×, 4 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -566,88 +566,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let t0 = x3 * x5;
         let t1 = x4 * x6;
         let t2 = t1 - t0;
-        let t3 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
-        let t4 = k(1.0) / t3;
-        let t5 = x0 * t4;
-        let t6 = x1 * t4;
-        let t7 = x2 * t4;
-        let t8 = T::fused(
-            -k(40.0),
-            k(0.6) - t3,
-            k(0.3) * T::fused(u2, t7, T::fused(u0, t5, u1 * t6)),
+        let t3 = x3 * x3;
+        let t4 = k(0.5) - T::fused(x4, x4, t3);
+        let t5 = x3 * x4;
+        let t6 = x5 * x6;
+        let t7 = t6 + t5;
+        let t8 = x3 * x6;
+        let t9 = x4 * x5;
+        let t10 = t9 - t8;
+        let t11 = k(0.5) - T::fused(x6, x6, t3);
+        let t12 = t1 + t0;
+        let t13 = k(1.0) / T::fused(t11, t11, T::fused(t2, t2, t7 * t7));
+        let t14 = t13 * T::fused(t12, t11, -T::fused(-t4, t2, t10 * t7));
+        let t15 = T::fused(-t2, t14, t4);
+        let t16 = t9 + t8;
+        let t17 = k(0.5) - T::fused(x5, x5, t3);
+        let t18 = t6 - t5;
+        let t19 = t13 * T::fused(t18, t11, T::fused(-t16, t2, t17 * t7));
+        let t20 = T::fused(t2, t19, t16);
+        let t21 = T::fused(t7, t14, t10);
+        let t22 = T::fused(-t7, t19, t17);
+        let t23 = T::fused(-t11, t14, t12);
+        let t24 = T::fused(-t11, t19, t18);
+        let t25 = k(1.0) / T::fused(t24, t24, T::fused(t20, t20, t22 * t22));
+        let t26 = t25 * T::fused(t24, t23, -T::fused(t20, t15, t22 * t21));
+        let t27 = T::fused(t20, t26, t15);
+        let t28 = T::fused(t22, t26, t21);
+        let t29 = T::fused(-t24, t26, t23);
+        let t30 = T::fused(x0, x0, T::fused(x1, x1, x2 * x2)).sqrt();
+        let t31 = k(1.0) / t30;
+        let t32 = x2 * t31;
+        let t33 = x1 * t31;
+        let t34 = x0 * t31;
+        let t35 = T::fused(
+            -k(133.33333333333334),
+            k(0.6) - t30,
+            T::fused(u0, t34, T::fused(u2, t32, u1 * t33)),
         );
-        let t9 = t5 * t8;
-        let t10 = x3 * x3;
-        let t11 = k(2.0) * (k(0.5) - T::fused(x4, x4, t10));
-        let t12 = t6 * t8;
-        let t13 = x3 * x6;
-        let t14 = x4 * x5;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = t7 * t8;
-        let t17 = k(2.0) * t2;
-        let t18 = T::fused(
-            k(9.81),
+        let t36 = t32 * t35;
+        let t37 = t33 * t35;
+        let t38 = t34 * t35;
+        let t39 = T::fused(
+            -k(16.35),
+            t11,
+            T::fused(t12, t38, T::fused(-t11, t36, t18 * t37)),
+        );
+        let t40 = T::fused(
+            k(16.35),
+            t7,
+            T::fused(t10, t38, -T::fused(-t7, t36, t17 * t37)),
+        );
+        let t41 = T::fused(
+            -k(16.35),
             t2,
-            T::fused(t17, t16, T::fused(-t11, t9, t15 * t12)),
+            T::fused(t4, t38, -T::fused(t2, t36, t16 * t37)),
         );
-        let t19 = x3 * x4;
-        let t20 = x5 * x6;
-        let t21 = t20 + t19;
-        let t22 = k(2.0) * (t14 - t13);
-        let t23 = k(2.0) * (k(0.5) - T::fused(x5, x5, t10));
-        let t24 = k(2.0) * t21;
-        let t25 = T::fused(
-            k(9.81),
-            t21,
-            T::fused(t24, t16, -T::fused(-t22, t9, t23 * t12)),
-        );
-        let t26 = k(0.5) - T::fused(x6, x6, t10);
-        let t27 = k(2.0) * (t1 + t0);
-        let t28 = k(2.0) * (t20 - t19);
-        let t29 = k(2.0) * t26;
-        let t30 = T::fused(
-            k(9.81),
-            t26,
-            T::fused(t29, t16, -T::fused(t27, t9, t28 * t12)),
-        );
-        let t31 = k(1.0) / T::fused(t26, t29, T::fused(t21, t24, t2 * t17));
-        let t32 = t31 * T::fused(t29, t30, T::fused(t17, t18, t24 * t25));
-        let t33 = T::fused(-t2, t32, t18);
-        let t34 = t31 * T::fused(-t28, t26, T::fused(-t23, t21, t15 * t2));
-        let t35 = T::fused(-t17, t34, t15);
-        let t36 = T::fused(-t21, t32, t25);
-        let t37 = T::fused(t24, t34, t23);
-        let t38 = T::fused(-t26, t32, t30);
-        let t39 = T::fused(t29, t34, t28);
-        let t40 = k(0.5) * t39;
-        let t41 = k(0.5) * t37;
-        let t42 = k(0.5) * t35;
-        let t43 = k(1.0) / T::fused(t39, t40, T::fused(t37, t41, t35 * t42));
-        let t44 = t43 * T::fused(t39, t38, T::fused(-t35, t33, t37 * t36));
-        let t45 = t31 * T::fused(t27, t26, T::fused(-t22, t21, t11 * t2));
-        let t46 = T::fused(-t29, t45, t27);
-        let t47 = T::fused(t24, t45, t22);
-        let t48 = T::fused(-t17, t45, t11);
-        let t49 = t43 * T::fused(-t40, t46, T::fused(t41, t47, t42 * t48));
-        let t50 = T::fused(-t35, t49, t48);
-        let t51 = T::fused(-t37, t49, t47);
-        let t52 = T::fused(
-            -t50,
-            T::fused(t42, t44, t33),
-            t51 * T::fused(-t41, t44, t36),
-        );
-        let t53 = T::fused(t39, t49, t46);
-        let t54 = T::fused(
-            t53,
-            k(0.5) * t53,
-            T::fused(t51, k(0.5) * t51, t50 * (k(0.5) * t50)),
-        );
-        let t55 = T::fused(t53, T::fused(-t40, t44, t38), -t52) / t54;
-        let t56 = T::fused(t49, t55, t44);
+        let t42 = T::fused(t2, t41, -T::fused(-t11, t39, t7 * t40)) * t13;
+        let t43 = T::fused(-t11, t42, t39);
+        let t44 = T::fused(t7, t42, t40);
+        let t45 = T::fused(-t2, t42, t41);
+        let t46 = T::fused(t45, t20, T::fused(-t43, t24, t44 * t22)) * t25;
+        let t47 = T::fused(T::fused(t24, t46, t43), t29, T::fused(-t22, t46, t44) * t28);
+        let t48 = T::fused(T::fused(-t20, t46, t45), t27, t47)
+            / T::fused(t29, t29, T::fused(t27, t27, t28 * t28));
+        let t49 = T::fused(t26, t48, t46);
         *out = [
-            t55,
-            t56,
-            -T::fused(t34, t56, T::fused(-t45, t55, t32)),
+            -(k(0.6) * t48),
+            k(0.6) * t49,
+            -(k(0.6) * T::fused(t14, t48, -T::fused(t19, t49, t42))),
             -(k(0.5) * (u4 * u5)),
             k(0.6666666666666666) * (u3 * u5),
             -(k(0.25) * (u3 * u4)),
@@ -737,7 +723,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         x[12] = bob_wz;
         x[13] = y[13];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 174 operations (63 ±, 107 ×, 4 ÷) and 1 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 161 operations (63 ±, 94 ×, 4 ÷) and 1 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -753,98 +739,84 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_e0 * bob_e2;
-        let t1 = bob_e1 * bob_e3;
-        let t2 = t1 - t0;
-        let t3 = bob_e0 * bob_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t3));
-        let t5 = bob_e0 * bob_e1;
-        let t6 = bob_e2 * bob_e3;
-        let t7 = t6 + t5;
-        let t8 = bob_e0 * bob_e3;
-        let t9 = bob_e1 * bob_e2;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = k(0.5) - T::fused(bob_e3, bob_e3, t3);
-        let t12 = k(2.0) * (t1 + t0);
-        let t13 = k(2.0) * t2;
-        let t14 = k(2.0) * t7;
-        let t15 = k(2.0) * t11;
-        let t16 = k(1.0) / T::fused(t11, t15, T::fused(t2, t13, t7 * t14));
-        let t17 = t16 * T::fused(t12, t11, -T::fused(-t4, t2, t10 * t7));
-        let t18 = T::fused(-t13, t17, t4);
-        let t19 = k(2.0) * (t9 + t8);
-        let t20 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
-        let t21 = k(2.0) * (t6 - t5);
-        let t22 = t16 * T::fused(t21, t11, T::fused(-t19, t2, t20 * t7));
-        let t23 = T::fused(t13, t22, t19);
-        let t24 = k(0.5) * t23;
-        let t25 = T::fused(t14, t17, t10);
-        let t26 = T::fused(-t14, t22, t20);
-        let t27 = k(0.5) * t26;
-        let t28 = T::fused(-t15, t17, t12);
-        let t29 = T::fused(-t15, t22, t21);
-        let t30 = k(0.5) * t29;
-        let t31 = k(1.0) / T::fused(t29, t30, T::fused(t23, t24, t26 * t27));
-        let t32 = t31 * T::fused(t30, t28, -T::fused(t24, t18, t27 * t25));
-        let t33 = T::fused(t23, t32, t18);
-        let t34 = T::fused(t26, t32, t25);
-        let t35 = T::fused(-t29, t32, t28);
-        let t36 = T::fused(
-            t35,
-            k(0.5) * t35,
-            T::fused(t33, k(0.5) * t33, t34 * (k(0.5) * t34)),
-        );
-        let t37 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+        let t0 = bob_e0 * bob_e0;
+        let t1 = k(0.5) - T::fused(bob_e3, bob_e3, t0);
+        let t2 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
             .sqrt();
-        let t38 = k(1.0) / t37;
-        let t39 = bob_rz * t38;
-        let t40 = bob_ry * t38;
-        let t41 = bob_rx * t38;
-        let t42 = T::fused(
-            -k(0.3),
-            T::fused(bob_sz, t39, T::fused(bob_sy, t40, bob_sx * t41)),
-            k(40.0) * (k(0.6) - t37),
+        let t3 = k(1.0) / t2;
+        let t4 = bob_rz * t3;
+        let t5 = bob_ry * t3;
+        let t6 = bob_rx * t3;
+        let t7 = T::fused(
+            -k(0.0075),
+            T::fused(bob_sz, t4, T::fused(bob_sy, t5, bob_sx * t6)),
+            k(0.6) - t2,
         );
-        let t43 = t41 * t42;
-        let t44 = t40 * t42;
-        let t45 = t39 * t42;
-        let t46 = T::fused(
-            -k(9.81),
-            t2,
-            T::fused(t13, t45, T::fused(-t4, t43, t19 * t44)),
+        let t8 = t4 * t7;
+        let t9 = t5 * t7;
+        let t10 = bob_e0 * bob_e1;
+        let t11 = bob_e2 * bob_e3;
+        let t12 = t11 - t10;
+        let t13 = t6 * t7;
+        let t14 = bob_e0 * bob_e2;
+        let t15 = bob_e1 * bob_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(
+            k(0.122625),
+            t1,
+            T::fused(t16, t13, T::fused(-t1, t8, t12 * t9)),
         );
-        let t47 = T::fused(
-            -k(9.81),
-            t7,
-            T::fused(t14, t45, -T::fused(-t10, t43, t20 * t44)),
+        let t18 = t11 + t10;
+        let t19 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
+        let t20 = bob_e0 * bob_e3;
+        let t21 = bob_e1 * bob_e2;
+        let t22 = t21 - t20;
+        let t23 = T::fused(
+            -k(0.122625),
+            t18,
+            T::fused(t22, t13, -T::fused(-t18, t8, t19 * t9)),
         );
-        let t48 = T::fused(
-            -k(9.81),
-            t11,
-            T::fused(t15, t45, -T::fused(t12, t43, t21 * t44)),
+        let t24 = t15 - t14;
+        let t25 = t21 + t20;
+        let t26 = k(0.5) - T::fused(bob_e1, bob_e1, t0);
+        let t27 = T::fused(
+            k(0.122625),
+            t24,
+            T::fused(t26, t13, -T::fused(t24, t8, t25 * t9)),
         );
-        let t49 = T::fused(t15, t48, T::fused(t13, t46, t14 * t47)) * t16;
-        let t50 = T::fused(-t2, t49, t46);
-        let t51 = T::fused(-t7, t49, t47);
-        let t52 = T::fused(-t11, t49, t48);
-        let t53 = T::fused(t52, t29, T::fused(-t50, t23, t51 * t26)) * t31;
-        let t54 = T::fused(
-            -T::fused(t24, t53, t50),
-            t33,
-            T::fused(-t27, t53, t51) * t34,
-        );
-        let t55 = T::fused(T::fused(-t30, t53, t52), t35, -t54) / t36;
-        let t56 = T::fused(-t32, t55, t53);
+        let t28 = k(1.0) / T::fused(t24, t24, T::fused(t1, t1, t18 * t18));
+        let t29 = t28 * T::fused(t24, t27, -T::fused(-t1, t17, t18 * t23));
+        let t30 = T::fused(-t1, t29, t17);
+        let t31 = t28 * T::fused(t25, t24, -T::fused(t12, t1, t19 * t18));
+        let t32 = T::fused(t1, t31, t12);
+        let t33 = T::fused(t18, t29, t23);
+        let t34 = T::fused(t18, t31, t19);
+        let t35 = T::fused(-t24, t29, t27);
+        let t36 = T::fused(-t24, t31, t25);
+        let t37 = k(1.0) / T::fused(t36, t36, T::fused(t32, t32, t34 * t34));
+        let t38 = t37 * T::fused(t36, t35, T::fused(-t32, t30, t34 * t33));
+        let t39 = T::fused(t26, t24, -T::fused(-t16, t1, t22 * t18)) * t28;
+        let t40 = T::fused(-t1, t39, t16);
+        let t41 = T::fused(t18, t39, t22);
+        let t42 = T::fused(-t24, t39, t26);
+        let t43 = T::fused(t42, t36, T::fused(-t40, t32, t41 * t34)) * t37;
+        let t44 = T::fused(t32, t43, t40);
+        let t45 = T::fused(-t34, t43, t41);
+        let t46 = T::fused(t44, T::fused(t32, t38, t30), t45 * T::fused(-t34, t38, t33));
+        let t47 = T::fused(-t36, t43, t42);
+        let t48 = T::fused(t47, T::fused(-t36, t38, t35), t46)
+            / T::fused(t47, t47, T::fused(t44, t44, t45 * t45));
+        let t49 = T::fused(-t43, t48, t38);
         *out = [
-            -t55,
-            -t56,
-            T::fused(-t22, t56, T::fused(-t17, t55, t49)),
+            k(80.0) * t48,
+            -(k(80.0) * t49),
+            k(80.0) * T::fused(t39, t48, -T::fused(-t31, t49, t29)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 30 operations (7 ±, 22 ×, 1 ÷) and 1 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 29 operations (7 ±, 21 ×, 1 ÷) and 1 functions.
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -868,15 +840,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
         let t5 = T::fused(
-            -k(0.3),
+            -k(0.0075),
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
-            k(40.0) * (k(0.6) - t0),
+            k(0.6) - t0,
         );
-        let t6 = k(2.0) * t5;
+        let t6 = k(80.0) * t5;
         *out = [
             t4 * t6,
             t3 * t6,
-            k(2.0) * T::fused(t2, t5, -k(4.905)),
+            k(80.0) * T::fused(t2, t5, -k(0.122625)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
@@ -892,7 +864,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
     ) {
         *lambda = [];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 30 operations (7 ±, 22 ×, 1 ÷) and 1 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 29 operations (7 ±, 21 ×, 1 ÷) and 1 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -911,15 +883,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
         let t5 = T::fused(
-            -k(0.3),
+            -k(0.0075),
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
-            k(40.0) * (k(0.6) - t0),
+            k(0.6) - t0,
         );
-        let t6 = k(2.0) * t5;
+        let t6 = k(80.0) * t5;
         *out = [
             t4 * t6,
             t3 * t6,
-            k(2.0) * T::fused(t2, t5, -k(4.905)),
+            k(80.0) * T::fused(t2, t5, -k(0.122625)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
@@ -935,7 +907,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1111 operations (449 ±, 658 ×, 4 ÷) and 1 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1046 operations (440 ±, 602 ×, 4 ÷) and 1 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -965,7 +937,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t4,
             t5,
             t6,
-            t8,
+            t9,
             t11,
             t14,
             t17,
@@ -992,19 +964,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t38,
             t39,
             t40,
-            t41,
-            t42,
-            t43,
-            t44,
-            t45,
-            t46,
-            t47,
-            t48,
-            t49,
+            t56,
+            t57,
+            t58,
+            t59,
+            t60,
+            t61,
+            t64,
             t65,
             t66,
+            t67,
             t68,
-            t70,
+            t69,
             t72,
             t73,
             t74,
@@ -1012,7 +983,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t76,
             t77,
             t78,
+            t79,
             t80,
+            t81,
             t82,
             t83,
             t84,
@@ -1024,46 +997,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t90,
             t91,
             t92,
-            t93,
-            t94,
-            t95,
-            t96,
-            t97,
-            t98,
             t99,
-            t100,
-            t101,
-            t102,
-            t109,
-            t126,
-            t146,
+            t115,
+            t141,
+            t145,
+            t147,
+            t148,
+            t149,
             t150,
             t151,
+            t152,
             t153,
-            t154,
-            t155,
+            t160,
+            t161,
             t162,
             t163,
             t164,
             t165,
             t166,
             t167,
-            t168,
-            t169,
+            t171,
+            t172,
+            t173,
             t174,
-            t175,
-            t176,
             t177,
-            t180,
-            t181,
+            t178,
+            t179,
             t182,
-            t185,
+            t184,
             t186,
-            t187,
-            t188,
+            t190,
             t191,
-            t193,
-            t195,
+            t194,
             t197,
             t198,
             t199,
@@ -1075,303 +1040,259 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             let t4 = k(0.5) * x5;
             let t5 = k(0.5) * x6;
             let t6 = k(0.5) * x3;
-            let t7 = x3 * x3;
-            let t8 = k(0.5) - T::fused(x6, x6, t7);
-            let t9 = x3 * x5;
-            let t10 = x4 * x6;
-            let t11 = k(2.0) * (t10 + t9);
+            let t7 = x3 * x5;
+            let t8 = x4 * x6;
+            let t9 = t8 - t7;
+            let t10 = x3 * x3;
+            let t11 = k(0.5) - T::fused(x4, x4, t10);
             let t12 = x3 * x4;
             let t13 = x5 * x6;
             let t14 = t13 + t12;
             let t15 = x3 * x6;
             let t16 = x4 * x5;
-            let t17 = k(2.0) * (t16 - t15);
-            let t18 = t10 - t9;
-            let t19 = k(2.0) * (k(0.5) - T::fused(x4, x4, t7));
-            let t20 = T::fused(t11, t8, T::fused(-t17, t14, t19 * t18));
-            let t21 = k(2.0) * t8;
-            let t22 = k(2.0) * t14;
-            let t23 = k(2.0) * t18;
-            let t24 = k(1.0) / T::fused(t8, t21, T::fused(t14, t22, t18 * t23));
-            let t25 = t24 * t20;
-            let t26 = T::fused(-t21, t25, t11);
-            let t27 = k(2.0) * (t13 - t12);
-            let t28 = k(2.0) * (k(0.5) - T::fused(x5, x5, t7));
-            let t29 = k(2.0) * (t16 + t15);
-            let t30 = T::fused(-t27, t8, T::fused(-t28, t14, t29 * t18));
-            let t31 = t24 * t30;
-            let t32 = T::fused(t21, t31, t27);
-            let t33 = k(0.5) * t32;
-            let t34 = T::fused(t22, t25, t17);
-            let t35 = T::fused(t22, t31, t28);
-            let t36 = k(0.5) * t35;
-            let t37 = T::fused(-t23, t25, t19);
-            let t38 = T::fused(-t23, t31, t29);
-            let t39 = k(0.5) * t38;
-            let t40 = T::fused(-t33, t26, T::fused(t36, t34, t39 * t37));
-            let t41 = k(1.0) / T::fused(t32, t33, T::fused(t35, t36, t38 * t39));
-            let t42 = t41 * t40;
-            let t43 = T::fused(t32, t42, t26);
-            let t44 = k(0.5) * t43;
-            let t45 = T::fused(-t35, t42, t34);
-            let t46 = k(0.5) * t45;
-            let t47 = T::fused(-t38, t42, t37);
-            let t48 = k(0.5) * t47;
-            let t49 = k(1.0) / T::fused(t43, t44, T::fused(t45, t46, t47 * t48));
-            let t50 = t47 * t49;
-            let t51 = t45 * t49;
-            let t52 = t43 * t49;
-            let t53 = T::fused(-t39, t50, T::fused(-t36, t51, t33 * t52));
-            let t54 = t41 * t53;
-            let t55 = T::fused(t38, t54, t50);
-            let t56 = T::fused(t35, t54, t51);
-            let t57 = T::fused(-t32, t54, t52);
-            let t58 = T::fused(t18, t55, T::fused(-t14, t56, t8 * t57));
-            let t59 = t24 * t58;
-            let t60 = T::fused(-t23, t59, t55);
-            let t61 = T::fused(t22, t59, t56);
-            let t62 = T::fused(-t21, t59, t57);
-            let t63 = T::fused(t19, t60, T::fused(t17, t61, t11 * t62));
-            let t64 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
-            let t65 = k(1.0) / t64;
-            let t66 = x0 * t65;
-            let t67 = T::fused(-t29, t60, T::fused(-t28, t61, t27 * t62));
-            let t68 = x1 * t65;
-            let t69 = T::fused(t23, t60, T::fused(-t22, t61, t21 * t62));
-            let t70 = x2 * t65;
-            let t71 = T::fused(-t66, t63, T::fused(-t68, t67, t70 * t69));
-            let t72 = k(0.3) * t71;
-            let t73 = T::fused(u2, t70, T::fused(u0, t66, u1 * t68));
-            let t74 = T::fused(-k(40.0), k(0.6) - t64, k(0.3) * t73);
-            let t75 = T::fused(-u0, t72, t74 * t63);
-            let t76 = T::fused(-u1, t72, t74 * t67);
-            let t77 = T::fused(u2, t72, t74 * t69);
-            let t78 = t65 * t65;
+            let t17 = t16 - t15;
+            let t18 = k(0.5) - T::fused(x6, x6, t10);
+            let t19 = t8 + t7;
+            let t20 = T::fused(t19, t18, -T::fused(-t11, t9, t17 * t14));
+            let t21 = k(1.0) / T::fused(t18, t18, T::fused(t9, t9, t14 * t14));
+            let t22 = t21 * t20;
+            let t23 = T::fused(-t9, t22, t11);
+            let t24 = t16 + t15;
+            let t25 = k(0.5) - T::fused(x5, x5, t10);
+            let t26 = t13 - t12;
+            let t27 = T::fused(t26, t18, T::fused(-t24, t9, t25 * t14));
+            let t28 = t21 * t27;
+            let t29 = T::fused(t9, t28, t24);
+            let t30 = T::fused(t14, t22, t17);
+            let t31 = T::fused(-t14, t28, t25);
+            let t32 = T::fused(-t18, t22, t19);
+            let t33 = T::fused(-t18, t28, t26);
+            let t34 = T::fused(t33, t32, -T::fused(t29, t23, t31 * t30));
+            let t35 = k(1.0) / T::fused(t33, t33, T::fused(t29, t29, t31 * t31));
+            let t36 = t35 * t34;
+            let t37 = T::fused(t29, t36, t23);
+            let t38 = T::fused(t31, t36, t30);
+            let t39 = T::fused(-t33, t36, t32);
+            let t40 = k(1.0) / T::fused(t39, t39, T::fused(t37, t37, t38 * t38));
+            let t41 = t39 * t40;
+            let t42 = t38 * t40;
+            let t43 = t37 * t40;
+            let t44 = T::fused(t29, t43, T::fused(-t33, t41, t31 * t42));
+            let t45 = t35 * t44;
+            let t46 = T::fused(t33, t45, t41);
+            let t47 = T::fused(-t31, t45, t42);
+            let t48 = T::fused(-t29, t45, t43);
+            let t49 = T::fused(t9, t48, -T::fused(-t18, t46, t14 * t47));
+            let t50 = t21 * t49;
+            let t51 = T::fused(-t18, t50, t46);
+            let t52 = T::fused(t14, t50, t47);
+            let t53 = T::fused(-t9, t50, t48);
+            let t54 = T::fused(t11, t53, T::fused(t19, t51, t17 * t52));
+            let t55 = T::fused(x0, x0, T::fused(x1, x1, x2 * x2)).sqrt();
+            let t56 = k(1.0) / t55;
+            let t57 = x2 * t56;
+            let t58 = x1 * t56;
+            let t59 = x0 * t56;
+            let t60 = T::fused(u0, t59, T::fused(u2, t57, u1 * t58));
+            let t61 = T::fused(-k(133.33333333333334), k(0.6) - t55, t60);
+            let t62 = T::fused(t9, t53, -T::fused(-t18, t51, t14 * t52));
+            let t63 = T::fused(t24, t53, T::fused(-t26, t51, t25 * t52));
+            let t64 = T::fused(t59, t54, -T::fused(t57, t62, t58 * t63));
+            let t65 = T::fused(t61, t54, u0 * t64);
+            let t66 = k(2.0) * t56;
+            let t67 = T::fused(-t61, t62, u2 * t64);
+            let t68 = T::fused(-t61, t63, u1 * t64);
+            let t69 = t56 * t56;
+            let t70 = T::fused(
+                -k(133.33333333333334),
+                t64,
+                t69 * T::fused(x0, t65, T::fused(x2, t67, x1 * t68)),
+            );
+            let t71 = t56 * t70;
+            let t72 = x0 * t71;
+            let t73 = x1 * t71;
+            let t74 = x2 * t71;
+            let t75 = t40 * t40;
+            let t76 = t57 * t61;
+            let t77 = t58 * t61;
+            let t78 = t59 * t61;
             let t79 = T::fused(
-                -k(40.0),
-                t71,
-                t78 * T::fused(-x0, t75, T::fused(-x1, t76, x2 * t77)),
-            );
-            let t80 = k(0.5) * t65;
-            let t81 = t80 * t79;
-            let t82 = x0 * t81;
-            let t83 = x1 * t81;
-            let t84 = x2 * t81;
-            let t85 = t49 * t49;
-            let t86 = t66 * t74;
-            let t87 = t68 * t74;
-            let t88 = t70 * t74;
-            let t89 = T::fused(
-                k(9.81),
+                -k(16.35),
                 t18,
-                T::fused(t23, t88, T::fused(-t19, t86, t29 * t87)),
+                T::fused(t19, t78, T::fused(-t18, t76, t26 * t77)),
             );
-            let t90 = T::fused(
-                k(9.81),
+            let t80 = T::fused(
+                k(16.35),
                 t14,
-                T::fused(t22, t88, -T::fused(-t17, t86, t28 * t87)),
+                T::fused(t17, t78, -T::fused(-t14, t76, t25 * t77)),
             );
-            let t91 = T::fused(
-                k(9.81),
-                t8,
-                T::fused(t21, t88, -T::fused(t11, t86, t27 * t87)),
+            let t81 = T::fused(
+                -k(16.35),
+                t9,
+                T::fused(t11, t78, -T::fused(t9, t76, t24 * t77)),
             );
-            let t92 = T::fused(t21, t91, T::fused(t23, t89, t22 * t90));
-            let t93 = t24 * t92;
-            let t94 = T::fused(-t18, t93, t89);
-            let t95 = T::fused(-t14, t93, t90);
-            let t96 = T::fused(-t8, t93, t91);
-            let t97 = T::fused(t32, t96, T::fused(-t38, t94, t35 * t95));
-            let t98 = t41 * t97;
-            let t99 = T::fused(t39, t98, t94);
-            let t100 = T::fused(-t36, t98, t95);
-            let t101 = T::fused(-t33, t98, t96);
-            let t102 = T::fused(t43, t101, -T::fused(-t47, t99, t45 * t100));
-            let t103 = t102 * t85;
-            let t104 = k(0.5) * t103;
-            let t105 = T::fused(t49, t101, -T::fused(t43, t104, t44 * t103));
-            let t106 = T::fused(t49, t100, T::fused(t45, t104, t46 * t103));
-            let t107 = T::fused(t49, t99, -T::fused(t47, t104, t48 * t103));
-            let t108 = T::fused(t38, t107, -T::fused(t32, t105, t35 * t106));
-            let t109 = t41 * t41;
-            let t110 = t109 * T::fused(t40, t108, t97 * t53);
-            let t111 = t41 * t108;
-            let t112 = T::fused(
-                k(0.5),
-                T::fused(t32, t110, -T::fused(-t26, t111, t98 * t52)),
-                T::fused(t42, t105, t33 * t110),
+            let t82 = T::fused(t9, t81, -T::fused(-t18, t79, t14 * t80));
+            let t83 = t82 * t21;
+            let t84 = T::fused(-t18, t83, t79);
+            let t85 = T::fused(t14, t83, t80);
+            let t86 = T::fused(-t9, t83, t81);
+            let t87 = T::fused(t86, t29, T::fused(-t84, t33, t85 * t31));
+            let t88 = t87 * t35;
+            let t89 = T::fused(t33, t88, t84);
+            let t90 = T::fused(-t31, t88, t85);
+            let t91 = T::fused(-t29, t88, t86);
+            let t92 = T::fused(t91, t37, T::fused(t89, t39, t90 * t38));
+            let t93 = k(2.0) * (t92 * t75);
+            let t94 = T::fused(-t37, t93, t91 * t40);
+            let t95 = T::fused(-t38, t93, t90 * t40);
+            let t96 = T::fused(-t39, t93, t89 * t40);
+            let t97 = T::fused(-t29, t94, T::fused(-t31, t95, t33 * t96));
+            let t98 = t35 * t97;
+            let t99 = t35 * t35;
+            let t100 = t99 * T::fused(t34, t97, t87 * t44);
+            let t101 = t29 * t100;
+            let t102 = T::fused(t36, t94, t101)
+                + (t101 - T::fused(-t23, t98, t88 * t43));
+            let t103 = T::fused(t86, t45, -t102);
+            let t104 = T::fused(t29, t98, t94);
+            let t105 = t31 * t100;
+            let t106 = T::fused(t36, t95, t105)
+                + (t105 - T::fused(-t30, t98, t88 * t42));
+            let t107 = T::fused(t85, t45, -t106);
+            let t108 = t33 * t100;
+            let t109 = T::fused(t36, t96, -t108)
+                - (t108 + T::fused(-t32, t98, t88 * t41));
+            let t110 = T::fused(t84, t45, -t109);
+            let t111 = T::fused(t9, t103, T::fused(-t14, t107, t18 * t110));
+            let t112 = T::fused(-t33, t98, t96);
+            let t113 = T::fused(t31, t98, t95);
+            let t114 = T::fused(t18, t112, T::fused(-t14, t113, t9 * t104));
+            let t115 = t21 * t21;
+            let t116 = t115 * T::fused(t82, t49, T::fused(t27, t111, t20 * t114));
+            let t117 = t9 * t116;
+            let t118 = T::fused(
+                t76,
+                t53,
+                T::fused(t81, t50, -(t117 - T::fused(t28, t103, t22 * t104))),
             );
-            let t113 = T::fused(t96, t54, -t112);
-            let t114 = T::fused(
-                k(0.5),
-                T::fused(t35, t110, T::fused(-t34, t111, t98 * t51)),
-                T::fused(t42, t106, t36 * t110),
+            let t119 = t21 * t111;
+            let t120 = t21 * t114;
+            let t121 = T::fused(t83, t48, T::fused(-t24, t119, t11 * t120)) - t117
+                + t118;
+            let t122 = T::fused(k(16.35), t53, t121);
+            let t123 = T::fused(t78, t51, T::fused(-t18, t120, t112));
+            let t124 = t123 + t122;
+            let t125 = T::fused(t77, t53, T::fused(-t9, t119, t103));
+            let t126 = T::fused(t78, t52, T::fused(t14, t120, t113));
+            let t127 = t126 + t125;
+            let t128 = T::fused(t78, t53, T::fused(-t9, t120, t104));
+            let t129 = T::fused(t77, t52, T::fused(t14, t119, t107));
+            let t130 = t18 * t116;
+            let t131 = T::fused(
+                t76,
+                t51,
+                T::fused(t79, t50, -(t130 - T::fused(t28, t110, t22 * t112))),
             );
-            let t115 = T::fused(t95, t54, -t114);
-            let t116 = T::fused(
-                k(0.5),
-                T::fused(t38, t110, T::fused(-t37, t111, t98 * t50)),
-                T::fused(-t42, t107, t39 * t110),
-            );
-            let t117 = T::fused(t94, t54, t116);
-            let t118 = T::fused(t23, t117, T::fused(t21, t113, t22 * t115));
-            let t119 = t24 * t118;
-            let t120 = k(2.0) * T::fused(t87, t62, T::fused(-t8, t119, t113));
-            let t121 = T::fused(-t39, t111, t107);
-            let t122 = T::fused(t36, t111, t106);
-            let t123 = T::fused(t33, t111, t105);
-            let t124 = T::fused(t21, t123, T::fused(t23, t121, t22 * t122));
-            let t125 = t24 * t124;
-            let t126 = t24 * t24;
-            let t127 = t126 * T::fused(t92, t58, T::fused(t20, t124, t30 * t118));
-            let t128 = T::fused(
-                t22,
-                t127,
-                T::fused(t28, t119, T::fused(t17, t125, t93 * t56)),
-            );
-            let t129 = T::fused(
-                t90,
-                t59,
-                -T::fused(t14, t127, -T::fused(t25, t122, t31 * t115)),
-            );
-            let t130 = T::fused(
-                k(9.81),
-                t61,
-                T::fused(k(2.0), T::fused(t88, t61, t129), -t128),
-            );
-            let t131 = t130 - t120;
-            let t132 = T::fused(t86, t61, T::fused(-t14, t125, t122));
-            let t133 = T::fused(t87, t60, T::fused(-t18, t119, t117));
-            let t134 = k(2.0) * (t133 + t132);
-            let t135 = T::fused(
-                t21,
-                t127,
-                T::fused(t27, t119, -T::fused(t11, t125, t93 * t57)),
-            );
+            let t132 = T::fused(t26, t119, T::fused(t19, t120, t83 * t46)) - t130 + t131;
+            let t133 = T::fused(k(16.35), t51, t132);
+            let t134 = x3 * (t133 + t129 - t128);
+            let t135 = t14 * t116;
             let t136 = T::fused(
-                t91,
-                t59,
-                -T::fused(t8, t127, -T::fused(t25, t123, t31 * t113)),
+                t76,
+                t52,
+                T::fused(t80, t50, t135 + T::fused(t28, t107, t22 * t113)),
             );
-            let t137 = T::fused(
-                k(9.81),
-                t62,
-                T::fused(k(2.0), T::fused(t88, t62, -t136), t135),
-            );
-            let t138 = k(2.0) * T::fused(t87, t61, -T::fused(-t14, t119, t115));
-            let t139 = k(2.0) * T::fused(t86, t60, -T::fused(-t18, t125, t121));
-            let t140 = x3 * (t139 - (t138 + t137));
-            let t141 = k(2.0) * T::fused(t86, t62, -T::fused(-t8, t125, t123));
-            let t142 = T::fused(
-                t23,
-                t127,
-                -T::fused(t93, t55, T::fused(t19, t125, t29 * t119)),
-            );
-            let t143 = T::fused(
-                t89,
-                t59,
-                -T::fused(t18, t127, -T::fused(t25, t121, t31 * t117)),
-            );
-            let t144 = T::fused(
-                k(9.81),
-                t60,
-                T::fused(k(2.0), T::fused(t88, t60, -t143), t142),
-            );
-            let t145 = t144 + t141;
-            let t146 = T::fused(
+            let t137 = T::fused(-t25, t119, T::fused(t17, t120, t83 * t47)) + t135
+                + t136;
+            let t138 = T::fused(k(16.35), t52, t137);
+            let t139 = T::fused(t77, t51, T::fused(-t18, t119, t110));
+            let t140 = t139 - t138;
+            let t141 = T::fused(
                 x5,
-                t145,
-                -(t140 + (t140 + T::fused(-x4, t131, x6 * t134))),
+                t124,
+                t134 - T::fused(x6, t127, T::fused(x4, t140, -t134)),
             );
-            let t147 = k(2.0) * (t133 - t132);
-            let t148 = x4 * t139;
-            let t149 = t144 - t141;
-            let t150 = T::fused(
-                x6,
-                t149,
-                t148 + (t148 + T::fused(-x3, t131, x5 * t147)),
+            let t142 = t123 - t122;
+            let t143 = t126 - t125;
+            let t144 = x4 * t128;
+            let t145 = T::fused(
+                -x6,
+                t142,
+                t144 + T::fused(-x5, t143, T::fused(x3, t140, t144)),
             );
-            let t151 = k(2.0) * x5;
-            let t152 = t130 + t120;
-            let t153 = T::fused(
+            let t146 = t139 + t138;
+            let t147 = k(2.0) * x5;
+            let t148 = T::fused(
                 x3,
-                t145,
-                -T::fused(x4, t147, -T::fused(t151, t138, x6 * t152)),
+                t124,
+                T::fused(x4, t143, T::fused(x6, t146, t147 * t129)),
             );
-            let t154 = k(2.0) * x6;
-            let t155 = T::fused(
+            let t149 = k(2.0) * x6;
+            let t150 = T::fused(
                 x4,
-                t149,
-                T::fused(x3, t134, -T::fused(t154, t137, x5 * t152)),
+                t142,
+                T::fused(-x3, t127, T::fused(x5, t146, t149 * t133)),
             );
-            let t156 = t42 * t49;
-            let t157 = t47 * t156;
-            let t158 = t45 * t156;
-            let t159 = t43 * t156;
-            let t160 = T::fused(
-                t39,
-                t157,
-                T::fused(t36, t158, T::fused(-t33, t159, k(1.0))),
+            let t151 = k(0.6) * t59;
+            let t152 = k(0.6) * t58;
+            let t153 = k(0.6) * t57;
+            let t154 = t36 * t40;
+            let t155 = t39 * t154;
+            let t156 = t38 * t154;
+            let t157 = t37 * t154;
+            let t158 = k(1.0) - T::fused(t29, t157, T::fused(-t33, t155, t31 * t156));
+            let t159 = t35 * t158;
+            let t160 = T::fused(-t33, t159, t155);
+            let t161 = T::fused(t31, t159, t156);
+            let t162 = T::fused(t29, t159, t157);
+            let t163 = T::fused(t9, t162, -T::fused(-t18, t160, t14 * t161));
+            let t164 = t21 * t163;
+            let t165 = T::fused(-t18, t164, t160);
+            let t166 = T::fused(t14, t164, t161);
+            let t167 = T::fused(-t9, t164, t162);
+            let t168 = T::fused(t11, t167, T::fused(t19, t165, t17 * t166));
+            let t169 = T::fused(t9, t167, -T::fused(-t18, t165, t14 * t166));
+            let t170 = T::fused(t24, t167, T::fused(-t26, t165, t25 * t166));
+            let t171 = T::fused(t59, t168, -T::fused(t57, t169, t58 * t170));
+            let t172 = T::fused(t61, t168, u0 * t171);
+            let t173 = T::fused(-t61, t169, u2 * t171);
+            let t174 = T::fused(-t61, t170, u1 * t171);
+            let t175 = T::fused(
+                -k(133.33333333333334),
+                t171,
+                t69 * T::fused(x0, t172, T::fused(x2, t173, x1 * t174)),
             );
-            let t161 = t41 * t160;
-            let t162 = T::fused(-t38, t161, t157);
-            let t163 = T::fused(-t35, t161, t158);
-            let t164 = T::fused(t32, t161, t159);
-            let t165 = T::fused(t18, t162, T::fused(-t14, t163, t8 * t164));
-            let t166 = t24 * t165;
-            let t167 = T::fused(-t23, t166, t162);
-            let t168 = T::fused(t22, t166, t163);
-            let t169 = T::fused(-t21, t166, t164);
-            let t170 = T::fused(t19, t167, T::fused(t17, t168, t11 * t169));
-            let t171 = T::fused(-t29, t167, T::fused(-t28, t168, t27 * t169));
-            let t172 = T::fused(t23, t167, T::fused(-t22, t168, t21 * t169));
-            let t173 = T::fused(-t66, t170, T::fused(-t68, t171, t70 * t172));
-            let t174 = k(0.3) * t173;
-            let t175 = T::fused(-u0, t174, t74 * t170);
-            let t176 = T::fused(-u1, t174, t74 * t171);
-            let t177 = T::fused(u2, t174, t74 * t172);
-            let t178 = T::fused(
-                -k(40.0),
-                t173,
-                t78 * T::fused(-x0, t175, T::fused(-x1, t176, x2 * t177)),
+            let t176 = t56 * t175;
+            let t177 = x0 * t176;
+            let t178 = x1 * t176;
+            let t179 = x2 * t176;
+            let t180 = k(2.0) * (t75 * (t36 * t92));
+            let t181 = T::fused(-t37, t180, t91 * t154);
+            let t182 = T::fused(-t38, t180, t90 * t154);
+            let t183 = T::fused(-t39, t180, t89 * t154);
+            let t184 = t92 * t40;
+            let t185 = T::fused(
+                t29,
+                t181,
+                T::fused(t31, t182, T::fused(-t33, t183, t184)),
             );
-            let t179 = t80 * t178;
-            let t180 = x0 * t179;
-            let t181 = x1 * t179;
-            let t182 = x2 * t179;
-            let t183 = t85 * (t42 * t102);
-            let t184 = k(0.5) * t183;
-            let t185 = T::fused(t101, t156, -T::fused(t43, t184, t44 * t183));
-            let t186 = t49 * t102;
-            let t187 = T::fused(t100, t156, T::fused(t45, t184, t46 * t183));
-            let t188 = T::fused(t99, t156, -T::fused(t47, t184, t48 * t183));
-            let t189 = T::fused(
-                t38,
-                t188,
-                -T::fused(t35, t187, T::fused(t32, t185, t186)),
-            );
-            let t190 = t109 * T::fused(-t40, t189, t97 * t160);
-            let t191 = t41 * t189;
-            let t192 = T::fused(
-                k(0.5),
-                T::fused(t32, t190, T::fused(-t26, t191, t98 * t159)),
-                T::fused(-t42, t185, t33 * t190),
-            );
-            let t193 = T::fused(t96, t161, -t192);
-            let t194 = T::fused(
-                k(0.5),
-                T::fused(t35, t190, -T::fused(-t34, t191, t98 * t158)),
-                T::fused(-t42, t187, t36 * t190),
-            );
-            let t195 = T::fused(t95, t161, -t194);
-            let t196 = T::fused(
-                k(0.5),
-                T::fused(t38, t190, -T::fused(-t37, t191, t98 * t157)),
-                T::fused(t42, t188, t39 * t190),
-            );
-            let t197 = T::fused(t94, t161, t196);
-            let t198 = T::fused(t23, t197, T::fused(t21, t193, t22 * t195));
-            let t199 = t24 * t198;
+            let t186 = t35 * t185;
+            let t187 = t99 * T::fused(t34, t185, t87 * t158);
+            let t188 = t29 * t187;
+            let t189 = T::fused(t36, t181, -t188)
+                - (t188 + T::fused(t23, t186, t88 * t157));
+            let t190 = T::fused(t86, t159, t189);
+            let t191 = T::fused(-t29, t186, t181);
+            let t192 = t31 * t187;
+            let t193 = T::fused(t36, t182, -t192)
+                - (t192 + T::fused(t30, t186, t88 * t156));
+            let t194 = T::fused(t85, t159, t193);
+            let t195 = t33 * t187;
+            let t196 = T::fused(t36, t183, t195)
+                + (t195 - T::fused(t32, t186, t88 * t155));
+            let t197 = T::fused(t84, t159, t196);
+            let t198 = T::fused(t9, t190, T::fused(-t14, t194, t18 * t197));
+            let t199 = T::fused(t33, t186, t183);
             (
                 t0,
                 t1,
@@ -1380,7 +1301,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t4,
                 t5,
                 t6,
-                t8,
+                t9,
                 t11,
                 t14,
                 t17,
@@ -1407,19 +1328,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t38,
                 t39,
                 t40,
-                t41,
-                t42,
-                t43,
-                t44,
-                t45,
-                t46,
-                t47,
-                t48,
-                t49,
+                t56,
+                t57,
+                t58,
+                t59,
+                t60,
+                t61,
+                t64,
                 t65,
                 t66,
+                t67,
                 t68,
-                t70,
+                t69,
                 t72,
                 t73,
                 t74,
@@ -1427,7 +1347,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t76,
                 t77,
                 t78,
+                t79,
                 t80,
+                t81,
                 t82,
                 t83,
                 t84,
@@ -1439,356 +1361,296 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t90,
                 t91,
                 t92,
-                t93,
-                t94,
-                t95,
-                t96,
-                t97,
-                t98,
                 t99,
-                t100,
-                t101,
-                t102,
-                t109,
-                t126,
-                t146,
+                t115,
+                t141,
+                t145,
+                t147,
+                t148,
+                t149,
                 t150,
                 t151,
+                t152,
                 t153,
-                t154,
-                t155,
+                t160,
+                t161,
                 t162,
                 t163,
                 t164,
                 t165,
                 t166,
                 t167,
-                t168,
-                t169,
+                t171,
+                t172,
+                t173,
                 t174,
-                t175,
-                t176,
                 t177,
-                t180,
-                t181,
+                t178,
+                t179,
                 t182,
-                t185,
+                t184,
                 t186,
-                t187,
-                t188,
+                t190,
                 t191,
-                t193,
-                t195,
+                t194,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t225,
-            t229,
+            t227,
             t231,
-            t232,
-            t252,
+            t233,
+            t234,
             t253,
             t254,
             t255,
-            t258,
+            t256,
             t259,
             t260,
-            t302,
-            t306,
+            t261,
             t308,
-            t309,
-            t310,
-            t311,
             t312,
-            t313,
+            t314,
             t315,
             t316,
             t317,
+            t318,
+            t320,
+            t321,
+            t322,
         ) = {
-            let t200 = k(2.0) * T::fused(t87, t169, -T::fused(-t8, t199, t193));
-            let t201 = T::fused(-t39, t191, t188);
-            let t202 = T::fused(t36, t191, t187);
-            let t203 = T::fused(t33, t191, t185);
-            let t204 = T::fused(t21, t203, T::fused(t23, t201, t22 * t202));
-            let t205 = t24 * t204;
-            let t206 = t126 * T::fused(t92, t165, -T::fused(-t20, t204, t30 * t198));
-            let t207 = T::fused(
-                t22,
-                t206,
-                -T::fused(t28, t199, -T::fused(t17, t205, t93 * t163)),
-            );
-            let t208 = T::fused(
-                t90,
-                t166,
-                -T::fused(t14, t206, T::fused(-t25, t202, t31 * t195)),
-            );
-            let t209 = T::fused(
-                k(9.81),
-                t168,
-                T::fused(k(2.0), T::fused(t88, t168, t208), -t207),
-            );
-            let t210 = t209 - t200;
-            let t211 = T::fused(t86, t168, T::fused(-t14, t205, t202));
-            let t212 = T::fused(t87, t167, -T::fused(-t18, t199, t197));
-            let t213 = k(2.0) * (t212 + t211);
-            let t214 = T::fused(
-                t21,
-                t206,
-                -T::fused(t27, t199, T::fused(t11, t205, t93 * t164)),
-            );
-            let t215 = T::fused(
-                t91,
-                t166,
-                -T::fused(t8, t206, T::fused(-t25, t203, t31 * t193)),
-            );
-            let t216 = T::fused(
-                k(9.81),
-                t169,
-                T::fused(k(2.0), T::fused(t88, t169, -t215), t214),
-            );
-            let t217 = k(2.0) * T::fused(t87, t168, T::fused(-t14, t199, t195));
-            let t218 = k(2.0) * T::fused(t86, t167, -T::fused(-t18, t205, t201));
-            let t219 = x3 * (t218 - (t217 + t216));
-            let t220 = k(2.0) * T::fused(t86, t169, -T::fused(-t8, t205, t203));
-            let t221 = T::fused(
-                t23,
-                t206,
-                -T::fused(t93, t162, -T::fused(-t19, t205, t29 * t199)),
-            );
-            let t222 = T::fused(
-                t89,
-                t166,
-                -T::fused(t18, t206, T::fused(-t25, t201, t31 * t197)),
-            );
-            let t223 = T::fused(
-                k(9.81),
+            let t200 = T::fused(-t31, t186, t182);
+            let t201 = T::fused(t18, t199, T::fused(-t14, t200, t9 * t191));
+            let t202 = t115 * T::fused(t82, t163, T::fused(-t27, t198, t20 * t201));
+            let t203 = t9 * t202;
+            let t204 = T::fused(
+                t76,
                 t167,
-                T::fused(k(2.0), T::fused(t88, t167, -t222), t221),
+                T::fused(t81, t164, -(t203 - T::fused(-t28, t190, t22 * t191))),
             );
-            let t224 = t223 + t220;
-            let t225 = T::fused(
+            let t205 = t21 * t198;
+            let t206 = t21 * t201;
+            let t207 = T::fused(t83, t162, T::fused(t24, t205, t11 * t206)) - t203
+                + t204;
+            let t208 = T::fused(k(16.35), t167, t207);
+            let t209 = T::fused(t78, t165, T::fused(-t18, t206, t199));
+            let t210 = t209 + t208;
+            let t211 = T::fused(t77, t167, -T::fused(-t9, t205, t190));
+            let t212 = T::fused(t78, t166, T::fused(t14, t206, t200));
+            let t213 = t212 + t211;
+            let t214 = T::fused(t78, t167, T::fused(-t9, t206, t191));
+            let t215 = T::fused(t77, t166, -T::fused(t14, t205, t194));
+            let t216 = t18 * t202;
+            let t217 = T::fused(
+                t76,
+                t165,
+                T::fused(t79, t164, -(t216 - T::fused(-t28, t197, t22 * t199))),
+            );
+            let t218 = T::fused(-t26, t205, T::fused(t19, t206, t83 * t160)) - t216
+                + t217;
+            let t219 = T::fused(k(16.35), t165, t218);
+            let t220 = x3 * (t219 + t215 - t214);
+            let t221 = t14 * t202;
+            let t222 = T::fused(
+                t76,
+                t166,
+                T::fused(t80, t164, t221 + T::fused(-t28, t194, t22 * t200)),
+            );
+            let t223 = T::fused(t25, t205, T::fused(t17, t206, t83 * t161)) + t221
+                + t222;
+            let t224 = T::fused(k(16.35), t166, t223);
+            let t225 = T::fused(t77, t165, -T::fused(-t18, t205, t197));
+            let t226 = t225 - t224;
+            let t227 = T::fused(
                 x5,
-                t224,
-                -(t219 + (t219 + T::fused(-x4, t210, x6 * t213))),
+                t210,
+                t220 - T::fused(x6, t213, T::fused(x4, t226, -t220)),
             );
-            let t226 = k(2.0) * (t212 - t211);
-            let t227 = x4 * t218;
-            let t228 = t223 - t220;
-            let t229 = T::fused(
-                x6,
-                t228,
-                t227 + (t227 + T::fused(-x3, t210, x5 * t226)),
-            );
-            let t230 = t209 + t200;
+            let t228 = t209 - t208;
+            let t229 = t212 - t211;
+            let t230 = x4 * t214;
             let t231 = T::fused(
-                x3,
-                t224,
-                -T::fused(x4, t226, -T::fused(t151, t217, x6 * t230)),
+                -x6,
+                t228,
+                t230 + T::fused(-x5, t229, T::fused(x3, t226, t230)),
             );
-            let t232 = T::fused(
+            let t232 = t225 + t224;
+            let t233 = T::fused(
+                x3,
+                t210,
+                T::fused(x4, t229, T::fused(x6, t232, t147 * t215)),
+            );
+            let t234 = T::fused(
                 x4,
                 t228,
-                T::fused(x3, t213, -T::fused(t154, t216, x5 * t230)),
+                T::fused(-x3, t213, T::fused(x5, t232, t149 * t219)),
             );
-            let t233 = T::fused(-t31, t42, t25);
-            let t234 = t49 * t233;
-            let t235 = t47 * t234;
-            let t236 = t45 * t234;
-            let t237 = t43 * t234;
-            let t238 = T::fused(
-                -t39,
-                t235,
-                T::fused(-t36, t236, T::fused(t33, t237, t31)),
+            let t235 = T::fused(-t28, t36, t22);
+            let t236 = t40 * t235;
+            let t237 = t39 * t236;
+            let t238 = t38 * t236;
+            let t239 = t37 * t236;
+            let t240 = T::fused(
+                t29,
+                t239,
+                T::fused(t31, t238, T::fused(-t33, t237, t28)),
             );
-            let t239 = t41 * t238;
-            let t240 = T::fused(t38, t239, t235);
-            let t241 = T::fused(t35, t239, t236);
-            let t242 = T::fused(-t32, t239, t237);
-            let t243 = T::fused(
-                t18,
-                t240,
-                T::fused(-t14, t241, T::fused(t8, t242, k(1.0))),
+            let t241 = t35 * t240;
+            let t242 = T::fused(t33, t241, t237);
+            let t243 = T::fused(-t31, t241, t238);
+            let t244 = T::fused(-t29, t241, t239);
+            let t245 = k(1.0) + T::fused(t9, t244, -T::fused(-t18, t242, t14 * t243));
+            let t246 = t21 * t245;
+            let t247 = T::fused(-t18, t246, t242);
+            let t248 = T::fused(t14, t246, t243);
+            let t249 = T::fused(-t9, t246, t244);
+            let t250 = T::fused(t11, t249, T::fused(t19, t247, t17 * t248));
+            let t251 = T::fused(t9, t249, -T::fused(-t18, t247, t14 * t248));
+            let t252 = T::fused(t24, t249, T::fused(-t26, t247, t25 * t248));
+            let t253 = T::fused(t59, t250, -T::fused(t57, t251, t58 * t252));
+            let t254 = T::fused(t61, t250, u0 * t253);
+            let t255 = T::fused(-t61, t251, u2 * t253);
+            let t256 = T::fused(-t61, t252, u1 * t253);
+            let t257 = T::fused(
+                -k(133.33333333333334),
+                t253,
+                t69 * T::fused(x0, t254, T::fused(x2, t255, x1 * t256)),
             );
-            let t244 = t24 * t243;
-            let t245 = T::fused(-t23, t244, t240);
-            let t246 = T::fused(t22, t244, t241);
-            let t247 = T::fused(-t21, t244, t242);
-            let t248 = T::fused(t19, t245, T::fused(t17, t246, t11 * t247));
-            let t249 = T::fused(-t29, t245, T::fused(-t28, t246, t27 * t247));
-            let t250 = T::fused(t23, t245, T::fused(-t22, t246, t21 * t247));
-            let t251 = T::fused(-t66, t248, T::fused(-t68, t249, t70 * t250));
-            let t252 = k(0.3) * t251;
-            let t253 = T::fused(-u0, t252, t74 * t248);
-            let t254 = T::fused(-u1, t252, t74 * t249);
-            let t255 = T::fused(u2, t252, t74 * t250);
-            let t256 = T::fused(
-                -k(40.0),
-                t251,
-                t78 * T::fused(-x0, t253, T::fused(-x1, t254, x2 * t255)),
-            );
-            let t257 = t80 * t256;
-            let t258 = x0 * t257;
-            let t259 = x1 * t257;
-            let t260 = x2 * t257;
-            let t261 = t85 * (t102 * t233);
-            let t262 = k(0.5) * t261;
-            let t263 = T::fused(t101, t234, -T::fused(t43, t262, t44 * t261));
-            let t264 = T::fused(t100, t234, T::fused(t45, t262, t46 * t261));
-            let t265 = T::fused(t99, t234, -T::fused(t47, t262, t48 * t261));
+            let t258 = t56 * t257;
+            let t259 = x0 * t258;
+            let t260 = x1 * t258;
+            let t261 = x2 * t258;
+            let t262 = k(2.0) * (t75 * (t92 * t235));
+            let t263 = T::fused(-t37, t262, t91 * t236);
+            let t264 = T::fused(-t38, t262, t90 * t236);
+            let t265 = T::fused(-t39, t262, t89 * t236);
             let t266 = T::fused(
-                t38,
-                t265,
-                -T::fused(t35, t264, -T::fused(-t32, t263, t31 * t186)),
+                -t29,
+                t263,
+                T::fused(-t31, t264, T::fused(t33, t265, t28 * t184)),
             );
-            let t267 = t109 * T::fused(t40, t266, t97 * t238);
-            let t268 = t41 * t266;
-            let t269 = T::fused(
-                k(0.5),
-                T::fused(t32, t267, -T::fused(-t26, t268, t98 * t237)),
-                T::fused(t42, t263, t33 * t267),
+            let t267 = t35 * t266;
+            let t268 = t99 * T::fused(t34, t266, t87 * t240);
+            let t269 = t29 * t268;
+            let t270 = T::fused(t36, t263, t269)
+                + (t269 - T::fused(-t23, t267, t88 * t239));
+            let t271 = T::fused(t86, t241, -t270);
+            let t272 = T::fused(t29, t267, t263);
+            let t273 = t31 * t268;
+            let t274 = T::fused(t36, t264, t273)
+                + (t273 - T::fused(-t30, t267, t88 * t238));
+            let t275 = T::fused(t85, t241, -t274);
+            let t276 = t33 * t268;
+            let t277 = T::fused(t36, t265, -t276)
+                - (t276 + T::fused(-t32, t267, t88 * t237));
+            let t278 = T::fused(t84, t241, -t277);
+            let t279 = T::fused(
+                t9,
+                t271,
+                T::fused(-t14, t275, T::fused(t18, t278, T::fused(t36, t184, t88))),
             );
-            let t270 = T::fused(t96, t239, -t269);
-            let t271 = T::fused(
-                k(0.5),
-                T::fused(t35, t267, T::fused(-t34, t268, t98 * t236)),
-                T::fused(t42, t264, t36 * t267),
-            );
-            let t272 = T::fused(t95, t239, -t271);
-            let t273 = T::fused(
-                k(0.5),
-                T::fused(t38, t267, T::fused(-t37, t268, t98 * t235)),
-                T::fused(-t42, t265, t39 * t267),
-            );
-            let t274 = T::fused(t94, t239, t273);
-            let t275 = T::fused(
-                t23,
-                t274,
-                T::fused(t22, t272, T::fused(t21, t270, T::fused(t42, t186, t98))),
-            );
-            let t276 = t24 * t275;
-            let t277 = k(2.0) * T::fused(t87, t247, T::fused(-t8, t276, t270));
-            let t278 = T::fused(-t39, t268, t265);
-            let t279 = T::fused(t36, t268, t264);
-            let t280 = T::fused(t33, t268, t263);
-            let t281 = T::fused(
-                t21,
+            let t280 = T::fused(-t33, t267, t265);
+            let t281 = T::fused(t31, t267, t264);
+            let t282 = T::fused(
+                -t18,
                 t280,
-                T::fused(t22, t279, -T::fused(-t23, t278, t186)),
+                T::fused(t14, t281, T::fused(-t9, t272, t184)),
             );
-            let t282 = t24 * t281;
-            let t283 = t126 * T::fused(t92, t243, T::fused(t20, t281, t30 * t275));
-            let t284 = T::fused(
-                t22,
-                t283,
-                T::fused(t28, t276, T::fused(t17, t282, t93 * t241)),
-            );
+            let t283 = t115 * T::fused(t82, t245, -T::fused(-t27, t279, t20 * t282));
+            let t284 = t9 * t283;
             let t285 = T::fused(
-                t90,
-                t244,
-                -T::fused(t14, t283, -T::fused(t25, t279, t31 * t272)),
+                t76,
+                t249,
+                T::fused(t81, t246, -(t284 - T::fused(t28, t271, t22 * t272))),
             );
-            let t286 = T::fused(
-                k(9.81),
-                t246,
-                T::fused(k(2.0), T::fused(t88, t246, t285), -t284),
-            );
-            let t287 = t286 - t277;
-            let t288 = T::fused(t86, t246, T::fused(-t14, t282, t279));
-            let t289 = T::fused(t87, t245, T::fused(-t18, t276, t274));
-            let t290 = k(2.0) * (t289 + t288);
-            let t291 = T::fused(
-                t21,
-                t283,
-                T::fused(t27, t276, -T::fused(t11, t282, t93 * t242)),
-            );
-            let t292 = T::fused(
-                t91,
-                t244,
-                -T::fused(t8, t283, -T::fused(t25, t280, t31 * t270)),
-            );
-            let t293 = T::fused(
-                k(9.81),
-                t247,
-                T::fused(k(2.0), T::fused(t88, t247, -t292), t291),
-            );
-            let t294 = k(2.0) * T::fused(t87, t246, -T::fused(-t14, t276, t272));
-            let t295 = k(2.0) * T::fused(t86, t245, -T::fused(-t18, t282, t278));
-            let t296 = x3 * (t295 - (t294 + t293));
-            let t297 = k(2.0) * T::fused(t86, t247, -T::fused(-t8, t282, t280));
+            let t286 = t21 * t279;
+            let t287 = t21 * t282;
+            let t288 = T::fused(t83, t244, -T::fused(t24, t286, t11 * t287)) - t284
+                + t285;
+            let t289 = T::fused(k(16.35), t249, t288);
+            let t290 = T::fused(t78, t247, T::fused(t18, t287, t280));
+            let t291 = t290 + t289;
+            let t292 = T::fused(t77, t249, T::fused(-t9, t286, t271));
+            let t293 = T::fused(t78, t248, T::fused(-t14, t287, t281));
+            let t294 = t293 + t292;
+            let t295 = T::fused(t78, t249, T::fused(t9, t287, t272));
+            let t296 = T::fused(t77, t248, T::fused(t14, t286, t275));
+            let t297 = t18 * t283;
             let t298 = T::fused(
-                t23,
-                t283,
-                -T::fused(t93, t240, T::fused(t19, t282, t29 * t276)),
+                t76,
+                t247,
+                T::fused(t79, t246, -(t297 - T::fused(t28, t278, t22 * t280))),
             );
-            let t299 = T::fused(
-                t89,
-                t244,
-                -T::fused(t18, t283, -T::fused(t25, t278, t31 * t274)),
+            let t299 = T::fused(t26, t286, T::fused(-t19, t287, t83 * t242)) - t297
+                + t298;
+            let t300 = T::fused(k(16.35), t247, t299);
+            let t301 = x3 * (t300 + t296 - t295);
+            let t302 = t14 * t283;
+            let t303 = T::fused(
+                t76,
+                t248,
+                T::fused(t80, t246, t302 + T::fused(t28, t275, t22 * t281)),
             );
-            let t300 = T::fused(
-                k(9.81),
-                t245,
-                T::fused(k(2.0), T::fused(t88, t245, -t299), t298),
-            );
-            let t301 = t300 + t297;
-            let t302 = T::fused(
-                x5,
-                t301,
-                -(t296 + (t296 + T::fused(-x4, t287, x6 * t290))),
-            );
-            let t303 = k(2.0) * (t289 - t288);
-            let t304 = x4 * t295;
-            let t305 = t300 - t297;
-            let t306 = T::fused(
-                x6,
-                t305,
-                t304 + (t304 + T::fused(-x3, t287, x5 * t303)),
-            );
-            let t307 = t286 + t277;
+            let t304 = T::fused(-t25, t286, T::fused(-t17, t287, t83 * t243)) + t302
+                + t303;
+            let t305 = T::fused(k(16.35), t248, t304);
+            let t306 = T::fused(t77, t247, T::fused(-t18, t286, t278));
+            let t307 = t306 - t305;
             let t308 = T::fused(
+                x5,
+                t291,
+                t301 - T::fused(x6, t294, T::fused(x4, t307, -t301)),
+            );
+            let t309 = t290 - t289;
+            let t310 = t293 - t292;
+            let t311 = x4 * t295;
+            let t312 = T::fused(
+                -x6,
+                t309,
+                t311 + T::fused(-x5, t310, T::fused(x3, t307, t311)),
+            );
+            let t313 = t306 + t305;
+            let t314 = T::fused(
                 x3,
-                t301,
-                -T::fused(x4, t303, -T::fused(t151, t294, x6 * t307)),
+                t291,
+                T::fused(x4, t310, T::fused(x6, t313, t147 * t296)),
             );
-            let t309 = T::fused(
+            let t315 = T::fused(
                 x4,
-                t305,
-                T::fused(x3, t290, -T::fused(t154, t293, x5 * t307)),
+                t309,
+                T::fused(-x3, t294, T::fused(x5, t313, t149 * t300)),
             );
-            let t310 = k(0.6) * t73;
-            let t311 = u0 * t310;
-            let t312 = u1 * t310;
-            let t313 = u2 * t310;
-            let t314 = t80 * (t78 * T::fused(x0, t311, T::fused(x1, t312, x2 * t313)));
-            let t315 = x0 * t314;
-            let t316 = x1 * t314;
-            let t317 = x2 * t314;
+            let t316 = u0 * t60;
+            let t317 = u2 * t60;
+            let t318 = u1 * t60;
+            let t319 = t56 * (t69 * T::fused(x0, t316, T::fused(x2, t317, x1 * t318)));
+            let t320 = x0 * t319;
+            let t321 = x1 * t319;
+            let t322 = x2 * t319;
             (
-                t225,
-                t229,
+                t227,
                 t231,
-                t232,
-                t252,
+                t233,
+                t234,
                 t253,
                 t254,
                 t255,
-                t258,
+                t256,
                 t259,
                 t260,
-                t302,
-                t306,
+                t261,
                 t308,
-                t309,
-                t310,
-                t311,
                 t312,
-                t313,
+                t314,
                 t315,
                 t316,
                 t317,
+                t318,
+                t320,
+                t321,
+                t322,
             )
         };
         *dfdx = [
@@ -1890,44 +1752,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t3,
             t6,
             k(0.0),
-            -(t82 + T::fused(t65, t75, t82)),
-            -(t83 + T::fused(t65, t76, t83)),
-            T::fused(t65, t77, -t84) - t84,
-            -t146,
-            t150,
-            -t153,
-            t155,
-            t66 * t72,
-            t68 * t72,
-            t70 * t72,
+            k(0.3) * (t72 + T::fused(-t66, t65, t72)),
+            k(0.3) * (t73 + T::fused(-t66, t68, t73)),
+            k(0.3) * (t74 + T::fused(-t66, t67, t74)),
+            -(k(0.6) * t141),
+            k(0.6) * t145,
+            -(k(0.6) * t148),
+            -(k(0.6) * t150),
+            -(t64 * t151),
+            -(t64 * t152),
+            -(t64 * t153),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t180 + T::fused(t65, t175, t180)),
-            -(t181 + T::fused(t65, t176, t181)),
-            T::fused(t65, t177, -t182) - t182,
-            -t225,
-            t229,
-            -t231,
-            t232,
-            t66 * t174,
-            t68 * t174,
-            t70 * t174,
+            -(k(0.3) * (t177 + T::fused(-t66, t172, t177))),
+            -(k(0.3) * (t178 + T::fused(-t66, t174, t178))),
+            -(k(0.3) * (t179 + T::fused(-t66, t173, t179))),
+            k(0.6) * t227,
+            -(k(0.6) * t231),
+            k(0.6) * t233,
+            k(0.6) * t234,
+            t171 * t151,
+            t171 * t152,
+            t171 * t153,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t258 + T::fused(t65, t253, t258)),
-            -(t259 + T::fused(t65, t254, t259)),
-            T::fused(t65, t255, -t260) - t260,
-            -t302,
-            t306,
-            -t308,
-            t309,
-            t66 * t252,
-            t68 * t252,
-            t70 * t252,
+            k(0.3) * (t259 + T::fused(-t66, t254, t259)),
+            k(0.3) * (t260 + T::fused(-t66, t256, t260)),
+            k(0.3) * (t261 + T::fused(-t66, t255, t261)),
+            -(k(0.6) * t308),
+            k(0.6) * t312,
+            -(k(0.6) * t314),
+            -(k(0.6) * t315),
+            -(t253 * t151),
+            -(t253 * t152),
+            -(t253 * t153),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1974,16 +1836,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             -(k(0.25) * u3),
             k(0.0),
             k(0.0),
-            t315 - T::fused(t65, t311, -t315),
-            t316 - T::fused(t65, t312, -t316),
-            t317 - T::fused(t65, t313, -t317),
+            k(0.3) * (t320 + T::fused(-t316, t66, t320)),
+            k(0.3) * (t321 + T::fused(-t318, t66, t321)),
+            k(0.3) * (t322 + T::fused(-t317, t66, t322)),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t66 * t310),
-            -(t68 * t310),
-            -(t70 * t310),
+            -(t60 * t151),
+            -(t60 * t152),
+            -(t60 * t153),
             k(0.0),
             k(0.0),
             k(0.0),

@@ -12,38 +12,38 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 280 operations by rotations of the bodies, doubled; 280 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 148 operations by rotations of the bodies, doubled; 148 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 48 operations by normal form; 136 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 81 operations by normal form; 169 operations by recursion; 3 more compared
+//! * joint_accelerations: 46 operations by normal form; 135 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 76 operations by normal form; 168 operations by recursion; 3 more compared
 //! * corrected_accelerations: 163 operations by normal form in the bodies' frames; 196 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 130 operations by derivatives of u̇, from its leaves; 130 operations by normal form of that; 7 more compared
+//! * joint_jacobian: 126 operations by derivatives of u̇, from its leaves; 126 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 24 | 20 | 0 | 44 | 0 of 5 | 60 | 44 |
+//! | phi | Φ | 23 | 20 | 0 | 43 | 0 of 5 | 60 | 43 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 | 56 | 40 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 30 | 0 | 51 | 0 of 14 | 96 | 51 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 19 | 30 | 0 | 49 | 0 of 14 | 96 | 49 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
-//! | gamma | γ | 37 | 56 | 0 | 93 | 0 of 4 | 275 | 93 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 41 | 0 | 69 | 0 of 4 | 155 | 69 |
+//! | gamma | γ | 37 | 53 | 0 | 90 | 0 of 4 | 216 | 90 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 38 | 0 | 66 | 0 of 4 | 116 | 66 |
 //! | applied_force | (f, n' − w̃'J'w') | 26 | 39 | 0 | 65 | 2 of 6 | 153 | 65 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 115 | 162 | 3 | 280 | 0 of 6 | 90421 | 281 |
-//! | multipliers | λ, the accelerations being known | 45 | 68 | 1 | 114 | 0 of 4 | 287 | 114 |
+//! | multipliers | λ, the accelerations being known | 45 | 64 | 1 | 110 | 0 of 4 | 218 | 110 |
 //! | project | (δr, δπ') that changes the rows as given | 57 | 88 | 3 | 148 | 0 of 6 | 33006 | 149 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 29 | 0 | 43 | 0 of 9 | 47 | 43 |
-//! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 | 85 | 50 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 28 | 0 | 42 | 0 of 9 | 42 | 42 |
+//! | energy | T and V | 19 | 28 | 0 | 47 | 0 of 2 | 78 | 47 |
 //! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 | 54 | 32 |
-//! | outputs | outputs, the accelerations being known | 76 | 103 | 1 | 180 | 0 of 6 | 2418 | 180 |
-//! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 | 137 | 49 |
+//! | outputs | outputs, the accelerations being known | 70 | 102 | 1 | 173 | 0 of 6 | 1758 | 173 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 27 | 1 | 46 | 0 of 2 | 123 | 47 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 | 2 | 2 |
-//! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 | 431 | 82 |
+//! | to_maximal | (q, v) of a joint state | 29 | 46 | 0 | 75 | 0 of 14 | 427 | 75 |
 //! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 | 104 | 46 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 | 558 | 82 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 45 | 1 | 76 | 0 of 2 | 490 | 77 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7444 | 164 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 | 197 | 110 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 60 | 0 | 106 | 0 of 4 | 180 | 106 |
 //! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28934 | 238 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 44 | 80 | 1 | 125 | 19 of 30 | 681 | 125 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 43 | 82 | 1 | 126 | 19 of 30 | 591 | 126 |
 //!
 //! # Proof
 //!
@@ -109,7 +109,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
             k(0.9),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 43 operations (14 ±, 29 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 42 operations (14 ±, 28 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -124,13 +124,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = k(2.0) * bob_e1;
-        let t1 = k(2.0) * bob_e0;
-        let t2 = T::fused(
-            -bob_wx,
-            T::fused(-bob_e1, t0, T::fused(-bob_e0, t1, k(1.0))),
-            bob_wy * T::fused(-bob_e3, t1, bob_e2 * t0),
+        let t0 = T::fused(
+            T::fused(bob_e0, bob_e2, bob_e1 * bob_e3),
+            bob_wz,
+            T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
         );
+        let t1 = k(2.0)
+            * T::fused(k(0.5) - T::fused(bob_e1, bob_e1, bob_e0 * bob_e0), bob_wx, -t0);
         *dy = [
             bob_sx,
             bob_sy,
@@ -149,8 +149,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
             accelerations[3],
             accelerations[4],
             accelerations[5],
-            -(bob_wy * (k(0.05) * bob_wy)),
-            T::fused(bob_wz, T::fused(bob_e2, t1, bob_e3 * t0), t2),
+            -(k(0.05) * (bob_wy * bob_wy)),
+            -t1,
         ];
     }
 }
@@ -167,7 +167,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 6]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 43 operations (14 ±, 29 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 42 operations (14 ±, 28 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -182,13 +182,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = k(2.0) * bob_e1;
-        let t1 = k(2.0) * bob_e0;
-        let t2 = T::fused(
-            -bob_wx,
-            T::fused(-bob_e1, t0, T::fused(-bob_e0, t1, k(1.0))),
-            bob_wy * T::fused(-bob_e3, t1, bob_e2 * t0),
+        let t0 = T::fused(
+            T::fused(bob_e0, bob_e2, bob_e1 * bob_e3),
+            bob_wz,
+            T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
         );
+        let t1 = k(2.0)
+            * T::fused(k(0.5) - T::fused(bob_e1, bob_e1, bob_e0 * bob_e0), bob_wx, -t0);
         *dy = [
             bob_sx,
             bob_sy,
@@ -207,11 +207,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
             accelerations[3],
             accelerations[4],
             accelerations[5],
-            -(bob_wy * (k(0.05) * bob_wy)),
-            T::fused(bob_wz, T::fused(bob_e2, t1, bob_e3 * t0), t2),
+            -(k(0.05) * (bob_wy * bob_wy)),
+            -t1,
         ];
     }
-    /// Writes Φ: 44 operations (24 ±, 20 ×, 0 ÷).
+    /// Writes Φ: 43 operations (23 ±, 20 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -222,36 +222,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_e2 = y[5];
         let bob_e3 = y[6];
         let t0 = bob_e0 * bob_e0;
-        let t1 = T::fused(bob_e1, bob_e1, t0);
-        let t2 = bob_e0 * bob_e3;
-        let t3 = bob_e1 * bob_e2;
-        let t4 = t3 - t2;
-        let t5 = bob_e0 * bob_e2;
-        let t6 = bob_e1 * bob_e3;
-        let t7 = T::fused(k(0.8), t6 + t5, T::fused(k(0.06), k(0.5) - t1, k(0.04) * t4));
-        let t8 = bob_e2 * bob_e2;
-        let t9 = bob_e0 * bob_e1;
-        let t10 = bob_e2 * bob_e3;
-        let t11 = T::fused(
-            k(0.8),
-            t10 - t9,
-            -T::fused(k(0.06), t3 + t2, k(0.04) * (k(0.5) - (t0 + t8))),
+        let t1 = k(0.5) - t0;
+        let t2 = bob_e1 * bob_e1;
+        let t3 = bob_e0 * bob_e2;
+        let t4 = bob_e1 * bob_e3;
+        let t5 = bob_e0 * bob_e3;
+        let t6 = bob_e1 * bob_e2;
+        let t7 = t6 - t5;
+        let t8 = T::fused(
+            -k(0.06),
+            t2 - t1,
+            T::fused(k(0.04), t7, T::fused(k(0.8), t4 + t3, bob_rx)),
         );
-        let t12 = bob_e3 * bob_e3;
-        let t13 = T::fused(
-            k(0.8),
-            k(0.5) - (t0 + t12),
-            -T::fused(-k(0.06), t6 - t5, k(0.04) * (t10 + t9)),
+        let t9 = bob_e2 * bob_e2;
+        let t10 = bob_e0 * bob_e1;
+        let t11 = bob_e2 * bob_e3;
+        let t12 = T::fused(
+            k(0.06),
+            t6 + t5,
+            -T::fused(k(0.04), t9 - t1, T::fused(k(0.8), t11 - t10, bob_ry)),
         );
-        *out = [
-            bob_rx + t7,
-            bob_ry + t11,
-            bob_rz - t13,
-            k(2.0) * t4,
-            t12 + (t1 + t8) - k(1.0),
-        ];
+        let t13 = bob_e3 * bob_e3;
+        let t14 = T::fused(
+            k(0.06),
+            t4 - t3,
+            -T::fused(k(0.04), t11 + t10, T::fused(k(0.8), t13 - t1, bob_rz)),
+        );
+        *out = [t8, -t12, -t14, k(2.0) * t7, t9 + (t2 + (t0 + t13)) - k(1.0)];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 69 operations (28 ±, 41 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 66 operations (28 ±, 38 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -264,49 +263,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = k(2.0) * bob_e1;
-        let t1 = k(2.0) * bob_e0;
-        let t2 = T::fused(-bob_e0, t1, k(1.0));
-        let t3 = T::fused(-bob_e1, t0, t2);
-        let t4 = bob_e3 * t1;
-        let t5 = bob_e2 * t0;
-        let t6 = t5 - t4;
-        let t7 = bob_e2 * t1;
-        let t8 = bob_e3 * t0;
-        let t9 = t8 + t7;
-        let t10 = T::fused(bob_wz, t3, bob_wx * t9);
-        let t11 = T::fused(
-            -k(0.4),
-            T::fused(bob_wy, t3, bob_wx * t6),
-            T::fused(k(0.02), t10, k(0.03) * T::fused(-bob_wz, t6, bob_wy * t9)),
+        let t0 = T::fused(-bob_e0, bob_e0, k(0.5));
+        let t1 = T::fused(bob_e1, bob_e1, -t0);
+        let t2 = bob_e0 * bob_e3;
+        let t3 = bob_e1 * bob_e2;
+        let t4 = t3 - t2;
+        let t5 = bob_e0 * bob_e2;
+        let t6 = bob_e1 * bob_e3;
+        let t7 = t6 + t5;
+        let t8 = T::fused(-bob_wz, t1, t7 * bob_wx);
+        let t9 = T::fused(
+            k(0.04),
+            t8,
+            T::fused(k(0.06), T::fused(-t4, bob_wz, t7 * bob_wy), bob_sx),
         );
-        let t12 = t5 + t4;
-        let t13 = k(2.0) * bob_e2;
-        let t14 = T::fused(-bob_e2, t13, t2);
-        let t15 = bob_e1 * t1;
-        let t16 = bob_e3 * t13;
-        let t17 = t16 - t15;
-        let t18 = T::fused(
-            k(0.02),
-            T::fused(-bob_wz, t12, bob_wx * t17),
-            k(0.03) * T::fused(bob_wz, t14, bob_wy * t17),
+        let t10 = T::fused(bob_e2, bob_e2, -t0);
+        let t11 = t3 + t2;
+        let t12 = bob_e0 * bob_e1;
+        let t13 = bob_e2 * bob_e3;
+        let t14 = t13 - t12;
+        let t15 = T::fused(
+            k(0.04),
+            T::fused(-t14, bob_wx, t11 * bob_wz),
+            -T::fused(k(0.06), T::fused(-bob_wz, t10, t14 * bob_wy), bob_sy),
         );
-        let t19 = t8 - t7;
-        let t20 = t16 + t15;
-        let t21 = T::fused(-bob_e3, k(2.0) * bob_e3, t2);
-        let t22 = T::fused(
-            k(0.02),
-            T::fused(bob_wz, t19, bob_wx * t21),
-            k(0.03) * T::fused(bob_wz, t20, bob_wy * t21),
+        let t16 = T::fused(bob_e3, bob_e3, -t0);
+        let t17 = t6 - t5;
+        let t18 = t13 + t12;
+        let t19 = T::fused(
+            -k(0.04),
+            T::fused(-bob_wx, t16, t17 * bob_wz),
+            T::fused(-k(0.06), T::fused(-bob_wy, t16, t18 * bob_wz), bob_sz),
         );
         *out = [
-            bob_sx + t11,
-            bob_sy + T::fused(k(0.4), T::fused(bob_wy, t12, bob_wx * t14), t18),
-            bob_sz - T::fused(k(0.4), T::fused(-bob_wy, t19, bob_wx * t20), t22),
-            t10,
+            T::fused(-k(0.8), T::fused(-bob_wy, t1, t4 * bob_wx), t9),
+            T::fused(k(0.8), T::fused(-bob_wx, t10, t11 * bob_wy), -t15),
+            T::fused(k(0.8), T::fused(-t18, bob_wx, t17 * bob_wy), t19),
+            k(2.0) * t8,
         ];
     }
-    /// Kinetic and potential energy: 50 operations (19 ±, 31 ×, 0 ÷) and 3 functions.
+    /// Kinetic and potential energy: 47 operations (19 ±, 28 ×, 0 ÷) and 3 functions.
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let bob_rz = y[2];
@@ -322,34 +318,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wz = y[12];
         let turn0 = y[14];
         let t0 = T::fused(
-            bob_wy,
-            T::fused(k(0.003), bob_wz, T::fused(k(0.06), bob_wy, k(0.002) * bob_wx)),
-            bob_wx
-                * T::fused(
-                    -k(0.004),
-                    bob_wz,
-                    T::fused(k(0.002), bob_wy, k(0.05) * bob_wx),
-                ),
+            -k(0.0015),
+            bob_wy
+                * (bob_wz + T::fused(k(20.0), bob_wy, k(0.6666666666666666) * bob_wx)),
+            k(0.002) * (bob_wx * (bob_wz - T::fused(k(12.5), bob_wx, k(0.5) * bob_wy))),
         );
         let t1 = T::fused(
-            -bob_wz,
-            T::fused(-k(0.03), bob_wz, T::fused(-k(0.003), bob_wy, k(0.004) * bob_wx)),
+            -k(0.015),
+            bob_wz
+                * (bob_wz - T::fused(-k(0.1), bob_wy, k(0.13333333333333333) * bob_wx)),
             t0,
         );
-        let t2 = T::fused(
-            k(2.0),
-            T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx)),
-            t1,
-        );
-        let t3 = turn0.cos();
-        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, bob_e0 * bob_e0));
-        let t5 = turn0.sin();
-        let t6 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
-        let t7 = T::fused(t4, t5, t6 * t3).atan2(T::fused(-t4, t3, t6 * t5));
-        let t8 = k(0.2) - (turn0 + t7);
+        let t2 = turn0.sin();
+        let t3 = T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
+        let t4 = turn0.cos();
+        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, bob_e0 * bob_e0);
+        let t6 = (k(2.0) * T::fused(t3, t4, t5 * t2))
+            .atan2(-(k(2.0) * T::fused(-t3, t2, t5 * t4)));
+        let t7 = k(0.2) - (turn0 + t6);
         gyro_sim::Energy {
-            kinetic: k(0.5) * t2,
-            potential: T::fused(k(0.5), t8 * (k(1.5) * t8), k(19.62) * bob_rz),
+            kinetic: T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx))
+                - t1,
+            potential: k(0.75) * T::fused(k(26.16), bob_rz, t7 * t7),
         }
     }
     /// Writes the joint readings: 32 operations (14 ±, 18 ×, 0 ÷).
@@ -585,7 +575,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
             t12,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 51 operations (21 ±, 30 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 49 operations (19 ±, 30 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -598,31 +588,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t3 = bob_e0 * bob_e2;
         let t4 = bob_e1 * bob_e3;
         let t5 = t4 + t3;
-        let t6 = bob_e0 * bob_e0;
-        let t7 = k(0.5) - T::fused(bob_e1, bob_e1, t6);
-        let t8 = k(0.5) - T::fused(bob_e2, bob_e2, t6);
+        let t6 = T::fused(-bob_e0, bob_e0, k(0.5));
+        let t7 = T::fused(bob_e1, bob_e1, -t6);
+        let t8 = T::fused(bob_e2, bob_e2, -t6);
         let t9 = bob_e0 * bob_e1;
         let t10 = bob_e2 * bob_e3;
         let t11 = t10 - t9;
         let t12 = t1 + t0;
-        let t13 = t10 + t9;
-        let t14 = k(0.5) - T::fused(bob_e3, bob_e3, t6);
+        let t13 = T::fused(bob_e3, bob_e3, -t6);
+        let t14 = t10 + t9;
         let t15 = t4 - t3;
         *out = [
             k(1.0),
-            T::fused(-k(0.8), t2, k(0.04) * t5),
-            T::fused(-k(0.8), t7, k(0.06) * t5),
-            T::fused(-k(0.06), t2, k(0.04) * t7),
+            k(0.04) * T::fused(-k(20.0), t2, t5),
+            k(0.06) * T::fused(k(13.333333333333334), t7, t5),
+            -(k(0.04) * T::fused(k(1.5), t2, t7)),
             k(1.0),
-            T::fused(k(0.8), t8, k(0.04) * t11),
-            T::fused(k(0.8), t12, k(0.06) * t11),
-            T::fused(-k(0.04), t12, k(0.06) * t8),
+            k(0.04) * T::fused(-k(20.0), t8, t11),
+            k(0.06) * T::fused(k(13.333333333333334), t12, t11),
+            -(k(0.06) * T::fused(k(0.6666666666666666), t12, t8)),
             k(1.0),
-            -T::fused(k(0.8), t13, k(0.04) * t14),
-            T::fused(-k(0.06), t14, k(0.8) * t15),
-            -T::fused(k(0.04), t15, k(0.06) * t13),
+            -(k(0.04) * T::fused(k(20.0), t14, -t13)),
+            k(0.06) * T::fused(k(13.333333333333334), t15, t13),
+            -(k(0.06) * T::fused(k(0.6666666666666666), t15, t14)),
             k(2.0) * t5,
-            k(2.0) * t7,
+            -(k(2.0) * t7),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -630,7 +620,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 93 operations (37 ±, 56 ×, 0 ÷).
+    /// Writes γ: 90 operations (37 ±, 53 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -640,66 +630,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = k(2.0) * bob_e1;
-        let t1 = k(2.0) * bob_e0;
-        let t2 = T::fused(-bob_e0, t1, k(1.0));
-        let t3 = T::fused(-bob_e1, t0, t2);
-        let t4 = bob_wy * bob_wy;
-        let t5 = bob_wz * bob_wz;
-        let t6 = t5 + t4;
-        let t7 = bob_e3 * t1;
-        let t8 = bob_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = bob_wx * bob_wy;
-        let t11 = bob_e2 * t1;
-        let t12 = bob_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = bob_wx * bob_wz;
-        let t15 = bob_wx * bob_wx;
-        let t16 = t5 + t15;
-        let t17 = bob_wy * bob_wz;
-        let t18 = T::fused(t17, t13, -T::fused(t10, t3, t16 * t9));
+        let t0 = T::fused(-bob_e0, bob_e0, k(0.5));
+        let t1 = T::fused(bob_e1, bob_e1, -t0);
+        let t2 = bob_wy * bob_wy;
+        let t3 = bob_wz * bob_wz;
+        let t4 = t3 + t2;
+        let t5 = bob_wx * bob_wz;
+        let t6 = bob_e0 * bob_e2;
+        let t7 = bob_e1 * bob_e3;
+        let t8 = t7 + t6;
+        let t9 = bob_wx * bob_wy;
+        let t10 = bob_e0 * bob_e3;
+        let t11 = bob_e1 * bob_e2;
+        let t12 = t11 - t10;
+        let t13 = bob_wy * bob_wz;
+        let t14 = bob_wx * bob_wx;
+        let t15 = t3 + t14;
+        let t16 = T::fused(-t9, t1, T::fused(-t8, t13, t12 * t15));
+        let t17 = t2 + t14;
+        let t18 = T::fused(
+            -k(0.05),
+            t16,
+            T::fused(t5, t1, T::fused(-t8, t17, t12 * t13)),
+        );
         let t19 = T::fused(
-            -k(0.03),
-            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
-            k(0.02) * t18,
+            -k(0.075),
+            T::fused(-t4, t1, T::fused(t8, t5, t12 * t9)),
+            t18,
         );
-        let t20 = t4 + t15;
-        let t21 = T::fused(
-            k(0.4),
-            T::fused(t20, t13, -T::fused(-t14, t3, t17 * t9)),
-            -t19,
+        let t20 = T::fused(bob_e2, bob_e2, -t0);
+        let t21 = bob_e0 * bob_e1;
+        let t22 = bob_e2 * bob_e3;
+        let t23 = t22 - t21;
+        let t24 = t11 + t10;
+        let t25 = T::fused(
+            k(0.05),
+            T::fused(t24, t9, T::fused(-t15, t20, t23 * t13)),
+            T::fused(t24, t5, -T::fused(-t13, t20, t23 * t17)),
         );
-        let t22 = t8 + t7;
-        let t23 = k(2.0) * bob_e2;
-        let t24 = T::fused(-bob_e2, t23, t2);
-        let t25 = bob_e1 * t1;
-        let t26 = bob_e3 * t23;
-        let t27 = t26 - t25;
-        let t28 = T::fused(
-            -k(0.03),
-            T::fused(t14, t27, -T::fused(t6, t22, t10 * t24)),
-            k(0.02) * T::fused(t17, t27, T::fused(t10, t22, t16 * t24)),
+        let t26 = T::fused(
+            k(0.075),
+            T::fused(t24, t4, -T::fused(t9, t20, t23 * t5)),
+            t25,
         );
-        let t29 = T::fused(
-            k(0.4),
-            T::fused(t20, t27, T::fused(-t14, t22, t17 * t24)),
-            -t28,
+        let t27 = T::fused(bob_e3, bob_e3, -t0);
+        let t28 = t22 + t21;
+        let t29 = t7 - t6;
+        let t30 = T::fused(
+            k(0.05),
+            T::fused(t29, t9, -T::fused(-t13, t27, t28 * t15)),
+            T::fused(t29, t5, T::fused(-t17, t27, t28 * t13)),
         );
-        let t30 = t12 - t11;
-        let t31 = t26 + t25;
-        let t32 = T::fused(-bob_e3, k(2.0) * bob_e3, t2);
-        let t33 = T::fused(
-            -k(0.03),
-            T::fused(t14, t32, -T::fused(-t6, t30, t10 * t31)),
-            k(0.02) * T::fused(t17, t32, T::fused(-t10, t30, t16 * t31)),
+        let t31 = T::fused(
+            k(0.075),
+            T::fused(t29, t4, -T::fused(t5, t27, t28 * t9)),
+            t30,
         );
-        let t34 = T::fused(
-            k(0.4),
-            T::fused(t20, t32, T::fused(t14, t30, t17 * t31)),
-            -t33,
-        );
-        *out = [t21, t29, -t34, -t18];
+        *out = [-(k(0.8) * t19), -(k(0.8) * t26), -(k(0.8) * t31), k(2.0) * t16];
     }
     /// Writes (f, n' − w̃'J'w'): 65 operations (26 ±, 39 ×, 0 ÷) and 3 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -903,7 +890,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
             -t69,
         ];
     }
-    /// Writes λ: 114 operations (45 ±, 68 ×, 1 ÷) and 3 functions.
+    /// Writes λ: 110 operations (45 ±, 64 ×, 1 ÷) and 3 functions.
     fn multipliers(
         &self,
         _t: T,
@@ -926,76 +913,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_dwx = accelerations[3];
         let bob_dwy = accelerations[4];
         let bob_dwz = accelerations[5];
-        let t0 = k(2.0) * bob_dsx;
-        let t1 = k(2.0) * bob_dsy;
-        let t2 = T::fused(k(2.0), bob_dsz, k(19.62));
-        let t3 = k(2.0) * bob_e2;
-        let t4 = k(2.0) * bob_e0;
-        let t5 = T::fused(-bob_e0, t4, k(1.0));
-        let t6 = T::fused(-bob_e2, t3, t5);
-        let t7 = turn0.cos();
-        let t8 = bob_e1 * t4;
-        let t9 = bob_e3 * t3;
-        let t10 = t9 + t8;
-        let t11 = turn0.sin();
-        let t12 = T::fused(t11, t6, t7 * t10).atan2(T::fused(-t7, t6, t11 * t10));
-        let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(2.0) * bob_e1;
-        let t15 = T::fused(-bob_e1, t14, t5);
-        let t16 = bob_wy * bob_wy;
-        let t17 = k(0.004) * bob_wy;
-        let t18 = T::fused(
-            bob_wx,
-            T::fused(k(0.002), bob_wz, t17),
-            T::fused(
-                k(0.003),
-                T::fused(bob_wz, bob_wz, -t16),
-                k(0.03) * (bob_wy * bob_wz),
-            ),
-        );
-        let t19 = T::fused(
-            -k(0.004),
-            bob_dwz,
-            T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
-        ) - T::fused(-t15, t13, t18);
-        let t20 = bob_e3 * t4;
-        let t21 = bob_e2 * t14;
-        let t22 = t21 - t20;
-        let t23 = bob_e2 * t4;
-        let t24 = bob_e3 * t14;
-        let t25 = t24 + t23;
-        let t26 = T::fused(
+        let t0 = bob_dsz + k(9.81);
+        let t1 = T::fused(-bob_e0, bob_e0, k(0.5));
+        let t2 = T::fused(bob_e2, bob_e2, -t1);
+        let t3 = turn0.cos();
+        let t4 = turn0.sin();
+        let t5 = bob_e0 * bob_e1;
+        let t6 = bob_e2 * bob_e3;
+        let t7 = t6 + t5;
+        let t8 = (k(2.0) * T::fused(-t4, t2, t7 * t3))
+            .atan2(k(2.0) * T::fused(t3, t2, t7 * t4));
+        let t9 = k(0.2) - (turn0 + t8);
+        let t10 = T::fused(bob_e1, bob_e1, -t1);
+        let t11 = T::fused(
+            -T::fused(k(20.0), t7, -T::fused(bob_e3, bob_e3, -t1)),
             t0,
-            T::fused(-k(0.4), t22, k(0.02) * t25),
-            t1 * T::fused(k(0.4), t6, k(0.02) * (t9 - t8)),
+            bob_dsy * T::fused(-k(20.0), t2, t6 - t5),
+        );
+        let t12 = bob_e0 * bob_e3;
+        let t13 = bob_e1 * bob_e2;
+        let t14 = t13 - t12;
+        let t15 = bob_e0 * bob_e2;
+        let t16 = bob_e1 * bob_e3;
+        let t17 = t16 + t15;
+        let t18 = k(0.025) * bob_dwy;
+        let t19 = t18
+            + T::fused(
+                k(0.625),
+                bob_dwx,
+                -T::fused(bob_dsx, T::fused(-k(20.0), t14, t17), t11),
+            );
+        let t20 = T::fused(
+            k(0.05),
+            bob_wx * T::fused(k(0.5), bob_wz, bob_wy),
+            T::fused(k(0.05), bob_dwz, -t19),
+        );
+        let t21 = bob_wy * bob_wy;
+        let t22 = T::fused(
+            k(0.0375),
+            T::fused(bob_wz, bob_wz, -t21),
+            T::fused(k(0.375), bob_wy * bob_wz, t20),
+        );
+        let t23 = k(1.0) / T::fused(t10, t10, t17 * t17);
+        let t24 = T::fused(
+            bob_dsy,
+            T::fused(k(0.6666666666666666), t13 + t12, t2),
+            T::fused(k(0.6666666666666666), t16 - t15, t7) * t0,
+        );
+        let t25 = T::fused(
+            k(0.03333333333333333),
+            bob_dwx,
+            -T::fused(k(0.6666666666666666), bob_dsx * T::fused(k(1.5), t14, t10), t24),
+        );
+        let t26 = T::fused(
+            k(0.03333333333333333),
+            bob_wz * T::fused(k(0.75), bob_wx, bob_wy),
+            T::fused(k(0.25), bob_dwz, t18 - t25),
         );
         let t27 = T::fused(
-            t2,
-            T::fused(k(0.4), t10, k(0.02) * T::fused(-bob_e3, k(2.0) * bob_e3, t5)),
-            -t26,
+            k(0.016666666666666666),
+            T::fused(-bob_wx, bob_wx, t21),
+            -T::fused(k(0.08333333333333333), bob_wx * bob_wy, t26),
         );
-        let t28 = k(1.0) / T::fused(t25, t25, t15 * t15);
-        let t29 = T::fused(
-            bob_wz,
-            T::fused(k(0.003), bob_wx, t17),
-            T::fused(
-                -k(0.002),
-                T::fused(-bob_wx, bob_wx, t16),
-                k(0.01) * (bob_wx * bob_wy),
-            ),
+        let t28 = T::fused(
+            -k(0.6666666666666666),
+            t17 * t23 * T::fused(k(37.5), t10 * t9, t22),
+            t10 * t23 * T::fused(k(25.0), t17 * t9, t27),
         );
-        let t30 = T::fused(
-            -k(0.03),
-            bob_dwz,
-            T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
-        ) - T::fused(-t25, t13, t29);
-        let t31 = T::fused(
-            t0,
-            T::fused(-k(0.03), t22, k(0.02) * t15),
-            t1 * T::fused(-k(0.02), t21 + t20, k(0.03) * t6),
-        );
-        let t32 = T::fused(t2, T::fused(k(0.02), t24 - t23, k(0.03) * t10), -t31) - t30;
-        *lambda = [-t0, -t1, -t2, -T::fused(t25 * t28, t27 + t19, t15 * t28 * t32)];
+        *lambda = [
+            -(k(2.0) * bob_dsx),
+            -(k(2.0) * bob_dsy),
+            -(k(2.0) * t0),
+            -(k(0.06) * t28),
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Universal<T> {
@@ -1094,7 +1084,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 10]
     }
-    /// Writes u̇: 48 operations (18 ±, 29 ×, 1 ÷) and 4 functions.
+    /// Writes u̇: 46 operations (18 ±, 27 ×, 1 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -1103,45 +1093,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let u1 = x[3];
         let t0 = x1.sin();
         let t1 = x1.cos();
-        let t2 = u0 * T::fused(-t1, T::fused(-k(8.455), t0, t1), k(0.5));
-        let t3 = x0.cos();
-        let t4 = T::fused(
-            k(7.848),
-            x0.sin() * T::fused(k(0.075), t0, t1),
-            T::fused(k(1.5), x0, -T::fused(k(0.3924), t3, k(0.3))),
+        let t2 = T::fused(-k(0.24615384615384617), t1, t0);
+        let t3 = k(73.64899408284023)
+            - T::fused(
+                -k(764.0518343195266),
+                t1 * T::fused(k(0.11827321111768184), t0, t1),
+                t2 * t2,
+            );
+        let t4 = u0 * T::fused(-t1, T::fused(-k(8.455), t0, t1), k(0.5));
+        let t5 = x0.cos();
+        let t6 = T::fused(
+            k(0.8),
+            u0 * t4,
+            T::fused(-k(11.772), t5 * T::fused(-k(13.333333333333334), t0, t1), u1),
         );
-        let t5 = T::fused(
-            -k(0.013),
+        let t7 = T::fused(
+            k(4609.794461538461),
+            x0.sin() * T::fused(k(0.075), t0, t1),
+            T::fused(
+                -k(230.48972307692307),
+                t5,
+                T::fused(k(881.0769230769231), x0, t2 * t6),
+            ),
+        );
+        let t8 = T::fused(
+            -k(7.636),
             u1
                 * T::fused(
                     u1,
                     T::fused(k(0.24615384615384617), t0, t1),
-                    k(6.153846153846154) * t2,
+                    k(6.153846153846154) * t4,
                 ),
-            t4,
-        );
-        let t6 = T::fused(
-            k(0.04),
-            u0 * t2,
-            T::fused(
-                -k(0.5886),
-                t3 * T::fused(-k(13.333333333333334), t0, t1),
-                k(0.05) * u1,
-            ),
-        );
-        let t7 = T::fused(-k(0.0032), t1, k(0.013) * t0);
-        let t8 = k(2.6191723415400734) * t7;
-        let t9 = T::fused(
             t7,
-            t8,
-            -T::fused(
-                k(0.3382),
-                t1 * T::fused(k(0.11827321111768184), t0, t1),
-                k(0.0326),
-            ),
         );
-        let t10 = T::fused(t8, t6, t5) / t9;
-        *out = [t10, T::fused(-k(2.6191723415400734), t6, t8 * t10)];
+        let t9 = (t8 - k(176.2153846153846)) / t3;
+        *out = [
+            -(k(3.8461538461538463) * t9),
+            -(k(0.13095861707700368) * T::fused(t2, t9, t6)),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -1152,7 +1141,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let u1 = x[3];
         *dx = [u0, u1, rates[0], rates[1], -(u1 * (k(0.05) * u1))];
     }
-    /// Writes the maximal state of a joint state: 82 operations (28 ±, 54 ×, 0 ÷) and 4 functions.
+    /// Writes the maximal state of a joint state: 75 operations (29 ±, 46 ×, 0 ÷) and 4 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -1185,41 +1174,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t23 = k(0.5) - T::fused(t9, t9, t16);
         let t24 = t19 + t18;
         let t25 = t11 - t7;
-        let t26 = k(2.0) * t1;
-        let t27 = u0 * (t5 * t26);
-        let t28 = T::fused(-k(0.02), t27, k(0.4) * u1);
-        let t29 = u0 * T::fused(-t1, t26, k(1.0));
-        let t30 = T::fused(k(0.03), t27, k(0.4) * t29);
-        let t31 = T::fused(k(0.02), t29, k(0.03) * u1);
-        let t32 = T::fused(
-            k(2.0) * t12,
-            t31,
-            -T::fused(k(2.0) * t17, t28, k(2.0) * t15 * t30),
-        );
-        let t33 = T::fused(
-            k(2.0) * t20,
-            t31,
-            T::fused(k(2.0) * t22, t28, k(2.0) * t21 * t30),
-        );
-        let t34 = T::fused(
-            k(2.0) * t23,
-            t31,
-            T::fused(-(k(2.0) * t25), t28, k(2.0) * t24 * t30),
-        );
+        let t26 = u0 * ((t1 - t5) * (t1 + t5));
+        let t27 = k(0.075) * T::fused(-k(0.6666666666666666), t26, u1);
+        let t28 = u0 * (t1 * t5);
+        let t29 = T::fused(-k(0.15), t28, t26);
+        let t30 = T::fused(-k(0.1), t28, u1);
         *y = [
-            -T::fused(k(0.8), t12, T::fused(k(0.04), t15, k(0.06) * t17)),
-            T::fused(-k(0.8), t20, T::fused(k(0.04), t21, k(0.06) * t22)),
-            T::fused(k(0.8), t23, T::fused(-k(0.04), t24, k(0.06) * t25)),
+            -(k(0.06)
+                * T::fused(
+                    k(13.333333333333334),
+                    t12,
+                    T::fused(k(0.6666666666666666), t15, t17),
+                )),
+            k(0.06)
+                * T::fused(
+                    -k(13.333333333333334),
+                    t20,
+                    T::fused(k(0.6666666666666666), t21, t22),
+                ),
+            k(0.06)
+                * T::fused(
+                    k(13.333333333333334),
+                    t23,
+                    T::fused(-k(0.6666666666666666), t24, t25),
+                ),
             t6,
             t10,
             t4,
             t9,
-            -t32,
-            -t33,
-            t34,
-            t29,
+            k(0.8) * T::fused(t17, t30, -T::fused(t12, t27, t15 * t29)),
+            -(k(0.8) * T::fused(t22, t30, -T::fused(-t20, t27, t21 * t29))),
+            -(k(0.8) * T::fused(t25, t30, T::fused(-t23, t27, t24 * t29))),
+            -t26,
             u1,
-            t27,
+            k(2.0) * t28,
             x[4],
             x0,
         ];
@@ -1262,7 +1250,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         x[3] = bob_wy;
         x[4] = y[13];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 81 operations (30 ±, 50 ×, 1 ÷) and 3 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 76 operations (30 ±, 45 ×, 1 ÷) and 3 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -1276,57 +1264,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t0 = T::fused(bob_e0, bob_e2, bob_e1 * bob_e3);
         let t1 = bob_e0 * bob_e0;
         let t2 = k(0.5) - T::fused(bob_e1, bob_e1, t1);
-        let t3 = k(2.0) * t2;
+        let t3 = T::fused(k(0.24615384615384617), t2, t0);
         let t4 = T::fused(
-            -t3,
+            -k(764.0518343195266),
+            t2 * T::fused(-k(0.11827321111768184), t0, t2),
+            t3 * t3,
+        ) - k(18.412248520710058);
+        let t5 = T::fused(
+            t2,
             bob_wx,
-            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+            -T::fused(t0, bob_wz, T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy),
         );
-        let t5 = T::fused(k(2.0) * t0, bob_wz, t4);
-        let t6 = t5 * T::fused(-t3, T::fused(k(16.91), t0, t3), k(0.5));
-        let t7 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
-        let t8 = turn0.cos();
-        let t9 = k(0.5) - T::fused(bob_e2, bob_e2, t1);
-        let t10 = k(2.0) * t9;
-        let t11 = turn0.sin();
-        let t12 = T::fused(t10, t11, t7 * t8).atan2(T::fused(-t10, t8, t7 * t11));
+        let t6 = t5 * T::fused(-t2, T::fused(k(8.455), t0, t2), k(0.125));
+        let t7 = T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
+        let t8 = turn0.sin();
+        let t9 = turn0.cos();
+        let t10 = k(0.5) - T::fused(bob_e2, bob_e2, t1);
+        let t11 = (k(2.0) * T::fused(t7, t9, t10 * t8))
+            .atan2(-(k(2.0) * T::fused(-t7, t8, t10 * t9)));
+        let t12 = T::fused(
+            k(12.8),
+            t5 * t6,
+            T::fused(-k(47.088), t10 * T::fused(k(13.333333333333334), t0, t2), bob_wy),
+        );
         let t13 = T::fused(
-            k(7.848),
-            t7 * T::fused(-k(0.15), t0, t3),
-            T::fused(-k(1.5), turn0 + t12, T::fused(-k(0.7848), t9, k(0.3))),
+            -k(9219.588923076923),
+            t7 * T::fused(-k(0.075), t0, t2),
+            T::fused(
+                k(440.53846153846155),
+                turn0 + t11,
+                T::fused(k(230.48972307692307), t10, t3 * t12),
+            ),
         );
         let t14 = T::fused(
-            k(0.013),
+            k(187.96307692307693),
             bob_wy
                 * T::fused(
-                    -bob_wy,
-                    T::fused(-k(0.49230769230769234), t0, t3),
-                    k(6.153846153846154) * t6,
+                    k(0.040625),
+                    bob_wy * T::fused(-k(0.24615384615384617), t0, t2),
+                    t6,
                 ),
             t13,
         );
-        let t15 = T::fused(
-            k(0.04),
-            t5 * t6,
-            T::fused(
-                -k(0.5886),
-                t10 * T::fused(k(26.666666666666668), t0, t3),
-                k(0.05) * bob_wy,
-            ),
-        );
-        let t16 = T::fused(k(0.0064), t2, k(0.026) * t0);
-        let t17 = k(2.6191723415400734) * t16;
-        let t18 = T::fused(
-            t16,
-            t17,
-            -T::fused(
-                k(0.3382),
-                t3 * T::fused(-k(0.23654642223536368), t0, t3),
-                k(0.0326),
-            ),
-        );
-        let t19 = T::fused(t17, t15, -t14) / t18;
-        *out = [t19, T::fused(-k(2.6191723415400734), t15, t17 * t19)];
+        let t15 = (t14 - k(88.1076923076923)) / t4;
+        *out = [
+            k(1.9230769230769231) * t15,
+            -(k(0.13095861707700368) * T::fused(-t3, t15, t12)),
+        ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 163 operations (63 ±, 99 ×, 1 ÷) and 3 functions.
     fn corrected_accelerations(
@@ -1446,7 +1430,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
             -t31,
         ];
     }
-    /// Writes λ: 110 operations (46 ±, 64 ×, 0 ÷) and 3 functions.
+    /// Writes λ: 106 operations (46 ±, 60 ×, 0 ÷) and 3 functions.
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1469,76 +1453,77 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_dwx = accelerations[3];
         let bob_dwy = accelerations[4];
         let bob_dwz = accelerations[5];
-        let t0 = k(2.0) * bob_dsx;
-        let t1 = k(2.0) * bob_dsy;
-        let t2 = T::fused(k(2.0), bob_dsz, k(19.62));
-        let t3 = turn0.cos();
-        let t4 = bob_e0 * bob_e0;
-        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, t4);
-        let t6 = k(2.0) * t5;
-        let t7 = turn0.sin();
-        let t8 = bob_e0 * bob_e1;
-        let t9 = bob_e2 * bob_e3;
-        let t10 = t9 + t8;
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(t6, t7, t11 * t3).atan2(T::fused(-t6, t3, t11 * t7));
-        let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(0.5) - T::fused(bob_e1, bob_e1, t4);
-        let t15 = k(2.0) * t14;
-        let t16 = bob_wy * bob_wy;
-        let t17 = k(0.004) * bob_wy;
-        let t18 = T::fused(
-            bob_wx,
-            T::fused(k(0.002), bob_wz, t17),
-            T::fused(
-                k(0.003),
-                T::fused(bob_wz, bob_wz, -t16),
-                k(0.03) * (bob_wy * bob_wz),
-            ),
-        );
-        let t19 = T::fused(
-            -k(0.004),
-            bob_dwz,
-            T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
-        ) - T::fused(-t15, t13, t18);
-        let t20 = bob_e0 * bob_e3;
-        let t21 = bob_e1 * bob_e2;
-        let t22 = t21 - t20;
-        let t23 = bob_e0 * bob_e2;
-        let t24 = bob_e1 * bob_e3;
-        let t25 = t24 + t23;
-        let t26 = T::fused(
+        let t0 = bob_dsz + k(9.81);
+        let t1 = turn0.sin();
+        let t2 = bob_e0 * bob_e1;
+        let t3 = bob_e2 * bob_e3;
+        let t4 = t3 + t2;
+        let t5 = turn0.cos();
+        let t6 = bob_e0 * bob_e0;
+        let t7 = k(0.5) - T::fused(bob_e2, bob_e2, t6);
+        let t8 = (k(2.0) * T::fused(t4, t5, t7 * t1))
+            .atan2(-(k(2.0) * T::fused(-t4, t1, t7 * t5)));
+        let t9 = k(0.2) - (turn0 + t8);
+        let t10 = k(0.5) - T::fused(bob_e1, bob_e1, t6);
+        let t11 = bob_wy * bob_wy;
+        let t12 = k(0.025) * bob_dwy;
+        let t13 = T::fused(
+            -T::fused(k(20.0), t4, k(0.5) - T::fused(bob_e3, bob_e3, t6)),
             t0,
-            T::fused(-k(0.8), t22, k(0.04) * t25),
-            t1 * T::fused(k(0.8), t5, k(0.04) * (t9 - t8)),
+            bob_dsy * T::fused(k(20.0), t7, t3 - t2),
+        );
+        let t14 = bob_e0 * bob_e3;
+        let t15 = bob_e1 * bob_e2;
+        let t16 = t15 - t14;
+        let t17 = bob_e0 * bob_e2;
+        let t18 = bob_e1 * bob_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(
+            -k(0.625),
+            bob_dwx,
+            T::fused(bob_dsx, T::fused(-k(20.0), t16, t19), t13),
+        ) - t12;
+        let t21 = T::fused(
+            k(0.05),
+            bob_wx * T::fused(k(0.5), bob_wz, bob_wy),
+            T::fused(k(0.05), bob_dwz, t20),
+        );
+        let t22 = T::fused(
+            k(0.0375),
+            T::fused(bob_wz, bob_wz, -t11),
+            T::fused(k(0.375), bob_wy * bob_wz, t21),
+        );
+        let t23 = T::fused(
+            -T::fused(k(0.6666666666666666), t18 - t17, t4),
+            t0,
+            bob_dsy * T::fused(-k(0.6666666666666666), t15 + t14, t7),
+        );
+        let t24 = T::fused(
+            k(0.03333333333333333),
+            bob_dwx,
+            T::fused(k(0.6666666666666666), bob_dsx * T::fused(-k(1.5), t16, t10), t23),
+        );
+        let t25 = T::fused(
+            k(0.03333333333333333),
+            bob_wz * T::fused(k(0.75), bob_wx, bob_wy),
+            T::fused(k(0.25), bob_dwz, t12 - t24),
+        );
+        let t26 = T::fused(
+            k(0.016666666666666666),
+            T::fused(-bob_wx, bob_wx, t11),
+            -T::fused(k(0.08333333333333333), bob_wx * bob_wy, t25),
         );
         let t27 = T::fused(
-            t2,
-            T::fused(k(0.8), t10, k(0.04) * (k(0.5) - T::fused(bob_e3, bob_e3, t4))),
-            -t26,
+            k(0.6666666666666666),
+            t19 * T::fused(-k(37.5), t10 * t9, t22),
+            t10 * T::fused(k(25.0), t19 * t9, t26),
         );
-        let t28 = k(2.0) * t25;
-        let t29 = T::fused(
-            bob_wz,
-            T::fused(k(0.003), bob_wx, t17),
-            T::fused(
-                -k(0.002),
-                T::fused(-bob_wx, bob_wx, t16),
-                k(0.01) * (bob_wx * bob_wy),
-            ),
-        );
-        let t30 = T::fused(
-            -k(0.03),
-            bob_dwz,
-            T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
-        ) - T::fused(-t28, t13, t29);
-        let t31 = T::fused(
-            t0,
-            T::fused(-k(0.06), t22, k(0.04) * t14),
-            t1 * T::fused(-k(0.04), t21 + t20, k(0.06) * t5),
-        );
-        let t32 = T::fused(t2, T::fused(k(0.04), t24 - t23, k(0.06) * t10), -t31) - t30;
-        *lambda = [-t0, -t1, -t2, -T::fused(t28, t27 + t19, t15 * t32)];
+        *lambda = [
+            -(k(2.0) * bob_dsx),
+            -(k(2.0) * bob_dsy),
+            -(k(2.0) * t0),
+            k(0.24) * t27,
+        ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 237 operations (94 ±, 142 ×, 1 ÷) and 3 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
@@ -1693,7 +1678,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 125 operations (44 ±, 80 ×, 1 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 126 operations (43 ±, 82 ×, 1 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1708,62 +1693,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
         let u1 = x[3];
         let t0 = x1.sin();
         let t1 = x1.cos();
-        let t2 = k(7.848) * T::fused(k(0.075), t0, t1);
-        let t3 = x0.cos();
-        let t4 = x0.sin();
-        let t5 = T::fused(-k(13.333333333333334), t0, t1);
-        let t6 = t4 * t5;
-        let t7 = T::fused(-k(0.0032), t1, k(0.013) * t0);
-        let t8 = k(2.6191723415400734) * t7;
-        let t9 = T::fused(
-            t8,
-            k(0.5886) * t6,
-            T::fused(t3, t2, T::fused(k(0.3924), t4, k(1.5))),
+        let t2 = T::fused(-k(13.333333333333334), t0, t1);
+        let t3 = x0.sin();
+        let t4 = t3 * t2;
+        let t5 = T::fused(-k(0.24615384615384617), t1, t0);
+        let t6 = T::fused(k(0.075), t0, t1);
+        let t7 = x0.cos();
+        let t8 = k(0.191131498470948)
+            + T::fused(
+                k(0.0025536930330015716),
+                t5 * t4,
+                T::fused(k(0.05), t3, t7 * t6),
+            );
+        let t9 = T::fused(k(0.11827321111768184), t0, t1);
+        let t10 = k(1.0)
+            / (k(73.64899408284023) - T::fused(-k(764.0518343195266), t1 * t9, t5 * t5));
+        let t11 = t10 * t8;
+        let t12 = T::fused(-k(8.455), t0, t1);
+        let t13 = u0 * T::fused(t0, t12, t1 * T::fused(k(8.455), t1, t0));
+        let t14 = T::fused(
+            k(14.715),
+            t7 * T::fused(k(13.333333333333334), t1, t0),
+            u0 * t13,
         );
-        let t10 = T::fused(k(0.11827321111768184), t0, t1);
-        let t11 = k(1.0) / T::fused(t7, t8, -T::fused(k(0.3382), t1 * t10, k(0.0326)));
-        let t12 = t11 * t9;
-        let t13 = k(0.5886) * t3;
-        let t14 = k(0.04) * u0;
-        let t15 = T::fused(-k(8.455), t0, t1);
-        let t16 = T::fused(-t1, t15, k(0.5));
+        let t15 = T::fused(k(4.0625), t1, t0);
+        let t16 = T::fused(-t1, t12, k(0.5));
         let t17 = u0 * t16;
-        let t18 = T::fused(t17, t14, T::fused(-t5, t13, k(0.05) * u1));
-        let t19 = k(0.013) * u1;
-        let t20 = u1 * T::fused(k(0.24615384615384617), t0, t1);
-        let t21 = T::fused(k(6.153846153846154), t17, t20);
+        let t18 = T::fused(k(0.8), u0 * t17, T::fused(-k(11.772), t7 * t2, u1));
+        let t19 = T::fused(
+            -k(603.6923076923077),
+            t3 * T::fused(-k(0.075), t1, t0),
+            u1 * T::fused(-k(6.153846153846154), t13, u1 * t5),
+        );
+        let t20 = t10
+            * T::fused(
+                k(0.10476689366160294),
+                t5 * t14,
+                T::fused(k(0.03223596728049321), t18 * t15, t19),
+            );
+        let t21 = t5 * t15;
         let t22 = T::fused(
+            k(3103.960576923077),
+            T::fused(t0, t9, t1 * T::fused(-k(0.11827321111768184), t1, t0)),
             t21,
-            t19,
-            -T::fused(t4, t2, T::fused(k(1.5), x0, -T::fused(k(0.3924), t3, k(0.3)))),
         );
-        let t23 = T::fused(-t8, t18, t22);
-        let t24 = T::fused(k(0.013), t1, k(0.0032) * t0);
-        let t25 = k(2.6191723415400734) * t24;
-        let t26 = T::fused(
-            k(0.3382),
-            T::fused(t1, T::fused(-k(0.11827321111768184), t1, t0), t0 * t10),
-            T::fused(t7, t25, t8 * t24),
-        );
-        let t27 = u0 * T::fused(t1, T::fused(k(8.455), t1, t0), t0 * t15);
-        let t28 = T::fused(
-            -T::fused(
-                -k(6.153846153846154),
-                t27,
-                u1 * T::fused(-k(0.24615384615384617), t1, t0),
+        let t23 = u1 * T::fused(k(0.24615384615384617), t0, t1);
+        let t24 = T::fused(k(6.153846153846154), t17, t23);
+        let t25 = T::fused(
+            k(4609.794461538461),
+            t3 * t6,
+            T::fused(
+                -k(230.48972307692307),
+                t7,
+                T::fused(k(881.0769230769231), x0, t5 * t18),
             ),
-            t19,
-            k(7.848) * (t4 * T::fused(-k(0.075), t1, t0)),
         );
-        let t29 = T::fused(t27, t14, T::fused(k(13.333333333333334), t1, t0) * t13);
-        let t30 = T::fused(
-            t11 * t11 * t26,
-            t23,
-            t11 * (T::fused(t25, t18, t8 * t29) - t28),
-        );
-        let t31 = t11
-            * T::fused(-(k(6.153846153846154) * t16), t19, t8 * (k(0.08) * t17));
-        let t32 = t11 * T::fused(-k(0.13095861707700368), t7, k(0.013) * (t20 + t21));
+        let t26 = T::fused(-k(7.636), u1 * t24, t25) - k(176.2153846153846);
+        let t27 = T::fused(k(31.02125), t20, t26 * ((t21 + t22) * (t10 * t10)));
+        let t28 = t10 * T::fused(-k(0.03404924044002095), t17 * t5, u1 * t16);
+        let t29 = t10 * T::fused(-k(0.13095861707700368), t5, t23 + t24);
+        let t30 = k(0.03223596728049321)
+            * T::fused(t5, t27, T::fused(k(3.25), t14, t26 * t10 * t15));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -1775,15 +1765,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            t12,
-            t30,
-            t31,
-            -t32,
+            -(k(17729.97869822485) * t11),
+            -(k(0.9467455621301775) * t27),
+            k(180.7337278106509) * t28,
+            k(29.369230769230768) * t29,
             k(0.0),
-            T::fused(-k(1.5416448402304872), t6, t8 * t12),
-            T::fused(-k(2.6191723415400734), t29, T::fused(-t25, t11 * t23, t8 * t30)),
-            T::fused(-k(0.20953378732320588), t17, t8 * t31),
-            -T::fused(t8, t32, k(0.13095861707700368)),
+            -(k(1.5416448402304872) * T::fused(k(391.5897435897436), t5 * t11, t4)),
+            -t30,
+            -(k(0.20953378732320588) * T::fused(-k(29.369230769230768), t5 * t28, t17)),
+            T::fused(t5, t29, -k(0.13095861707700368)),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1805,14 +1795,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 180 operations (76 ±, 103 ×, 1 ÷) and 3 functions.
+    /// Writes the outputs: 173 operations (70 ±, 102 ×, 1 ÷) and 3 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
-        let bob_rx = y[0];
-        let bob_ry = y[1];
-        let bob_rz = y[2];
         let bob_e0 = y[3];
         let bob_e1 = y[4];
         let bob_e2 = y[5];
@@ -1827,97 +1814,114 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
         let bob_dwx = accelerations[3];
         let bob_dwy = accelerations[4];
         let bob_dwz = accelerations[5];
-        let t0 = k(2.0) * bob_dsy;
-        let t1 = T::fused(k(2.0), bob_dsz, k(19.62));
-        let t2 = k(2.0) * bob_dsx;
-        let t3 = k(2.0) * bob_e2;
-        let t4 = k(2.0) * bob_e0;
-        let t5 = T::fused(-bob_e0, t4, k(1.0));
-        let t6 = T::fused(-bob_e2, t3, t5);
-        let t7 = turn0.cos();
-        let t8 = bob_e1 * t4;
-        let t9 = bob_e3 * t3;
-        let t10 = t9 + t8;
-        let t11 = turn0.sin();
-        let t12 = T::fused(t11, t6, t7 * t10).atan2(T::fused(-t7, t6, t11 * t10));
-        let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(2.0) * bob_e1;
-        let t15 = T::fused(-bob_e1, t14, t5);
-        let t16 = bob_wy * bob_wy;
-        let t17 = k(0.004) * bob_wy;
-        let t18 = T::fused(
-            bob_wx,
-            T::fused(k(0.002), bob_wz, t17),
-            T::fused(
-                k(0.003),
-                T::fused(bob_wz, bob_wz, -t16),
-                k(0.03) * (bob_wy * bob_wz),
-            ),
+        let t0 = bob_dsz + k(9.81);
+        let t1 = T::fused(-bob_e0, bob_e0, k(0.5));
+        let t2 = T::fused(bob_e3, bob_e3, -t1);
+        let t3 = bob_e0 * bob_e2;
+        let t4 = bob_e1 * bob_e3;
+        let t5 = t4 - t3;
+        let t6 = bob_e0 * bob_e1;
+        let t7 = bob_e2 * bob_e3;
+        let t8 = t7 - t6;
+        let t9 = bob_e0 * bob_e3;
+        let t10 = bob_e1 * bob_e2;
+        let t11 = t10 + t9;
+        let t12 = T::fused(
+            T::fused(k(0.075), t2, t5),
+            t0,
+            bob_dsy * T::fused(k(0.075), t8, t11),
         );
-        let t19 = T::fused(
-            -k(0.004),
-            bob_dwz,
-            T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
-        ) - T::fused(-t15, t13, t18);
-        let t20 = bob_e3 * t4;
-        let t21 = bob_e2 * t14;
-        let t22 = t21 - t20;
-        let t23 = bob_e2 * t4;
-        let t24 = bob_e3 * t14;
-        let t25 = t24 + t23;
-        let t26 = t9 - t8;
-        let t27 = T::fused(
-            t2,
-            T::fused(-k(0.4), t22, k(0.02) * t25),
-            t0 * T::fused(k(0.4), t6, k(0.02) * t26),
+        let t13 = T::fused(bob_e1, bob_e1, -t1);
+        let t14 = t4 + t3;
+        let t15 = k(800.0) * T::fused(bob_dsx, T::fused(k(0.075), t14, t13), t12);
+        let t16 = T::fused(bob_e2, bob_e2, -t1);
+        let t17 = t10 - t9;
+        let t18 = T::fused(k(0.06), t13, -T::fused(k(0.04), t17, k(0.8) * t14));
+        let t19 = t7 + t6;
+        let t20 = T::fused(k(0.06), t5, -T::fused(k(0.8), t2, k(0.04) * t19));
+        let t21 = T::fused(
+            bob_dsy,
+            T::fused(k(1.5), t16, t11),
+            T::fused(k(1.5), t19, t5) * t0,
         );
-        let t28 = T::fused(-bob_e3, k(2.0) * bob_e3, t5);
-        let t29 = T::fused(t1, T::fused(k(0.4), t10, k(0.02) * t28), -t27);
-        let t30 = k(1.0) / T::fused(t25, t25, t15 * t15);
-        let t31 = T::fused(
+        let t22 = T::fused(
+            k(1.5),
+            bob_dsx * T::fused(k(0.6666666666666666), t13, t17),
+            t21,
+        );
+        let t23 = T::fused(
             bob_wz,
-            T::fused(k(0.003), bob_wx, t17),
+            T::fused(k(1.3333333333333333), bob_wy, bob_wx),
             T::fused(
-                -k(0.002),
-                T::fused(-bob_wx, bob_wx, t16),
-                k(0.01) * (bob_wx * bob_wy),
+                k(10.0),
+                bob_dwz,
+                bob_dwy
+                    - T::fused(
+                        -k(26.666666666666668),
+                        t22,
+                        k(1.3333333333333333) * bob_dwx,
+                    ),
             ),
         );
-        let t32 = T::fused(
-            -k(0.03),
-            bob_dwz,
-            T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
-        ) - T::fused(-t25, t13, t31);
-        let t33 = t21 + t20;
+        let t24 = bob_wy * bob_wy;
+        let t25 = T::fused(
+            k(0.6666666666666666),
+            T::fused(-bob_wx, bob_wx, t24),
+            -T::fused(k(3.3333333333333335), bob_wx * bob_wy, t23),
+        );
+        let t26 = turn0.cos();
+        let t27 = turn0.sin();
+        let t28 = (k(2.0) * T::fused(-t27, t16, t19 * t26))
+            .atan2(k(2.0) * T::fused(t26, t16, t19 * t27));
+        let t29 = k(0.2) - (turn0 + t28);
+        let t30 = k(1.0) / T::fused(t13, t13, t14 * t14);
+        let t31 = T::fused(
+            T::fused(-k(0.05), t2, t19),
+            t0,
+            bob_dsy * T::fused(-k(0.05), t8, t16),
+        );
+        let t32 = k(800.0) * T::fused(bob_dsx, T::fused(-k(0.05), t14, t17), t31);
+        let t33 = T::fused(
+            bob_wx,
+            T::fused(k(2.0), bob_wy, bob_wz),
+            T::fused(k(2.0), bob_dwz, -(bob_dwy + T::fused(k(25.0), bob_dwx, t32))),
+        );
         let t34 = T::fused(
-            t2,
-            T::fused(-k(0.03), t22, k(0.02) * t15),
-            t0 * T::fused(-k(0.02), t33, k(0.03) * t6),
+            k(1.5),
+            T::fused(bob_wz, bob_wz, -t24),
+            T::fused(k(15.0), bob_wy * bob_wz, t33),
         );
-        let t35 = t24 - t23;
-        let t36 = T::fused(t1, T::fused(k(0.02), t35, k(0.03) * t10), -t34);
-        let t37 = T::fused(t25 * t30, t29 + t19, t15 * t30 * (t36 - t32));
-        let t38 = T::fused(-t25, t37, t29);
-        let t39 = T::fused(
-            t2,
-            T::fused(-k(0.4), t15, k(0.03) * t25),
-            t0 * T::fused(k(0.4), t33, k(0.03) * t26),
+        let t35 = T::fused(
+            -k(1.5),
+            t13 * t30 * T::fused(k(1000.0), t14 * t29, t25),
+            t14 * t30 * T::fused(k(1500.0), t13 * t29, t34),
         );
-        let t40 = T::fused(t1, T::fused(-k(0.4), t35, k(0.03) * t28), -t39);
-        let t41 = T::fused(-t15, t37, t36);
-        let t42 = bob_rz
-            - (bob_rz - T::fused(k(0.4), t28, -T::fused(-k(0.03), t35, k(0.02) * t10)));
-        let t43 = bob_rx
-            - (bob_rx + T::fused(k(0.4), t25, T::fused(k(0.03), t15, k(0.02) * t22)));
-        let t44 = T::fused(-t2, t42, t1 * t43)
-            + T::fused(t26, t41, -T::fused(-t33, t38, t6 * t40));
-        let t45 = bob_ry
-            - (bob_ry + T::fused(k(0.4), t26, -T::fused(k(0.03), t33, k(0.02) * t6)));
-        let t46 = T::fused(-t0, t43, t2 * t45)
-            - T::fused(t28, t41, -T::fused(t35, t38, t10 * t40));
-        let t47 = T::fused(-t1, t45, t0 * t42)
-            + T::fused(t25, t41, T::fused(-t15, t38, t22 * t40));
-        *out = [t0, t1, t2, -t44, -t46, -t47];
+        let t36 = T::fused(-k(40.0), t22, t13 * t35);
+        let t37 = T::fused(
+            t16,
+            t15,
+            T::fused(k(500.0), T::fused(-t0, t18, bob_dsx * t20), t8 * t36),
+        );
+        let t38 = T::fused(t14, t35, t32);
+        let t39 = T::fused(k(0.06), t11, -T::fused(k(0.04), t16, k(0.8) * t8));
+        let t40 = T::fused(
+            t19,
+            t15,
+            T::fused(k(500.0), T::fused(-bob_dsx, t39, bob_dsy * t18), t2 * t36),
+        );
+        let t41 = T::fused(
+            t17,
+            t15,
+            T::fused(k(500.0), T::fused(-bob_dsy, t20, t0 * t39), t14 * t36),
+        );
+        *out = [
+            k(2.0) * bob_dsy,
+            k(2.0) * t0,
+            k(2.0) * bob_dsx,
+            -(k(0.004) * T::fused(t11, t38, -t37)),
+            -(k(0.004) * T::fused(t5, t38, -t40)),
+            -(k(0.004) * T::fused(t13, t38, -t41)),
+        ];
     }
     fn n_outputs(&self) -> usize {
         6

@@ -10,42 +10,42 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 470 operations by rotations of the bodies, doubled; 477 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 340 operations by rotations of the bodies, doubled; 347 operations by relative Euler parameters, doubled; 2 more compared
+//! * accelerations: 444 operations by rotations of the bodies, doubled; 448 operations by rotations of the bodies; 2 more compared
+//! * project: 322 operations by rotations of the bodies, doubled; 323 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
 //! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
-//! * corrected_accelerations: 126 operations by recursion in the bodies' frames; 126 operations by normal form in the bodies' frames; 5 more compared
+//! * corrected_accelerations: 105 operations by recursion in the bodies' frames; 105 operations by normal form in the bodies' frames; 5 more compared
 //! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 45 | 49 | 0 | 94 | 0 of 13 | 206 | 94 |
+//! | phi | Φ | 45 | 40 | 0 | 85 | 0 of 13 | 153 | 85 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 50 | 92 | 0 | 142 | 0 of 79 | 512 | 142 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 36 | 64 | 0 | 100 | 0 of 43 | 580 | 100 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 | 0 | 0 |
-//! | gamma | γ | 89 | 134 | 0 | 223 | 0 of 11 | 1501 | 223 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 65 | 86 | 0 | 151 | 0 of 11 | 637 | 151 |
+//! | gamma | γ | 89 | 131 | 0 | 220 | 0 of 11 | 1080 | 220 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 65 | 83 | 0 | 148 | 0 of 11 | 454 | 148 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 6 of 12 | 8 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 187 | 280 | 3 | 470 | 0 of 12 | 527924 | 472 |
-//! | multipliers | λ, the accelerations being known | 66 | 121 | 2 | 189 | 0 of 11 | 3137 | 189 |
-//! | project | (δr, δπ') that changes the rows as given | 132 | 205 | 3 | 340 | 0 of 12 | 257834 | 341 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 178 | 263 | 3 | 444 | 0 of 12 | 347763 | 446 |
+//! | multipliers | λ, the accelerations being known | 66 | 113 | 2 | 181 | 0 of 11 | 2145 | 181 |
+//! | project | (δr, δπ') that changes the rows as given | 123 | 196 | 3 | 322 | 0 of 12 | 156942 | 323 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 32 | 0 | 48 | 0 of 14 | 48 | 48 |
-//! | energy | T and V | 12 | 22 | 0 | 34 | 0 of 2 | 34 | 34 |
+//! | energy | T and V | 12 | 18 | 0 | 30 | 0 of 2 | 30 | 30 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
-//! | outputs | outputs, the accelerations being known | 79 | 128 | 1 | 208 | 0 of 6 | 41226 | 208 |
+//! | outputs | outputs, the accelerations being known | 73 | 117 | 1 | 191 | 0 of 6 | 28074 | 191 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 107 | 187 | 2 | 296 | 0 of 14 | 1.5e7 | 296 |
-//! | solve_velocities | dependent velocities, eq. (19) | 73 | 131 | 2 | 206 | 0 of 12 | 10717 | 206 |
+//! | newton_step | dependent positions, one Newton step | 107 | 177 | 2 | 286 | 0 of 14 | 1.3e7 | 286 |
+//! | solve_velocities | dependent velocities, eq. (19) | 73 | 110 | 2 | 185 | 0 of 12 | 8776 | 185 |
 //! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 | 1 | 1 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 13 | 26 | 0 | 39 | 9 of 26 | 268 | 39 |
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 | 4 | 4 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 52 | 74 | 0 | 126 | 0 of 12 | 342 | 126 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 39 | 58 | 0 | 97 | 0 of 11 | 258 | 97 |
-//! | corrected_solution | both | 75 | 114 | 0 | 189 | 0 of 23 | 3168 | 189 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 48 | 57 | 0 | 105 | 0 of 12 | 252 | 105 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 40 | 54 | 0 | 94 | 0 of 11 | 217 | 94 |
+//! | corrected_solution | both | 72 | 92 | 0 | 164 | 0 of 23 | 2266 | 164 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 | 1 | 1 |
 //!
 //! # Proof
@@ -327,7 +327,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
             accelerations[11],
         ];
     }
-    /// Writes Φ: 94 operations (45 ±, 49 ×, 0 ÷).
+    /// Writes Φ: 85 operations (45 ±, 40 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let inner_rx = y[0];
@@ -344,85 +344,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let outer_e1 = y[11];
         let outer_e2 = y[12];
         let outer_e3 = y[13];
-        let t0 = k(2.0) * inner_e1;
-        let t1 = k(2.0) * inner_e0;
-        let t2 = T::fused(-inner_e0, t1, k(1.0));
-        let t3 = T::fused(-inner_e1, t0, t2);
-        let t4 = k(0.25) * t3;
-        let t5 = inner_e3 * t1;
-        let t6 = inner_e2 * t0;
+        let t0 = inner_e0 * inner_e0;
+        let t1 = k(0.5) - t0;
+        let t2 = inner_e1 * inner_e1;
+        let t3 = t2 - t1;
+        let t4 = k(0.5) * t3;
+        let t5 = inner_e0 * inner_e3;
+        let t6 = inner_e1 * inner_e2;
         let t7 = t6 + t5;
-        let t8 = k(0.25) * t7;
-        let t9 = inner_e2 * t1;
-        let t10 = inner_e3 * t0;
+        let t8 = k(0.5) * t7;
+        let t9 = inner_e0 * inner_e2;
+        let t10 = inner_e1 * inner_e3;
         let t11 = t10 - t9;
-        let t12 = k(0.25) * t11;
-        let t13 = inner_e1 * t1;
-        let t14 = k(2.0) * inner_e2;
-        let t15 = inner_e3 * t14;
-        let t16 = k(2.0) * outer_e0;
-        let t17 = outer_e2 * t16;
-        let t18 = k(2.0) * outer_e1;
-        let t19 = outer_e3 * t18;
-        let t20 = outer_e1 * t16;
-        let t21 = k(2.0) * outer_e2;
-        let t22 = outer_e3 * t21;
-        let t23 = T::fused(-outer_e0, t16, k(1.0));
-        let t24 = T::fused(
-            k(0.25),
-            T::fused(-outer_e3, k(2.0) * outer_e3, t23),
-            outer_rz,
-        ) - (inner_rz + t12);
-        let t25 = outer_e3 * t16;
-        let t26 = outer_e2 * t18;
+        let t12 = k(0.5) * t11;
+        let t13 = inner_e0 * inner_e1;
+        let t14 = inner_e2 * inner_e3;
+        let t15 = outer_e0 * outer_e2;
+        let t16 = outer_e1 * outer_e3;
+        let t17 = outer_e0 * outer_e1;
+        let t18 = outer_e2 * outer_e3;
+        let t19 = outer_e0 * outer_e0;
+        let t20 = k(0.5) - t19;
+        let t21 = outer_e3 * outer_e3;
+        let t22 = outer_e2 * outer_e2;
+        let t23 = t22 - t20;
+        let t24 = t18 + t17;
+        let t25 = outer_e0 * outer_e3;
+        let t26 = outer_e1 * outer_e2;
         let t27 = t26 - t25;
-        let t28 = T::fused(-outer_e2, t21, t23);
-        let t29 = t22 + t20;
-        let t30 = T::fused(
-            t15 + t13,
-            t29,
-            T::fused(t6 - t5, t27, T::fused(-inner_e2, t14, t2) * t28),
-        );
-        let t31 = T::fused(
-            t11,
-            t19 - t17,
-            T::fused(t3, T::fused(-outer_e1, t18, t23), t7 * (t26 + t25)),
-        );
-        let t32 = T::fused(
-            inner_e3,
-            inner_e3,
-            T::fused(
-                inner_e2,
-                inner_e2,
-                T::fused(inner_e1, inner_e1, inner_e0 * inner_e0),
-            ),
-        );
-        let t33 = T::fused(
-            outer_e3,
-            outer_e3,
-            T::fused(
-                outer_e2,
-                outer_e2,
-                T::fused(outer_e1, outer_e1, outer_e0 * outer_e0),
-            ),
-        );
+        let t28 = inner_e2 * inner_e2;
+        let t29 = T::fused(t6 - t5, t27, T::fused(t28 - t1, t23, (t14 + t13) * t24));
+        let t30 = outer_e1 * outer_e1;
+        let t31 = T::fused(t3, t30 - t20, T::fused(t11, t16 - t15, t7 * (t26 + t25)));
         *out = [
-            inner_rx + t4,
+            inner_rx - t4,
             inner_ry - t8,
             inner_rz - t12,
-            t13 - t15,
-            t10 + t9,
-            T::fused(-k(0.25), t19 + t17, outer_rx) - (inner_rx - t4),
-            T::fused(-k(0.25), t22 - t20, outer_ry) - (inner_ry + t8),
-            t24,
-            T::fused(t11, t29, -T::fused(t3, t27, t7 * t28)),
-            t30,
-            t31,
-            t32 - k(1.0),
-            t33 - k(1.0),
+            -(k(2.0) * (t14 - t13)),
+            k(2.0) * (t10 + t9),
+            -(inner_rx - T::fused(-k(0.5), t16 + t15, outer_rx) + t4),
+            -(t8 + (inner_ry - T::fused(-k(0.5), t18 - t17, outer_ry))),
+            -(t12 + (inner_rz - T::fused(-k(0.5), t21 - t20, outer_rz))),
+            k(4.0) * T::fused(t27, t3, T::fused(t7, t23, t11 * t24)),
+            k(4.0) * t29,
+            k(4.0) * t31,
+            t28 + (t2 + T::fused(inner_e3, inner_e3, t0)) - k(1.0),
+            t22 + (t30 + (t19 + t21)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 151 operations (65 ±, 86 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 148 operations (65 ±, 83 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -445,92 +415,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = k(2.0) * inner_e0;
-        let t1 = inner_e3 * t0;
-        let t2 = k(2.0) * inner_e1;
-        let t3 = inner_e2 * t2;
-        let t4 = t3 - t1;
-        let t5 = inner_e2 * t0;
-        let t6 = inner_e3 * t2;
-        let t7 = t6 + t5;
-        let t8 = k(0.25) * T::fused(-inner_wz, t4, inner_wy * t7);
-        let t9 = k(2.0) * inner_e2;
-        let t10 = T::fused(-inner_e0, t0, k(1.0));
-        let t11 = T::fused(-inner_e2, t9, t10);
-        let t12 = inner_e1 * t0;
-        let t13 = inner_e3 * t9;
-        let t14 = t13 - t12;
-        let t15 = k(0.25) * T::fused(inner_wz, t11, inner_wy * t14);
-        let t16 = t13 + t12;
-        let t17 = T::fused(-inner_e3, k(2.0) * inner_e3, t10);
-        let t18 = k(0.25) * T::fused(inner_wz, t16, inner_wy * t17);
-        let t19 = t3 + t1;
-        let t20 = T::fused(-inner_e1, t2, t10);
-        let t21 = k(2.0) * outer_e1;
-        let t22 = k(2.0) * outer_e0;
-        let t23 = T::fused(-outer_e0, t22, k(1.0));
-        let t24 = T::fused(-outer_e1, t21, t23);
-        let t25 = outer_e3 * t22;
-        let t26 = outer_e2 * t21;
-        let t27 = t26 - t25;
-        let t28 = inner_sx - t8
-            - T::fused(k(0.25), T::fused(outer_wy, t24, outer_wx * t27), outer_sx);
-        let t29 = t26 + t25;
-        let t30 = k(2.0) * outer_e2;
-        let t31 = T::fused(-outer_e2, t30, t23);
-        let t32 = inner_sy - t15
-            - T::fused(-k(0.25), T::fused(outer_wy, t29, outer_wx * t31), outer_sy);
-        let t33 = outer_e2 * t22;
-        let t34 = outer_e3 * t21;
-        let t35 = t34 - t33;
-        let t36 = outer_e1 * t22;
-        let t37 = outer_e3 * t30;
-        let t38 = t37 + t36;
-        let t39 = inner_sz + t18
-            - T::fused(k(0.25), T::fused(-outer_wy, t35, outer_wx * t38), outer_sz);
-        let t40 = T::fused(t17, t38, T::fused(-t7, t27, t14 * t31));
+        let t0 = inner_e0 * inner_e3;
+        let t1 = inner_e1 * inner_e2;
+        let t2 = t1 - t0;
+        let t3 = inner_e0 * inner_e2;
+        let t4 = inner_e1 * inner_e3;
+        let t5 = t4 + t3;
+        let t6 = k(0.5) * T::fused(-t2, inner_wz, t5 * inner_wy);
+        let t7 = T::fused(-inner_e0, inner_e0, k(0.5));
+        let t8 = T::fused(inner_e2, inner_e2, -t7);
+        let t9 = inner_e0 * inner_e1;
+        let t10 = inner_e2 * inner_e3;
+        let t11 = t10 - t9;
+        let t12 = k(0.5) * T::fused(-inner_wz, t8, t11 * inner_wy);
+        let t13 = T::fused(inner_e3, inner_e3, -t7);
+        let t14 = t10 + t9;
+        let t15 = k(0.5) * T::fused(-inner_wy, t13, t14 * inner_wz);
+        let t16 = t1 + t0;
+        let t17 = T::fused(inner_e1, inner_e1, -t7);
+        let t18 = T::fused(-outer_e0, outer_e0, k(0.5));
+        let t19 = T::fused(outer_e1, outer_e1, -t18);
+        let t20 = outer_e0 * outer_e3;
+        let t21 = outer_e1 * outer_e2;
+        let t22 = t21 - t20;
+        let t23 = T::fused(
+            k(0.5),
+            T::fused(-outer_wy, t19, t22 * outer_wx),
+            outer_sx - (inner_sx - t6),
+        );
+        let t24 = T::fused(outer_e2, outer_e2, -t18);
+        let t25 = t21 + t20;
+        let t26 = T::fused(
+            k(0.5),
+            T::fused(-outer_wx, t24, t25 * outer_wy),
+            -(outer_sy - (inner_sy - t12)),
+        );
+        let t27 = outer_e0 * outer_e1;
+        let t28 = outer_e2 * outer_e3;
+        let t29 = t28 + t27;
+        let t30 = outer_e0 * outer_e2;
+        let t31 = outer_e1 * outer_e3;
+        let t32 = t31 - t30;
+        let t33 = T::fused(
+            k(0.5),
+            T::fused(-t29, outer_wx, t32 * outer_wy),
+            -(outer_sz - (inner_sz + t15)),
+        );
+        let t34 = T::fused(t5, t22, T::fused(t29, t13, t11 * t24));
+        let t35 = T::fused(outer_e3, outer_e3, -t18);
+        let t36 = t4 - t3;
+        let t37 = t28 - t27;
+        let t38 = t31 + t30;
+        let t39 = T::fused(t38, t17, T::fused(t36, t35, t16 * t37));
+        let t40 = T::fused(
+            -outer_wx,
+            t39,
+            outer_wz * T::fused(t17, t19, T::fused(t36, t32, t16 * t25)),
+        );
         let t41 = T::fused(
             inner_wz,
-            T::fused(t16, t38, T::fused(t4, t27, t11 * t31)),
-            inner_wy * t40,
+            T::fused(t2, t22, T::fused(t8, t24, t14 * t29)),
+            -T::fused(inner_wy, t34, t40),
         );
-        let t42 = t6 - t5;
-        let t43 = t34 + t33;
-        let t44 = t37 - t36;
-        let t45 = T::fused(-outer_e3, k(2.0) * outer_e3, t23);
-        let t46 = T::fused(t42, t45, -T::fused(-t20, t43, t19 * t44));
-        let t47 = T::fused(
-            outer_wz,
-            T::fused(t42, t35, T::fused(t20, t24, t19 * t29)),
-            outer_wx * t46,
+        let t42 = T::fused(t2, t19, T::fused(t25, t8, t14 * t32));
+        let t43 = T::fused(
+            -outer_wx,
+            T::fused(t2, t38, T::fused(t14, t35, t37 * t8)),
+            outer_wz * t42,
         );
-        let t48 = T::fused(t42, t38, -T::fused(t20, t27, t19 * t31));
-        let t49 = T::fused(t16, t35, -T::fused(t4, t24, t11 * t29));
-        let t50 = T::fused(
-            outer_wz,
-            t49,
-            outer_wx * T::fused(t16, t45, T::fused(-t4, t43, t11 * t44)),
-        );
-        let t51 = T::fused(
-            inner_wz,
-            t49,
-            inner_wy * T::fused(t17, t35, -T::fused(-t7, t24, t14 * t29)),
+        let t44 = T::fused(t22, t17, T::fused(t16, t24, t36 * t29));
+        let t45 = T::fused(
+            -inner_wy,
+            T::fused(t5, t19, T::fused(t32, t13, t11 * t25)),
+            inner_wz * t42,
         );
         *out = [
-            inner_sx + t8,
-            inner_sy + t15,
-            inner_sz - t18,
-            -T::fused(inner_wy, t19, inner_wx * t11),
-            -T::fused(inner_wy, t20, inner_wx * t4),
-            -t28,
-            -t32,
-            -t39,
-            t41 - t47,
-            -(t50 + T::fused(inner_wz, t48, inner_wx * t40)),
-            t51 + T::fused(outer_wz, t48, outer_wy * t46),
+            inner_sx + t6,
+            inner_sy + t12,
+            inner_sz - t15,
+            -(k(2.0) * T::fused(-inner_wx, t8, t16 * inner_wy)),
+            -(k(2.0) * T::fused(-inner_wy, t17, t2 * inner_wx)),
+            t23,
+            -t26,
+            -t33,
+            k(4.0) * t41,
+            -(k(4.0) * T::fused(inner_wz, t44, T::fused(-inner_wx, t34, t43))),
+            k(4.0) * T::fused(outer_wz, t44, -T::fused(outer_wy, t39, -t45)),
         ];
     }
-    /// Kinetic and potential energy: 34 operations (12 ±, 22 ×, 0 ÷).
+    /// Kinetic and potential energy: 30 operations (12 ±, 18 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let inner_ry = y[1];
@@ -548,35 +521,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let outer_wy = y[24];
         let outer_wz = y[25];
         let t0 = T::fused(
-            outer_wz,
-            k(5e-5) * outer_wz,
-            T::fused(outer_wy, k(0.0125) * outer_wy, outer_wx * (k(0.0125) * outer_wx)),
-        );
-        let t1 = T::fused(
-            k(0.6),
-            T::fused(
-                outer_sz,
-                outer_sz,
-                T::fused(outer_sy, outer_sy, outer_sx * outer_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            inner_wz,
-            k(0.0125) * inner_wz,
-            T::fused(inner_wy, k(0.0125) * inner_wy, inner_wx * (k(5e-5) * inner_wx)),
-        );
-        let t3 = T::fused(
-            k(0.6),
+            k(48.0),
             T::fused(
                 inner_sz,
                 inner_sz,
                 T::fused(inner_sy, inner_sy, inner_sx * inner_sx),
             ),
-            t2,
+            T::fused(
+                inner_wz,
+                inner_wz,
+                T::fused(k(0.004), inner_wx * inner_wx, inner_wy * inner_wy),
+            ),
+        );
+        let t1 = T::fused(
+            k(0.004),
+            outer_wz * outer_wz,
+            T::fused(outer_wy, outer_wy, T::fused(outer_wx, outer_wx, t0)),
+        );
+        let t2 = T::fused(
+            k(48.0),
+            T::fused(
+                outer_sz,
+                outer_sz,
+                T::fused(outer_sy, outer_sy, outer_sx * outer_sx),
+            ),
+            t1,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t3 + t1),
+            kinetic: k(0.00625) * t2,
             potential: k(5.886) * (inner_ry + outer_ry),
         }
     }
@@ -708,7 +680,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Weld<T> {
         let inner_e3 = y[6];
         [[-inner_e3, inner_e2, -inner_e1, inner_e0]]
     }
-    /// One Newton step of the dependent positions: 296 operations (107 ±, 187 ×, 2 ÷).
+    /// One Newton step of the dependent positions: 286 operations (107 ±, 177 ×, 2 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -724,155 +696,160 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Weld<T> {
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
         let t0 = T::fused(
-            inner_e3,
-            inner_e3,
+            inner_e2,
+            inner_e2,
             T::fused(
-                inner_e2,
-                inner_e2,
-                T::fused(inner_e1, inner_e1, inner_e0 * inner_e0),
+                inner_e1,
+                inner_e1,
+                T::fused(inner_e3, inner_e3, inner_e0 * inner_e0),
             ),
         );
-        let t1 = k(0.5) * (t0 - k(3.0));
-        let t2 = inner_e2 * t1;
-        let t3 = inner_e1 * t1;
-        let t4 = t3 * t2;
-        let t5 = inner_e3 * t1;
-        let t6 = inner_e0 * t1;
-        let t7 = t6 * t5;
-        let t8 = k(2.0) * (t7 - t4);
-        let t9 = k(2.0) * (t7 + t4);
-        let t10 = t6 * t6;
-        let t11 = k(2.0) * (k(0.5) - T::fused(t3, t3, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(t2, t2, t10));
-        let t13 = T::fused(t9, t8, t12 * t11);
-        let t14 = T::fused(
-            chart0_2,
-            inner_e2 + t2,
-            T::fused(chart0_1, inner_e1 + t3, chart0_0 * (inner_e0 + t6)),
-        );
-        let t15 = T::fused(
-            -chart0_3,
-            t3,
-            T::fused(-chart0_2, t6, T::fused(chart0_1, t5, chart0_0 * t2)),
-        );
-        let t16 = k(0.5) * t15;
-        let t17 = T::fused(
+        let t1 = k(3.0) - t0;
+        let t2 = inner_e3 * t1;
+        let t3 = inner_e2 * t1;
+        let t4 = inner_e1 * t1;
+        let t5 = inner_e0 * t1;
+        let t6 = T::fused(
             chart0_3,
-            t2,
-            T::fused(-chart0_2, t5, T::fused(-chart0_1, t6, chart0_0 * t3)),
+            t5,
+            -T::fused(chart0_2, t4, -T::fused(-chart0_0, t2, chart0_1 * t3)),
         );
-        let t18 = k(0.5) * t17;
-        let t19 = k(2.0) * T::fused(t3, t5, t6 * t2);
-        let t20 = k(2.0) * T::fused(-t2, t5, t6 * t3);
+        let t7 = t5 * t5;
+        let t8 = k(2.0) - T::fused(t4, t4, t7);
+        let t9 = T::fused(-t4, t5, t3 * t2);
+        let t10 = t2 * t5;
+        let t11 = t3 * t4;
+        let t12 = t11 + t10;
+        let t13 = T::fused(t3, t5, t4 * t2);
+        let t14 = k(2.0) - T::fused(t3, t3, t7);
+        let t15 = t11 - t10;
+        let t16 = T::fused(-t8, t14, t15 * t12);
+        let t17 = k(1.0) / (t16 * t6);
+        let t18 = t17 * T::fused(t9, t8 * t6, t13 * (t12 * t6));
+        let t19 = t17 * T::fused(t9, t15 * t6, t13 * (t14 * t6));
+        let t20 = T::fused(
+            chart0_0,
+            T::fused(-k(0.5), t5, inner_e0),
+            chart0_1 * T::fused(-k(0.5), t4, inner_e1),
+        );
         let t21 = T::fused(
-            -t19,
-            T::fused(-t12, t16, t9 * t18),
-            t20 * T::fused(t11, t18, t8 * t16),
+            chart0_3,
+            T::fused(-k(0.5), t2, inner_e3),
+            T::fused(chart0_2, T::fused(-k(0.5), t3, inner_e2), t20),
         );
         let t22 = T::fused(
-            -chart0_3,
-            t6,
-            T::fused(chart0_2, t3, T::fused(-chart0_1, t2, chart0_0 * t5)),
+            chart0_3,
+            t4,
+            T::fused(chart0_2, t5, -T::fused(chart0_0, t3, chart0_1 * t2)),
         );
-        let t23 = k(0.5) * t22;
-        let t24 = k(1.0) / (t23 * t13);
-        let t25 = t24 * T::fused(-T::fused(chart0_3, inner_e3 + t5, t14), t13, t21);
-        let t26 = t24 * T::fused(t19, t12 * t23, t20 * (t8 * t23));
-        let t27 = t24 * T::fused(-t19, t9 * t23, t20 * (t11 * t23));
-        let t28 = T::fused(-k(0.5), T::fused(-t5, t25, T::fused(t2, t26, t3 * t27)), t6);
-        let t29 = t28 * t28;
-        let t30 = T::fused(k(0.5), T::fused(-t2, t25, T::fused(-t5, t26, t6 * t27)), t3);
-        let t31 = k(0.5) - T::fused(t30, t30, t29);
-        let t32 = T::fused(k(0.5), T::fused(t3, t25, T::fused(t6, t26, t5 * t27)), t2);
-        let t33 = t30 * t32;
-        let t34 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t26, t2 * t27)), t5);
-        let t35 = t28 * t34;
-        let t36 = t35 + t33;
-        let t37 = T::fused(-t30, t34, t28 * t32);
-        let t38 = T::fused(
-            outer_e3,
-            outer_e3,
+        let t23 = T::fused(
+            chart0_3,
+            t3,
+            -T::fused(chart0_2, t2, T::fused(-chart0_0, t4, chart0_1 * t5)),
+        );
+        let t24 = T::fused(
+            T::fused(t15, t22, t8 * t23),
+            t9,
+            T::fused(t12, t23, t14 * t22) * t13,
+        );
+        let t25 = T::fused(k(4.0), t16 * t21, t24) * t17;
+        let t26 = T::fused(k(0.5), T::fused(t3, t25, T::fused(t5, t18, t2 * t19)), t4);
+        let t27 = T::fused(
+            -k(0.5),
+            T::fused(t2, t25, -T::fused(-t4, t18, t3 * t19)),
+            t5,
+        );
+        let t28 = t27 * t27;
+        let t29 = k(2.0) - T::fused(t26, t26, t28);
+        let t30 = T::fused(k(0.5), T::fused(t5, t25, -T::fused(t3, t18, t4 * t19)), t2);
+        let t31 = t27 * t30;
+        let t32 = T::fused(-k(0.5), T::fused(t4, t25, T::fused(-t2, t18, t5 * t19)), t3);
+        let t33 = t26 * t32;
+        let t34 = t33 + t31;
+        let t35 = T::fused(-t27, t32, t26 * t30);
+        let t36 = T::fused(
+            outer_e2,
+            outer_e2,
             T::fused(
-                outer_e2,
-                outer_e2,
-                T::fused(outer_e1, outer_e1, outer_e0 * outer_e0),
+                outer_e1,
+                outer_e1,
+                T::fused(outer_e3, outer_e3, outer_e0 * outer_e0),
             ),
         );
-        let t39 = k(0.5) * (t38 - k(3.0));
-        let t40 = outer_e3 * t39;
-        let t41 = outer_e1 * t39;
-        let t42 = t41 * t40;
-        let t43 = outer_e2 * t39;
-        let t44 = outer_e0 * t39;
-        let t45 = t44 * t43;
-        let t46 = k(2.0) * (t45 + t42);
-        let t47 = k(2.0) * t31;
-        let t48 = t43 * t40;
-        let t49 = t44 * t41;
-        let t50 = k(2.0) * (t49 - t48);
-        let t51 = k(2.0) * t36;
-        let t52 = t44 * t44;
-        let t53 = k(2.0) * (k(0.5) - T::fused(t40, t40, t52));
-        let t54 = k(2.0) * t37;
-        let t55 = T::fused(t54, t53, -T::fused(t47, t46, t51 * t50));
-        let t56 = k(2.0) * (t35 - t33);
-        let t57 = t41 * t43;
-        let t58 = t44 * t40;
-        let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (k(0.5) - T::fused(t32, t32, t29));
-        let t61 = k(2.0) * (k(0.5) - T::fused(t43, t43, t52));
-        let t62 = k(2.0) * T::fused(t32, t34, t28 * t30);
-        let t63 = k(2.0) * (t49 + t48);
-        let t64 = T::fused(t63, t62, T::fused(t59, t56, t61 * t60));
-        let t65 = T::fused(t53, t62, -T::fused(-t46, t56, t50 * t60));
-        let t66 = T::fused(t54, t63, T::fused(-t47, t59, t51 * t61));
-        let t67 = k(2.0) * (k(0.5) - T::fused(t41, t41, t52));
-        let t68 = k(2.0) * (t58 + t57);
-        let t69 = k(2.0) * (t45 - t42);
-        let t70 = T::fused(t54, t69, T::fused(t47, t67, t51 * t68));
-        let t71 = t55 * T::fused(t69, t62, T::fused(-t67, t56, t68 * t60));
-        let t72 = T::fused(-t70, t65, t71);
-        let t73 = k(1.0) / (t55 * t72);
-        let t74 = t73 * T::fused(-t64, t55 * t55, t66 * (t55 * t65));
-        let t75 = T::fused(-t70, t72, T::fused(-t64, t55 * t66, t66 * (t66 * t65)));
-        let t76 = t73 * t75;
-        let t77 = t73 * T::fused(-t64, t55 * t70, t66 * t71);
-        let t78 = T::fused(
+        let t37 = k(3.0) - t36;
+        let t38 = outer_e0 * t37;
+        let t39 = outer_e2 * t37;
+        let t40 = t39 * t38;
+        let t41 = outer_e1 * t37;
+        let t42 = outer_e3 * t37;
+        let t43 = t42 * t41;
+        let t44 = t43 - t40;
+        let t45 = T::fused(t27, t26, t32 * t30);
+        let t46 = t42 * t38;
+        let t47 = t41 * t39;
+        let t48 = t47 + t46;
+        let t49 = k(2.0) - T::fused(t32, t32, t28);
+        let t50 = t38 * t38;
+        let t51 = k(2.0) - T::fused(t41, t41, t50);
+        let t52 = t33 - t31;
+        let t53 = k(2.0) - T::fused(t42, t42, t50);
+        let t54 = t41 * t38;
+        let t55 = t42 * t39;
+        let t56 = t55 - t54;
+        let t57 = t43 + t40;
+        let t58 = T::fused(t29, t57, -T::fused(-t35, t53, t34 * t56));
+        let t59 = t58 * T::fused(t52, t51, T::fused(-t45, t44, t49 * t48));
+        let t60 = t55 + t54;
+        let t61 = k(2.0) - T::fused(t39, t39, t50);
+        let t62 = t47 - t46;
+        let t63 = T::fused(t29, t62, T::fused(-t35, t60, t34 * t61));
+        let t64 = T::fused(t29, t51, T::fused(t35, t44, t34 * t48));
+        let t65 = T::fused(t52, t62, T::fused(t45, t60, t49 * t61));
+        let t66 = T::fused(t57, t52, -T::fused(t53, t45, t56 * t49));
+        let t67 = T::fused(t66, t64, -t59);
+        let t68 = k(1.0) / (t58 * t67);
+        let t69 = t68 * T::fused(-t63, t59, t65 * (t58 * t64));
+        let t70 = T::fused(t64, t67, -T::fused(-t63, t66 * t63, t65 * (t58 * t63)));
+        let t71 = t68 * t70;
+        let t72 = T::fused(-(t58 * t66), t63, t58 * t58 * t65) * t68;
+        let t73 = T::fused(
             -k(0.5),
-            T::fused(-t44, t74, T::fused(t41, t76, t43 * t77)),
-            t40,
+            T::fused(t42, t72, -T::fused(t41, t69, t39 * t71)),
+            t38,
         );
-        let t79 = T::fused(
+        let t74 = T::fused(
+            -k(0.5),
+            T::fused(t41, t72, T::fused(t42, t69, t38 * t71)),
+            t39,
+        );
+        let t75 = T::fused(
             k(0.5),
-            T::fused(t43, t74, T::fused(t40, t76, t44 * t77)),
+            T::fused(t39, t72, T::fused(-t38, t69, t42 * t71)),
             t41,
         );
-        let t80 = T::fused(
+        let t76 = T::fused(
             k(0.5),
-            T::fused(-t41, t74, T::fused(-t44, t76, t40 * t77)),
-            t43,
+            T::fused(t38, t72, -T::fused(-t39, t69, t41 * t71)),
+            t42,
         );
-        let t81 = T::fused(
-            -k(0.5),
-            T::fused(t40, t74, T::fused(-t43, t76, t41 * t77)),
-            t44,
-        );
-        y[0] = -(k(0.5) * t31);
-        y[1] = k(0.5) * t36;
-        y[2] = -(k(0.5) * t37);
-        y[3] = -t28;
-        y[4] = -t30;
-        y[5] = -t32;
-        y[6] = -t34;
-        y[7] = T::fused(k(0.5), T::fused(t79, t78, t81 * t80), -t31);
-        y[8] = T::fused(-k(0.5), T::fused(-t80, t78, t81 * t79), t36);
-        y[9] = -T::fused(k(0.5), k(0.5) - T::fused(t81, t81, t78 * t78), t37);
-        y[10] = -t81;
-        y[11] = -t79;
-        y[12] = -t80;
-        y[13] = -t78;
+        let t77 = k(0.25)
+            * T::fused(-k(0.5), k(2.0) - T::fused(t76, t76, t73 * t73), t35);
+        y[0] = -(k(0.125) * t29);
+        y[1] = k(0.125) * t34;
+        y[2] = k(0.125) * t35;
+        y[3] = k(0.5) * t27;
+        y[4] = k(0.5) * t26;
+        y[5] = k(0.5) * t32;
+        y[6] = k(0.5) * t30;
+        y[7] = -(k(0.25) * T::fused(-k(0.5), T::fused(t74, t73, t76 * t75), t29));
+        y[8] = k(0.25) * T::fused(k(0.5), T::fused(-t75, t73, t76 * t74), t34);
+        y[9] = t77;
+        y[10] = k(0.5) * t73;
+        y[11] = k(0.5) * t75;
+        y[12] = k(0.5) * t74;
+        y[13] = k(0.5) * t76;
     }
-    /// Solves eq. (19) for the dependent velocities: 206 operations (73 ±, 131 ×, 2 ÷).
+    /// Solves eq. (19) for the dependent velocities: 185 operations (73 ±, 110 ×, 2 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -889,95 +866,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = inner_e0 * inner_e3;
-        let t1 = inner_e1 * inner_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = inner_e0 * inner_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = k(1.0) / T::fused(-t5, t4, t2 * t6);
-        let t8 = T::fused(t5, inner_wy, t2 * inner_wx);
-        let t9 = T::fused(t6, inner_wy, t4 * inner_wx);
-        let t10 = T::fused(t8, t4 * t7, T::fused(-t9, t2 * t7, inner_wy));
+        let t0 = inner_e0 * inner_e0;
+        let t1 = k(0.5) - T::fused(inner_e2, inner_e2, t0);
+        let t2 = inner_e0 * inner_e3;
+        let t3 = inner_e1 * inner_e2;
+        let t4 = t3 + t2;
+        let t5 = T::fused(t1, inner_wx, t4 * inner_wy);
+        let t6 = t3 - t2;
+        let t7 = k(0.5) - T::fused(inner_e1, inner_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, inner_wx, t7 * inner_wy);
+        let t10 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, inner_wy));
         let t11 = inner_e0 * inner_e2;
         let t12 = inner_e1 * inner_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = T::fused(-t2, inner_wz, t13 * t10);
+        let t13 = t12 + t11;
+        let t14 = T::fused(t13, t10, t6 * inner_wz);
         let t15 = inner_e0 * inner_e1;
         let t16 = inner_e2 * inner_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = T::fused(t4, inner_wz, t17 * t10);
-        let t19 = k(2.0) * (t16 + t15);
-        let t20 = k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t3));
-        let t21 = T::fused(t19, inner_wz, t20 * t10);
-        let t22 = T::fused(-t8, t6 * t7, T::fused(t9, t5 * t7, inner_wx));
-        let t23 = outer_e0 * outer_e0;
-        let t24 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t23));
-        let t25 = outer_e0 * outer_e3;
-        let t26 = outer_e1 * outer_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = outer_e0 * outer_e2;
-        let t29 = outer_e1 * outer_e3;
-        let t30 = k(2.0) * (t29 - t28);
-        let t31 = T::fused(t19, t30, -T::fused(t2, t24, t4 * t27));
-        let t32 = k(2.0) * (t29 + t28);
-        let t33 = outer_e0 * outer_e1;
-        let t34 = outer_e2 * outer_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t23));
-        let t37 = k(2.0) * (t12 - t11);
-        let t38 = T::fused(t37, t36, -T::fused(-t5, t32, t6 * t35));
-        let t39 = t38 * t31;
-        let t40 = T::fused(t19, t36, T::fused(-t2, t32, t4 * t35));
-        let t41 = T::fused(t37, t30, T::fused(t5, t24, t6 * t27));
-        let t42 = T::fused(t41, t40, -t39);
-        let t43 = k(1.0) / (t38 * t42);
-        let t44 = k(2.0) * (t26 - t25);
-        let t45 = k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t23));
-        let t46 = k(2.0) * (t34 + t33);
-        let t47 = T::fused(t37, t46, -T::fused(t5, t44, t6 * t45));
-        let t48 = T::fused(
-            inner_wz,
+        let t17 = t16 - t15;
+        let t18 = T::fused(-t17, t10, t1 * inner_wz);
+        let t19 = k(0.5) - T::fused(inner_e3, inner_e3, t0);
+        let t20 = t16 + t15;
+        let t21 = T::fused(-t19, t10, t20 * inner_wz);
+        let t22 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, inner_wx));
+        let t23 = outer_e0 * outer_e1;
+        let t24 = outer_e2 * outer_e3;
+        let t25 = t24 + t23;
+        let t26 = outer_e0 * outer_e0;
+        let t27 = k(0.5) - T::fused(outer_e2, outer_e2, t26);
+        let t28 = outer_e0 * outer_e3;
+        let t29 = outer_e1 * outer_e2;
+        let t30 = t29 - t28;
+        let t31 = T::fused(t13, t30, -T::fused(t19, t25, t17 * t27));
+        let t32 = T::fused(
             t31,
-            t10 * T::fused(t20, t30, -T::fused(-t13, t24, t17 * t27)),
+            t10,
+            inner_wz * T::fused(t6, t30, T::fused(t20, t25, t1 * t27)),
         );
-        let t49 = T::fused(t20, t46, T::fused(-t13, t44, t17 * t45));
-        let t50 = T::fused(inner_wz, t47, t22 * t49)
-            + T::fused(outer_wz, t31, outer_wx * t40);
+        let t33 = k(0.5) - T::fused(outer_e3, outer_e3, t26);
+        let t34 = t12 - t11;
+        let t35 = t24 - t23;
+        let t36 = outer_e0 * outer_e2;
+        let t37 = outer_e1 * outer_e3;
+        let t38 = t37 + t36;
+        let t39 = T::fused(t7, t38, -T::fused(-t34, t33, t4 * t35));
+        let t40 = t37 - t36;
+        let t41 = t29 + t28;
+        let t42 = k(0.5) - T::fused(outer_e1, outer_e1, t26);
+        let t43 = T::fused(t7, t42, T::fused(t34, t40, t4 * t41));
+        let t44 = T::fused(outer_wz, t43, T::fused(outer_wx, t39, -t32));
+        let t45 = T::fused(t6, t38, -T::fused(t20, t33, t1 * t35));
+        let t46 = T::fused(t6, t42, T::fused(-t20, t40, t1 * t41));
+        let t47 = t46 * t39;
+        let t48 = T::fused(-t45, t43, t47);
+        let t49 = k(1.0) / (t39 * t48);
+        let t50 = T::fused(t7, t30, T::fused(-t34, t25, t4 * t27));
         let t51 = T::fused(
-            inner_wz,
-            T::fused(t19, t46, T::fused(t2, t44, t4 * t45)),
-            t10 * t49,
+            outer_wz,
+            t46,
+            T::fused(outer_wx, t45, T::fused(t31, t22, inner_wz * t50)),
         );
-        let t52 = t51 - T::fused(outer_wz, t41, outer_wx * t38);
+        let t52 = T::fused(
+            t49 * (t43 * t39),
+            t51,
+            T::fused(-(t47 * t49), t44, outer_wx),
+        );
         let t53 = T::fused(
-            -t50,
-            t43 * (t38 * t47),
-            T::fused(-t52, t43 * (t40 * t47), outer_wy),
+            t49 * (t50 * t39),
+            t51,
+            -T::fused(t49 * (t50 * t45), t44, outer_wy),
         );
         let t54 = T::fused(
-            -(t48 + T::fused(outer_wz, t47, outer_wy * t38)),
-            t42 * t43,
-            t53,
+            T::fused(t13, t42, -T::fused(-t19, t40, t17 * t41)),
+            t10,
+            inner_wz * t46,
         );
-        let t55 = T::fused(-t50, t43 * (t38 * t41), T::fused(-t52, t39 * t43, outer_wx));
+        let t55 = T::fused(
+            t48 * t49,
+            T::fused(outer_wz, t50, -T::fused(outer_wy, t39, -t54)),
+            -t53,
+        );
         let t56 = T::fused(
-            t50,
-            t43 * (t38 * t38),
-            T::fused(t52, t43 * (t38 * t40), outer_wz),
+            t49 * (t39 * t39),
+            t51,
+            -T::fused(t45 * t39 * t49, t44, outer_wz),
         );
-        y[14] = -(k(0.25) * t14);
-        y[15] = -(k(0.25) * t18);
-        y[16] = k(0.25) * t21;
+        y[14] = k(0.5) * t14;
+        y[15] = -(k(0.5) * t18);
+        y[16] = k(0.5) * t21;
         y[17] = t22;
-        y[18] = t10;
-        y[20] = -T::fused(k(0.25), T::fused(t24, t54, t44 * t55), k(0.5) * t14);
-        y[21] = T::fused(-k(0.5), t18, k(0.25) * T::fused(t27, t54, t45 * t55));
-        y[22] = T::fused(-k(0.25), T::fused(-t30, t54, t46 * t55), k(0.5) * t21);
-        y[23] = t55;
-        y[24] = t54;
-        y[25] = t56;
+        y[18] = -t10;
+        y[20] = T::fused(-k(0.5), T::fused(t30, t52, t42 * t55), t14);
+        y[21] = T::fused(k(0.5), T::fused(t27, t52, t41 * t55), -t18);
+        y[22] = T::fused(k(0.5), T::fused(-t25, t52, t40 * t55), t21);
+        y[23] = t52;
+        y[24] = t55;
+        y[25] = -t56;
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
@@ -1426,7 +1410,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 223 operations (89 ±, 134 ×, 0 ÷).
+    /// Writes γ: 220 operations (89 ±, 131 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -1443,109 +1427,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = k(2.0) * inner_e1;
-        let t1 = k(2.0) * inner_e0;
-        let t2 = T::fused(-inner_e0, t1, k(1.0));
-        let t3 = T::fused(-inner_e1, t0, t2);
-        let t4 = inner_wy * inner_wy;
-        let t5 = inner_wz * inner_wz;
-        let t6 = t5 + t4;
-        let t7 = inner_e3 * t1;
-        let t8 = inner_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = inner_wx * inner_wy;
-        let t11 = inner_e2 * t1;
-        let t12 = inner_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = inner_wx * inner_wz;
-        let t15 = T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
-        let t16 = t8 + t7;
-        let t17 = k(2.0) * inner_e2;
-        let t18 = T::fused(-inner_e2, t17, t2);
-        let t19 = inner_e1 * t1;
-        let t20 = inner_e3 * t17;
-        let t21 = t20 - t19;
-        let t22 = T::fused(t14, t21, -T::fused(t6, t16, t10 * t18));
-        let t23 = t12 - t11;
-        let t24 = t20 + t19;
-        let t25 = T::fused(-inner_e3, k(2.0) * inner_e3, t2);
-        let t26 = T::fused(t14, t25, -T::fused(-t6, t23, t10 * t24));
-        let t27 = inner_wy * inner_wz;
-        let t28 = inner_wx * inner_wx;
-        let t29 = t4 + t28;
-        let t30 = k(2.0) * outer_e1;
-        let t31 = k(2.0) * outer_e0;
-        let t32 = T::fused(-outer_e0, t31, k(1.0));
-        let t33 = T::fused(-outer_e1, t30, t32);
-        let t34 = outer_wx * outer_wz;
-        let t35 = outer_e3 * t31;
-        let t36 = outer_e2 * t30;
-        let t37 = t36 - t35;
-        let t38 = outer_wy * outer_wz;
-        let t39 = outer_e2 * t31;
-        let t40 = outer_e3 * t30;
-        let t41 = t40 + t39;
-        let t42 = outer_wx * outer_wx;
-        let t43 = outer_wy * outer_wy;
-        let t44 = t43 + t42;
-        let t45 = k(0.25) * (t15 - T::fused(t44, t41, -T::fused(-t34, t33, t38 * t37)));
-        let t46 = t36 + t35;
-        let t47 = k(2.0) * outer_e2;
-        let t48 = T::fused(-outer_e2, t47, t32);
-        let t49 = outer_e1 * t31;
-        let t50 = outer_e3 * t47;
-        let t51 = t50 - t49;
-        let t52 = k(0.25) * (t22 - T::fused(t44, t51, T::fused(-t34, t46, t38 * t48)));
-        let t53 = t40 - t39;
-        let t54 = t50 + t49;
-        let t55 = T::fused(-outer_e3, k(2.0) * outer_e3, t32);
-        let t56 = k(0.25) * (t26 - T::fused(t44, t55, T::fused(t34, t53, t38 * t54)));
-        let t57 = T::fused(t23, t54, -T::fused(t3, t37, t16 * t48));
-        let t58 = T::fused(t24, t54, T::fused(t9, t37, t18 * t48));
-        let t59 = T::fused(t25, t54, T::fused(-t13, t37, t21 * t48));
-        let t60 = T::fused(t24, t53, -T::fused(t9, t33, t18 * t46));
-        let t61 = T::fused(t24, t55, T::fused(-t9, t41, t18 * t51));
-        let t62 = T::fused(t25, t53, -T::fused(-t13, t33, t21 * t46));
-        let t63 = T::fused(t25, t55, T::fused(t13, t41, t21 * t51));
-        let t64 = T::fused(outer_wz, t62, outer_wx * t63);
-        let t65 = T::fused(t23, t53, T::fused(t3, t33, t16 * t46));
-        let t66 = outer_wx * outer_wy;
-        let t67 = outer_wz * outer_wz;
-        let t68 = t67 + t42;
-        let t69 = T::fused(t23, t55, -T::fused(-t3, t41, t16 * t51));
-        let t70 = T::fused(
+        let t0 = T::fused(-inner_e0, inner_e0, k(0.5));
+        let t1 = T::fused(inner_e1, inner_e1, -t0);
+        let t2 = inner_wy * inner_wy;
+        let t3 = inner_wz * inner_wz;
+        let t4 = t3 + t2;
+        let t5 = inner_wx * inner_wz;
+        let t6 = inner_e0 * inner_e2;
+        let t7 = inner_e1 * inner_e3;
+        let t8 = t7 + t6;
+        let t9 = inner_wx * inner_wy;
+        let t10 = inner_e0 * inner_e3;
+        let t11 = inner_e1 * inner_e2;
+        let t12 = t11 - t10;
+        let t13 = T::fused(-t4, t1, T::fused(t8, t5, t12 * t9));
+        let t14 = T::fused(inner_e2, inner_e2, -t0);
+        let t15 = inner_e0 * inner_e1;
+        let t16 = inner_e2 * inner_e3;
+        let t17 = t16 - t15;
+        let t18 = t11 + t10;
+        let t19 = T::fused(t18, t4, -T::fused(t9, t14, t17 * t5));
+        let t20 = T::fused(inner_e3, inner_e3, -t0);
+        let t21 = t16 + t15;
+        let t22 = t7 - t6;
+        let t23 = T::fused(t22, t4, -T::fused(t5, t20, t21 * t9));
+        let t24 = inner_wy * inner_wz;
+        let t25 = inner_wx * inner_wx;
+        let t26 = t2 + t25;
+        let t27 = outer_wx * outer_wx;
+        let t28 = outer_wy * outer_wy;
+        let t29 = t28 + t27;
+        let t30 = outer_e0 * outer_e2;
+        let t31 = outer_e1 * outer_e3;
+        let t32 = t31 + t30;
+        let t33 = outer_wy * outer_wz;
+        let t34 = outer_e0 * outer_e3;
+        let t35 = outer_e1 * outer_e2;
+        let t36 = t35 - t34;
+        let t37 = T::fused(-outer_e0, outer_e0, k(0.5));
+        let t38 = T::fused(outer_e1, outer_e1, -t37);
+        let t39 = outer_wx * outer_wz;
+        let t40 = k(0.5)
+            * T::fused(t39, t38, T::fused(t36, t33, -T::fused(t32, t29, -t13)));
+        let t41 = outer_e0 * outer_e1;
+        let t42 = outer_e2 * outer_e3;
+        let t43 = t42 - t41;
+        let t44 = T::fused(outer_e2, outer_e2, -t37);
+        let t45 = t35 + t34;
+        let t46 = k(0.5)
+            * T::fused(t45, t39, T::fused(t33, t44, -T::fused(t43, t29, t19)));
+        let t47 = T::fused(outer_e3, outer_e3, -t37);
+        let t48 = t42 + t41;
+        let t49 = t31 - t30;
+        let t50 = k(0.5)
+            * T::fused(t49, t39, T::fused(t48, t33, -T::fused(t29, t47, t23)));
+        let t51 = T::fused(t8, t32, T::fused(t20, t47, t17 * t43));
+        let t52 = T::fused(t8, t38, T::fused(t49, t20, t17 * t45));
+        let t53 = T::fused(-outer_wx, t51, outer_wz * t52);
+        let t54 = T::fused(t12, t32, T::fused(t21, t47, t43 * t14));
+        let t55 = T::fused(t12, t38, T::fused(t45, t14, t21 * t49));
+        let t56 = T::fused(t32, t1, T::fused(t22, t47, t18 * t43));
+        let t57 = T::fused(t36, t1, T::fused(t18, t44, t22 * t48));
+        let t58 = outer_wz * outer_wz;
+        let t59 = t58 + t27;
+        let t60 = T::fused(t1, t38, T::fused(t22, t49, t18 * t45));
+        let t61 = outer_wx * outer_wy;
+        let t62 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_wy,
+                t53,
+                inner_wz * T::fused(-outer_wx, t54, outer_wz * t55),
+            ),
+            T::fused(t61, t60, -T::fused(-t33, t56, t59 * t57)),
+        );
+        let t63 = T::fused(t8, t36, T::fused(t48, t20, t17 * t44));
+        let t64 = T::fused(t12, t36, T::fused(t14, t44, t21 * t48));
+        let t65 = k(4.0) * T::fused(t4, t57, -T::fused(t9, t64, T::fused(t5, t63, t62)));
+        let t66 = T::fused(
             k(2.0),
-            T::fused(inner_wz, T::fused(outer_wz, t60, outer_wx * t61), inner_wy * t64),
-            T::fused(t38, t69, T::fused(-t66, t65, t68 * t57)),
+            T::fused(
+                -inner_wx,
+                t53,
+                inner_wz * T::fused(-outer_wx, t56, outer_wz * t60),
+            ),
+            T::fused(t61, t55, -T::fused(-t33, t54, t59 * t64)),
         );
-        let t71 = T::fused(
+        let t67 = T::fused(t9, t57, -T::fused(t3 + t25, t64, -T::fused(t24, t63, t66)));
+        let t68 = T::fused(
+            -inner_wy,
+            T::fused(-outer_wy, t51, outer_wz * t63),
+            inner_wz * T::fused(-outer_wy, t54, outer_wz * t64),
+        );
+        let t69 = T::fused(
             -k(2.0),
-            T::fused(inner_wz, T::fused(outer_wz, t65, outer_wx * t69), inner_wx * t64),
-            T::fused(t38, t61, T::fused(-t66, t60, t68 * t58)),
+            t68,
+            T::fused(t58 + t28, t60, -T::fused(t39, t56, t61 * t57)),
         );
-        let t72 = t71 + T::fused(t27, t59, T::fused(-t10, t57, (t5 + t28) * t58));
-        let t73 = T::fused(
-            inner_wz,
-            T::fused(outer_wz, t58, outer_wy * t61),
-            inner_wy * T::fused(outer_wz, t59, outer_wy * t63),
-        );
-        let t74 = T::fused(
-            -k(2.0),
-            t73,
-            T::fused(t34, t69, -T::fused(-(t67 + t43), t65, t66 * t57)),
-        );
+        let t70 = k(4.0)
+            * T::fused(t4, t60, -T::fused(t9, t55, T::fused(t5, t52, -t69)));
         *out = [
-            k(0.25) * t15,
-            k(0.25) * t22,
-            -(k(0.25) * t26),
-            -T::fused(t29, t21, T::fused(-t14, t16, t27 * t18)),
-            T::fused(t29, t13, -T::fused(-t14, t3, t27 * t9)),
-            t45,
-            t52,
-            -t56,
-            t70 + T::fused(t14, t59, -T::fused(-t6, t57, t10 * t58)),
-            t72,
-            t74 + T::fused(t14, t62, -T::fused(-t6, t65, t10 * t60)),
+            k(0.5) * t13,
+            -(k(0.5) * t19),
+            -(k(0.5) * t23),
+            k(2.0) * T::fused(t18, t5, -T::fused(-t24, t14, t17 * t26)),
+            -(k(2.0) * T::fused(t5, t1, T::fused(-t8, t26, t12 * t24))),
+            t40,
+            t46,
+            t50,
+            t65,
+            -(k(4.0) * t67),
+            t70,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
@@ -1574,7 +1566,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             k(0.0),
         ];
     }
-    /// Solves eq. (17): 470 operations (187 ±, 280 ×, 3 ÷).
+    /// Solves eq. (17): 444 operations (178 ±, 263 ×, 3 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -1591,210 +1583,242 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = k(2.0) * inner_e1;
-        let t1 = k(2.0) * inner_e0;
-        let t2 = T::fused(-inner_e0, t1, k(1.0));
-        let t3 = T::fused(-inner_e1, t0, t2);
-        let t4 = inner_wy * inner_wy;
-        let t5 = inner_wz * inner_wz;
-        let t6 = t5 + t4;
-        let t7 = inner_e3 * t1;
-        let t8 = inner_e2 * t0;
-        let t9 = t8 - t7;
-        let t10 = inner_wx * inner_wy;
-        let t11 = inner_e2 * t1;
-        let t12 = inner_e3 * t0;
-        let t13 = t12 + t11;
-        let t14 = inner_wx * inner_wz;
-        let t15 = T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
-        let t16 = k(0.25) * t15;
-        let t17 = t8 + t7;
-        let t18 = k(2.0) * inner_e2;
-        let t19 = T::fused(-inner_e2, t18, t2);
-        let t20 = inner_e1 * t1;
-        let t21 = inner_e3 * t18;
-        let t22 = t21 - t20;
-        let t23 = T::fused(t14, t22, -T::fused(t6, t17, t10 * t19));
-        let t24 = k(0.25) * t23;
-        let t25 = t12 - t11;
-        let t26 = t21 + t20;
-        let t27 = T::fused(-inner_e3, k(2.0) * inner_e3, t2);
-        let t28 = T::fused(t14, t27, -T::fused(-t6, t25, t10 * t26));
-        let t29 = k(0.25) * t28;
-        let t30 = T::fused(t25, t29, -T::fused(-t3, t16, t17 * t24));
-        let t31 = k(2.0) * outer_e0;
-        let t32 = outer_e3 * t31;
-        let t33 = k(2.0) * outer_e1;
-        let t34 = outer_e2 * t33;
-        let t35 = t34 - t32;
-        let t36 = k(2.0) * outer_e2;
-        let t37 = T::fused(-outer_e0, t31, k(1.0));
-        let t38 = T::fused(-outer_e2, t36, t37);
-        let t39 = outer_e1 * t31;
-        let t40 = outer_e3 * t36;
-        let t41 = t40 + t39;
-        let t42 = T::fused(t26, t41, T::fused(t9, t35, t19 * t38));
-        let t43 = k(0.15) * t42;
-        let t44 = T::fused(-outer_e1, t33, t37);
-        let t45 = t34 + t32;
-        let t46 = outer_e2 * t31;
-        let t47 = outer_e3 * t33;
-        let t48 = t47 - t46;
-        let t49 = T::fused(t27, t48, -T::fused(-t13, t44, t22 * t45));
-        let t50 = T::fused(t26, t48, -T::fused(t9, t44, t19 * t45));
-        let t51 = k(0.15) * t50;
-        let t52 = T::fused(t27, t41, T::fused(-t13, t35, t22 * t38));
-        let t53 = T::fused(-t49, t43, t52 * t51);
-        let t54 = k(0.15) - t53;
-        let t55 = t47 + t46;
-        let t56 = t40 - t39;
-        let t57 = T::fused(-outer_e3, k(2.0) * outer_e3, t37);
-        let t58 = T::fused(t27, t57, T::fused(t13, t55, t22 * t56));
-        let t59 = T::fused(
-            t58,
-            k(5e-5) * t58,
-            T::fused(t49, k(0.05) * t49, t52 * (k(0.05) * t52)),
-        );
-        let t60 = T::fused(
-            k(0.5),
-            t54,
-            k(0.075) + (k(0.0125) - T::fused(k(0.5), t53, -(k(0.0375) + t59))),
-        );
-        let t61 = T::fused(t25, t57, -T::fused(-t3, t55, t17 * t56));
-        let t62 = T::fused(t26, t57, T::fused(-t9, t55, t19 * t56));
-        let t63 = t50 * t61;
-        let t64 = T::fused(t25, t48, T::fused(t3, t44, t17 * t45));
-        let t65 = T::fused(t62, t64, -t63);
-        let t66 = k(1.0) / (t61 * t65);
-        let t67 = T::fused(t25, t41, -T::fused(t3, t35, t17 * t38));
-        let t68 = T::fused(outer_wz, t49, outer_wx * t58);
-        let t69 = outer_wx * outer_wy;
-        let t70 = outer_wx * outer_wx;
-        let t71 = outer_wz * outer_wz;
-        let t72 = t71 + t70;
-        let t73 = outer_wy * outer_wz;
-        let t74 = T::fused(
+        let t0 = T::fused(-inner_e0, inner_e0, k(0.5));
+        let t1 = T::fused(inner_e3, inner_e3, -t0);
+        let t2 = inner_wx * inner_wx;
+        let t3 = inner_wy * inner_wy;
+        let t4 = (t3 + t2) / t1;
+        let t5 = inner_e0 * inner_e2;
+        let t6 = inner_e1 * inner_e3;
+        let t7 = t6 - t5;
+        let t8 = inner_wx * inner_wz;
+        let t9 = T::fused(t7, t4, t8);
+        let t10 = k(0.25) * t9;
+        let t11 = inner_wx * inner_wy;
+        let t12 = inner_e0 * inner_e1;
+        let t13 = inner_e2 * inner_e3;
+        let t14 = t13 + t12;
+        let t15 = inner_wz * inner_wz;
+        let t16 = t15 + t3;
+        let t17 = T::fused(t7, t16, -T::fused(t8, t1, t14 * t11));
+        let t18 = T::fused(inner_e2, inner_e2, -t0);
+        let t19 = t13 - t12;
+        let t20 = inner_e0 * inner_e3;
+        let t21 = inner_e1 * inner_e2;
+        let t22 = t21 + t20;
+        let t23 = T::fused(t22, t16, -T::fused(t11, t18, t19 * t8));
+        let t24 = T::fused(inner_e1, inner_e1, -t0);
+        let t25 = t6 + t5;
+        let t26 = t21 - t20;
+        let t27 = T::fused(-t16, t24, T::fused(t25, t8, t26 * t11));
+        let t28 = T::fused(t25, t27, -T::fused(t1, t17, t19 * t23)) + t10;
+        let t29 = T::fused(-outer_e0, outer_e0, k(0.5));
+        let t30 = T::fused(outer_e3, outer_e3, -t29);
+        let t31 = outer_wx * outer_wx;
+        let t32 = outer_wy * outer_wy;
+        let t33 = t32 + t31;
+        let t34 = outer_wy * outer_wz;
+        let t35 = outer_e0 * outer_e1;
+        let t36 = outer_e2 * outer_e3;
+        let t37 = t36 + t35;
+        let t38 = outer_wx * outer_wz;
+        let t39 = outer_e0 * outer_e2;
+        let t40 = outer_e1 * outer_e3;
+        let t41 = t40 - t39;
+        let t42 = T::fused(t41, t38, T::fused(t37, t34, -T::fused(t33, t30, t17)));
+        let t43 = t36 - t35;
+        let t44 = T::fused(outer_e2, outer_e2, -t29);
+        let t45 = outer_e0 * outer_e3;
+        let t46 = outer_e1 * outer_e2;
+        let t47 = t46 + t45;
+        let t48 = T::fused(t47, t38, T::fused(t34, t44, -T::fused(t43, t33, t23)));
+        let t49 = t40 + t39;
+        let t50 = t46 - t45;
+        let t51 = T::fused(outer_e1, outer_e1, -t29);
+        let t52 = T::fused(t38, t51, T::fused(t50, t34, -T::fused(t49, t33, -t27)));
+        let t53 = T::fused(t49, t52, T::fused(t30, t42, t43 * t48));
+        let t54 = T::fused(t26, t49, T::fused(t14, t30, t43 * t18));
+        let t55 = T::fused(t50, t52, T::fused(t37, t42, t44 * t48));
+        let t56 = T::fused(t24, t51, T::fused(t7, t41, t22 * t47));
+        let t57 = T::fused(t49, t24, T::fused(t7, t30, t22 * t43));
+        let t58 = T::fused(t26, t51, T::fused(t47, t18, t14 * t41));
+        let t59 = t58 * t57;
+        let t60 = T::fused(-t54, t56, t59);
+        let t61 = k(1.0) / (t57 * t60);
+        let t62 = T::fused(t25, t49, T::fused(t1, t30, t19 * t43));
+        let t63 = T::fused(t25, t51, T::fused(t41, t1, t19 * t47));
+        let t64 = T::fused(-outer_wx, t62, outer_wz * t63);
+        let t65 = T::fused(t26, t50, T::fused(t18, t44, t14 * t37));
+        let t66 = outer_wz * outer_wz;
+        let t67 = t66 + t31;
+        let t68 = outer_wx * outer_wy;
+        let t69 = T::fused(
             k(2.0),
-            T::fused(inner_wz, T::fused(outer_wz, t50, outer_wx * t62), inner_wy * t68),
-            T::fused(t73, t61, T::fused(-t69, t64, t72 * t67)),
+            T::fused(
+                -inner_wx,
+                t64,
+                inner_wz * T::fused(-outer_wx, t57, outer_wz * t56),
+            ),
+            T::fused(t68, t58, -T::fused(-t34, t54, t67 * t65)),
         );
-        let t75 = t74 + T::fused(t14, t52, -T::fused(-t6, t67, t10 * t42));
-        let t76 = inner_wx * inner_wx;
-        let t77 = inner_wy * inner_wz;
-        let t78 = T::fused(
+        let t70 = T::fused(t25, t50, T::fused(t37, t1, t19 * t44));
+        let t71 = inner_wy * inner_wz;
+        let t72 = T::fused(t50, t24, T::fused(t22, t44, t7 * t37));
+        let t73 = T::fused(t11, t72, -T::fused(t15 + t2, t65, -T::fused(t71, t70, t69)));
+        let t74 = T::fused(
             -k(2.0),
-            T::fused(inner_wz, T::fused(outer_wz, t64, outer_wx * t61), inner_wx * t68),
-            T::fused(t73, t62, T::fused(-t69, t50, t72 * t42)),
+            T::fused(
+                -inner_wy,
+                t64,
+                inner_wz * T::fused(-outer_wx, t54, outer_wz * t58),
+            ),
+            T::fused(t68, t56, -T::fused(-t34, t57, t67 * t72)),
         );
-        let t79 = t78 + T::fused(t77, t52, T::fused(-t10, t67, (t5 + t76) * t42));
-        let t80 = T::fused(-t75, t66 * (t62 * t61), t79 * (t66 * (t61 * t61)));
-        let t81 = T::fused(-(t63 * t66), t75, t66 * (t64 * t61) * t79);
-        let t82 = outer_wx * outer_wz;
-        let t83 = outer_wy * outer_wy;
-        let t84 = t83 + t70;
-        let t85 = k(0.25) * (t15 - T::fused(t84, t55, -T::fused(-t82, t44, t73 * t35)));
-        let t86 = k(0.25) * (t23 - T::fused(t84, t56, T::fused(-t82, t45, t73 * t38)));
-        let t87 = k(0.25) * (t28 - T::fused(t84, t57, T::fused(t82, t48, t73 * t41)));
-        let t88 = T::fused(t41, t87, T::fused(-t35, t85, t38 * t86));
-        let t89 = T::fused(-k(0.05), t81, k(0.15) * t88)
-            - T::fused(-k(1.4715), t38, k(0.01245) * t73);
-        let t90 = T::fused(
-            inner_wz,
-            T::fused(outer_wz, t42, outer_wy * t62),
-            inner_wy * T::fused(outer_wz, t52, outer_wy * t58),
+        let t75 = T::fused(t16, t72, -T::fused(t11, t65, T::fused(t8, t70, t74)));
+        let t76 = T::fused(t73, t61 * (t57 * t56), t75 * (t59 * t61));
+        let t77 = T::fused(
+            -k(4.0),
+            t54 * T::fused(k(19.62), t43, t53),
+            t65 * T::fused(-k(78.48), t44, T::fused(-k(4.0), t55, t76)),
         );
+        let t78 = T::fused(t51, t52, T::fused(t41, t42, t47 * t48));
+        let t79 = T::fused(t73, t61 * (t57 * t72), t75 * (t61 * (t54 * t72)));
+        let t80 = T::fused(
+            -inner_wy,
+            T::fused(-outer_wy, t62, outer_wz * t70),
+            inner_wz * T::fused(-outer_wy, t54, outer_wz * t65),
+        );
+        let t81 = T::fused(
+            -k(2.0),
+            t80,
+            T::fused(t66 + t32, t56, -T::fused(t38, t57, t68 * t72)),
+        );
+        let t82 = T::fused(
+            T::fused(t16, t56, -T::fused(t11, t58, T::fused(t8, t63, -t81))),
+            t60 * t61,
+            -t79,
+        );
+        let t83 = T::fused(
+            t58,
+            T::fused(k(78.48), t47, -T::fused(-k(4.0), t78, t82)),
+            -t77,
+        );
+        let t84 = T::fused(t24, t27, -T::fused(t7, t17, t22 * t23));
+        let t85 = T::fused(-t58, t70, t65 * t63);
+        let t86 = k(0.0625) - t85;
+        let t87 = T::fused(t26, t27, -T::fused(t14, t17, t18 * t23));
+        let t88 = T::fused(t63, t58, T::fused(k(0.001), t62 * t54, t65 * t70)) * t9;
+        let t89 = T::fused(
+            -k(0.0013333333333333333),
+            t62 * t57,
+            k(2.0) * T::fused(-t58, t72, t65 * t56),
+        );
+        let t90 = T::fused(t14, t4, t71);
         let t91 = T::fused(
-            -k(2.0),
-            t90,
-            T::fused(t82, t61, -T::fused(-(t71 + t83), t64, t69 * t67)),
+            k(1.3333333333333333),
+            t88,
+            t90
+                * T::fused(
+                    -k(1.3333333333333333),
+                    t63 * t56,
+                    T::fused(-k(1.3333333333333333), t70 * t72, t89),
+                ),
         );
-        let t92 = T::fused(-t75, t66 * (t62 * t67), t79 * (t66 * (t67 * t61)));
+        let t92 = T::fused(
+            k(4.0),
+            t84 * T::fused(-t70, t56, t63 * t72),
+            T::fused(-k(4.0), t87 * (k(0.125) + t86), t91),
+        );
         let t93 = T::fused(
-            -(t65 * t66),
-            t91 + T::fused(t14, t49, -T::fused(-t6, t64, t10 * t50)),
-            t92,
-        );
-        let t94 = T::fused(t48, t87, -T::fused(-t44, t85, t45 * t86));
-        let t95 = T::fused(k(0.05), t93, k(0.15) * t94)
-            - T::fused(k(1.4715), t45, k(0.01245) * t82);
-        let t96 = T::fused(
-            -t50,
-            T::fused(-k(5.886), t45, T::fused(k(0.6), t94, k(0.15) * t93)),
-            t42 * T::fused(-k(5.886), t38, T::fused(-k(0.6), t88, k(0.15) * t81)),
-        );
-        let t97 = T::fused(t57, t87, T::fused(t55, t85, t56 * t86));
-        let t98 = T::fused(t62, T::fused(k(5.886), t56, k(0.6) * t97), -t96);
-        let t99 = T::fused(
             k(0.25),
-            t98,
-            -T::fused(t58, k(5e-5) * t80, T::fused(-t49, t89, t52 * t95)),
+            t83,
+            T::fused(
+                k(0.02075),
+                t11,
+                -T::fused(-k(0.25), T::fused(k(19.62), t18, t83), t92),
+            ),
         );
-        let t100 = T::fused(t26, t29, T::fused(-t9, t16, t19 * t24));
-        let t101 = T::fused(
-            -T::fused(-t49, k(0.15) * t67, t52 * (k(0.15) * t64)),
-            t30,
-            (k(0.3) + t54) * t100,
+        let t94 = T::fused(
+            t70,
+            T::fused(
+                k(19.62),
+                t47,
+                T::fused(k(0.083), t38, T::fused(-k(0.3333333333333333), t82, t78)),
+            ),
+            t93,
         );
-        let t102 = T::fused(-t49, k(0.15) * t52, k(0.15) * t49 * t52);
-        let t103 = T::fused(t27, t29, T::fused(t13, t16, t22 * t24));
-        let t104 = (t4 + t76) / t27;
-        let t105 = T::fused(-t26, t104, t77);
+        let t95 = T::fused(
+            t63,
+            T::fused(
+                k(19.62),
+                t44,
+                T::fused(k(0.083), t34, T::fused(-k(0.3333333333333333), t76, t55)),
+            ),
+            -t94,
+        );
+        let t96 = T::fused(t61 * (t57 * t57), t73, t57 * t54 * t61 * t75);
+        let t97 = T::fused(
+            -k(0.6666666666666666),
+            t63 * t63,
+            T::fused(
+                -k(0.6666666666666666),
+                t70 * t70,
+                T::fused(-k(0.0006666666666666666), t62 * t62, t85),
+            ),
+        );
+        let t98 = T::fused(k(0.0003333333333333333), t62 * t96, -t95)
+            / (k(0.10416666666666667) + (t86 - t97));
+        let t99 = k(0.125) * t98;
+        let t100 = t87 - t99;
+        let t101 = k(0.5) * t98;
+        let t102 = T::fused(
+            t72,
+            t90,
+            -T::fused(t65, t9, T::fused(t70, t101, k(0.25) * t82)),
+        );
+        let t103 = t10 + t28;
+        let t104 = t99 - t100;
+        let t105 = T::fused(
+            t84,
+            t56,
+            -T::fused(t58, t104, -T::fused(k(0.25), t78 + t102, t63 * t103)),
+        );
         let t106 = T::fused(
-            t58,
-            k(5e-5) * t61,
-            T::fused(t49, k(0.05) * t64, t52 * (k(0.05) * t67)),
+            t56,
+            t90,
+            -T::fused(t58, t9, -T::fused(-t63, t101, k(0.25) * t76)),
         );
-        let t107 = k(0.25) * T::fused(-t43, t64, t51 * t67);
+        let t107 = T::fused(
+            t84,
+            t72,
+            -T::fused(t65, t104, -T::fused(k(0.25), t55 - t106, t70 * t103)),
+        );
         let t108 = T::fused(
-            k(5e-5) * t62,
-            t58,
-            T::fused(t49, k(0.05) * t50, t52 * (k(0.05) * t42)),
+            t84,
+            t57,
+            -T::fused(t54, t104, -T::fused(k(0.25), t53, t62 * t103)),
         );
-        let t109 = k(0.25) * (t102 - T::fused(-t50, t43, t51 * t42));
-        let t110 = T::fused(-t25, t104, t14);
-        let t111 = T::fused(t107 + (t107 - t106), t105, t110 * (t109 + (t109 + t108)));
-        let t112 = t111 + T::fused(t103, t102, -t101)
-            - T::fused(
-                k(0.25),
-                T::fused(k(5.886), t19, t98),
-                -T::fused(k(0.01245), t10, -t99),
-            );
-        let t113 = t112 / t60;
-        let t114 = k(0.25) * t113;
-        let t115 = t100 + t114;
-        let t116 = k(0.25) * t110;
-        let t117 = t116 + t103;
-        let t118 = t114 + t115;
-        let t119 = t116 + t117;
-        let t120 = t93 - T::fused(t52, t113, -T::fused(-t67, t105, t110 * t42));
-        let t121 = T::fused(
-            k(0.25),
-            t120,
-            t94 + T::fused(t49, t119, T::fused(t64, t30, t50 * t118)),
+        let t109 = T::fused(
+            t57,
+            t90,
+            -T::fused(t54, t9, -T::fused(-t62, t101, k(0.25) * t96)),
         );
-        let t122 = t81 - T::fused(t49, t113, -T::fused(-t64, t105, t110 * t50));
-        let t123 = T::fused(
-            k(0.25),
-            t122,
-            -(t88 + T::fused(t52, t119, T::fused(t67, t30, t42 * t118))),
-        );
-        let t124 = t97 + T::fused(t58, t119, T::fused(t61, t30, t62 * t118));
         *out = [
-            T::fused(t13, t117, -T::fused(-t3, t30, t9 * t115)),
-            T::fused(t22, t117, T::fused(-t17, t30, t19 * t115)),
-            -T::fused(t27, t117, T::fused(t25, t30, t26 * t115)),
-            t105,
-            -t110,
-            -t113,
-            T::fused(t55, t124, T::fused(t44, t121, t35 * t123)),
-            T::fused(t56, t124, -T::fused(t45, t121, t38 * t123)),
-            T::fused(-t57, t124, T::fused(-t48, t121, t41 * t123)),
-            -t122,
-            -t120,
-            t80 - T::fused(t58, t113, -T::fused(-t61, t105, t110 * t62)),
+            k(2.0) * T::fused(t24, t84, T::fused(t25, t28, t26 * t100)),
+            k(2.0) * T::fused(t22, t84, T::fused(t19, t28, t18 * t100)),
+            k(2.0) * T::fused(t7, t84, T::fused(t1, t28, t14 * t100)),
+            t90,
+            -t9,
+            -t101,
+            k(8.0) * T::fused(t51, t105, T::fused(t50, t107, t49 * t108)),
+            k(8.0) * T::fused(t47, t105, T::fused(t44, t107, t43 * t108)),
+            k(8.0) * T::fused(t41, t105, T::fused(t37, t107, t30 * t108)),
+            k(4.0) * t106,
+            k(4.0) * t102,
+            k(4.0) * t109,
         ];
     }
-    /// Writes λ: 189 operations (66 ±, 121 ×, 2 ÷).
+    /// Writes λ: 181 operations (66 ±, 113 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1827,111 +1851,122 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let outer_dwx = accelerations[9];
         let outer_dwy = accelerations[10];
         let outer_dwz = accelerations[11];
-        let t0 = k(0.6) * (inner_dsx + outer_dsx);
-        let t1 = T::fused(k(0.6), outer_dsy, k(5.886));
-        let t2 = T::fused(k(0.6), inner_dsy, k(5.886)) + t1;
-        let t3 = k(0.6) * (inner_dsz + outer_dsz);
-        let t4 = k(0.01245) * outer_wz;
-        let t5 = k(2.0) * outer_e1;
-        let t6 = k(2.0) * outer_e0;
-        let t7 = T::fused(-outer_e0, t6, k(1.0));
-        let t8 = T::fused(-outer_e1, t5, t7);
-        let t9 = k(0.6) * outer_dsx;
-        let t10 = outer_e3 * t6;
-        let t11 = outer_e2 * t5;
-        let t12 = t11 + t10;
-        let t13 = outer_e2 * t6;
-        let t14 = outer_e3 * t5;
-        let t15 = t14 - t13;
-        let t16 = k(0.6) * outer_dsz;
-        let t17 = T::fused(
-            t16,
-            k(0.25) * t15,
-            T::fused(-t9, k(0.25) * t8, t1 * (k(0.25) * t12)),
+        let t0 = inner_dsx + outer_dsx;
+        let t1 = outer_dsy + k(9.81);
+        let t2 = k(9.81) + (inner_dsy + t1);
+        let t3 = inner_dsz + outer_dsz;
+        let t4 = T::fused(-outer_e0, outer_e0, k(0.5));
+        let t5 = T::fused(outer_e2, outer_e2, -t4);
+        let t6 = k(0.0415) * outer_wz;
+        let t7 = outer_e0 * outer_e1;
+        let t8 = outer_e2 * outer_e3;
+        let t9 = t8 + t7;
+        let t10 = T::fused(
+            t5,
+            t1,
+            T::fused(
+                t9,
+                outer_dsz,
+                -T::fused(-outer_wy, t6, k(0.041666666666666664) * outer_dwx),
+            ),
         );
-        let t18 = t17 + T::fused(outer_wx, t4, k(0.0125) * outer_dwy);
-        let t19 = t11 - t10;
-        let t20 = k(2.0) * inner_e0;
-        let t21 = inner_e3 * t20;
-        let t22 = k(2.0) * inner_e1;
-        let t23 = inner_e2 * t22;
-        let t24 = t23 - t21;
-        let t25 = k(2.0) * outer_e2;
-        let t26 = T::fused(-outer_e2, t25, t7);
-        let t27 = k(2.0) * inner_e2;
-        let t28 = T::fused(-inner_e0, t20, k(1.0));
-        let t29 = T::fused(-inner_e2, t27, t28);
-        let t30 = outer_e1 * t6;
-        let t31 = outer_e3 * t25;
-        let t32 = t31 + t30;
-        let t33 = inner_e1 * t20;
-        let t34 = inner_e3 * t27;
+        let t11 = outer_e0 * outer_e3;
+        let t12 = outer_e1 * outer_e2;
+        let t13 = t12 - t11;
+        let t14 = T::fused(t13, outer_dsx, t10);
+        let t15 = T::fused(-inner_e0, inner_e0, k(0.5));
+        let t16 = T::fused(inner_e2, inner_e2, -t15);
+        let t17 = t12 + t11;
+        let t18 = outer_e0 * outer_e2;
+        let t19 = outer_e1 * outer_e3;
+        let t20 = t19 - t18;
+        let t21 = inner_e0 * inner_e1;
+        let t22 = inner_e2 * inner_e3;
+        let t23 = t22 + t21;
+        let t24 = T::fused(outer_e1, outer_e1, -t4);
+        let t25 = inner_e0 * inner_e3;
+        let t26 = inner_e1 * inner_e2;
+        let t27 = t26 - t25;
+        let t28 = T::fused(t27, t24, T::fused(t17, t16, t23 * t20));
+        let t29 = T::fused(
+            t17,
+            t1,
+            T::fused(
+                t20,
+                outer_dsz,
+                T::fused(outer_wx, t6, k(0.041666666666666664) * outer_dwy),
+            ),
+        );
+        let t30 = T::fused(outer_dsx, t24, t29);
+        let t31 = T::fused(inner_e3, inner_e3, -t15);
+        let t32 = t22 - t21;
+        let t33 = inner_e0 * inner_e2;
+        let t34 = inner_e1 * inner_e3;
         let t35 = t34 + t33;
         let t36 = T::fused(
-            t16,
-            k(0.25) * t32,
-            -T::fused(-t9, k(0.25) * t19, t1 * (k(0.25) * t26)),
+            k(0.0415),
+            inner_wx * inner_wz,
+            T::fused(t35, t0, T::fused(t3, t31, t32 * t2)),
         );
-        let t37 = t36 - T::fused(-outer_wy, t4, k(0.0125) * outer_dwx);
-        let t38 = T::fused(t35, t15, -T::fused(t24, t8, t29 * t12));
-        let t39 = T::fused(
-            -T::fused(t35, t32, T::fused(t24, t19, t29 * t26)),
-            t18,
-            t38 * t37,
+        let t37 = T::fused(
+            t35,
+            outer_dsx,
+            T::fused(
+                t32,
+                t1,
+                T::fused(
+                    outer_dsz,
+                    t31,
+                    -T::fused(k(0.041666666666666664), inner_dwy, -t36),
+                ),
+            ),
         );
-        let t40 = t14 + t13;
-        let t41 = t31 - t30;
-        let t42 = T::fused(-outer_e3, k(2.0) * outer_e3, t7);
-        let t43 = T::fused(t35, t42, T::fused(-t24, t40, t29 * t41));
-        let t44 = k(5e-5) * outer_dwz;
-        let t45 = inner_e2 * t20;
-        let t46 = inner_e3 * t22;
-        let t47 = k(0.25) * (t46 + t45);
-        let t48 = k(0.25) * (t34 - t33);
-        let t49 = k(0.25) * T::fused(-inner_e3, k(2.0) * inner_e3, t28);
-        let t50 = T::fused(t16, t49, -T::fused(t9, t47, t1 * t48))
-            - T::fused(t44, t43, t39);
-        let t51 = T::fused(t3, t49, -T::fused(t0, t47, t2 * t48))
-            - (T::fused(-k(0.0125), inner_dwy, k(0.01245) * (inner_wx * inner_wz))
-                - t50);
-        let t52 = T::fused(-inner_e1, t22, t28);
-        let t53 = t23 + t21;
-        let t54 = k(1.0) / T::fused(-t52, t29, t24 * t53);
-        let t55 = t46 - t45;
-        let t56 = T::fused(t55, t32, -T::fused(t52, t19, t53 * t26));
-        let t57 = T::fused(t55, t15, T::fused(t52, t8, t53 * t12));
-        let t58 = T::fused(t55, t42, -T::fused(-t52, t40, t53 * t41));
-        let t59 = T::fused(
-            k(5e-5),
-            inner_dwx,
-            -T::fused(t44, t58, T::fused(-t56, t18, t57 * t37)),
+        let t38 = T::fused(outer_e3, outer_e3, -t4);
+        let t39 = t8 - t7;
+        let t40 = t19 + t18;
+        let t41 = T::fused(t27, t40, T::fused(t23, t38, t39 * t16));
+        let t42 = T::fused(
+            k(4.0),
+            T::fused(t27, t13, T::fused(t16, t5, t23 * t9)) * t30,
+            T::fused(k(0.0006666666666666666), outer_dwz * t41, -t37),
         );
-        let t60 = t38 * t58;
-        let t61 = T::fused(t43, t57, -t60);
-        let t62 = k(1.0) / (t58 * t61);
-        let t63 = T::fused(
-            t44,
-            t62 * (t43 * t58),
-            T::fused(-(t62 * (t43 * t56)), t18, t60 * t62 * t37),
+        let t43 = T::fused(-k(4.0), t28 * t14, t42);
+        let t44 = T::fused(inner_e1, inner_e1, -t15);
+        let t45 = t26 + t25;
+        let t46 = k(1.0) / T::fused(-t44, t16, t27 * t45);
+        let t47 = t34 - t33;
+        let t48 = T::fused(t44, t24, T::fused(t47, t20, t45 * t17));
+        let t49 = T::fused(t13, t44, T::fused(t45, t5, t47 * t9));
+        let t50 = k(0.00016666666666666666) * outer_dwz;
+        let t51 = T::fused(t40, t44, T::fused(t47, t38, t45 * t39));
+        let t52 = T::fused(
+            -t48,
+            t14,
+            T::fused(t49, t30, T::fused(t51, t50, k(4.1666666666666665e-5) * inner_dwx)),
         );
-        let t64 = T::fused(-(t62 * (t56 * t58)), t18, t62 * (t57 * t58) * t37);
+        let t53 = k(4.0) * t52;
+        let t54 = t28 * t51;
+        let t55 = T::fused(-t41, t48, t54);
+        let t56 = k(1.0) / (t51 * t55);
+        let t57 = T::fused(t56 * (t41 * t49), t30, t51 * t41 * t56 * t50);
+        let t58 = T::fused(t56 * (t51 * t49), t30, t56 * (t51 * t51) * t50);
         *lambda = [
-            -t0,
-            -t2,
-            -t3,
-            T::fused(-(t52 * t54), t59, t24 * t54 * t51),
-            T::fused(-(t29 * t54), t51, t53 * t54 * t59),
-            -t9,
-            -t1,
-            -t16,
-            t63,
-            -T::fused(t44, t62 * (t58 * t58), t64),
-            -(t61 * t62 * t18),
+            -(k(0.6) * t0),
+            -(k(0.6) * t2),
+            -(k(0.6) * t3),
+            k(0.15) * T::fused(t27 * t46, t43, t44 * t46 * t53),
+            k(0.15) * T::fused(t16 * t46, t43, t45 * t46 * t53),
+            -(k(0.6) * outer_dsx),
+            -(k(0.6) * t1),
+            -(k(0.6) * outer_dsz),
+            -(k(0.075) * T::fused(-(t54 * t56), t14, t57)),
+            k(0.075) * T::fused(-(t56 * (t51 * t48)), t14, t58),
+            k(0.075) * (t55 * t56 * t30),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Weld<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 340 operations (132 ±, 205 ×, 3 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 322 operations (123 ±, 196 ×, 3 ÷).
     fn project(
         &self,
         _t: T,
@@ -1959,148 +1994,153 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Weld<T> {
         let row8 = rows[8];
         let row9 = rows[9];
         let row10 = rows[10];
-        let t0 = k(2.0) * inner_e0;
-        let t1 = inner_e2 * t0;
-        let t2 = k(2.0) * inner_e1;
-        let t3 = inner_e3 * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(-inner_e0, t0, k(1.0));
-        let t6 = T::fused(-inner_e1, t2, t5);
-        let t7 = inner_e3 * t0;
-        let t8 = inner_e2 * t2;
-        let t9 = t8 + t7;
-        let t10 = T::fused(t4, row2, T::fused(-t6, row0, t9 * row1));
-        let t11 = k(2.0) * outer_e0;
-        let t12 = outer_e2 * t11;
-        let t13 = k(2.0) * outer_e1;
-        let t14 = outer_e3 * t13;
-        let t15 = t14 + t12;
-        let t16 = outer_e1 * t11;
-        let t17 = k(2.0) * outer_e2;
-        let t18 = outer_e3 * t17;
-        let t19 = t18 - t16;
-        let t20 = T::fused(-outer_e0, t11, k(1.0));
-        let t21 = T::fused(-outer_e3, k(2.0) * outer_e3, t20);
-        let t22 = T::fused(t4, t21, -T::fused(-t6, t15, t9 * t19));
-        let t23 = t8 - t7;
-        let t24 = k(2.0) * inner_e2;
-        let t25 = T::fused(-inner_e2, t24, t5);
-        let t26 = inner_e1 * t0;
-        let t27 = inner_e3 * t24;
+        let t0 = T::fused(-outer_e0, outer_e0, k(0.5));
+        let t1 = T::fused(outer_e3, outer_e3, -t0);
+        let t2 = T::fused(-inner_e0, inner_e0, k(0.5));
+        let t3 = T::fused(inner_e3, inner_e3, -t2);
+        let t4 = outer_e0 * outer_e1;
+        let t5 = outer_e2 * outer_e3;
+        let t6 = t5 - t4;
+        let t7 = inner_e0 * inner_e1;
+        let t8 = inner_e2 * inner_e3;
+        let t9 = t8 - t7;
+        let t10 = outer_e0 * outer_e2;
+        let t11 = outer_e1 * outer_e3;
+        let t12 = t11 + t10;
+        let t13 = inner_e0 * inner_e2;
+        let t14 = inner_e1 * inner_e3;
+        let t15 = t14 + t13;
+        let t16 = T::fused(t15, t12, T::fused(t3, t1, t9 * t6));
+        let t17 = k(0.001) * t16;
+        let t18 = t14 - t13;
+        let t19 = inner_e0 * inner_e3;
+        let t20 = inner_e1 * inner_e2;
+        let t21 = t20 + t19;
+        let t22 = T::fused(inner_e1, inner_e1, -t2);
+        let t23 = T::fused(t12, t22, T::fused(t18, t1, t21 * t6));
+        let t24 = T::fused(outer_e1, outer_e1, -t0);
+        let t25 = t11 - t10;
+        let t26 = outer_e0 * outer_e3;
+        let t27 = outer_e1 * outer_e2;
         let t28 = t27 + t26;
-        let t29 = T::fused(t28, t21, T::fused(-t23, t15, t25 * t19));
-        let t30 = T::fused(-outer_e1, t13, t20);
-        let t31 = outer_e3 * t11;
-        let t32 = outer_e2 * t13;
-        let t33 = t32 + t31;
-        let t34 = t14 - t12;
-        let t35 = T::fused(t28, t34, -T::fused(t23, t30, t25 * t33));
-        let t36 = t35 * t22;
-        let t37 = T::fused(t4, t34, T::fused(t6, t30, t9 * t33));
-        let t38 = T::fused(t29, t37, -t36);
-        let t39 = k(1.0) / (t22 * t38);
-        let t40 = T::fused(-(t39 * (t29 * t22)), row8, t39 * (t22 * t22) * row9);
-        let t41 = t3 + t1;
-        let t42 = t27 - t26;
-        let t43 = T::fused(-inner_e3, k(2.0) * inner_e3, t5);
-        let t44 = T::fused(t43, t21, T::fused(t41, t15, t42 * t19));
-        let t45 = T::fused(-(t36 * t39), row8, t39 * (t37 * t22) * row9);
-        let t46 = t18 + t16;
-        let t47 = t32 - t31;
-        let t48 = T::fused(-outer_e2, t17, t20);
-        let t49 = T::fused(-t46, row7, T::fused(-t47, row5, t48 * row6));
-        let t50 = T::fused(t43, t34, -T::fused(-t41, t30, t42 * t33));
-        let t51 = T::fused(t4, t46, -T::fused(t6, t47, t9 * t48));
-        let t52 = T::fused(-(t39 * (t29 * t51)), row8, t39 * (t51 * t22) * row9);
-        let t53 = T::fused(-(t38 * t39), row10, t52);
-        let t54 = T::fused(t34, row7, T::fused(-t30, row5, t33 * row6));
-        let t55 = T::fused(t43, t46, T::fused(-t41, t47, t42 * t48));
-        let t56 = T::fused(
-            t50,
-            T::fused(-k(0.05), t45, k(0.15) * t49),
-            t55 * T::fused(-k(0.05), t53, k(0.15) * t54),
+        let t29 = T::fused(t22, t24, T::fused(t18, t25, t21 * t28));
+        let t30 = t8 + t7;
+        let t31 = T::fused(inner_e2, inner_e2, -t2);
+        let t32 = t20 - t19;
+        let t33 = T::fused(t32, t12, T::fused(t30, t1, t6 * t31));
+        let t34 = T::fused(t32, t24, T::fused(t28, t31, t30 * t25));
+        let t35 = t34 * t23;
+        let t36 = T::fused(-t33, t29, t35);
+        let t37 = k(1.0) / (t23 * t36);
+        let t38 = T::fused(-(t37 * (t23 * t23)), row9, t23 * t33 * t37 * row8);
+        let t39 = t5 + t4;
+        let t40 = T::fused(outer_e2, outer_e2, -t0);
+        let t41 = t27 - t26;
+        let t42 = T::fused(t15, t41, T::fused(t39, t3, t9 * t40));
+        let t43 = T::fused(t32, t41, T::fused(t31, t40, t30 * t39));
+        let t44 = T::fused(t15, t24, T::fused(t25, t3, t9 * t28));
+        let t45 = k(1.0) / T::fused(-t22, t31, t32 * t21);
+        let t46 = T::fused(row4, t31 * t45, row3 * (t32 * t45));
+        let t47 = T::fused(t41, t22, T::fused(t21, t40, t18 * t39));
+        let t48 = T::fused(
+            t42,
+            t47,
+            -T::fused(-t23, t17, k(1.5) * T::fused(-t34, t47, t43 * t29)),
         );
-        let t57 = T::fused(t28, t46, T::fused(t23, t47, t25 * t48));
-        let t58 = T::fused(
-            -t35,
-            T::fused(-k(0.6), t54, k(0.15) * t53),
-            t57 * T::fused(-k(0.6), t49, k(0.15) * t45),
+        let t49 = T::fused(row4, t21 * t45, row3 * (t22 * t45));
+        let t50 = T::fused(
+            t46,
+            T::fused(t44, t34, T::fused(t33, t17, t43 * t42)),
+            t49 * T::fused(t44, t29, t48),
         );
-        let t59 = T::fused(-t21, row7, T::fused(t15, row5, t19 * row6));
-        let t60 = k(0.25) * T::fused(t29, k(0.6) * t59, -t58);
-        let t61 = T::fused(-t28, row2, T::fused(-t23, row0, t25 * row1));
-        let t62 = k(0.15) * t57;
-        let t63 = k(0.15) * t35;
-        let t64 = T::fused(-t50, t62, t55 * t63);
-        let t65 = k(0.15) - t64;
-        let t66 = T::fused(
-            T::fused(-t50, k(0.15) * t51, t55 * (k(0.15) * t37)),
-            t10,
-            (k(0.3) + t65) * t61,
+        let t51 = T::fused(t30, row2, T::fused(t31, row1, t32 * row0));
+        let t52 = T::fused(-t34, t42, t43 * t44);
+        let t53 = k(0.0625) - t52;
+        let t54 = T::fused(t18, row2, T::fused(t22, row0, t21 * row1));
+        let t55 = T::fused(
+            k(96.0),
+            T::fused(-t42, t29, t44 * t47) * t54,
+            -T::fused(-k(8.0), t50, k(96.0) * ((k(0.125) + t53) * t51)),
         );
-        let t67 = T::fused(-t43, row2, T::fused(t41, row0, t42 * row1));
-        let t68 = T::fused(-t50, k(0.15) * t55, k(0.15) * t50 * t55);
-        let t69 = k(1.0) / T::fused(-t6, t25, t23 * t9);
-        let t70 = T::fused(-row3, t6 * t69, row4 * (t9 * t69));
-        let t71 = T::fused(
+        let t56 = T::fused(-(t37 * (t23 * t29)), row9, t35 * t37 * row8);
+        let t57 = T::fused(t39, row7, T::fused(t40, row6, t41 * row5));
+        let t58 = T::fused(t1, row7, T::fused(t6, row6, t12 * row5));
+        let t59 = T::fused(-(t37 * (t23 * t47)), row9, t37 * (t33 * t47) * row8);
+        let t60 = T::fused(t36 * t37, row10, -t59);
+        let t61 = T::fused(t25, row7, T::fused(t24, row5, t28 * row6));
+        let t62 = T::fused(
+            t34,
+            T::fused(-k(0.03125), t60, t61),
+            T::fused(t43, T::fused(-k(0.03125), t56, t57), t33 * t58),
+        );
+        let t63 = k(24.0) * t62;
+        let t64 = T::fused(
             t44,
-            k(5e-5) * t22,
-            T::fused(t50, k(0.05) * t37, t55 * (k(0.05) * t51)),
+            T::fused(-k(24.0), t57, t56),
+            -T::fused(t42, T::fused(-k(24.0), t61, t60), -(t63 + (t63 - t55))),
         );
-        let t72 = k(0.25) * T::fused(-t62, t37, t63 * t51);
-        let t73 = T::fused(-row3, t23 * t69, row4 * (t25 * t69));
-        let t74 = T::fused(
-            k(5e-5) * t29,
-            t44,
-            T::fused(t50, k(0.05) * t35, t55 * (k(0.05) * t57)),
+        let t65 = T::fused(
+            -k(0.6666666666666666),
+            t44 * t44,
+            T::fused(
+                -k(0.6666666666666666),
+                t42 * t42,
+                T::fused(-k(0.0006666666666666666), t16 * t16, t52),
+            ),
         );
-        let t75 = k(0.25) * (t68 - T::fused(-t35, t62, t63 * t57));
-        let t76 = T::fused(t72 + (t72 - t71), t70, (t75 + (t75 + t74)) * t73);
-        let t77 = t76 - T::fused(t68, t67, -t66)
-            + (t60 + (t60 + T::fused(-t44, k(5e-5) * t40, t56)));
+        let t66 = T::fused(t38, t17, t64) / (k(0.10416666666666667) + (t53 - t65));
+        let t67 = T::fused(k(192.0), t51, -t66);
+        let t68 = k(0.005208333333333333) * t67;
+        let t69 = k(0.0625) * t46;
+        let t70 = T::fused(t3, row2, T::fused(t9, row1, t15 * row0)) + t69;
+        let t71 = k(0.005208333333333333) * (t66 - t67);
+        let t72 = k(0.08333333333333333) * t66;
+        let t73 = T::fused(
+            t47,
+            t49,
+            T::fused(t43, t46, T::fused(t42, t72, k(0.125) * t60)),
+        );
+        let t74 = t69 + t70;
+        let t75 = T::fused(
+            -t34,
+            t71,
+            T::fused(t44, t74, T::fused(-k(0.0625), t73, k(0.25) * t61)),
+        );
+        let t76 = T::fused(t29, t54, t75);
+        let t77 = T::fused(
+            t29,
+            t49,
+            T::fused(t34, t46, -T::fused(-t44, t72, k(0.125) * t56)),
+        );
         let t78 = T::fused(
-            t44,
-            k(5e-5) * t44,
-            T::fused(t50, k(0.05) * t50, t55 * (k(0.05) * t55)),
+            -t43,
+            t71,
+            T::fused(t42, t74, T::fused(k(0.0625), t77, k(0.25) * t57)),
         );
-        let t79 = T::fused(
-            k(0.5),
-            t65,
-            k(0.075) + (k(0.0125) - T::fused(k(0.5), t64, -(k(0.0375) + t78))),
+        let t79 = T::fused(t47, t54, t78);
+        let t80 = T::fused(
+            t23,
+            t54,
+            T::fused(-t33, t71, T::fused(k(0.25), t58, t16 * t74)),
         );
-        let t80 = t77 / t79;
-        let t81 = k(0.25) * t80;
-        let t82 = t61 - t81;
-        let t83 = k(0.25) * t73;
-        let t84 = t83 - t67;
-        let t85 = t81 - t82;
-        let t86 = t83 + t84;
-        let t87 = t53 + T::fused(t55, t80, -T::fused(-t51, t70, t57 * t73));
-        let t88 = T::fused(
-            k(0.25),
-            t87,
-            -(t54 + T::fused(t50, t86, T::fused(t37, t10, t35 * t85))),
+        let t81 = T::fused(
+            t23,
+            t49,
+            T::fused(t33, t46, -T::fused(-t16, t72, k(0.125) * t38)),
         );
-        let t89 = t45 + T::fused(t50, t80, -T::fused(-t37, t70, t35 * t73));
-        let t90 = T::fused(
-            k(0.25),
-            t89,
-            -(t49 - T::fused(t55, t86, T::fused(t51, t10, t57 * t85))),
-        );
-        let t91 = t59 - T::fused(t44, t86, T::fused(t22, t10, t29 * t85));
         *out = [
-            -T::fused(t41, t84, T::fused(t6, t10, t23 * t82)),
-            T::fused(-t42, t84, T::fused(t9, t10, t25 * t82)),
-            T::fused(t43, t84, -T::fused(-t4, t10, t28 * t82)),
-            -t70,
-            t73,
-            t80,
-            T::fused(t15, t91, T::fused(t30, t88, t47 * t90)),
-            T::fused(t19, t91, -T::fused(t33, t88, t48 * t90)),
-            T::fused(-t21, t91, T::fused(-t34, t88, t46 * t90)),
-            -t89,
-            -t87,
-            t40 + T::fused(t44, t80, -T::fused(-t22, t70, t29 * t73)),
+            k(4.0) * T::fused(t22, t54, T::fused(t32, t68, t15 * t70)),
+            k(4.0) * T::fused(t21, t54, T::fused(t31, t68, t9 * t70)),
+            k(4.0) * T::fused(t18, t54, T::fused(t30, t68, t3 * t70)),
+            -(k(0.5) * t49),
+            -(k(0.5) * t46),
+            -(k(0.041666666666666664) * t66),
+            k(16.0) * T::fused(t24, t76, T::fused(t41, t79, t12 * t80)),
+            k(16.0) * T::fused(t28, t76, T::fused(t40, t79, t6 * t80)),
+            k(16.0) * T::fused(t25, t76, T::fused(t39, t79, t1 * t80)),
+            -(k(2.0) * t77),
+            -(k(2.0) * t73),
+            -(k(2.0) * t81),
         ];
     }
 }
@@ -2211,7 +2251,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let inner_e3 = y[6];
         *out = [-(k(14.715) * ((inner_e0 + inner_e3) * (inner_e0 - inner_e3)))];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 126 operations (52 ±, 74 ×, 0 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 105 operations (48 ±, 57 ×, 0 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2233,76 +2273,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = k(0.25) * inner_wz;
-        let t1 = k(0.25) * inner_wy;
-        let t2 = T::fused(inner_wz, t0, inner_wy * t1);
-        let t3 = inner_e0 * inner_e0;
-        let t4 = (inner_e0 + inner_e3) * (inner_e0 - inner_e3);
-        let t5 = k(3.67875) * t4;
-        let t6 = inner_wx * t1;
-        let t7 = t6 - t5;
-        let t8 = inner_e0 * inner_e3;
-        let t9 = inner_e1 * inner_e2;
+        let t0 = inner_wx * inner_wz;
+        let t1 = k(2.0) * t0;
+        let t2 = inner_e0 * inner_e2;
+        let t3 = inner_e1 * inner_e3;
+        let t4 = k(14.715) * ((inner_e0 + inner_e3) * (inner_e0 - inner_e3));
+        let t5 = T::fused(inner_wx, inner_wy, -t4);
+        let t6 = inner_e0 * inner_e3;
+        let t7 = inner_e1 * inner_e2;
+        let t8 = T::fused(inner_wy, inner_wy, inner_wz * inner_wz);
+        let t9 = inner_e0 * inner_e0;
         let t10 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3)),
-            t2,
-            k(2.0) * (t9 - t8) * t7,
+            k(0.5) - T::fused(inner_e1, inner_e1, t9),
+            t8,
+            T::fused(t3 + t2, t1, (t7 - t6) * t5),
         );
-        let t11 = inner_wx * inner_wz;
-        let t12 = k(0.25) * t11;
-        let t13 = inner_wx * t0;
-        let t14 = t13 + t12;
-        let t15 = inner_e0 * inner_e2;
-        let t16 = inner_e1 * inner_e3;
-        let t17 = T::fused(
-            k(2.0) * (t9 + t8),
-            t2,
-            k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3)) * t7,
+        let t11 = inner_e0 * inner_e1;
+        let t12 = inner_e2 * inner_e3;
+        let t13 = T::fused(
+            -(t12 - t11),
+            t1,
+            (k(0.5) - T::fused(inner_e2, inner_e2, t9)) * t5,
         );
-        let t18 = inner_e0 * inner_e1;
-        let t19 = inner_e2 * inner_e3;
-        let t20 = T::fused(-(k(2.0) * (t16 - t15)), t2, k(2.0) * (t19 + t18) * t7);
-        let t21 = inner_wy * inner_wz;
-        let t22 = k(14.715) * t4;
-        let t23 = k(0.25) * outer_wx;
-        let t24 = t5 - (T::fused(outer_wz, t23, t6) - (t5 - t7));
-        let t25 = outer_e0 * outer_e0;
-        let t26 = k(0.25) * outer_wy;
-        let t27 = t12 + (T::fused(outer_wz, t26, t13) + (t12 + t14));
-        let t28 = outer_e0 * outer_e3;
-        let t29 = outer_e1 * outer_e2;
-        let t30 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t25)),
-            t24,
-            k(2.0) * (t29 - t28) * t27,
+        let t14 = T::fused(
+            -(k(0.5) - T::fused(inner_e3, inner_e3, t9)),
+            t1,
+            (t12 + t11) * t5,
         );
-        let t31 = t2 + (t2 + T::fused(outer_wy, t26, outer_wx * t23));
-        let t32 = outer_e0 * outer_e2;
-        let t33 = outer_e1 * outer_e3;
-        let t34 = T::fused(
-            k(2.0) * (t29 + t28),
-            t24,
-            k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t25)) * t27,
+        let t15 = inner_wy * inner_wz;
+        let t16 = T::fused(
+            outer_wy,
+            outer_wy,
+            T::fused(k(2.0), t8, outer_wx * outer_wx),
         );
-        let t35 = outer_e0 * outer_e1;
-        let t36 = outer_e2 * outer_e3;
-        let t37 = T::fused(-(k(2.0) * (t33 - t32)), t24, k(2.0) * (t36 + t35) * t27);
+        let t17 = outer_e0 * outer_e2;
+        let t18 = outer_e1 * outer_e3;
+        let t19 = t1 + (t0 + T::fused(outer_wy, outer_wz, t1));
+        let t20 = outer_e0 * outer_e3;
+        let t21 = outer_e1 * outer_e2;
+        let t22 = t5 - (t4 - T::fused(outer_wx, outer_wz, t5));
+        let t23 = outer_e0 * outer_e0;
+        let t24 = T::fused(
+            k(0.5) - T::fused(outer_e1, outer_e1, t23),
+            t22,
+            -T::fused(-(t18 + t17), t16, (t21 - t20) * t19),
+        );
+        let t25 = outer_e0 * outer_e1;
+        let t26 = outer_e2 * outer_e3;
+        let t27 = T::fused(
+            t26 - t25,
+            t16,
+            (k(0.5) - T::fused(outer_e2, outer_e2, t23)) * t19,
+        );
+        let t28 = T::fused(
+            k(0.5) - T::fused(outer_e3, outer_e3, t23),
+            t16,
+            (t26 + t25) * t19,
+        );
         *out = [
-            T::fused(k(2.0) * (t16 + t15), t14, t10),
-            T::fused(k(2.0) * (t19 - t18), t14, -t17),
-            T::fused(-(k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t3))), t14, t20),
-            t21,
-            -t11,
-            -t22,
-            T::fused(-(k(2.0) * (t33 + t32)), t31, t30),
-            -T::fused(k(2.0) * (t36 - t35), t31, t34),
-            T::fused(k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t25)), t31, t37),
-            -t11,
-            -t22,
-            t21,
+            k(0.5) * t10,
+            -(k(0.5) * T::fused(t7 + t6, t8, t13)),
+            -(k(0.5) * T::fused(t3 - t2, t8, -t14)),
+            t15,
+            -t0,
+            -t4,
+            -(k(0.5) * t24),
+            k(0.5) * T::fused(t21 + t20, t22, -t27),
+            k(0.5) * T::fused(t18 - t17, t22, t28),
+            -t0,
+            -t4,
+            t15,
         ];
     }
-    /// Writes λ: 97 operations (39 ±, 58 ×, 0 ÷).
+    /// Writes λ: 94 operations (40 ±, 54 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -2335,61 +2378,76 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let outer_dwx = accelerations[9];
         let outer_dwy = accelerations[10];
         let outer_dwz = accelerations[11];
-        let t0 = k(0.6) * (inner_dsx + outer_dsx);
-        let t1 = T::fused(k(0.6), outer_dsy, k(5.886));
-        let t2 = T::fused(k(0.6), inner_dsy, k(5.886)) + t1;
-        let t3 = k(0.6) * (inner_dsz + outer_dsz);
-        let t4 = k(0.01245) * outer_wz;
-        let t5 = outer_e0 * outer_e3;
-        let t6 = outer_e1 * outer_e2;
-        let t7 = k(0.6) * outer_dsx;
-        let t8 = outer_e0 * outer_e0;
-        let t9 = T::fused(
-            -t7,
-            k(0.5) * (t6 - t5),
-            t1 * (k(0.5) * (k(0.5) - T::fused(outer_e2, outer_e2, t8))),
+        let t0 = inner_dsx + outer_dsx;
+        let t1 = outer_dsy + k(9.81);
+        let t2 = k(9.81) + (inner_dsy + t1);
+        let t3 = inner_dsz + outer_dsz;
+        let t4 = k(0.0415) * outer_wz;
+        let t5 = T::fused(
+            T::fused(outer_e0, outer_e1, outer_e2 * outer_e3),
+            outer_dsz,
+            -T::fused(-outer_wy, t4, k(0.041666666666666664) * outer_dwx),
         );
-        let t10 = k(0.6) * outer_dsz;
-        let t11 = T::fused(
-            t10,
-            k(0.5) * T::fused(outer_e0, outer_e1, outer_e2 * outer_e3),
-            -t9,
-        ) - T::fused(-outer_wy, t4, k(0.0125) * outer_dwx);
-        let t12 = k(0.5) * T::fused(inner_e0, inner_e2, inner_e1 * inner_e3);
-        let t13 = k(0.5) * T::fused(-inner_e0, inner_e1, inner_e2 * inner_e3);
-        let t14 = k(0.5) * (k(0.5) - T::fused(inner_e3, inner_e3, inner_e0 * inner_e0));
-        let t15 = T::fused(-k(0.0125), inner_dwy, k(0.01245) * (inner_wx * inner_wz))
-            - (T::fused(t10, t14, -T::fused(t7, t12, t1 * t13)) - t11);
-        let t16 = T::fused(t3, t14, -T::fused(t0, t12, t2 * t13)) - t15;
+        let t6 = outer_e0 * outer_e0;
+        let t7 = outer_e0 * outer_e3;
+        let t8 = outer_e1 * outer_e2;
+        let t9 = T::fused(
+            t8 - t7,
+            outer_dsx,
+            -T::fused(k(0.5) - T::fused(outer_e2, outer_e2, t6), t1, -t5),
+        );
+        let t10 = k(0.5) - T::fused(inner_e3, inner_e3, inner_e0 * inner_e0);
+        let t11 = T::fused(-inner_e0, inner_e1, inner_e2 * inner_e3);
+        let t12 = T::fused(
+            t11,
+            t1,
+            -T::fused(
+                t10,
+                outer_dsz,
+                -T::fused(
+                    -k(0.041666666666666664),
+                    inner_dwy,
+                    k(0.0415) * (inner_wx * inner_wz),
+                ),
+            ),
+        );
+        let t13 = T::fused(inner_e0, inner_e2, inner_e1 * inner_e3);
+        let t14 = T::fused(
+            t11,
+            t2,
+            -T::fused(t10, t3, -(T::fused(t13, outer_dsx, t12) + t9)),
+        );
+        let t15 = T::fused(t13, t0, t14);
+        let t16 = inner_e0 - inner_e3;
         let t17 = inner_e0 + inner_e3;
-        let t18 = T::fused(-t17, t17, k(1.0));
-        let t19 = k(5e-5) * (inner_dwx + outer_dwz);
-        let t20 = t17 * (inner_e0 - inner_e3);
+        let t18 = (t17 - t16) * (t17 + t16);
+        let t19 = inner_dwx + outer_dwz;
+        let t20 = t17 * t16;
         let t21 = T::fused(
-            -t7,
-            k(0.5) * (k(0.5) - T::fused(outer_e1, outer_e1, t8)),
-            t1 * (k(0.5) * (t6 + t5)),
+            T::fused(-outer_e0, outer_e2, outer_e1 * outer_e3),
+            outer_dsz,
+            T::fused(outer_wx, t4, k(0.041666666666666664) * outer_dwy),
         );
         let t22 = T::fused(
-            t10,
-            k(0.5) * T::fused(-outer_e0, outer_e2, outer_e1 * outer_e3),
-            t21,
-        ) + T::fused(outer_wx, t4, k(0.0125) * outer_dwy);
+            k(0.5) - T::fused(outer_e1, outer_e1, t6),
+            outer_dsx,
+            -T::fused(t8 + t7, t1, t21),
+        );
         *lambda = [
-            -t0,
-            -t2,
-            -t3,
-            -T::fused(t18, t16, t20 * t19),
-            T::fused(-t20, t16, t18 * t19),
-            -t7,
-            -t1,
-            -t10,
-            t11,
+            -(k(0.6) * t0),
+            -(k(0.6) * t2),
+            -(k(0.6) * t3),
+            -(k(0.15) * T::fused(t18, t15, k(0.0003333333333333333) * (t20 * t19))),
+            -(k(0.3) * T::fused(-t20, t15, k(8.333333333333333e-5) * (t18 * t19))),
+            -(k(0.6) * outer_dsx),
+            -(k(0.6) * t1),
+            -(k(0.6) * outer_dsz),
+            k(0.3) * t9,
             k(5e-5) * outer_dwz,
-            t22,
+            -(k(0.3) * t22),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 189 operations (75 ±, 114 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 164 operations (72 ±, 92 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let inner_e0 = y[3];
@@ -2406,130 +2464,115 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = k(0.25) * inner_wz;
-        let t1 = k(0.25) * inner_wy;
-        let t2 = T::fused(inner_wz, t0, inner_wy * t1);
-        let t3 = inner_e0 * inner_e0;
-        let t4 = inner_e0 + inner_e3;
-        let t5 = t4 * (inner_e0 - inner_e3);
-        let t6 = k(3.67875) * t5;
-        let t7 = inner_wx * t1;
-        let t8 = t7 - t6;
-        let t9 = inner_e0 * inner_e3;
-        let t10 = inner_e1 * inner_e2;
-        let t11 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3)),
-            t2,
-            k(2.0) * (t10 - t9) * t8,
+        let t0 = inner_wx * inner_wz;
+        let t1 = k(2.0) * t0;
+        let t2 = inner_e0 * inner_e2;
+        let t3 = inner_e1 * inner_e3;
+        let t4 = t3 + t2;
+        let t5 = inner_e0 - inner_e3;
+        let t6 = inner_e0 + inner_e3;
+        let t7 = t6 * t5;
+        let t8 = k(14.715) * t7;
+        let t9 = T::fused(inner_wx, inner_wy, -t8);
+        let t10 = inner_e0 * inner_e3;
+        let t11 = inner_e1 * inner_e2;
+        let t12 = T::fused(inner_wy, inner_wy, inner_wz * inner_wz);
+        let t13 = inner_e0 * inner_e0;
+        let t14 = T::fused(
+            k(0.5) - T::fused(inner_e1, inner_e1, t13),
+            t12,
+            T::fused(t4, t1, (t11 - t10) * t9),
         );
-        let t12 = inner_wx * inner_wz;
-        let t13 = k(0.25) * t12;
-        let t14 = inner_wx * t0;
-        let t15 = t14 + t13;
-        let t16 = inner_e0 * inner_e2;
-        let t17 = inner_e1 * inner_e3;
-        let t18 = t17 + t16;
-        let t19 = T::fused(k(2.0) * t18, t15, t11);
-        let t20 = T::fused(
-            k(2.0) * (t10 + t9),
-            t2,
-            k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3)) * t8,
+        let t15 = inner_e0 * inner_e1;
+        let t16 = inner_e2 * inner_e3;
+        let t17 = t16 - t15;
+        let t18 = T::fused(
+            t11 + t10,
+            t12,
+            T::fused(-t17, t1, (k(0.5) - T::fused(inner_e2, inner_e2, t13)) * t9),
         );
-        let t21 = inner_e0 * inner_e1;
-        let t22 = inner_e2 * inner_e3;
-        let t23 = t22 - t21;
-        let t24 = T::fused(k(2.0) * t23, t15, -t20);
-        let t25 = T::fused(-(k(2.0) * (t17 - t16)), t2, k(2.0) * (t22 + t21) * t8);
-        let t26 = k(0.5) - T::fused(inner_e3, inner_e3, t3);
-        let t27 = T::fused(k(2.0) * t26, t15, -t25);
-        let t28 = inner_wy * inner_wz;
-        let t29 = k(14.715) * t5;
-        let t30 = k(0.25) * outer_wx;
-        let t31 = t6 - (T::fused(outer_wz, t30, t7) - (t6 - t8));
+        let t19 = k(0.5) - T::fused(inner_e3, inner_e3, t13);
+        let t20 = T::fused(t3 - t2, t12, -T::fused(-t19, t1, (t16 + t15) * t9));
+        let t21 = inner_wy * inner_wz;
+        let t22 = T::fused(
+            outer_wy,
+            outer_wy,
+            T::fused(k(2.0), t12, outer_wx * outer_wx),
+        );
+        let t23 = outer_e0 * outer_e2;
+        let t24 = outer_e1 * outer_e3;
+        let t25 = outer_wy * outer_wz;
+        let t26 = t1 + (t0 + (t25 + t1));
+        let t27 = outer_e0 * outer_e3;
+        let t28 = outer_e1 * outer_e2;
+        let t29 = t28 - t27;
+        let t30 = outer_wx * outer_wz;
+        let t31 = t9 - (t8 - (t30 + t9));
         let t32 = outer_e0 * outer_e0;
         let t33 = k(0.5) - T::fused(outer_e1, outer_e1, t32);
-        let t34 = k(0.25) * outer_wy;
-        let t35 = t13 + (T::fused(outer_wz, t34, t14) + (t13 + t15));
-        let t36 = outer_e0 * outer_e3;
-        let t37 = outer_e1 * outer_e2;
-        let t38 = t37 - t36;
-        let t39 = t2 + (t2 + T::fused(outer_wy, t34, outer_wx * t30));
-        let t40 = outer_e0 * outer_e2;
-        let t41 = outer_e1 * outer_e3;
+        let t34 = T::fused(t33, t31, -T::fused(-(t24 + t23), t22, t29 * t26));
+        let t35 = outer_e0 * outer_e1;
+        let t36 = outer_e2 * outer_e3;
+        let t37 = k(0.5) - T::fused(outer_e2, outer_e2, t32);
+        let t38 = t28 + t27;
+        let t39 = T::fused(t38, t31, -T::fused(t36 - t35, t22, t37 * t26));
+        let t40 = t36 + t35;
+        let t41 = t24 - t23;
         let t42 = T::fused(
-            k(2.0) * (t41 + t40),
-            t39,
-            -T::fused(k(2.0) * t33, t31, k(2.0) * t38 * t35),
+            t41,
+            t31,
+            T::fused(k(0.5) - T::fused(outer_e3, outer_e3, t32), t22, t40 * t26),
         );
-        let t43 = t37 + t36;
-        let t44 = k(0.5) - T::fused(outer_e2, outer_e2, t32);
-        let t45 = outer_e0 * outer_e1;
-        let t46 = outer_e2 * outer_e3;
+        let t43 = t34 - t14;
+        let t44 = k(19.62) + t39;
+        let t45 = k(19.62) - (t18 - t44);
+        let t46 = t42 - t20;
         let t47 = T::fused(
-            k(2.0) * (t46 - t45),
-            t39,
-            T::fused(k(2.0) * t43, t31, k(2.0) * t44 * t35),
+            k(0.083),
+            t25,
+            T::fused(t40, t42, -T::fused(t29, t34, t37 * t44)),
         );
-        let t48 = t41 - t40;
-        let t49 = t46 + t45;
+        let t48 = T::fused(k(0.08333333333333333), t0, t47);
+        let t49 = T::fused(
+            t4,
+            t34,
+            -(t48 - T::fused(t19, t46, T::fused(-t17, t45, t4 * t43))),
+        );
         let t50 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t32)),
-            t39,
-            T::fused(-(k(2.0) * t48), t31, k(2.0) * t49 * t35),
+            k(0.16633333333333333),
+            t0,
+            -T::fused(t19, t42, -T::fused(t17, t44, -t49)),
         );
-        let t51 = k(0.6) * (t19 - t42);
-        let t52 = T::fused(-k(0.6), t47, k(5.886));
-        let t53 = t52 + T::fused(k(0.6), t24, k(5.886));
-        let t54 = k(0.6) * (t27 - t50);
-        let t55 = k(0.01245) * outer_wz;
-        let t56 = k(0.6) * t50;
-        let t57 = k(0.6) * t42;
-        let t58 = T::fused(
-            -(k(0.5) * t49),
-            t56,
-            T::fused(k(0.5) * t44, t52, k(0.5) * t38 * t57),
-        );
-        let t59 = t58 - T::fused(outer_wy, t55, k(0.0125) * t12);
-        let t60 = k(0.5) * t26;
-        let t61 = k(0.5) * t23;
-        let t62 = k(0.5) * t18;
-        let t63 = T::fused(
-            k(0.02495),
-            t12,
-            -(T::fused(t60, t56, T::fused(-t61, t52, t62 * t57)) + t59),
-        );
-        let t64 = T::fused(t60, t54, T::fused(t61, t53, t62 * t51)) + t63;
-        let t65 = T::fused(-t4, t4, k(1.0));
-        let t66 = k(0.0001) * t28;
-        let t67 = T::fused(
-            k(0.5) * t48,
-            t56,
-            T::fused(k(0.5) * t43, t52, k(0.5) * t33 * t57),
+        let t51 = (t6 - t5) * (t6 + t5);
+        let t52 = T::fused(
+            k(0.083),
+            t30,
+            T::fused(t41, t42, T::fused(t33, t34, t38 * t44)),
         );
         *out = [
-            t19,
-            t24,
-            -t27,
-            t28,
-            -t12,
-            -t29,
-            -t42,
-            -t47,
-            t50,
-            -t12,
-            -t29,
-            t28,
-            -t51,
-            -t53,
-            t54,
-            T::fused(-t5, t66, t65 * t64),
-            T::fused(t5, t64, t65 * t66),
-            t57,
-            -t52,
-            -t56,
-            -t59,
-            k(5e-5) * t28,
-            t67 - T::fused(-outer_wx, t55, k(0.1839375) * t5),
+            k(0.5) * t14,
+            -(k(0.5) * t18),
+            -(k(0.5) * t20),
+            t21,
+            -t0,
+            -t8,
+            -(k(0.5) * t34),
+            k(0.5) * t39,
+            k(0.5) * t42,
+            -t0,
+            -t8,
+            t21,
+            k(0.3) * t43,
+            -(k(0.3) * t45),
+            -(k(0.3) * t46),
+            -(k(0.0001) * T::fused(k(750.0), t51 * t50, t21 * t7)),
+            -(k(5e-5) * T::fused(-k(3000.0), t7 * t50, t21 * t51)),
+            k(0.3) * t34,
+            -(k(0.3) * t44),
+            -(k(0.3) * t42),
+            k(0.15) * t48,
+            k(5e-5) * t21,
+            k(0.15) * T::fused(-k(1.22625), t7, t52),
         ];
     }
 }
@@ -2567,14 +2610,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Weld<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 208 operations (79 ±, 128 ×, 1 ÷).
+    /// Writes the outputs: 191 operations (73 ±, 117 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
-        let outer_rx = y[7];
-        let outer_ry = y[8];
-        let outer_rz = y[9];
         let inner_e0 = y[3];
         let inner_e1 = y[4];
         let inner_e2 = y[5];
@@ -2592,96 +2632,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Weld<T> {
         let outer_dwx = accelerations[9];
         let outer_dwy = accelerations[10];
         let outer_dwz = accelerations[11];
-        let t0 = k(2.0) * inner_e1;
-        let t1 = k(2.0) * inner_e0;
-        let t2 = T::fused(-inner_e0, t1, k(1.0));
-        let t3 = T::fused(-inner_e1, t0, t2);
-        let t4 = k(0.6) * outer_dsx;
-        let t5 = inner_e3 * t1;
-        let t6 = inner_e2 * t0;
-        let t7 = t6 + t5;
-        let t8 = T::fused(k(0.6), outer_dsy, k(5.886));
-        let t9 = inner_e2 * t1;
-        let t10 = inner_e3 * t0;
-        let t11 = t10 - t9;
-        let t12 = k(0.6) * outer_dsz;
-        let t13 = t6 - t5;
-        let t14 = k(2.0) * inner_e2;
-        let t15 = T::fused(-inner_e2, t14, t2);
-        let t16 = inner_e1 * t1;
-        let t17 = inner_e3 * t14;
-        let t18 = t17 + t16;
-        let t19 = t10 + t9;
-        let t20 = t17 - t16;
-        let t21 = T::fused(-inner_e3, k(2.0) * inner_e3, t2);
-        let t22 = k(0.01245) * outer_wz;
-        let t23 = k(2.0) * outer_e1;
-        let t24 = k(2.0) * outer_e0;
-        let t25 = T::fused(-outer_e0, t24, k(1.0));
-        let t26 = T::fused(-outer_e1, t23, t25);
-        let t27 = outer_e3 * t24;
-        let t28 = outer_e2 * t23;
-        let t29 = t28 + t27;
-        let t30 = outer_e2 * t24;
-        let t31 = outer_e3 * t23;
-        let t32 = t31 - t30;
-        let t33 = T::fused(
-            t12,
-            k(0.25) * t32,
-            T::fused(-t4, k(0.25) * t26, t8 * (k(0.25) * t29)),
+        let t0 = T::fused(-inner_e0, inner_e0, k(0.5));
+        let t1 = T::fused(inner_e1, inner_e1, -t0);
+        let t2 = inner_e0 * inner_e2;
+        let t3 = inner_e1 * inner_e3;
+        let t4 = t3 - t2;
+        let t5 = outer_dsy + k(9.81);
+        let t6 = inner_e0 * inner_e3;
+        let t7 = inner_e1 * inner_e2;
+        let t8 = t7 + t6;
+        let t9 = T::fused(inner_e2, inner_e2, -t0);
+        let t10 = inner_e0 * inner_e1;
+        let t11 = inner_e2 * inner_e3;
+        let t12 = t11 + t10;
+        let t13 = t7 - t6;
+        let t14 = T::fused(inner_e3, inner_e3, -t0);
+        let t15 = t11 - t10;
+        let t16 = t3 + t2;
+        let t17 = T::fused(-outer_e0, outer_e0, k(0.5));
+        let t18 = T::fused(outer_e2, outer_e2, -t17);
+        let t19 = outer_e0 * outer_e1;
+        let t20 = outer_e2 * outer_e3;
+        let t21 = t20 + t19;
+        let t22 = outer_e0 * outer_e3;
+        let t23 = outer_e1 * outer_e2;
+        let t24 = t23 - t22;
+        let t25 = T::fused(t24, outer_dsx, T::fused(t18, t5, t21 * outer_dsz));
+        let t26 = k(0.0415) * outer_wz;
+        let t27 = T::fused(-outer_wy, t26, k(0.041666666666666664) * outer_dwx) - t25;
+        let t28 = T::fused(outer_e1, outer_e1, -t17);
+        let t29 = outer_e0 * outer_e2;
+        let t30 = outer_e1 * outer_e3;
+        let t31 = t30 - t29;
+        let t32 = t23 + t22;
+        let t33 = T::fused(t1, t28, T::fused(t4, t31, t8 * t32));
+        let t34 = T::fused(outer_e3, outer_e3, -t17);
+        let t35 = t20 - t19;
+        let t36 = t30 + t29;
+        let t37 = T::fused(t13, t36, T::fused(t12, t34, t35 * t9));
+        let t38 = T::fused(t36, t1, T::fused(t4, t34, t8 * t35));
+        let t39 = T::fused(t13, t28, T::fused(t32, t9, t12 * t31));
+        let t40 = t39 * t38;
+        let t41 = T::fused(-t37, t33, t40);
+        let t42 = k(1.0) / (t38 * t41);
+        let t43 = T::fused(outer_dsx, t28, T::fused(t31, outer_dsz, t32 * t5));
+        let t44 = T::fused(outer_wx, t26, k(0.041666666666666664) * outer_dwy) + t43;
+        let t45 = T::fused(t24, t1, T::fused(t8, t18, t4 * t21));
+        let t46 = k(0.00016666666666666666) * outer_dwz;
+        let t47 = T::fused(t42 * (t37 * t45), t44, t38 * t37 * t42 * t46);
+        let t48 = T::fused(t40 * t42, t27, t47);
+        let t49 = T::fused(t42 * (t38 * t45), t44, t42 * (t38 * t38) * t46);
+        let t50 = T::fused(t42 * (t38 * t33), t27, t49);
+        let t51 = T::fused(t38, t48, T::fused(-t37, t50, t25));
+        let t52 = t41 * t42 * t44;
+        let t53 = T::fused(-t38, t52, t43);
+        let t54 = T::fused(t33, t48, T::fused(-t39, t50, t45 * t52));
+        let t55 = T::fused(
+            -t24,
+            t53,
+            T::fused(-t36, t54, k(0.5) * T::fused(-t34, t5, t35 * outer_dsz)),
         );
-        let t34 = t33 + T::fused(outer_wx, t22, k(0.0125) * outer_dwy);
-        let t35 = t31 + t30;
-        let t36 = outer_e1 * t24;
-        let t37 = k(2.0) * outer_e2;
-        let t38 = outer_e3 * t37;
-        let t39 = t38 - t36;
-        let t40 = T::fused(-outer_e3, k(2.0) * outer_e3, t25);
-        let t41 = T::fused(t11, t40, -T::fused(-t3, t35, t7 * t39));
-        let t42 = T::fused(t18, t32, -T::fused(t13, t26, t15 * t29));
-        let t43 = t42 * t41;
-        let t44 = T::fused(t11, t32, T::fused(t3, t26, t7 * t29));
-        let t45 = T::fused(t18, t40, T::fused(-t13, t35, t15 * t39));
-        let t46 = T::fused(t45, t44, -t43);
-        let t47 = k(1.0) / (t41 * t46);
-        let t48 = t46 * t47 * t34;
-        let t49 = t28 - t27;
-        let t50 = T::fused(-outer_e2, t37, t25);
-        let t51 = t38 + t36;
-        let t52 = T::fused(t11, t51, -T::fused(t3, t49, t7 * t50));
-        let t53 = T::fused(
-            t12,
-            k(0.25) * t51,
-            -T::fused(-t4, k(0.25) * t49, t8 * (k(0.25) * t50)),
+        let t56 = T::fused(t28, t51, t55);
+        let t57 = T::fused(
+            t18,
+            t53,
+            T::fused(t35, t54, k(0.5) * T::fused(-outer_dsx, t34, t36 * outer_dsz)),
         );
-        let t54 = t53 - T::fused(-outer_wy, t22, k(0.0125) * outer_dwx);
-        let t55 = T::fused(-(t47 * (t52 * t41)), t34, t47 * (t44 * t41) * t54);
-        let t56 = k(5e-5) * outer_dwz;
-        let t57 = T::fused(t56, t47 * (t41 * t41), t55);
-        let t58 = T::fused(
-            t56,
-            t47 * (t45 * t41),
-            T::fused(-(t47 * (t45 * t52)), t34, t43 * t47 * t54),
+        let t58 = T::fused(-t32, t51, t57);
+        let t59 = T::fused(
+            -t21,
+            t53,
+            T::fused(-t34, t54, k(0.5) * T::fused(-t35, outer_dsx, t36 * t5)),
         );
-        let t59 = T::fused(t52, t48, T::fused(-t42, t57, t44 * t58));
-        let t60 = T::fused(-t41, t48, t33);
-        let t61 = T::fused(-t45, t57, T::fused(t41, t58, t53));
-        let t62 = outer_rx - T::fused(-k(0.25), t35, outer_rx);
-        let t63 = outer_ry - T::fused(-k(0.25), t39, outer_ry);
-        let t64 = T::fused(-t8, t62, t4 * t63)
-            - T::fused(-t40, t59, T::fused(-t51, t60, t32 * t61));
-        let t65 = outer_rz - T::fused(k(0.25), t40, outer_rz);
-        let t66 = T::fused(-t4, t65, t12 * t62)
-            - T::fused(t39, t59, T::fused(t50, t60, t29 * t61));
-        let t67 = T::fused(-t12, t63, t8 * t65)
-            + T::fused(-t35, t59, T::fused(t49, t60, t26 * t61));
+        let t60 = T::fused(t31, t51, t59);
         *out = [
-            T::fused(t12, t11, T::fused(-t4, t3, t8 * t7)),
-            T::fused(t12, t18, -T::fused(-t4, t13, t8 * t15)),
-            T::fused(-t12, t21, T::fused(t4, t19, t8 * t20)),
-            T::fused(-t11, t64, T::fused(-t7, t66, t3 * t67)),
-            -T::fused(t18, t64, T::fused(-t15, t66, t13 * t67)),
-            T::fused(t21, t64, -T::fused(t20, t66, t19 * t67)),
+            k(1.2) * T::fused(outer_dsx, t1, T::fused(t4, outer_dsz, t8 * t5)),
+            k(1.2) * T::fused(t13, outer_dsx, T::fused(t9, t5, t12 * outer_dsz)),
+            k(1.2) * T::fused(t16, outer_dsx, T::fused(outer_dsz, t14, t15 * t5)),
+            k(1.2) * T::fused(t1, t56, T::fused(-t8, t58, t4 * t60)),
+            k(1.2) * T::fused(t13, t56, T::fused(-t9, t58, t12 * t60)),
+            k(1.2) * T::fused(t16, t56, T::fused(-t15, t58, t14 * t60)),
         ];
     }
     fn n_outputs(&self) -> usize {

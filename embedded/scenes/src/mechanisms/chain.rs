@@ -13,39 +13,39 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 2608 operations by rotations of the bodies, doubled; 2643 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 2215 operations by rotations of the bodies, doubled; 2254 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 1108 operations by recursion; 1483 operations by orthogonal motions
-//! * joint_accelerations_at: 1207 operations by recursion; 1244 operations by recursion on the bodies' spins; 2 more compared
-//! * corrected_accelerations: 1625 operations by recursion on the bodies' spins in the bodies' frames; 1699 operations by recursion in the bodies' frames; 7 more compared
+//! * joint_accelerations: 1013 operations by recursion; 1375 operations by orthogonal motions
+//! * joint_accelerations_at: 1213 operations by recursion; 1250 operations by recursion on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 1519 operations by recursion on the bodies' spins in the bodies' frames; 1573 operations by recursion on the bodies' spins in the global frame; 7 more compared
 //! * joint_jacobian: 5652 operations by derivatives of the balance, from its roots, by M⁻¹; 5776 operations by derivatives of the balance, from its leaves, by M⁻¹; 4 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 137 | 141 | 0 | 278 | 0 of 36 | 557 | 278 |
+//! | phi | Φ | 134 | 120 | 0 | 254 | 0 of 36 | 507 | 254 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 159 | 308 | 0 | 467 | 0 of 255 | 1742 | 467 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 130 | 225 | 0 | 355 | 0 of 143 | 1920 | 355 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 30 of 30 | 0 | 0 |
-//! | gamma | γ | 302 | 453 | 0 | 755 | 0 of 30 | 4963 | 755 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 228 | 287 | 0 | 515 | 0 of 30 | 2110 | 515 |
+//! | gamma | γ | 302 | 441 | 0 | 743 | 0 of 30 | 3565 | 743 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 228 | 275 | 0 | 503 | 0 of 30 | 1502 | 503 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 36 | 0 | 36 | 12 of 36 | 36 | 36 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 1160 | 1437 | 11 | 2608 | 0 of 36 | 2.7e17 | 2615 |
-//! | multipliers | λ, the accelerations being known | 306 | 480 | 6 | 792 | 0 of 30 | 156637 | 792 |
+//! | multipliers | λ, the accelerations being known | 306 | 460 | 6 | 772 | 0 of 30 | 106894 | 772 |
 //! | project | (δr, δπ') that changes the rows as given | 1013 | 1191 | 11 | 2215 | 0 of 36 | 8.1e16 | 2216 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 48 | 96 | 0 | 144 | 0 of 42 | 144 | 144 |
-//! | energy | T and V | 40 | 62 | 0 | 102 | 0 of 2 | 102 | 102 |
-//! | read_joints | joint coordinates and rates | 102 | 121 | 0 | 223 | 0 of 18 | 513 | 223 |
+//! | energy | T and V | 40 | 56 | 0 | 96 | 0 of 2 | 96 | 96 |
+//! | read_joints | joint coordinates and rates | 99 | 107 | 0 | 206 | 0 of 18 | 486 | 206 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 24 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 433 | 692 | 6 | 1131 | 0 of 42 | 2.0e17 | 1131 |
-//! | solve_velocities | dependent velocities, eq. (19) | 249 | 380 | 6 | 635 | 0 of 36 | 1.1e6 | 635 |
-//! | joint_accelerations | u̇ in joint coordinates | 498 | 605 | 5 | 1108 | 0 of 6 | 2.6e10 | 1109 |
+//! | newton_step | dependent positions, one Newton step | 433 | 641 | 6 | 1080 | 0 of 42 | 1.8e17 | 1080 |
+//! | solve_velocities | dependent velocities, eq. (19) | 249 | 326 | 6 | 581 | 0 of 36 | 862644 | 581 |
+//! | joint_accelerations | u̇ in joint coordinates | 464 | 544 | 5 | 1013 | 0 of 6 | 1.5e10 | 1014 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 159 | 225 | 0 | 384 | 6 of 78 | 25243 | 384 |
-//! | to_joints | (x, u) of a maximal state | 120 | 145 | 0 | 265 | 0 of 12 | 1063 | 265 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 539 | 663 | 5 | 1207 | 0 of 6 | 2.4e11 | 1208 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 731 | 889 | 5 | 1625 | 0 of 36 | 4.9e12 | 1626 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 204 | 295 | 0 | 499 | 0 of 30 | 10703 | 499 |
-//! | corrected_solution | both | 853 | 1041 | 5 | 1899 | 0 of 66 | 8.5e14 | 1900 |
+//! | to_maximal | (q, v) of a joint state | 164 | 206 | 0 | 370 | 6 of 78 | 25295 | 370 |
+//! | to_joints | (x, u) of a maximal state | 117 | 131 | 0 | 248 | 0 of 12 | 997 | 248 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 545 | 663 | 5 | 1213 | 0 of 6 | 3.5e11 | 1214 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 689 | 825 | 5 | 1519 | 0 of 36 | 5.5e12 | 1520 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 210 | 274 | 0 | 484 | 0 of 30 | 10319 | 484 |
+//! | corrected_solution | both | 811 | 975 | 5 | 1791 | 0 of 66 | 9.6e14 | 1792 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2480 | 3154 | 5 | 5639 | 78 of 156 | 6.1e13 | 5639 |
 //!
 //! # Proof
@@ -723,7 +723,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
             accelerations[35],
         ];
     }
-    /// Writes Φ: 278 operations (137 ±, 141 ×, 0 ÷).
+    /// Writes Φ: 254 operations (134 ±, 120 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let link_1_rx = y[0];
@@ -774,12 +774,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t3 = link_1_e2 * link_1_e3;
         let t4 = t3 - t2;
         let t5 = k(0.2) * t4;
-        let t6 = link_1_e3 * link_1_e3;
-        let t7 = link_1_e0 * link_1_e0;
-        let t8 = k(0.5) - (t7 + t6);
+        let t6 = link_1_e0 * link_1_e0;
+        let t7 = T::fused(link_1_e3, link_1_e3, t6);
+        let t8 = k(0.5) - t7;
         let t9 = k(0.2) * t8;
-        let t10 = k(2.0) * (t3 + t2);
-        let t11 = k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
+        let t10 = t3 + t2;
+        let t11 = T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
         let t12 = link_2_e0 * link_2_e2;
         let t13 = link_2_e1 * link_2_e3;
         let t14 = t13 + t12;
@@ -790,136 +790,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let t19 = link_2_e0 * link_2_e0;
         let t20 = k(0.5) - (t19 + t18);
         let t21 = k(0.2) * t20;
-        let t22 = T::fused(link_2_e1, link_2_e1, t19);
-        let t23 = k(2.0) * (k(0.5) - t22);
-        let t24 = k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2);
-        let t25 = k(2.0) * (t13 - t12);
-        let t26 = T::fused(
-            k(2.0) * t8,
-            t25,
-            -T::fused(-(k(2.0) * t0), t23, k(2.0) * t4 * t24),
-        );
-        let t27 = link_1_e2 * link_1_e2;
-        let t28 = T::fused(
-            t10,
-            t25,
-            -T::fused(t11, t23, k(2.0) * (k(0.5) - (t7 + t27)) * t24),
-        );
-        let t29 = T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
-        let t30 = k(0.2) * t29;
-        let t31 = link_3_e0 * link_3_e1;
-        let t32 = link_3_e2 * link_3_e3;
-        let t33 = t32 - t31;
-        let t34 = k(0.2) * t33;
-        let t35 = link_3_e3 * link_3_e3;
-        let t36 = link_3_e0 * link_3_e0;
-        let t37 = k(0.5) - (t36 + t35);
-        let t38 = k(0.2) * t37;
-        let t39 = link_3_e2 * link_3_e2;
-        let t40 = k(2.0) * (k(0.5) - (t36 + t39));
-        let t41 = k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2);
-        let t42 = k(2.0) * (t32 + t31);
-        let t43 = T::fused(
-            k(2.0) * t20,
-            t42,
-            -T::fused(-(k(2.0) * t16), t40, k(2.0) * t14 * t41),
-        );
-        let t44 = link_4_e0 * link_4_e2;
-        let t45 = link_4_e1 * link_4_e3;
-        let t46 = t45 + t44;
+        let t22 = t13 - t12;
+        let t23 = T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2);
+        let t24 = T::fused(link_2_e1, link_2_e1, t19);
+        let t25 = k(0.5) - t24;
+        let t26 = link_1_e2 * link_1_e2;
+        let t27 = T::fused(t11, t25, T::fused(-t10, t22, (k(0.5) - (t6 + t26)) * t23));
+        let t28 = T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
+        let t29 = k(0.2) * t28;
+        let t30 = link_3_e0 * link_3_e1;
+        let t31 = link_3_e2 * link_3_e3;
+        let t32 = t31 - t30;
+        let t33 = k(0.2) * t32;
+        let t34 = link_3_e0 * link_3_e0;
+        let t35 = T::fused(link_3_e3, link_3_e3, t34);
+        let t36 = k(0.5) - t35;
+        let t37 = k(0.2) * t36;
+        let t38 = t31 + t30;
+        let t39 = T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2);
+        let t40 = link_3_e2 * link_3_e2;
+        let t41 = k(0.5) - (t34 + t40);
+        let t42 = link_4_e0 * link_4_e2;
+        let t43 = link_4_e1 * link_4_e3;
+        let t44 = t43 + t42;
+        let t45 = k(0.2) * t44;
+        let t46 = T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
         let t47 = k(0.2) * t46;
-        let t48 = T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
-        let t49 = k(0.2) * t48;
-        let t50 = link_4_e3 * link_4_e3;
-        let t51 = link_4_e0 * link_4_e0;
-        let t52 = k(0.5) - (t51 + t50);
-        let t53 = k(0.2) * t52;
-        let t54 = T::fused(link_4_e1, link_4_e1, t51);
-        let t55 = k(2.0) * (k(0.5) - t54);
-        let t56 = k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2);
-        let t57 = k(2.0) * (t45 - t44);
-        let t58 = T::fused(
-            k(2.0) * t37,
-            t57,
-            -T::fused(-(k(2.0) * t29), t55, k(2.0) * t33 * t56),
-        );
-        let t59 = T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
-        let t60 = k(0.2) * t59;
-        let t61 = link_5_e0 * link_5_e1;
-        let t62 = link_5_e2 * link_5_e3;
-        let t63 = t62 - t61;
-        let t64 = k(0.2) * t63;
-        let t65 = link_5_e3 * link_5_e3;
-        let t66 = link_5_e0 * link_5_e0;
-        let t67 = k(0.5) - (t66 + t65);
-        let t68 = k(0.2) * t67;
-        let t69 = link_5_e2 * link_5_e2;
-        let t70 = k(2.0) * (k(0.5) - (t66 + t69));
-        let t71 = k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2);
-        let t72 = k(2.0) * (t62 + t61);
-        let t73 = T::fused(
-            k(2.0) * t52,
-            t72,
-            -T::fused(-(k(2.0) * t48), t70, k(2.0) * t46 * t71),
-        );
-        let t74 = link_6_e0 * link_6_e2;
-        let t75 = link_6_e1 * link_6_e3;
-        let t76 = T::fused(
-            k(0.2),
-            T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3),
-            link_6_ry,
-        ) - (link_5_ry - t64);
-        let t77 = link_6_e3 * link_6_e3;
-        let t78 = link_6_e0 * link_6_e0;
-        let t79 = T::fused(link_6_e1, link_6_e1, t78);
-        let t80 = k(2.0) * (k(0.5) - t79);
-        let t81 = k(2.0) * T::fused(link_6_e0, link_6_e3, link_6_e1 * link_6_e2);
-        let t82 = k(2.0) * (t75 - t74);
-        let t83 = T::fused(
-            k(2.0) * t67,
-            t82,
-            -T::fused(-(k(2.0) * t59), t80, k(2.0) * t63 * t81),
-        );
+        let t48 = link_4_e3 * link_4_e3;
+        let t49 = link_4_e0 * link_4_e0;
+        let t50 = k(0.5) - (t49 + t48);
+        let t51 = k(0.2) * t50;
+        let t52 = t43 - t42;
+        let t53 = T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2);
+        let t54 = T::fused(link_4_e1, link_4_e1, t49);
+        let t55 = k(0.5) - t54;
+        let t56 = T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
+        let t57 = k(0.2) * t56;
+        let t58 = link_5_e0 * link_5_e1;
+        let t59 = link_5_e2 * link_5_e3;
+        let t60 = t59 - t58;
+        let t61 = k(0.2) * t60;
+        let t62 = link_5_e0 * link_5_e0;
+        let t63 = T::fused(link_5_e3, link_5_e3, t62);
+        let t64 = k(0.5) - t63;
+        let t65 = k(0.2) * t64;
+        let t66 = t59 + t58;
+        let t67 = T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2);
+        let t68 = link_5_e2 * link_5_e2;
+        let t69 = k(0.5) - (t62 + t68);
+        let t70 = link_6_e0 * link_6_e2;
+        let t71 = link_6_e1 * link_6_e3;
+        let t72 = t61
+            - (link_5_ry
+                - T::fused(
+                    k(0.2),
+                    T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3),
+                    link_6_ry,
+                ));
+        let t73 = link_6_e3 * link_6_e3;
+        let t74 = link_6_e0 * link_6_e0;
+        let t75 = t71 - t70;
+        let t76 = T::fused(link_6_e0, link_6_e3, link_6_e1 * link_6_e2);
+        let t77 = T::fused(link_6_e1, link_6_e1, t74);
+        let t78 = k(0.5) - t77;
         *out = [
             link_1_rx + t1,
             link_1_ry + t5,
             link_1_rz - t9,
-            t10,
-            t11,
-            link_2_rx + t15 - (link_1_rx - t1),
-            link_2_ry + t17 - (link_1_ry - t5),
-            link_2_rz - t21 - (link_1_rz + t9),
-            -t26,
-            -t28,
-            link_3_rx + t30 - (link_2_rx - t15),
-            link_3_ry + t34 - (link_2_ry - t17),
-            link_3_rz - t38 - (link_2_rz + t21),
-            -t43,
-            T::fused(t25, t42, -T::fused(t23, t41, t24 * t40)),
-            link_4_rx + t47 - (link_3_rx - t30),
-            link_4_ry + t49 - (link_3_ry - t34),
-            link_4_rz - t53 - (link_3_rz + t38),
-            -t58,
-            T::fused(-t42, t57, T::fused(t41, t55, t40 * t56)),
-            link_5_rx + t60 - (link_4_rx - t47),
-            link_5_ry + t64 - (link_4_ry - t49),
-            link_5_rz - t68 - (link_4_rz + t53),
-            -t73,
-            T::fused(t57, t72, -T::fused(t55, t71, t56 * t70)),
-            T::fused(k(0.2), t75 + t74, link_6_rx) - (link_5_rx - t60),
-            t76,
-            T::fused(-k(0.2), k(0.5) - (t78 + t77), link_6_rz) - (link_5_rz + t68),
-            -t83,
-            T::fused(-t72, t82, T::fused(t71, t80, t70 * t81)),
-            t6 + (T::fused(link_1_e1, link_1_e1, t7) + t27) - k(1.0),
-            t18 + T::fused(link_2_e2, link_2_e2, t22) - k(1.0),
-            t35 + (T::fused(link_3_e1, link_3_e1, t36) + t39) - k(1.0),
-            t50 + T::fused(link_4_e2, link_4_e2, t54) - k(1.0),
-            t65 + (T::fused(link_5_e1, link_5_e1, t66) + t69) - k(1.0),
-            t77 + T::fused(link_6_e2, link_6_e2, t79) - k(1.0),
+            k(2.0) * t10,
+            k(2.0) * t11,
+            t1 - (link_1_rx - (link_2_rx + t15)),
+            t5 - (link_1_ry - (link_2_ry + t17)),
+            -(t9 + (link_1_rz - (link_2_rz - t21))),
+            -(k(4.0) * T::fused(t0, t25, -T::fused(-t8, t22, t4 * t23))),
+            k(4.0) * t27,
+            t15 - (link_2_rx - (link_3_rx + t29)),
+            t17 - (link_2_ry - (link_3_ry + t33)),
+            -(t21 + (link_2_rz - (link_3_rz - t37))),
+            -(k(4.0) * T::fused(t16, t41, -T::fused(-t20, t38, t14 * t39))),
+            -(k(4.0) * T::fused(t25, t39, T::fused(-t22, t38, t23 * t41))),
+            t29 - (link_3_rx - (link_4_rx + t45)),
+            t33 - (link_3_ry - (link_4_ry + t47)),
+            -(t37 + (link_3_rz - (link_4_rz - t51))),
+            -(k(4.0) * T::fused(t28, t55, -T::fused(-t36, t52, t32 * t53))),
+            k(4.0) * T::fused(t39, t55, T::fused(-t38, t52, t41 * t53)),
+            t45 - (link_4_rx - (link_5_rx + t57)),
+            t47 - (link_4_ry - (link_5_ry + t61)),
+            -(t51 + (link_4_rz - (link_5_rz - t65))),
+            -(k(4.0) * T::fused(t46, t69, -T::fused(-t50, t66, t44 * t67))),
+            -(k(4.0) * T::fused(t55, t67, T::fused(-t52, t66, t53 * t69))),
+            t57 - (link_5_rx - T::fused(k(0.2), t71 + t70, link_6_rx)),
+            t72,
+            -(t65 + (link_5_rz - T::fused(-k(0.2), k(0.5) - (t74 + t73), link_6_rz))),
+            -(k(4.0) * T::fused(t56, t78, -T::fused(-t64, t75, t60 * t76))),
+            k(4.0) * T::fused(t67, t78, T::fused(-t66, t75, t69 * t76)),
+            t26 + T::fused(link_1_e1, link_1_e1, t7) - k(1.0),
+            T::fused(link_2_e2, link_2_e2, t24 + t18) - k(1.0),
+            t40 + T::fused(link_3_e1, link_3_e1, t35) - k(1.0),
+            T::fused(link_4_e2, link_4_e2, t54 + t48) - k(1.0),
+            t68 + T::fused(link_5_e1, link_5_e1, t63) - k(1.0),
+            T::fused(link_6_e2, link_6_e2, t77 + t73) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 515 operations (228 ±, 287 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 503 operations (228 ±, 275 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -982,280 +955,271 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_6_wx = y[75];
         let link_6_wy = y[76];
         let link_6_wz = y[77];
-        let t0 = k(2.0) * link_1_e1;
-        let t1 = k(2.0) * link_1_e0;
-        let t2 = T::fused(-link_1_e0, t1, k(1.0));
-        let t3 = T::fused(-link_1_e1, t0, t2);
-        let t4 = link_1_e3 * t1;
-        let t5 = link_1_e2 * t0;
-        let t6 = t5 - t4;
-        let t7 = k(0.1) * T::fused(link_1_wy, t3, link_1_wx * t6);
-        let t8 = t5 + t4;
-        let t9 = k(2.0) * link_1_e2;
-        let t10 = T::fused(-link_1_e2, t9, t2);
-        let t11 = k(0.1) * T::fused(link_1_wy, t8, link_1_wx * t10);
-        let t12 = link_1_e2 * t1;
-        let t13 = link_1_e3 * t0;
-        let t14 = t13 - t12;
-        let t15 = link_1_e1 * t1;
-        let t16 = link_1_e3 * t9;
-        let t17 = t16 + t15;
-        let t18 = k(0.1) * T::fused(-link_1_wy, t14, link_1_wx * t17);
-        let t19 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t2);
-        let t20 = t13 + t12;
-        let t21 = k(2.0) * link_2_e1;
-        let t22 = k(2.0) * link_2_e0;
-        let t23 = T::fused(-link_2_e0, t22, k(1.0));
-        let t24 = T::fused(-link_2_e1, t21, t23);
-        let t25 = link_2_e3 * t22;
-        let t26 = link_2_e2 * t21;
-        let t27 = t26 - t25;
-        let t28 = k(0.1) * T::fused(link_2_wy, t24, link_2_wx * t27);
-        let t29 = t26 + t25;
-        let t30 = k(2.0) * link_2_e2;
-        let t31 = T::fused(-link_2_e2, t30, t23);
-        let t32 = k(0.1) * T::fused(link_2_wy, t29, link_2_wx * t31);
-        let t33 = link_2_e2 * t22;
-        let t34 = link_2_e3 * t21;
-        let t35 = t34 - t33;
-        let t36 = link_2_e1 * t22;
-        let t37 = link_2_e3 * t30;
-        let t38 = t37 + t36;
-        let t39 = k(0.1) * T::fused(-link_2_wy, t35, link_2_wx * t38);
-        let t40 = T::fused(t14, t35, T::fused(t3, t24, t8 * t29));
-        let t41 = T::fused(
-            -link_1_wy,
-            t40,
-            link_1_wx * T::fused(t17, t35, -T::fused(t6, t24, t10 * t29)),
-        );
-        let t42 = t16 - t15;
-        let t43 = t34 + t33;
-        let t44 = t37 - t36;
-        let t45 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t23);
-        let t46 = T::fused(
-            link_2_wz,
-            T::fused(t19, t38, T::fused(-t20, t27, t42 * t31)),
-            link_2_wy * T::fused(t19, t45, T::fused(t20, t43, t42 * t44)),
-        );
-        let t47 = T::fused(
-            link_1_wz,
-            t40,
-            link_1_wx * T::fused(t19, t35, -T::fused(-t20, t24, t42 * t29)),
-        );
-        let t48 = T::fused(
-            link_2_wz,
-            T::fused(t17, t38, T::fused(t6, t27, t10 * t31)),
-            link_2_wy * T::fused(t17, t45, T::fused(-t6, t43, t10 * t44)),
-        );
-        let t49 = k(2.0) * link_3_e1;
-        let t50 = k(2.0) * link_3_e0;
-        let t51 = T::fused(-link_3_e0, t50, k(1.0));
-        let t52 = T::fused(-link_3_e1, t49, t51);
-        let t53 = link_3_e3 * t50;
-        let t54 = link_3_e2 * t49;
-        let t55 = t54 - t53;
-        let t56 = k(0.1) * T::fused(link_3_wy, t52, link_3_wx * t55);
-        let t57 = t54 + t53;
-        let t58 = k(2.0) * link_3_e2;
-        let t59 = T::fused(-link_3_e2, t58, t51);
-        let t60 = k(0.1) * T::fused(link_3_wy, t57, link_3_wx * t59);
-        let t61 = link_3_e2 * t50;
-        let t62 = link_3_e3 * t49;
-        let t63 = t62 - t61;
-        let t64 = link_3_e1 * t50;
-        let t65 = link_3_e3 * t58;
-        let t66 = t65 + t64;
-        let t67 = k(0.1) * T::fused(-link_3_wy, t63, link_3_wx * t66);
-        let t68 = T::fused(t38, t66, T::fused(t27, t55, t31 * t59));
-        let t69 = T::fused(
+        let t0 = T::fused(-link_1_e0, link_1_e0, k(0.5));
+        let t1 = T::fused(link_1_e1, link_1_e1, -t0);
+        let t2 = link_1_e0 * link_1_e3;
+        let t3 = link_1_e1 * link_1_e2;
+        let t4 = t3 - t2;
+        let t5 = k(0.2) * T::fused(-link_1_wy, t1, t4 * link_1_wx);
+        let t6 = T::fused(link_1_e2, link_1_e2, -t0);
+        let t7 = t3 + t2;
+        let t8 = k(0.2) * T::fused(-link_1_wx, t6, t7 * link_1_wy);
+        let t9 = link_1_e0 * link_1_e2;
+        let t10 = link_1_e1 * link_1_e3;
+        let t11 = t10 - t9;
+        let t12 = link_1_e0 * link_1_e1;
+        let t13 = link_1_e2 * link_1_e3;
+        let t14 = t13 + t12;
+        let t15 = k(0.2) * T::fused(-t11, link_1_wy, t14 * link_1_wx);
+        let t16 = T::fused(link_1_e3, link_1_e3, -t0);
+        let t17 = t10 + t9;
+        let t18 = T::fused(-link_2_e0, link_2_e0, k(0.5));
+        let t19 = T::fused(link_2_e1, link_2_e1, -t18);
+        let t20 = link_2_e0 * link_2_e3;
+        let t21 = link_2_e1 * link_2_e2;
+        let t22 = t21 - t20;
+        let t23 = k(0.2) * T::fused(-link_2_wy, t19, t22 * link_2_wx);
+        let t24 = T::fused(link_2_e2, link_2_e2, -t18);
+        let t25 = t21 + t20;
+        let t26 = k(0.2) * T::fused(-link_2_wx, t24, t25 * link_2_wy);
+        let t27 = link_2_e0 * link_2_e1;
+        let t28 = link_2_e2 * link_2_e3;
+        let t29 = t28 + t27;
+        let t30 = link_2_e0 * link_2_e2;
+        let t31 = link_2_e1 * link_2_e3;
+        let t32 = t31 - t30;
+        let t33 = k(0.2) * T::fused(-t29, link_2_wx, t32 * link_2_wy);
+        let t34 = T::fused(link_2_e3, link_2_e3, -t18);
+        let t35 = t28 - t27;
+        let t36 = t13 - t12;
+        let t37 = t31 + t30;
+        let t38 = T::fused(
             -link_2_wy,
-            T::fused(t35, t66, -T::fused(t24, t55, t29 * t59)),
-            link_2_wx * t68,
+            T::fused(t17, t37, T::fused(t34, t16, t36 * t35)),
+            link_2_wz * T::fused(t17, t22, T::fused(t29, t16, t36 * t24)),
         );
-        let t70 = t62 + t61;
-        let t71 = t65 - t64;
-        let t72 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t51);
-        let t73 = T::fused(
-            link_3_wz,
-            T::fused(t45, t63, -T::fused(-t43, t52, t44 * t57)),
-            link_3_wx * T::fused(t45, t72, T::fused(t43, t70, t44 * t71)),
+        let t39 = T::fused(
+            -link_1_wx,
+            T::fused(t4, t19, T::fused(t25, t6, t14 * t32)),
+            t38,
         );
-        let t74 = T::fused(
-            link_2_wz,
-            t68,
-            link_2_wy * T::fused(t45, t66, T::fused(-t43, t55, t44 * t59)),
+        let t40 = T::fused(t19, t1, T::fused(t11, t32, t7 * t25));
+        let t41 = T::fused(
+            -link_2_wy,
+            T::fused(t4, t37, T::fused(t14, t34, t35 * t6)),
+            link_2_wz * T::fused(t4, t22, T::fused(t24, t6, t14 * t29)),
         );
-        let t75 = T::fused(
-            link_3_wz,
-            T::fused(t35, t63, T::fused(t24, t52, t29 * t57)),
-            link_3_wx * T::fused(t35, t72, -T::fused(-t24, t70, t29 * t71)),
+        let t42 = T::fused(
+            link_1_wx,
+            T::fused(t17, t19, T::fused(t32, t16, t36 * t25)),
+            t41,
         );
-        let t76 = k(2.0) * link_4_e1;
-        let t77 = k(2.0) * link_4_e0;
-        let t78 = T::fused(-link_4_e0, t77, k(1.0));
-        let t79 = T::fused(-link_4_e1, t76, t78);
-        let t80 = link_4_e3 * t77;
-        let t81 = link_4_e2 * t76;
-        let t82 = t81 - t80;
-        let t83 = k(0.1) * T::fused(link_4_wy, t79, link_4_wx * t82);
-        let t84 = t81 + t80;
-        let t85 = k(2.0) * link_4_e2;
-        let t86 = T::fused(-link_4_e2, t85, t78);
-        let t87 = k(0.1) * T::fused(link_4_wy, t84, link_4_wx * t86);
-        let t88 = link_4_e2 * t77;
-        let t89 = link_4_e3 * t76;
-        let t90 = t89 - t88;
-        let t91 = link_4_e1 * t77;
-        let t92 = link_4_e3 * t85;
-        let t93 = t92 + t91;
-        let t94 = k(0.1) * T::fused(-link_4_wy, t90, link_4_wx * t93);
-        let t95 = T::fused(t63, t90, T::fused(t52, t79, t57 * t84));
-        let t96 = T::fused(
-            -link_3_wy,
-            t95,
-            link_3_wx * T::fused(t66, t90, -T::fused(t55, t79, t59 * t84)),
+        let t43 = T::fused(-link_3_e0, link_3_e0, k(0.5));
+        let t44 = T::fused(link_3_e1, link_3_e1, -t43);
+        let t45 = link_3_e0 * link_3_e3;
+        let t46 = link_3_e1 * link_3_e2;
+        let t47 = t46 - t45;
+        let t48 = k(0.2) * T::fused(-link_3_wy, t44, t47 * link_3_wx);
+        let t49 = T::fused(link_3_e2, link_3_e2, -t43);
+        let t50 = t46 + t45;
+        let t51 = k(0.2) * T::fused(-link_3_wx, t49, t50 * link_3_wy);
+        let t52 = link_3_e0 * link_3_e2;
+        let t53 = link_3_e1 * link_3_e3;
+        let t54 = t53 - t52;
+        let t55 = link_3_e0 * link_3_e1;
+        let t56 = link_3_e2 * link_3_e3;
+        let t57 = t56 + t55;
+        let t58 = k(0.2) * T::fused(-t54, link_3_wy, t57 * link_3_wx);
+        let t59 = T::fused(t22, t47, T::fused(t49, t24, t29 * t57));
+        let t60 = T::fused(link_3_e3, link_3_e3, -t43);
+        let t61 = t56 - t55;
+        let t62 = t53 + t52;
+        let t63 = T::fused(
+            -link_3_wx,
+            T::fused(t37, t62, T::fused(t60, t34, t35 * t61)),
+            link_3_wz * T::fused(t37, t44, T::fused(t54, t34, t35 * t50)),
         );
-        let t97 = t89 + t88;
-        let t98 = t92 - t91;
-        let t99 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t78);
-        let t100 = T::fused(
-            link_4_wz,
-            T::fused(t72, t93, T::fused(-t70, t82, t71 * t86)),
-            link_4_wy * T::fused(t72, t99, T::fused(t70, t97, t71 * t98)),
+        let t64 = T::fused(
+            link_2_wy,
+            T::fused(t47, t19, T::fused(t25, t49, t32 * t57)),
+            -T::fused(link_2_wx, t59, t63),
         );
-        let t101 = T::fused(
-            link_3_wz,
-            t95,
-            link_3_wx * T::fused(t72, t90, -T::fused(-t70, t79, t71 * t84)),
+        let t65 = T::fused(
+            -link_3_wx,
+            T::fused(t62, t19, T::fused(t32, t60, t25 * t61)),
+            link_3_wz * T::fused(t44, t19, T::fused(t32, t54, t25 * t50)),
         );
-        let t102 = T::fused(
-            link_4_wz,
-            T::fused(t66, t93, T::fused(t55, t82, t59 * t86)),
-            link_4_wy * T::fused(t66, t99, T::fused(-t55, t97, t59 * t98)),
+        let t66 = T::fused(
+            link_2_wy,
+            T::fused(t37, t47, T::fused(t57, t34, t35 * t49)),
+            t65,
         );
-        let t103 = k(2.0) * link_5_e1;
-        let t104 = k(2.0) * link_5_e0;
-        let t105 = T::fused(-link_5_e0, t104, k(1.0));
-        let t106 = T::fused(-link_5_e1, t103, t105);
-        let t107 = link_5_e3 * t104;
-        let t108 = link_5_e2 * t103;
-        let t109 = t108 - t107;
-        let t110 = k(0.1) * T::fused(link_5_wy, t106, link_5_wx * t109);
-        let t111 = t108 + t107;
-        let t112 = k(2.0) * link_5_e2;
-        let t113 = T::fused(-link_5_e2, t112, t105);
-        let t114 = k(0.1) * T::fused(link_5_wy, t111, link_5_wx * t113);
-        let t115 = link_5_e2 * t104;
-        let t116 = link_5_e3 * t103;
-        let t117 = t116 - t115;
-        let t118 = link_5_e1 * t104;
-        let t119 = link_5_e3 * t112;
-        let t120 = t119 + t118;
-        let t121 = k(0.1) * T::fused(-link_5_wy, t117, link_5_wx * t120);
-        let t122 = T::fused(t93, t120, T::fused(t82, t109, t86 * t113));
-        let t123 = T::fused(
+        let t67 = T::fused(-link_4_e0, link_4_e0, k(0.5));
+        let t68 = T::fused(link_4_e1, link_4_e1, -t67);
+        let t69 = link_4_e0 * link_4_e3;
+        let t70 = link_4_e1 * link_4_e2;
+        let t71 = t70 - t69;
+        let t72 = k(0.2) * T::fused(-link_4_wy, t68, t71 * link_4_wx);
+        let t73 = T::fused(link_4_e2, link_4_e2, -t67);
+        let t74 = t70 + t69;
+        let t75 = k(0.2) * T::fused(-link_4_wx, t73, t74 * link_4_wy);
+        let t76 = link_4_e0 * link_4_e1;
+        let t77 = link_4_e2 * link_4_e3;
+        let t78 = t77 + t76;
+        let t79 = link_4_e0 * link_4_e2;
+        let t80 = link_4_e1 * link_4_e3;
+        let t81 = t80 - t79;
+        let t82 = k(0.2) * T::fused(-t78, link_4_wx, t81 * link_4_wy);
+        let t83 = T::fused(link_4_e3, link_4_e3, -t67);
+        let t84 = t77 - t76;
+        let t85 = t80 + t79;
+        let t86 = T::fused(
             -link_4_wy,
-            T::fused(t90, t120, -T::fused(t79, t109, t84 * t113)),
-            link_4_wx * t122,
+            T::fused(t62, t85, T::fused(t83, t60, t61 * t84)),
+            link_4_wz * T::fused(t62, t71, T::fused(t78, t60, t61 * t73)),
         );
-        let t124 = t116 + t115;
-        let t125 = t119 - t118;
-        let t126 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t105);
-        let t127 = T::fused(
-            link_5_wz,
-            T::fused(t99, t117, -T::fused(-t97, t106, t98 * t111)),
-            link_5_wx * T::fused(t99, t126, T::fused(t97, t124, t98 * t125)),
+        let t87 = T::fused(
+            -link_3_wx,
+            T::fused(t47, t68, T::fused(t74, t49, t57 * t81)),
+            t86,
         );
-        let t128 = T::fused(
-            link_4_wz,
-            t122,
-            link_4_wy * T::fused(t99, t120, T::fused(-t97, t109, t98 * t113)),
+        let t88 = T::fused(t68, t44, T::fused(t54, t81, t50 * t74));
+        let t89 = T::fused(
+            -link_4_wy,
+            T::fused(t47, t85, T::fused(t57, t83, t84 * t49)),
+            link_4_wz * T::fused(t47, t71, T::fused(t73, t49, t57 * t78)),
         );
-        let t129 = T::fused(
-            link_5_wz,
-            T::fused(t90, t117, T::fused(t79, t106, t84 * t111)),
-            link_5_wx * T::fused(t90, t126, -T::fused(-t79, t124, t84 * t125)),
+        let t90 = T::fused(
+            link_3_wx,
+            T::fused(t62, t68, T::fused(t81, t60, t61 * t74)),
+            t89,
         );
-        let t130 = k(2.0) * link_6_e1;
-        let t131 = k(2.0) * link_6_e0;
-        let t132 = T::fused(-link_6_e0, t131, k(1.0));
-        let t133 = T::fused(-link_6_e1, t130, t132);
-        let t134 = link_6_e3 * t131;
-        let t135 = link_6_e2 * t130;
-        let t136 = t135 - t134;
-        let t137 = link_5_sx + t110
-            - T::fused(-k(0.1), T::fused(link_6_wy, t133, link_6_wx * t136), link_6_sx);
-        let t138 = t135 + t134;
-        let t139 = k(2.0) * link_6_e2;
-        let t140 = T::fused(-link_6_e2, t139, t132);
-        let t141 = link_5_sy - t114
-            - T::fused(k(0.1), T::fused(link_6_wy, t138, link_6_wx * t140), link_6_sy);
-        let t142 = link_6_e2 * t131;
-        let t143 = link_6_e3 * t130;
-        let t144 = t143 - t142;
-        let t145 = link_6_e1 * t131;
-        let t146 = link_6_e3 * t139;
-        let t147 = t146 + t145;
-        let t148 = link_5_sz + t121
-            - T::fused(-k(0.1), T::fused(-link_6_wy, t144, link_6_wx * t147), link_6_sz);
-        let t149 = T::fused(t117, t144, T::fused(t106, t133, t111 * t138));
-        let t150 = T::fused(
-            -link_5_wy,
-            t149,
-            link_5_wx * T::fused(t120, t144, -T::fused(t109, t133, t113 * t138)),
+        let t91 = T::fused(-link_5_e0, link_5_e0, k(0.5));
+        let t92 = T::fused(link_5_e1, link_5_e1, -t91);
+        let t93 = link_5_e0 * link_5_e3;
+        let t94 = link_5_e1 * link_5_e2;
+        let t95 = t94 - t93;
+        let t96 = k(0.2) * T::fused(-link_5_wy, t92, t95 * link_5_wx);
+        let t97 = T::fused(link_5_e2, link_5_e2, -t91);
+        let t98 = t94 + t93;
+        let t99 = k(0.2) * T::fused(-link_5_wx, t97, t98 * link_5_wy);
+        let t100 = link_5_e0 * link_5_e2;
+        let t101 = link_5_e1 * link_5_e3;
+        let t102 = t101 - t100;
+        let t103 = link_5_e0 * link_5_e1;
+        let t104 = link_5_e2 * link_5_e3;
+        let t105 = t104 + t103;
+        let t106 = k(0.2) * T::fused(-t102, link_5_wy, t105 * link_5_wx);
+        let t107 = T::fused(t71, t95, T::fused(t97, t73, t78 * t105));
+        let t108 = T::fused(link_5_e3, link_5_e3, -t91);
+        let t109 = t104 - t103;
+        let t110 = t101 + t100;
+        let t111 = T::fused(
+            -link_5_wx,
+            T::fused(t85, t110, T::fused(t108, t83, t84 * t109)),
+            link_5_wz * T::fused(t85, t92, T::fused(t102, t83, t84 * t98)),
         );
-        let t151 = t143 + t142;
-        let t152 = t146 - t145;
-        let t153 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t132);
-        let t154 = T::fused(
-            link_6_wz,
-            T::fused(t126, t147, T::fused(-t124, t136, t125 * t140)),
-            link_6_wy * T::fused(t126, t153, T::fused(t124, t151, t125 * t152)),
+        let t112 = T::fused(
+            link_4_wy,
+            T::fused(t95, t68, T::fused(t74, t97, t81 * t105)),
+            -T::fused(link_4_wx, t107, t111),
         );
-        let t155 = T::fused(
-            link_5_wz,
-            t149,
-            link_5_wx * T::fused(t126, t144, -T::fused(-t124, t133, t125 * t138)),
+        let t113 = T::fused(
+            -link_5_wx,
+            T::fused(t110, t68, T::fused(t81, t108, t74 * t109)),
+            link_5_wz * T::fused(t92, t68, T::fused(t81, t102, t74 * t98)),
         );
-        let t156 = T::fused(
-            link_6_wz,
-            T::fused(t120, t147, T::fused(t109, t136, t113 * t140)),
-            link_6_wy * T::fused(t120, t153, T::fused(-t109, t151, t113 * t152)),
+        let t114 = T::fused(
+            link_4_wy,
+            T::fused(t85, t95, T::fused(t105, t83, t84 * t97)),
+            t113,
+        );
+        let t115 = T::fused(-link_6_e0, link_6_e0, k(0.5));
+        let t116 = T::fused(link_6_e1, link_6_e1, -t115);
+        let t117 = link_6_e0 * link_6_e3;
+        let t118 = link_6_e1 * link_6_e2;
+        let t119 = t118 - t117;
+        let t120 = T::fused(
+            k(0.2),
+            T::fused(-link_6_wy, t116, t119 * link_6_wx),
+            -(link_6_sx - (link_5_sx + t96)),
+        );
+        let t121 = T::fused(link_6_e2, link_6_e2, -t115);
+        let t122 = t118 + t117;
+        let t123 = T::fused(
+            k(0.2),
+            T::fused(-link_6_wx, t121, t122 * link_6_wy),
+            link_6_sy - (link_5_sy - t99),
+        );
+        let t124 = link_6_e0 * link_6_e1;
+        let t125 = link_6_e2 * link_6_e3;
+        let t126 = t125 + t124;
+        let t127 = link_6_e0 * link_6_e2;
+        let t128 = link_6_e1 * link_6_e3;
+        let t129 = t128 - t127;
+        let t130 = T::fused(
+            k(0.2),
+            T::fused(-t126, link_6_wx, t129 * link_6_wy),
+            link_6_sz - (link_5_sz + t106),
+        );
+        let t131 = T::fused(link_6_e3, link_6_e3, -t115);
+        let t132 = t125 - t124;
+        let t133 = t128 + t127;
+        let t134 = T::fused(
+            -link_6_wy,
+            T::fused(t110, t133, T::fused(t131, t108, t109 * t132)),
+            link_6_wz * T::fused(t110, t119, T::fused(t126, t108, t109 * t121)),
+        );
+        let t135 = T::fused(
+            -link_5_wx,
+            T::fused(t95, t116, T::fused(t122, t97, t105 * t129)),
+            t134,
+        );
+        let t136 = T::fused(t92, t116, T::fused(t102, t129, t98 * t122));
+        let t137 = T::fused(
+            -link_6_wy,
+            T::fused(t95, t133, T::fused(t105, t131, t132 * t97)),
+            link_6_wz * T::fused(t95, t119, T::fused(t121, t97, t105 * t126)),
+        );
+        let t138 = T::fused(
+            link_5_wx,
+            T::fused(t110, t116, T::fused(t129, t108, t109 * t122)),
+            t137,
         );
         *out = [
-            link_1_sx - t7,
-            link_1_sy + t11,
-            link_1_sz - t18,
-            -T::fused(link_1_wz, t14, link_1_wx * t19),
-            T::fused(link_1_wz, t3, link_1_wx * t20),
-            link_2_sx - t28 - (link_1_sx + t7),
-            link_2_sy + t32 - (link_1_sy - t11),
-            link_2_sz - t39 - (link_1_sz + t18),
-            -(t46 + t41),
-            t47 - t48,
-            link_3_sx - t56 - (link_2_sx + t28),
-            link_3_sy + t60 - (link_2_sy - t32),
-            link_3_sz - t67 - (link_2_sz + t39),
-            t73 - t69,
-            t74 - t75,
-            link_4_sx - t83 - (link_3_sx + t56),
-            link_4_sy + t87 - (link_3_sy - t60),
-            link_4_sz - t94 - (link_3_sz + t67),
-            -(t100 + t96),
-            t101 - t102,
-            link_5_sx - t110 - (link_4_sx + t83),
-            link_5_sy + t114 - (link_4_sy - t87),
-            link_5_sz - t121 - (link_4_sz + t94),
-            t127 - t123,
-            t128 - t129,
-            -t137,
-            -t141,
-            -t148,
-            -(t154 + t150),
-            t155 - t156,
+            link_1_sx - t5,
+            link_1_sy + t8,
+            link_1_sz - t15,
+            -(k(2.0) * T::fused(-link_1_wx, t16, t11 * link_1_wz)),
+            k(2.0) * T::fused(-link_1_wz, t1, t17 * link_1_wx),
+            link_2_sx - (link_1_sx + t5) - t23,
+            t26 + (link_2_sy - (link_1_sy - t8)),
+            t33 + (link_2_sz - (link_1_sz + t15)),
+            k(4.0) * T::fused(link_1_wy, t40, t39),
+            k(4.0) * T::fused(link_1_wz, t40, -t42),
+            link_3_sx - (link_2_sx + t23) - t48,
+            t51 + (link_3_sy - (link_2_sy - t26)),
+            link_3_sz - (link_2_sz - t33) - t58,
+            k(4.0) * t64,
+            k(4.0) * T::fused(link_2_wz, t59, -t66),
+            link_4_sx - (link_3_sx + t48) - t72,
+            t75 + (link_4_sy - (link_3_sy - t51)),
+            t82 + (link_4_sz - (link_3_sz + t58)),
+            k(4.0) * T::fused(link_3_wy, t88, t87),
+            k(4.0) * T::fused(link_3_wz, t88, -t90),
+            link_5_sx - (link_4_sx + t72) - t96,
+            t99 + (link_5_sy - (link_4_sy - t75)),
+            link_5_sz - (link_4_sz - t82) - t106,
+            k(4.0) * t112,
+            k(4.0) * T::fused(link_4_wz, t107, -t114),
+            -t120,
+            t123,
+            t130,
+            k(4.0) * T::fused(link_5_wy, t136, t135),
+            k(4.0) * T::fused(link_5_wz, t136, -t138),
         ];
     }
-    /// Kinetic and potential energy: 102 operations (40 ±, 62 ×, 0 ÷).
+    /// Kinetic and potential energy: 96 operations (40 ±, 56 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let link_1_rz = y[2];
@@ -1301,121 +1265,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let t0 = T::fused(
-            link_6_wz,
-            k(0.0002) * link_6_wz,
-            T::fused(
-                link_6_wy,
-                k(0.0016) * link_6_wy,
-                link_6_wx * (k(0.0017) * link_6_wx),
-            ),
+            k(0.11764705882352941),
+            link_1_wz * link_1_wz,
+            T::fused(k(0.9411764705882353), link_1_wy * link_1_wy, link_1_wx * link_1_wx),
         );
         let t1 = T::fused(
-            k(0.5),
-            T::fused(
-                link_6_sz,
-                link_6_sz,
-                T::fused(link_6_sy, link_6_sy, link_6_sx * link_6_sx),
-            ),
-            t0,
-        );
-        let t2 = T::fused(
-            link_5_wz,
-            k(0.0002) * link_5_wz,
-            T::fused(
-                link_5_wy,
-                k(0.0016) * link_5_wy,
-                link_5_wx * (k(0.0017) * link_5_wx),
-            ),
-        );
-        let t3 = T::fused(
-            k(0.5),
-            T::fused(
-                link_5_sz,
-                link_5_sz,
-                T::fused(link_5_sy, link_5_sy, link_5_sx * link_5_sx),
-            ),
-            t2,
-        );
-        let t4 = T::fused(
-            link_4_wz,
-            k(0.0002) * link_4_wz,
-            T::fused(
-                link_4_wy,
-                k(0.0016) * link_4_wy,
-                link_4_wx * (k(0.0017) * link_4_wx),
-            ),
-        );
-        let t5 = T::fused(
-            k(0.5),
-            T::fused(
-                link_4_sz,
-                link_4_sz,
-                T::fused(link_4_sy, link_4_sy, link_4_sx * link_4_sx),
-            ),
-            t4,
-        );
-        let t6 = T::fused(
-            link_3_wz,
-            k(0.0002) * link_3_wz,
-            T::fused(
-                link_3_wy,
-                k(0.0016) * link_3_wy,
-                link_3_wx * (k(0.0017) * link_3_wx),
-            ),
-        );
-        let t7 = T::fused(
-            k(0.5),
-            T::fused(
-                link_3_sz,
-                link_3_sz,
-                T::fused(link_3_sy, link_3_sy, link_3_sx * link_3_sx),
-            ),
-            t6,
-        );
-        let t8 = T::fused(
-            link_2_wz,
-            k(0.0002) * link_2_wz,
-            T::fused(
-                link_2_wy,
-                k(0.0016) * link_2_wy,
-                link_2_wx * (k(0.0017) * link_2_wx),
-            ),
-        );
-        let t9 = T::fused(
-            k(0.5),
-            T::fused(
-                link_2_sz,
-                link_2_sz,
-                T::fused(link_2_sy, link_2_sy, link_2_sx * link_2_sx),
-            ),
-            t8,
-        );
-        let t10 = T::fused(
-            link_1_wz,
-            k(0.0002) * link_1_wz,
-            T::fused(
-                link_1_wy,
-                k(0.0016) * link_1_wy,
-                link_1_wx * (k(0.0017) * link_1_wx),
-            ),
-        );
-        let t11 = T::fused(
-            k(0.5),
+            k(294.11764705882354),
             T::fused(
                 link_1_sz,
                 link_1_sz,
                 T::fused(link_1_sy, link_1_sy, link_1_sx * link_1_sx),
             ),
+            t0,
+        );
+        let t2 = T::fused(
+            k(0.11764705882352941),
+            link_2_wz * link_2_wz,
+            T::fused(
+                k(0.9411764705882353),
+                link_2_wy * link_2_wy,
+                T::fused(link_2_wx, link_2_wx, t1),
+            ),
+        );
+        let t3 = T::fused(
+            k(294.11764705882354),
+            T::fused(
+                link_2_sz,
+                link_2_sz,
+                T::fused(link_2_sy, link_2_sy, link_2_sx * link_2_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            k(0.11764705882352941),
+            link_3_wz * link_3_wz,
+            T::fused(
+                k(0.9411764705882353),
+                link_3_wy * link_3_wy,
+                T::fused(link_3_wx, link_3_wx, t3),
+            ),
+        );
+        let t5 = T::fused(
+            k(294.11764705882354),
+            T::fused(
+                link_3_sz,
+                link_3_sz,
+                T::fused(link_3_sy, link_3_sy, link_3_sx * link_3_sx),
+            ),
+            t4,
+        );
+        let t6 = T::fused(
+            k(0.11764705882352941),
+            link_4_wz * link_4_wz,
+            T::fused(
+                k(0.9411764705882353),
+                link_4_wy * link_4_wy,
+                T::fused(link_4_wx, link_4_wx, t5),
+            ),
+        );
+        let t7 = T::fused(
+            k(294.11764705882354),
+            T::fused(
+                link_4_sz,
+                link_4_sz,
+                T::fused(link_4_sy, link_4_sy, link_4_sx * link_4_sx),
+            ),
+            t6,
+        );
+        let t8 = T::fused(
+            k(0.11764705882352941),
+            link_5_wz * link_5_wz,
+            T::fused(
+                k(0.9411764705882353),
+                link_5_wy * link_5_wy,
+                T::fused(link_5_wx, link_5_wx, t7),
+            ),
+        );
+        let t9 = T::fused(
+            k(294.11764705882354),
+            T::fused(
+                link_5_sz,
+                link_5_sz,
+                T::fused(link_5_sy, link_5_sy, link_5_sx * link_5_sx),
+            ),
+            t8,
+        );
+        let t10 = T::fused(
+            k(0.11764705882352941),
+            link_6_wz * link_6_wz,
+            T::fused(
+                k(0.9411764705882353),
+                link_6_wy * link_6_wy,
+                T::fused(link_6_wx, link_6_wx, t9),
+            ),
+        );
+        let t11 = T::fused(
+            k(294.11764705882354),
+            T::fused(
+                link_6_sz,
+                link_6_sz,
+                T::fused(link_6_sy, link_6_sy, link_6_sx * link_6_sx),
+            ),
             t10,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t11 + t9 + t7 + t5 + t3 + t1),
+            kinetic: k(0.00085) * t11,
             potential: k(4.905)
-                * (link_6_rz
-                    + (link_5_rz + (link_4_rz + (link_3_rz + (link_1_rz + link_2_rz))))),
+                * (link_2_rz
+                    + (link_1_rz + (link_3_rz + (link_4_rz + (link_5_rz + link_6_rz))))),
         }
     }
-    /// Writes the joint readings: 223 operations (102 ±, 121 ×, 0 ÷).
+    /// Writes the joint readings: 206 operations (99 ±, 107 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -1453,109 +1413,104 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_5_wx = y[69];
         let link_5_wy = y[70];
         let link_6_wx = y[75];
-        let t0 = k(2.0) * T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
-        let t1 = link_1_e2 * link_1_e2;
-        let t2 = link_1_e0 * link_1_e0;
-        let t3 = link_1_e3 * link_1_e3;
-        let t4 = k(1.0) - (t3 + (T::fused(link_1_e1, link_1_e1, t2) + t1));
-        let t5 = T::fused(k(2.0), k(0.5) - (t2 + t3), -t4);
-        let t6 = link_2_e0 * link_2_e0;
-        let t7 = T::fused(link_2_e1, link_2_e1, t6);
-        let t8 = link_2_e3 * link_2_e3;
-        let t9 = k(1.0) - (t8 + T::fused(link_2_e2, link_2_e2, t7));
-        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
-        let t11 = link_1_e0 * link_1_e1;
-        let t12 = link_1_e2 * link_1_e3;
-        let t13 = k(2.0) * T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
-        let t14 = link_2_e0 * link_2_e2;
-        let t15 = link_2_e1 * link_2_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(
-            -t13,
-            T::fused(k(2.0), k(0.5) - (t2 + t1), -t4),
-            k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2) * t16,
+        let t0 = T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
+        let t1 = link_1_e0 * link_1_e0;
+        let t2 = T::fused(link_1_e3, link_1_e3, t1);
+        let t3 = link_1_e2 * link_1_e2;
+        let t4 = k(0.5) * (k(1.0) - (t3 + T::fused(link_1_e1, link_1_e1, t2)));
+        let t5 = k(0.5) - t2 - t4;
+        let t6 = T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
+        let t7 = link_2_e0 * link_2_e2;
+        let t8 = link_2_e1 * link_2_e3;
+        let t9 = t8 + t7;
+        let t10 = T::fused(
+            -t6,
+            k(0.5) - (t1 + t3) - t4,
+            T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2) * t9,
         );
-        let t18 = T::fused(t5, t10, T::fused(k(2.0) * (t12 - t11), t13, t0 * t16));
-        let t19 = link_3_e2 * link_3_e2;
-        let t20 = link_3_e0 * link_3_e0;
-        let t21 = link_3_e3 * link_3_e3;
-        let t22 = k(1.0) - (t21 + (T::fused(link_3_e1, link_3_e1, t20) + t19));
-        let t23 = T::fused(k(2.0), k(0.5) - (t20 + t21), -t22);
-        let t24 = link_3_e0 * link_3_e1;
-        let t25 = link_3_e2 * link_3_e3;
-        let t26 = k(2.0) * (t25 - t24);
-        let t27 = k(2.0) * T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
-        let t28 = T::fused(
-            -(k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2)),
-            t26,
-            t27 * T::fused(k(2.0), k(0.5) - t7, -t9),
+        let t11 = link_2_e3 * link_2_e3;
+        let t12 = link_2_e0 * link_2_e0;
+        let t13 = T::fused(link_2_e1, link_2_e1, t12);
+        let t14 = k(0.5) * (k(1.0) - T::fused(link_2_e2, link_2_e2, t13 + t11));
+        let t15 = k(0.5) - (t12 + t11) - t14;
+        let t16 = link_1_e0 * link_1_e1;
+        let t17 = link_1_e2 * link_1_e3;
+        let t18 = k(4.0) * T::fused(t5, t15, T::fused(t0, t9, (t17 - t16) * t6));
+        let t19 = T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
+        let t20 = link_3_e0 * link_3_e1;
+        let t21 = link_3_e2 * link_3_e3;
+        let t22 = t21 - t20;
+        let t23 = T::fused(
+            -t19,
+            k(0.5) - t13 - t14,
+            T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2) * t22,
         );
-        let t29 = link_4_e0 * link_4_e0;
-        let t30 = T::fused(link_4_e1, link_4_e1, t29);
-        let t31 = link_4_e3 * link_4_e3;
-        let t32 = k(1.0) - (t31 + T::fused(link_4_e2, link_4_e2, t30));
-        let t33 = T::fused(k(2.0), k(0.5) - (t29 + t31), -t32);
-        let t34 = k(2.0) * T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
-        let t35 = link_4_e0 * link_4_e2;
-        let t36 = link_4_e1 * link_4_e3;
-        let t37 = k(2.0) * (t36 + t35);
-        let t38 = T::fused(
-            -t34,
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t22),
-            k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2) * t37,
+        let t24 = link_3_e0 * link_3_e0;
+        let t25 = T::fused(link_3_e3, link_3_e3, t24);
+        let t26 = link_3_e2 * link_3_e2;
+        let t27 = k(0.5) * (k(1.0) - (t26 + T::fused(link_3_e1, link_3_e1, t25)));
+        let t28 = k(0.5) - t25 - t27;
+        let t29 = T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
+        let t30 = link_4_e0 * link_4_e2;
+        let t31 = link_4_e1 * link_4_e3;
+        let t32 = t31 + t30;
+        let t33 = T::fused(
+            -t29,
+            k(0.5) - (t24 + t26) - t27,
+            T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2) * t32,
         );
-        let t39 = link_5_e2 * link_5_e2;
-        let t40 = link_5_e0 * link_5_e0;
-        let t41 = link_5_e3 * link_5_e3;
-        let t42 = k(1.0) - (t41 + (T::fused(link_5_e1, link_5_e1, t40) + t39));
-        let t43 = T::fused(k(2.0), k(0.5) - (t40 + t41), -t42);
-        let t44 = link_5_e0 * link_5_e1;
-        let t45 = link_5_e2 * link_5_e3;
-        let t46 = k(2.0) * (t45 - t44);
-        let t47 = k(2.0) * T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
-        let t48 = T::fused(
-            -(k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2)),
-            t46,
-            t47 * T::fused(k(2.0), k(0.5) - t30, -t32),
+        let t34 = link_4_e3 * link_4_e3;
+        let t35 = link_4_e0 * link_4_e0;
+        let t36 = T::fused(link_4_e1, link_4_e1, t35);
+        let t37 = k(0.5) * (k(1.0) - T::fused(link_4_e2, link_4_e2, t36 + t34));
+        let t38 = k(0.5) - (t35 + t34) - t37;
+        let t39 = T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
+        let t40 = link_5_e0 * link_5_e1;
+        let t41 = link_5_e2 * link_5_e3;
+        let t42 = t41 - t40;
+        let t43 = T::fused(
+            -t39,
+            k(0.5) - t36 - t37,
+            T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2) * t42,
         );
-        let t49 = link_6_e0 * link_6_e0;
-        let t50 = link_6_e3 * link_6_e3;
+        let t44 = link_5_e0 * link_5_e0;
+        let t45 = T::fused(link_5_e3, link_5_e3, t44);
+        let t46 = link_5_e2 * link_5_e2;
+        let t47 = k(0.5) * (k(1.0) - (t46 + T::fused(link_5_e1, link_5_e1, t45)));
+        let t48 = k(0.5) - t45 - t47;
+        let t49 = link_6_e3 * link_6_e3;
+        let t50 = link_6_e0 * link_6_e0;
         let t51 = T::fused(
-            k(2.0),
-            k(0.5) - (t49 + t50),
-            -(k(1.0)
-                - (t50
-                    + T::fused(
-                        link_6_e2,
-                        link_6_e2,
-                        T::fused(link_6_e1, link_6_e1, t49),
-                    ))),
+            link_6_e1,
+            link_6_e1,
+            t50 + T::fused(k(2.0), k(0.5) - (t50 + t49), t49),
         );
-        let t52 = k(2.0) * T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3);
-        let t53 = k(2.0) * T::fused(link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
-        let t54 = T::fused(
-            -t52,
-            T::fused(k(2.0), k(0.5) - (t40 + t39), -t42),
-            k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2) * t53,
+        let t52 = k(0.5) * (k(1.0) - T::fused(link_6_e2, link_6_e2, t51));
+        let t53 = T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3);
+        let t54 = T::fused(link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
+        let t55 = T::fused(
+            -t53,
+            k(0.5) - (t44 + t46) - t47,
+            T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2) * t54,
         );
         *out = [
-            t0,
-            -t5,
+            k(2.0) * t0,
+            -(k(2.0) * t5),
             link_1_wy,
-            T::fused(k(2.0) * (t12 + t11), t10, -t17),
+            k(4.0) * T::fused(t17 + t16, t15, -t10),
             t18,
             link_2_wx - link_1_wx,
-            -T::fused(k(2.0) * (t15 - t14), t23, t28),
-            T::fused(t10, t23, T::fused(t13, t26, t16 * t27)),
+            -(k(4.0) * T::fused(t8 - t7, t28, -t23)),
+            k(4.0) * T::fused(t15, t28, T::fused(t9, t19, t6 * t22)),
             link_3_wy - link_2_wy,
-            T::fused(k(2.0) * (t25 + t24), t33, -t38),
-            T::fused(t23, t33, T::fused(t26, t34, t27 * t37)),
+            k(4.0) * T::fused(t21 + t20, t38, -t33),
+            k(4.0) * T::fused(t28, t38, T::fused(t19, t32, t22 * t29)),
             link_4_wx - link_3_wx,
-            -T::fused(k(2.0) * (t36 - t35), t43, t48),
-            T::fused(t33, t43, T::fused(t34, t46, t37 * t47)),
+            -(k(4.0) * T::fused(t31 - t30, t48, -t43)),
+            k(4.0) * T::fused(t38, t48, T::fused(t32, t39, t29 * t42)),
             link_5_wy - link_4_wy,
-            T::fused(k(2.0) * (t45 + t44), t51, -t54),
-            T::fused(t43, t51, T::fused(t46, t52, t47 * t53)),
+            -(k(4.0) * T::fused(t41 + t40, t52, t55)),
+            k(4.0) * T::fused(-t48, t52, T::fused(t39, t54, t42 * t53)),
             link_6_wx - link_5_wx,
         ];
     }
@@ -1793,7 +1748,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Chain<T> {
             [-link_6_e1, link_6_e0, link_6_e3, -link_6_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 1131 operations (433 ±, 692 ×, 6 ÷).
+    /// One Newton step of the dependent positions: 1080 operations (433 ±, 641 ×, 6 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -1845,785 +1800,749 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Chain<T> {
         let chart5_2 = charts[5][2];
         let chart5_3 = charts[5][3];
         let (
+            t26,
+            t27,
             t28,
             t29,
             t30,
-            t31,
-            t32,
+            t33,
             t35,
-            t37,
+            t78,
+            t79,
+            t81,
+            t82,
             t85,
-            t86,
-            t88,
-            t89,
-            t93,
-            t96,
-            t100,
-            t148,
-            t149,
-            t150,
-            t151,
-            t153,
-            t154,
-            t158,
-            t159,
-            t162,
-            t163,
-            t166,
-            t167,
-            t168,
-            t169,
-            t171,
-            t183,
+            t87,
+            t90,
+            t133,
+            t134,
+            t135,
+            t136,
+            t138,
+            t142,
+            t144,
+            t145,
+            t188,
+            t189,
+            t190,
+            t191,
             t192,
             t193,
             t194,
+            t195,
+            t196,
+            t197,
             t198,
             t199,
         ) = {
             let t0 = T::fused(
-                link_1_e3,
-                link_1_e3,
+                link_1_e2,
+                link_1_e2,
                 T::fused(
-                    link_1_e2,
-                    link_1_e2,
-                    T::fused(link_1_e1, link_1_e1, link_1_e0 * link_1_e0),
+                    link_1_e1,
+                    link_1_e1,
+                    T::fused(link_1_e3, link_1_e3, link_1_e0 * link_1_e0),
                 ),
             );
-            let t1 = k(0.5) * (t0 - k(3.0));
+            let t1 = k(3.0) - t0;
             let t2 = link_1_e1 * t1;
             let t3 = link_1_e0 * t1;
-            let t4 = link_1_e3 * t1;
-            let t5 = link_1_e2 * t1;
-            let t6 = T::fused(
-                -chart0_3,
+            let t4 = t3 * t3;
+            let t5 = k(2.0) - T::fused(t2, t2, t4);
+            let t6 = link_1_e2 * t1;
+            let t7 = link_1_e3 * t1;
+            let t8 = T::fused(
+                chart0_3,
                 t2,
-                T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+                T::fused(chart0_2, t3, -T::fused(chart0_0, t6, chart0_1 * t7)),
             );
-            let t7 = k(0.5) * t6;
-            let t8 = t3 * t3;
-            let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
-            let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
-            let t11 = t2 * t4;
-            let t12 = t3 * t5;
-            let t13 = k(2.0) * (t12 + t11);
-            let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
-            let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
-            let t16 = k(2.0) * (t12 - t11);
-            let t17 = T::fused(t9, t15, t16 * t13);
-            let t18 = k(1.0) / (t7 * t17);
-            let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+            let t9 = T::fused(t2, t3, t7 * t6);
+            let t10 = t3 * t6;
+            let t11 = t2 * t7;
+            let t12 = t11 - t10;
+            let t13 = T::fused(-t3, t7, t2 * t6);
+            let t14 = t11 + t10;
+            let t15 = k(2.0) - T::fused(t7, t7, t4);
+            let t16 = T::fused(-t14, t12, t15 * t5);
+            let t17 = k(1.0) / (t8 * t16);
+            let t18 = t17 * T::fused(t9, t8 * t5, t13 * (t8 * t12));
+            let t19 = T::fused(
+                chart0_0,
+                T::fused(-k(0.5), t3, link_1_e0),
+                chart0_1 * T::fused(-k(0.5), t2, link_1_e1),
+            );
             let t20 = T::fused(
-                chart0_2,
-                link_1_e2 + t5,
-                T::fused(chart0_1, link_1_e1 + t2, chart0_0 * (link_1_e0 + t3)),
+                chart0_3,
+                T::fused(-k(0.5), t7, link_1_e3),
+                T::fused(chart0_2, T::fused(-k(0.5), t6, link_1_e2), t19),
             );
             let t21 = T::fused(
                 chart0_3,
-                t5,
-                T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+                t6,
+                -T::fused(chart0_2, t7, T::fused(-chart0_0, t2, chart0_1 * t3)),
             );
-            let t22 = k(0.5) * t21;
-            let t23 = T::fused(
-                -chart0_3,
+            let t22 = T::fused(
+                chart0_3,
                 t3,
-                T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+                -T::fused(chart0_2, t2, -T::fused(-chart0_0, t7, chart0_1 * t6)),
             );
-            let t24 = k(0.5) * t23;
-            let t25 = T::fused(
-                t10,
-                T::fused(t16, t22, t9 * t24),
-                t14 * T::fused(-t13, t24, t15 * t22),
+            let t23 = T::fused(
+                t9,
+                T::fused(t5, t21, t14 * t22),
+                t13 * T::fused(t15, t22, t12 * t21),
             );
-            let t26 = t18 * T::fused(-T::fused(chart0_3, link_1_e3 + t4, t20), t17, t25);
-            let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+            let t24 = t17 * T::fused(k(4.0), t16 * t20, t23);
+            let t25 = T::fused(t8 * t14, t9, t8 * t15 * t13) * t17;
+            let t26 = T::fused(
+                k(0.5),
+                T::fused(t7, t25, -T::fused(t2, t18, t6 * t24)),
+                t3,
+            );
+            let t27 = T::fused(
+                k(0.5),
+                T::fused(t2, t25, T::fused(t7, t18, t3 * t24)),
+                t6,
+            );
             let t28 = T::fused(
                 -k(0.5),
-                T::fused(t3, t19, T::fused(t2, t26, t5 * t27)),
-                t4,
-            );
-            let t29 = T::fused(
-                k(0.5),
-                T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)),
+                T::fused(t6, t25, T::fused(-t3, t18, t7 * t24)),
                 t2,
             );
-            let t30 = T::fused(
-                k(0.5),
-                T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)),
-                t5,
-            );
-            let t31 = T::fused(
+            let t29 = T::fused(
                 -k(0.5),
-                T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
-                t3,
+                T::fused(t3, t25, -T::fused(-t6, t18, t2 * t24)),
+                t7,
             );
-            let t32 = T::fused(t29, t28, t31 * t30);
-            let t33 = t30 * t28;
-            let t34 = t31 * t29;
-            let t35 = t34 - t33;
-            let t36 = t31 * t31;
-            let t37 = k(0.5) - T::fused(t28, t28, t36);
-            let t38 = T::fused(
-                link_2_e3,
-                link_2_e3,
+            let t30 = T::fused(t27, t26, t29 * t28);
+            let t31 = t28 * t26;
+            let t32 = t29 * t27;
+            let t33 = t32 - t31;
+            let t34 = t26 * t26;
+            let t35 = k(2.0) - T::fused(t29, t29, t34);
+            let t36 = T::fused(
+                link_2_e2,
+                link_2_e2,
                 T::fused(
-                    link_2_e2,
-                    link_2_e2,
-                    T::fused(link_2_e1, link_2_e1, link_2_e0 * link_2_e0),
+                    link_2_e1,
+                    link_2_e1,
+                    T::fused(link_2_e3, link_2_e3, link_2_e0 * link_2_e0),
                 ),
             );
-            let t39 = k(0.5) * (t38 - k(3.0));
-            let t40 = link_2_e2 * t39;
-            let t41 = link_2_e3 * t39;
-            let t42 = link_2_e0 * t39;
-            let t43 = link_2_e1 * t39;
-            let t44 = T::fused(
-                chart1_3,
-                t40,
-                T::fused(-chart1_2, t41, T::fused(-chart1_1, t42, chart1_0 * t43)),
+            let t37 = k(3.0) - t36;
+            let t38 = link_2_e0 * t37;
+            let t39 = link_2_e1 * t37;
+            let t40 = T::fused(
+                chart1_0,
+                T::fused(-k(0.5), t38, link_2_e0),
+                chart1_1 * T::fused(-k(0.5), t39, link_2_e1),
             );
-            let t45 = k(0.5) * t44;
-            let t46 = t43 * t41;
-            let t47 = t42 * t40;
-            let t48 = k(2.0) * (t47 + t46);
-            let t49 = k(2.0) * t32;
-            let t50 = t40 * t41;
-            let t51 = t42 * t43;
-            let t52 = k(2.0) * (t51 - t50);
-            let t53 = k(2.0) * t35;
-            let t54 = t42 * t42;
-            let t55 = k(2.0) * (k(0.5) - T::fused(t41, t41, t54));
-            let t56 = k(2.0) * t37;
-            let t57 = T::fused(t56, t55, T::fused(t49, t48, t53 * t52));
-            let t58 = k(2.0) * T::fused(-t29, t30, t31 * t28);
-            let t59 = k(2.0) * (k(0.5) - T::fused(t43, t43, t54));
-            let t60 = k(2.0) * (k(0.5) - T::fused(t30, t30, t36));
-            let t61 = t43 * t40;
-            let t62 = t42 * t41;
-            let t63 = k(2.0) * (t62 + t61);
-            let t64 = k(2.0) * (t34 + t33);
-            let t65 = k(2.0) * (t47 - t46);
-            let t66 = T::fused(t65, t64, T::fused(-t59, t58, t63 * t60));
-            let t67 = T::fused(t55, t64, -T::fused(-t48, t58, t52 * t60));
-            let t68 = T::fused(t56, t65, -T::fused(t49, t59, t53 * t63));
-            let t69 = k(2.0) * (t62 - t61);
-            let t70 = k(2.0) * (k(0.5) - T::fused(t40, t40, t54));
-            let t71 = k(2.0) * (t51 + t50);
-            let t72 = T::fused(t56, t71, -T::fused(-t49, t69, t53 * t70));
-            let t73 = T::fused(t71, t64, T::fused(t69, t58, t70 * t60));
-            let t74 = T::fused(-t72, t67, t57 * t73);
-            let t75 = k(1.0) / (t45 * t74);
-            let t76 = t75 * T::fused(-t66, t57 * t45, t68 * (t67 * t45));
-            let t77 = t75 * T::fused(-t66, t72 * t45, t68 * (t73 * t45));
+            let t41 = link_2_e2 * t37;
+            let t42 = link_2_e3 * t37;
+            let t43 = T::fused(
+                chart1_3,
+                T::fused(-k(0.5), t42, link_2_e3),
+                T::fused(chart1_2, T::fused(-k(0.5), t41, link_2_e2), t40),
+            );
+            let t44 = t38 * t39;
+            let t45 = t41 * t42;
+            let t46 = t45 + t44;
+            let t47 = t32 + t31;
+            let t48 = t38 * t38;
+            let t49 = k(2.0) - T::fused(t41, t41, t48);
+            let t50 = k(2.0) - T::fused(t27, t27, t34);
+            let t51 = t42 * t38;
+            let t52 = t41 * t39;
+            let t53 = t52 - t51;
+            let t54 = T::fused(-t29, t26, t28 * t27);
+            let t55 = T::fused(t54, t53, T::fused(t47, t46, t50 * t49));
+            let t56 = k(2.0) - T::fused(t42, t42, t48);
+            let t57 = t45 - t44;
+            let t58 = t41 * t38;
+            let t59 = t42 * t39;
+            let t60 = t59 + t58;
+            let t61 = T::fused(t30, t60, T::fused(t35, t56, t33 * t57));
+            let t62 = T::fused(t30, t53, -T::fused(t35, t46, t33 * t49));
+            let t63 = T::fused(t60, t54, -T::fused(t56, t47, t57 * t50));
+            let t64 = T::fused(-t61, t55, t63 * t62);
+            let t65 = T::fused(
+                chart1_3,
+                t38,
+                -T::fused(chart1_2, t39, -T::fused(-chart1_0, t42, chart1_1 * t41)),
+            );
+            let t66 = T::fused(
+                chart1_3,
+                t39,
+                T::fused(chart1_2, t38, -T::fused(chart1_0, t41, chart1_1 * t42)),
+            );
+            let t67 = t59 - t58;
+            let t68 = t52 + t51;
+            let t69 = k(2.0) - T::fused(t39, t39, t48);
+            let t70 = T::fused(t30, t69, -T::fused(-t35, t67, t33 * t68));
+            let t71 = T::fused(t54, t69, T::fused(-t47, t67, t50 * t68));
+            let t72 = T::fused(
+                -t70,
+                T::fused(t63, t65, t55 * t66),
+                t71 * T::fused(t62, t66, t61 * t65),
+            );
+            let t73 = T::fused(
+                chart1_3,
+                t41,
+                -T::fused(chart1_2, t42, T::fused(-chart1_0, t39, chart1_1 * t38)),
+            );
+            let t74 = k(1.0) / (t73 * t64);
+            let t75 = t74 * T::fused(k(4.0), t64 * t43, t72);
+            let t76 = t74 * T::fused(-t70, t73 * t55, t71 * (t73 * t62));
+            let t77 = T::fused(-(t73 * t63), t70, t73 * t61 * t71) * t74;
             let t78 = T::fused(
-                chart1_2,
-                link_2_e2 + t40,
-                T::fused(chart1_1, link_2_e1 + t43, chart1_0 * (link_2_e0 + t42)),
+                k(0.5),
+                T::fused(t42, t77, T::fused(t39, t75, t41 * t76)),
+                t38,
             );
             let t79 = T::fused(
-                -chart1_3,
-                t42,
-                T::fused(chart1_2, t43, T::fused(-chart1_1, t40, chart1_0 * t41)),
-            );
-            let t80 = k(0.5) * t79;
-            let t81 = T::fused(
-                -chart1_3,
-                t43,
-                T::fused(-chart1_2, t42, T::fused(chart1_1, t41, chart1_0 * t40)),
-            );
-            let t82 = k(0.5) * t81;
-            let t83 = T::fused(
-                t66,
-                T::fused(-t57, t80, t72 * t82),
-                t68 * T::fused(-t73, t82, t67 * t80),
-            );
-            let t84 = t75 * T::fused(T::fused(chart1_3, link_2_e3 + t41, t78), t74, t83);
-            let t85 = T::fused(
-                -k(0.5),
-                T::fused(t42, t76, T::fused(-t43, t77, t40 * t84)),
+                k(0.5),
+                T::fused(t39, t77, -T::fused(t42, t75, t38 * t76)),
                 t41,
             );
-            let t86 = T::fused(
-                k(0.5),
-                T::fused(-t40, t76, T::fused(-t41, t77, t42 * t84)),
-                t43,
-            );
-            let t87 = t86 * t85;
-            let t88 = T::fused(
-                k(0.5),
-                T::fused(t43, t76, T::fused(t42, t77, t41 * t84)),
-                t40,
-            );
-            let t89 = T::fused(
+            let t80 = t79 * t78;
+            let t81 = T::fused(
                 -k(0.5),
-                T::fused(-t41, t76, T::fused(t40, t77, t43 * t84)),
+                T::fused(t41, t77, -T::fused(-t38, t75, t42 * t76)),
+                t39,
+            );
+            let t82 = T::fused(
+                -k(0.5),
+                T::fused(t38, t77, T::fused(-t41, t75, t39 * t76)),
                 t42,
             );
-            let t90 = t89 * t88;
-            let t91 = t90 + t87;
-            let t92 = k(0.2) * t91;
-            let t93 = T::fused(k(0.4), t32, t92);
-            let t94 = T::fused(-t88, t85, t89 * t86);
-            let t95 = k(0.2) * t94;
-            let t96 = T::fused(k(0.4), t35, t95);
-            let t97 = t89 * t89;
-            let t98 = k(0.5) - T::fused(t85, t85, t97);
-            let t99 = k(0.2) * t98;
-            let t100 = T::fused(k(0.4), t37, t99);
-            let t101 = T::fused(
-                link_3_e3,
-                link_3_e3,
+            let t83 = t82 * t81;
+            let t84 = t83 + t80;
+            let t85 = T::fused(k(2.0), t30, t84);
+            let t86 = T::fused(-t81, t78, t82 * t79);
+            let t87 = T::fused(k(2.0), t33, t86);
+            let t88 = t78 * t78;
+            let t89 = k(2.0) - T::fused(t82, t82, t88);
+            let t90 = T::fused(k(2.0), t35, t89);
+            let t91 = T::fused(
+                link_3_e2,
+                link_3_e2,
                 T::fused(
-                    link_3_e2,
-                    link_3_e2,
-                    T::fused(link_3_e1, link_3_e1, link_3_e0 * link_3_e0),
+                    link_3_e1,
+                    link_3_e1,
+                    T::fused(link_3_e3, link_3_e3, link_3_e0 * link_3_e0),
                 ),
             );
-            let t102 = k(0.5) * (t101 - k(3.0));
-            let t103 = link_3_e1 * t102;
-            let t104 = link_3_e0 * t102;
-            let t105 = link_3_e3 * t102;
-            let t106 = link_3_e2 * t102;
-            let t107 = T::fused(
-                -chart2_3,
-                t103,
-                T::fused(-chart2_2, t104, T::fused(chart2_1, t105, chart2_0 * t106)),
-            );
-            let t108 = k(0.5) * t107;
-            let t109 = t103 * t105;
-            let t110 = t104 * t106;
-            let t111 = k(2.0) * (t110 + t109);
-            let t112 = k(2.0) * t91;
-            let t113 = t106 * t105;
-            let t114 = t104 * t103;
-            let t115 = k(2.0) * (t114 - t113);
-            let t116 = k(2.0) * t94;
-            let t117 = t104 * t104;
-            let t118 = k(2.0) * (k(0.5) - T::fused(t105, t105, t117));
-            let t119 = k(2.0) * t98;
-            let t120 = T::fused(t119, t118, T::fused(t112, t111, t116 * t115));
-            let t121 = k(2.0) * (k(0.5) - T::fused(t86, t86, t97));
-            let t122 = t103 * t106;
-            let t123 = t104 * t105;
-            let t124 = k(2.0) * (t123 - t122);
-            let t125 = k(2.0) * T::fused(t86, t88, t89 * t85);
-            let t126 = k(2.0) * (k(0.5) - T::fused(t106, t106, t117));
-            let t127 = k(2.0) * (t90 - t87);
-            let t128 = k(2.0) * (t114 + t113);
-            let t129 = T::fused(t128, t127, T::fused(-t124, t121, t126 * t125));
-            let t130 = T::fused(t118, t127, -T::fused(t111, t121, t115 * t125));
-            let t131 = T::fused(t119, t128, -T::fused(-t112, t124, t116 * t126));
-            let t132 = k(2.0) * (k(0.5) - T::fused(t103, t103, t117));
-            let t133 = k(2.0) * (t123 + t122);
-            let t134 = k(2.0) * (t110 - t109);
-            let t135 = T::fused(t134, t127, T::fused(t132, t121, t133 * t125));
-            let t136 = T::fused(t119, t134, -T::fused(t112, t132, t116 * t133));
-            let t137 = T::fused(-t120, t135, t136 * t130);
-            let t138 = k(1.0) / (t108 * t137);
-            let t139 = t138 * T::fused(-t129, t120 * t108, t131 * (t130 * t108));
-            let t140 = T::fused(
-                chart2_2,
-                link_3_e2 + t106,
-                T::fused(chart2_1, link_3_e1 + t103, chart2_0 * (link_3_e0 + t104)),
-            );
-            let t141 = T::fused(
+            let t92 = k(3.0) - t91;
+            let t93 = link_3_e2 * t92;
+            let t94 = link_3_e0 * t92;
+            let t95 = t94 * t93;
+            let t96 = link_3_e3 * t92;
+            let t97 = link_3_e1 * t92;
+            let t98 = t97 * t96;
+            let t99 = t98 - t95;
+            let t100 = t83 - t80;
+            let t101 = t94 * t96;
+            let t102 = t97 * t93;
+            let t103 = t102 + t101;
+            let t104 = T::fused(t82, t78, t81 * t79);
+            let t105 = t94 * t94;
+            let t106 = k(2.0) - T::fused(t97, t97, t105);
+            let t107 = k(2.0) - T::fused(t81, t81, t88);
+            let t108 = T::fused(t107, t106, T::fused(t100, t99, t104 * t103));
+            let t109 = T::fused(
                 chart2_3,
-                t106,
-                T::fused(-chart2_2, t105, T::fused(-chart2_1, t104, chart2_0 * t103)),
+                t97,
+                T::fused(chart2_2, t94, -T::fused(chart2_0, t93, chart2_1 * t96)),
             );
-            let t142 = k(0.5) * t141;
-            let t143 = T::fused(
-                -chart2_3,
-                t104,
-                T::fused(chart2_2, t103, T::fused(-chart2_1, t106, chart2_0 * t105)),
+            let t110 = t97 * t94;
+            let t111 = t96 * t93;
+            let t112 = t111 + t110;
+            let t113 = k(2.0) - T::fused(t93, t93, t105);
+            let t114 = t102 - t101;
+            let t115 = T::fused(t84, t114, -T::fused(t89, t112, t86 * t113));
+            let t116 = T::fused(t84, t106, -T::fused(-t89, t99, t86 * t103));
+            let t117 = T::fused(t107, t114, T::fused(-t100, t112, t104 * t113));
+            let t118 = k(2.0) - T::fused(t96, t96, t105);
+            let t119 = t111 - t110;
+            let t120 = t98 + t95;
+            let t121 = T::fused(t120, t107, -T::fused(-t118, t100, t119 * t104));
+            let t122 = T::fused(t84, t120, T::fused(t89, t118, t86 * t119));
+            let t123 = T::fused(-t121, t116, t122 * t108);
+            let t124 = k(1.0) / (t109 * t123);
+            let t125 = t124 * T::fused(-t115, t109 * t108, t117 * (t109 * t116));
+            let t126 = T::fused(
+                chart2_0,
+                T::fused(-k(0.5), t94, link_3_e0),
+                chart2_1 * T::fused(-k(0.5), t97, link_3_e1),
             );
-            let t144 = k(0.5) * t143;
-            let t145 = T::fused(
-                -t129,
-                T::fused(t136, t142, t120 * t144),
-                t131 * T::fused(t130, t144, t135 * t142),
+            let t127 = T::fused(
+                chart2_3,
+                T::fused(-k(0.5), t96, link_3_e3),
+                T::fused(chart2_2, T::fused(-k(0.5), t93, link_3_e2), t126),
             );
-            let t146 = t138
-                * T::fused(T::fused(chart2_3, link_3_e3 + t105, t140), t137, t145);
-            let t147 = t138 * T::fused(-t129, t136 * t108, t131 * (t135 * t108));
-            let t148 = T::fused(
+            let t128 = T::fused(
+                chart2_3,
+                t93,
+                -T::fused(chart2_2, t96, T::fused(-chart2_0, t97, chart2_1 * t94)),
+            );
+            let t129 = T::fused(
+                chart2_3,
+                t94,
+                -T::fused(chart2_2, t97, -T::fused(-chart2_0, t96, chart2_1 * t93)),
+            );
+            let t130 = T::fused(
+                -t115,
+                T::fused(t108, t128, t121 * t129),
+                t117 * T::fused(t122, t129, t116 * t128),
+            );
+            let t131 = t124 * T::fused(k(4.0), t123 * t127, t130);
+            let t132 = T::fused(-(t109 * t121), t115, t109 * t122 * t117) * t124;
+            let t133 = T::fused(
                 k(0.5),
-                T::fused(-t104, t139, T::fused(t103, t146, t106 * t147)),
-                t105,
+                T::fused(t96, t132, -T::fused(t97, t125, t93 * t131)),
+                t94,
             );
-            let t149 = T::fused(
-                -k(0.5),
-                T::fused(t106, t139, T::fused(t105, t146, t104 * t147)),
-                t103,
-            );
-            let t150 = T::fused(
-                -k(0.5),
-                T::fused(-t103, t139, T::fused(-t104, t146, t105 * t147)),
-                t106,
-            );
-            let t151 = T::fused(
+            let t134 = T::fused(
                 k(0.5),
-                T::fused(t105, t139, T::fused(-t106, t146, t103 * t147)),
-                t104,
+                T::fused(t97, t132, T::fused(t96, t125, t94 * t131)),
+                t93,
             );
-            let t152 = T::fused(t149, t148, t151 * t150);
-            let t153 = k(0.2) * t152;
-            let t154 = t153 + (t92 + t93);
-            let t155 = t150 * t148;
-            let t156 = t151 * t149;
-            let t157 = t156 - t155;
-            let t158 = k(0.2) * t157;
-            let t159 = t158 + (t95 + t96);
-            let t160 = t151 * t151;
-            let t161 = k(0.5) - T::fused(t148, t148, t160);
-            let t162 = k(0.2) * t161;
-            let t163 = t162 + (t99 + t100);
-            let t164 = T::fused(
-                link_4_e3,
-                link_4_e3,
+            let t135 = T::fused(
+                -k(0.5),
+                T::fused(t93, t132, T::fused(-t94, t125, t96 * t131)),
+                t97,
+            );
+            let t136 = T::fused(
+                -k(0.5),
+                T::fused(t94, t132, -T::fused(-t93, t125, t97 * t131)),
+                t96,
+            );
+            let t137 = T::fused(t134, t133, t136 * t135);
+            let t138 = t85 + (t84 + t137);
+            let t139 = t135 * t133;
+            let t140 = t136 * t134;
+            let t141 = t140 - t139;
+            let t142 = t87 + (t86 + t141);
+            let t143 = t133 * t133;
+            let t144 = k(2.0) - T::fused(t136, t136, t143);
+            let t145 = t90 + (t89 + t144);
+            let t146 = T::fused(
+                link_4_e2,
+                link_4_e2,
                 T::fused(
-                    link_4_e2,
-                    link_4_e2,
-                    T::fused(link_4_e1, link_4_e1, link_4_e0 * link_4_e0),
+                    link_4_e1,
+                    link_4_e1,
+                    T::fused(link_4_e3, link_4_e3, link_4_e0 * link_4_e0),
                 ),
             );
-            let t165 = k(0.5) * (t164 - k(3.0));
-            let t166 = link_4_e2 * t165;
-            let t167 = link_4_e3 * t165;
-            let t168 = link_4_e0 * t165;
-            let t169 = link_4_e1 * t165;
-            let t170 = T::fused(
-                chart3_3,
-                t166,
-                T::fused(-chart3_2, t167, T::fused(-chart3_1, t168, chart3_0 * t169)),
+            let t147 = k(3.0) - t146;
+            let t148 = link_4_e0 * t147;
+            let t149 = link_4_e1 * t147;
+            let t150 = T::fused(
+                chart3_0,
+                T::fused(-k(0.5), t148, link_4_e0),
+                chart3_1 * T::fused(-k(0.5), t149, link_4_e1),
             );
-            let t171 = k(0.5) * t170;
-            let t172 = t169 * t167;
-            let t173 = t168 * t166;
-            let t174 = k(2.0) * (t173 + t172);
-            let t175 = k(2.0) * t152;
-            let t176 = t166 * t167;
-            let t177 = t168 * t169;
-            let t178 = k(2.0) * (t177 - t176);
-            let t179 = k(2.0) * t157;
-            let t180 = t168 * t168;
-            let t181 = k(2.0) * (k(0.5) - T::fused(t167, t167, t180));
-            let t182 = k(2.0) * t161;
-            let t183 = T::fused(t182, t181, T::fused(t175, t174, t179 * t178));
-            let t184 = k(2.0) * T::fused(-t149, t150, t151 * t148);
-            let t185 = k(2.0) * (k(0.5) - T::fused(t169, t169, t180));
-            let t186 = k(2.0) * (k(0.5) - T::fused(t150, t150, t160));
-            let t187 = t169 * t166;
-            let t188 = t168 * t167;
-            let t189 = k(2.0) * (t188 + t187);
-            let t190 = k(2.0) * (t156 + t155);
-            let t191 = k(2.0) * (t173 - t172);
-            let t192 = T::fused(t191, t190, T::fused(-t185, t184, t189 * t186));
-            let t193 = T::fused(t181, t190, -T::fused(-t174, t184, t178 * t186));
-            let t194 = T::fused(t182, t191, -T::fused(t175, t185, t179 * t189));
-            let t195 = k(2.0) * (t188 - t187);
-            let t196 = k(2.0) * (k(0.5) - T::fused(t166, t166, t180));
-            let t197 = k(2.0) * (t177 + t176);
-            let t198 = T::fused(t182, t197, -T::fused(-t175, t195, t179 * t196));
-            let t199 = T::fused(t197, t190, T::fused(t195, t184, t196 * t186));
+            let t151 = link_4_e2 * t147;
+            let t152 = link_4_e3 * t147;
+            let t153 = T::fused(
+                chart3_3,
+                T::fused(-k(0.5), t152, link_4_e3),
+                T::fused(chart3_2, T::fused(-k(0.5), t151, link_4_e2), t150),
+            );
+            let t154 = t148 * t149;
+            let t155 = t151 * t152;
+            let t156 = t155 + t154;
+            let t157 = t140 + t139;
+            let t158 = t148 * t148;
+            let t159 = k(2.0) - T::fused(t151, t151, t158);
+            let t160 = k(2.0) - T::fused(t134, t134, t143);
+            let t161 = t152 * t148;
+            let t162 = t151 * t149;
+            let t163 = t162 - t161;
+            let t164 = T::fused(-t136, t133, t135 * t134);
+            let t165 = T::fused(t164, t163, T::fused(t157, t156, t160 * t159));
+            let t166 = k(2.0) - T::fused(t152, t152, t158);
+            let t167 = t155 - t154;
+            let t168 = t151 * t148;
+            let t169 = t152 * t149;
+            let t170 = t169 + t168;
+            let t171 = T::fused(t137, t170, T::fused(t144, t166, t141 * t167));
+            let t172 = T::fused(t137, t163, -T::fused(t144, t156, t141 * t159));
+            let t173 = T::fused(t170, t164, -T::fused(t166, t157, t167 * t160));
+            let t174 = T::fused(-t171, t165, t173 * t172);
+            let t175 = T::fused(
+                chart3_3,
+                t148,
+                -T::fused(chart3_2, t149, -T::fused(-chart3_0, t152, chart3_1 * t151)),
+            );
+            let t176 = T::fused(
+                chart3_3,
+                t149,
+                T::fused(chart3_2, t148, -T::fused(chart3_0, t151, chart3_1 * t152)),
+            );
+            let t177 = t169 - t168;
+            let t178 = t162 + t161;
+            let t179 = k(2.0) - T::fused(t149, t149, t158);
+            let t180 = T::fused(t137, t179, -T::fused(-t144, t177, t141 * t178));
+            let t181 = T::fused(t164, t179, T::fused(-t157, t177, t160 * t178));
+            let t182 = T::fused(
+                -t180,
+                T::fused(t173, t175, t165 * t176),
+                t181 * T::fused(t172, t176, t171 * t175),
+            );
+            let t183 = T::fused(
+                chart3_3,
+                t151,
+                -T::fused(chart3_2, t152, T::fused(-chart3_0, t149, chart3_1 * t148)),
+            );
+            let t184 = k(1.0) / (t183 * t174);
+            let t185 = t184 * T::fused(k(4.0), t174 * t153, t182);
+            let t186 = t184 * T::fused(-t180, t183 * t165, t181 * (t183 * t172));
+            let t187 = T::fused(-(t183 * t173), t180, t183 * t171 * t181) * t184;
+            let t188 = T::fused(
+                k(0.5),
+                T::fused(t152, t187, T::fused(t149, t185, t151 * t186)),
+                t148,
+            );
+            let t189 = T::fused(
+                k(0.5),
+                T::fused(t149, t187, -T::fused(t152, t185, t148 * t186)),
+                t151,
+            );
+            let t190 = t189 * t188;
+            let t191 = T::fused(
+                -k(0.5),
+                T::fused(t151, t187, -T::fused(-t148, t185, t152 * t186)),
+                t149,
+            );
+            let t192 = T::fused(
+                -k(0.5),
+                T::fused(t148, t187, T::fused(-t151, t185, t149 * t186)),
+                t152,
+            );
+            let t193 = t192 * t191;
+            let t194 = t193 + t190;
+            let t195 = t138 + (t137 + t194);
+            let t196 = T::fused(-t191, t188, t192 * t189);
+            let t197 = t142 + (t141 + t196);
+            let t198 = t188 * t188;
+            let t199 = k(2.0) - T::fused(t192, t192, t198);
             (
+                t26,
+                t27,
                 t28,
                 t29,
                 t30,
-                t31,
-                t32,
+                t33,
                 t35,
-                t37,
+                t78,
+                t79,
+                t81,
+                t82,
                 t85,
-                t86,
-                t88,
-                t89,
-                t93,
-                t96,
-                t100,
-                t148,
-                t149,
-                t150,
-                t151,
-                t153,
-                t154,
-                t158,
-                t159,
-                t162,
-                t163,
-                t166,
-                t167,
-                t168,
-                t169,
-                t171,
-                t183,
+                t87,
+                t90,
+                t133,
+                t134,
+                t135,
+                t136,
+                t138,
+                t142,
+                t144,
+                t145,
+                t188,
+                t189,
+                t190,
+                t191,
                 t192,
                 t193,
                 t194,
+                t195,
+                t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (
-            t211,
-            t212,
-            t214,
-            t215,
-            t219,
-            t222,
-            t226,
-            t274,
-            t275,
-            t276,
-            t277,
-            t279,
-            t280,
-            t284,
-            t285,
-            t289,
-            t337,
-            t338,
-            t339,
-            t340,
-            t341,
+            t200,
+            t243,
+            t244,
+            t245,
+            t246,
+            t247,
+            t248,
+            t251,
+            t252,
+            t255,
+            t298,
+            t299,
+            t300,
+            t301,
+            t302,
         ) = {
-            let t200 = T::fused(-t198, t193, t183 * t199);
-            let t201 = k(1.0) / (t171 * t200);
-            let t202 = t201 * T::fused(-t192, t183 * t171, t194 * (t193 * t171));
-            let t203 = t201 * T::fused(-t192, t198 * t171, t194 * (t199 * t171));
-            let t204 = T::fused(
-                chart3_2,
-                link_4_e2 + t166,
-                T::fused(chart3_1, link_4_e1 + t169, chart3_0 * (link_4_e0 + t168)),
-            );
-            let t205 = T::fused(
-                -chart3_3,
-                t168,
-                T::fused(chart3_2, t169, T::fused(-chart3_1, t166, chart3_0 * t167)),
-            );
-            let t206 = k(0.5) * t205;
-            let t207 = T::fused(
-                -chart3_3,
-                t169,
-                T::fused(-chart3_2, t168, T::fused(chart3_1, t167, chart3_0 * t166)),
-            );
-            let t208 = k(0.5) * t207;
-            let t209 = T::fused(
-                t192,
-                T::fused(-t183, t206, t198 * t208),
-                t194 * T::fused(-t199, t208, t193 * t206),
-            );
-            let t210 = t201
-                * T::fused(T::fused(chart3_3, link_4_e3 + t167, t204), t200, t209);
-            let t211 = T::fused(
-                -k(0.5),
-                T::fused(t168, t202, T::fused(-t169, t203, t166 * t210)),
-                t167,
-            );
-            let t212 = T::fused(
-                k(0.5),
-                T::fused(-t166, t202, T::fused(-t167, t203, t168 * t210)),
-                t169,
-            );
-            let t213 = t212 * t211;
-            let t214 = T::fused(
-                k(0.5),
-                T::fused(t169, t202, T::fused(t168, t203, t167 * t210)),
-                t166,
-            );
-            let t215 = T::fused(
-                -k(0.5),
-                T::fused(-t167, t202, T::fused(t166, t203, t169 * t210)),
-                t168,
-            );
-            let t216 = t215 * t214;
-            let t217 = t216 + t213;
-            let t218 = k(0.2) * t217;
-            let t219 = t218 + (t153 + t154);
-            let t220 = T::fused(-t214, t211, t215 * t212);
-            let t221 = k(0.2) * t220;
-            let t222 = t221 + (t158 + t159);
-            let t223 = t215 * t215;
-            let t224 = k(0.5) - T::fused(t211, t211, t223);
-            let t225 = k(0.2) * t224;
-            let t226 = t225 + (t162 + t163);
-            let t227 = T::fused(
-                link_5_e3,
-                link_5_e3,
+            let t200 = t145 + (t144 + t199);
+            let t201 = T::fused(
+                link_5_e2,
+                link_5_e2,
                 T::fused(
-                    link_5_e2,
-                    link_5_e2,
-                    T::fused(link_5_e1, link_5_e1, link_5_e0 * link_5_e0),
+                    link_5_e1,
+                    link_5_e1,
+                    T::fused(link_5_e3, link_5_e3, link_5_e0 * link_5_e0),
                 ),
             );
-            let t228 = k(0.5) * (t227 - k(3.0));
-            let t229 = link_5_e1 * t228;
-            let t230 = link_5_e0 * t228;
-            let t231 = link_5_e3 * t228;
-            let t232 = link_5_e2 * t228;
-            let t233 = T::fused(
-                -chart4_3,
-                t229,
-                T::fused(-chart4_2, t230, T::fused(chart4_1, t231, chart4_0 * t232)),
-            );
-            let t234 = k(0.5) * t233;
-            let t235 = t229 * t231;
-            let t236 = t230 * t232;
-            let t237 = k(2.0) * (t236 + t235);
-            let t238 = k(2.0) * t217;
-            let t239 = t232 * t231;
-            let t240 = t230 * t229;
-            let t241 = k(2.0) * (t240 - t239);
-            let t242 = k(2.0) * t220;
-            let t243 = t230 * t230;
-            let t244 = k(2.0) * (k(0.5) - T::fused(t231, t231, t243));
-            let t245 = k(2.0) * t224;
-            let t246 = T::fused(t245, t244, T::fused(t238, t237, t242 * t241));
-            let t247 = k(2.0) * (k(0.5) - T::fused(t212, t212, t223));
-            let t248 = t229 * t232;
-            let t249 = t230 * t231;
-            let t250 = k(2.0) * (t249 - t248);
-            let t251 = k(2.0) * T::fused(t212, t214, t215 * t211);
-            let t252 = k(2.0) * (k(0.5) - T::fused(t232, t232, t243));
-            let t253 = k(2.0) * (t216 - t213);
-            let t254 = k(2.0) * (t240 + t239);
-            let t255 = T::fused(t254, t253, T::fused(-t250, t247, t252 * t251));
-            let t256 = T::fused(t244, t253, -T::fused(t237, t247, t241 * t251));
-            let t257 = T::fused(t245, t254, -T::fused(-t238, t250, t242 * t252));
-            let t258 = k(2.0) * (k(0.5) - T::fused(t229, t229, t243));
-            let t259 = k(2.0) * (t249 + t248);
-            let t260 = k(2.0) * (t236 - t235);
-            let t261 = T::fused(t260, t253, T::fused(t258, t247, t259 * t251));
-            let t262 = T::fused(t245, t260, -T::fused(t238, t258, t242 * t259));
-            let t263 = T::fused(-t246, t261, t262 * t256);
-            let t264 = k(1.0) / (t234 * t263);
-            let t265 = t264 * T::fused(-t255, t246 * t234, t257 * (t256 * t234));
-            let t266 = T::fused(
-                chart4_2,
-                link_5_e2 + t232,
-                T::fused(chart4_1, link_5_e1 + t229, chart4_0 * (link_5_e0 + t230)),
-            );
-            let t267 = T::fused(
+            let t202 = k(3.0) - t201;
+            let t203 = link_5_e2 * t202;
+            let t204 = link_5_e0 * t202;
+            let t205 = t204 * t203;
+            let t206 = link_5_e3 * t202;
+            let t207 = link_5_e1 * t202;
+            let t208 = t207 * t206;
+            let t209 = t208 - t205;
+            let t210 = t193 - t190;
+            let t211 = t204 * t206;
+            let t212 = t207 * t203;
+            let t213 = t212 + t211;
+            let t214 = T::fused(t192, t188, t191 * t189);
+            let t215 = t204 * t204;
+            let t216 = k(2.0) - T::fused(t207, t207, t215);
+            let t217 = k(2.0) - T::fused(t191, t191, t198);
+            let t218 = T::fused(t217, t216, T::fused(t210, t209, t214 * t213));
+            let t219 = T::fused(
                 chart4_3,
-                t232,
-                T::fused(-chart4_2, t231, T::fused(-chart4_1, t230, chart4_0 * t229)),
+                t207,
+                T::fused(chart4_2, t204, -T::fused(chart4_0, t203, chart4_1 * t206)),
             );
-            let t268 = k(0.5) * t267;
-            let t269 = T::fused(
-                -chart4_3,
-                t230,
-                T::fused(chart4_2, t229, T::fused(-chart4_1, t232, chart4_0 * t231)),
+            let t220 = t207 * t204;
+            let t221 = t206 * t203;
+            let t222 = t221 + t220;
+            let t223 = k(2.0) - T::fused(t203, t203, t215);
+            let t224 = t212 - t211;
+            let t225 = T::fused(t194, t224, -T::fused(t199, t222, t196 * t223));
+            let t226 = T::fused(t194, t216, -T::fused(-t199, t209, t196 * t213));
+            let t227 = T::fused(t217, t224, T::fused(-t210, t222, t214 * t223));
+            let t228 = k(2.0) - T::fused(t206, t206, t215);
+            let t229 = t221 - t220;
+            let t230 = t208 + t205;
+            let t231 = T::fused(t230, t217, -T::fused(-t228, t210, t229 * t214));
+            let t232 = T::fused(t194, t230, T::fused(t199, t228, t196 * t229));
+            let t233 = T::fused(-t231, t226, t232 * t218);
+            let t234 = k(1.0) / (t219 * t233);
+            let t235 = t234 * T::fused(-t225, t219 * t218, t227 * (t219 * t226));
+            let t236 = T::fused(
+                chart4_0,
+                T::fused(-k(0.5), t204, link_5_e0),
+                chart4_1 * T::fused(-k(0.5), t207, link_5_e1),
             );
-            let t270 = k(0.5) * t269;
-            let t271 = T::fused(
-                -t255,
-                T::fused(t262, t268, t246 * t270),
-                t257 * T::fused(t256, t270, t261 * t268),
+            let t237 = T::fused(
+                chart4_3,
+                T::fused(-k(0.5), t206, link_5_e3),
+                T::fused(chart4_2, T::fused(-k(0.5), t203, link_5_e2), t236),
             );
-            let t272 = t264
-                * T::fused(T::fused(chart4_3, link_5_e3 + t231, t266), t263, t271);
-            let t273 = t264 * T::fused(-t255, t262 * t234, t257 * (t261 * t234));
-            let t274 = T::fused(
+            let t238 = T::fused(
+                chart4_3,
+                t203,
+                -T::fused(chart4_2, t206, T::fused(-chart4_0, t207, chart4_1 * t204)),
+            );
+            let t239 = T::fused(
+                chart4_3,
+                t204,
+                -T::fused(chart4_2, t207, -T::fused(-chart4_0, t206, chart4_1 * t203)),
+            );
+            let t240 = T::fused(
+                -t225,
+                T::fused(t218, t238, t231 * t239),
+                t227 * T::fused(t232, t239, t226 * t238),
+            );
+            let t241 = t234 * T::fused(k(4.0), t233 * t237, t240);
+            let t242 = T::fused(-(t219 * t231), t225, t219 * t232 * t227) * t234;
+            let t243 = T::fused(
                 k(0.5),
-                T::fused(-t230, t265, T::fused(t229, t272, t232 * t273)),
-                t231,
+                T::fused(t206, t242, -T::fused(t207, t235, t203 * t241)),
+                t204,
             );
-            let t275 = T::fused(
-                -k(0.5),
-                T::fused(t232, t265, T::fused(t231, t272, t230 * t273)),
-                t229,
-            );
-            let t276 = T::fused(
-                -k(0.5),
-                T::fused(-t229, t265, T::fused(-t230, t272, t231 * t273)),
-                t232,
-            );
-            let t277 = T::fused(
+            let t244 = T::fused(
                 k(0.5),
-                T::fused(t231, t265, T::fused(-t232, t272, t229 * t273)),
-                t230,
+                T::fused(t207, t242, T::fused(t206, t235, t204 * t241)),
+                t203,
             );
-            let t278 = T::fused(t275, t274, t277 * t276);
-            let t279 = k(0.2) * t278;
-            let t280 = t279 + (t218 + t219);
-            let t281 = t276 * t274;
-            let t282 = t277 * t275;
-            let t283 = t282 - t281;
-            let t284 = k(0.2) * t283;
-            let t285 = t284 + (t221 + t222);
-            let t286 = t277 * t277;
-            let t287 = k(0.5) - T::fused(t274, t274, t286);
-            let t288 = k(0.2) * t287;
-            let t289 = t288 + (t225 + t226);
-            let t290 = T::fused(
-                link_6_e3,
-                link_6_e3,
+            let t245 = T::fused(
+                -k(0.5),
+                T::fused(t203, t242, T::fused(-t204, t235, t206 * t241)),
+                t207,
+            );
+            let t246 = T::fused(
+                -k(0.5),
+                T::fused(t204, t242, -T::fused(-t203, t235, t207 * t241)),
+                t206,
+            );
+            let t247 = T::fused(t244, t243, t246 * t245);
+            let t248 = t195 + (t194 + t247);
+            let t249 = t245 * t243;
+            let t250 = t246 * t244;
+            let t251 = t250 - t249;
+            let t252 = t197 + (t196 + t251);
+            let t253 = t243 * t243;
+            let t254 = k(2.0) - T::fused(t246, t246, t253);
+            let t255 = t200 + (t199 + t254);
+            let t256 = T::fused(
+                link_6_e2,
+                link_6_e2,
                 T::fused(
-                    link_6_e2,
-                    link_6_e2,
-                    T::fused(link_6_e1, link_6_e1, link_6_e0 * link_6_e0),
+                    link_6_e1,
+                    link_6_e1,
+                    T::fused(link_6_e3, link_6_e3, link_6_e0 * link_6_e0),
                 ),
             );
-            let t291 = k(0.5) * (t290 - k(3.0));
-            let t292 = link_6_e2 * t291;
-            let t293 = link_6_e3 * t291;
-            let t294 = link_6_e0 * t291;
-            let t295 = link_6_e1 * t291;
-            let t296 = T::fused(
+            let t257 = k(3.0) - t256;
+            let t258 = link_6_e0 * t257;
+            let t259 = link_6_e1 * t257;
+            let t260 = T::fused(
+                chart5_0,
+                T::fused(-k(0.5), t258, link_6_e0),
+                chart5_1 * T::fused(-k(0.5), t259, link_6_e1),
+            );
+            let t261 = link_6_e2 * t257;
+            let t262 = link_6_e3 * t257;
+            let t263 = T::fused(
                 chart5_3,
-                t292,
-                T::fused(-chart5_2, t293, T::fused(-chart5_1, t294, chart5_0 * t295)),
+                T::fused(-k(0.5), t262, link_6_e3),
+                T::fused(chart5_2, T::fused(-k(0.5), t261, link_6_e2), t260),
             );
-            let t297 = k(0.5) * t296;
-            let t298 = t295 * t293;
-            let t299 = t294 * t292;
-            let t300 = k(2.0) * (t299 + t298);
-            let t301 = k(2.0) * t278;
-            let t302 = t292 * t293;
-            let t303 = t294 * t295;
-            let t304 = k(2.0) * (t303 - t302);
-            let t305 = k(2.0) * t283;
-            let t306 = t294 * t294;
-            let t307 = k(2.0) * (k(0.5) - T::fused(t293, t293, t306));
-            let t308 = k(2.0) * t287;
-            let t309 = T::fused(t308, t307, T::fused(t301, t300, t305 * t304));
-            let t310 = k(2.0) * T::fused(-t275, t276, t277 * t274);
-            let t311 = k(2.0) * (k(0.5) - T::fused(t295, t295, t306));
-            let t312 = k(2.0) * (k(0.5) - T::fused(t276, t276, t286));
-            let t313 = t295 * t292;
-            let t314 = t294 * t293;
-            let t315 = k(2.0) * (t314 + t313);
-            let t316 = k(2.0) * (t282 + t281);
-            let t317 = k(2.0) * (t299 - t298);
-            let t318 = T::fused(t317, t316, T::fused(-t311, t310, t315 * t312));
-            let t319 = T::fused(t307, t316, -T::fused(-t300, t310, t304 * t312));
-            let t320 = T::fused(t308, t317, -T::fused(t301, t311, t305 * t315));
-            let t321 = k(2.0) * (t314 - t313);
-            let t322 = k(2.0) * (k(0.5) - T::fused(t292, t292, t306));
-            let t323 = k(2.0) * (t303 + t302);
-            let t324 = T::fused(t308, t323, -T::fused(-t301, t321, t305 * t322));
-            let t325 = T::fused(t323, t316, T::fused(t321, t310, t322 * t312));
-            let t326 = T::fused(-t324, t319, t309 * t325);
-            let t327 = k(1.0) / (t297 * t326);
-            let t328 = t327 * T::fused(-t318, t309 * t297, t320 * (t319 * t297));
-            let t329 = t327 * T::fused(-t318, t324 * t297, t320 * (t325 * t297));
-            let t330 = T::fused(
-                chart5_2,
-                link_6_e2 + t292,
-                T::fused(chart5_1, link_6_e1 + t295, chart5_0 * (link_6_e0 + t294)),
+            let t264 = t258 * t259;
+            let t265 = t261 * t262;
+            let t266 = t265 + t264;
+            let t267 = t250 + t249;
+            let t268 = t258 * t258;
+            let t269 = k(2.0) - T::fused(t261, t261, t268);
+            let t270 = k(2.0) - T::fused(t244, t244, t253);
+            let t271 = t262 * t258;
+            let t272 = t261 * t259;
+            let t273 = t272 - t271;
+            let t274 = T::fused(-t246, t243, t245 * t244);
+            let t275 = T::fused(t274, t273, T::fused(t267, t266, t270 * t269));
+            let t276 = k(2.0) - T::fused(t262, t262, t268);
+            let t277 = t265 - t264;
+            let t278 = t261 * t258;
+            let t279 = t262 * t259;
+            let t280 = t279 + t278;
+            let t281 = T::fused(t247, t280, T::fused(t254, t276, t251 * t277));
+            let t282 = T::fused(t247, t273, -T::fused(t254, t266, t251 * t269));
+            let t283 = T::fused(t280, t274, -T::fused(t276, t267, t277 * t270));
+            let t284 = T::fused(-t281, t275, t283 * t282);
+            let t285 = T::fused(
+                chart5_3,
+                t258,
+                -T::fused(chart5_2, t259, -T::fused(-chart5_0, t262, chart5_1 * t261)),
             );
-            let t331 = T::fused(
-                -chart5_3,
-                t294,
-                T::fused(chart5_2, t295, T::fused(-chart5_1, t292, chart5_0 * t293)),
+            let t286 = T::fused(
+                chart5_3,
+                t259,
+                T::fused(chart5_2, t258, -T::fused(chart5_0, t261, chart5_1 * t262)),
             );
-            let t332 = k(0.5) * t331;
-            let t333 = T::fused(
-                -chart5_3,
-                t295,
-                T::fused(-chart5_2, t294, T::fused(chart5_1, t293, chart5_0 * t292)),
+            let t287 = t279 - t278;
+            let t288 = t272 + t271;
+            let t289 = k(2.0) - T::fused(t259, t259, t268);
+            let t290 = T::fused(t247, t289, -T::fused(-t254, t287, t251 * t288));
+            let t291 = T::fused(t274, t289, T::fused(-t267, t287, t270 * t288));
+            let t292 = T::fused(
+                -t290,
+                T::fused(t283, t285, t275 * t286),
+                t291 * T::fused(t282, t286, t281 * t285),
             );
-            let t334 = k(0.5) * t333;
-            let t335 = T::fused(
-                t318,
-                T::fused(-t309, t332, t324 * t334),
-                t320 * T::fused(-t325, t334, t319 * t332),
+            let t293 = T::fused(
+                chart5_3,
+                t261,
+                -T::fused(chart5_2, t262, T::fused(-chart5_0, t259, chart5_1 * t258)),
             );
-            let t336 = t327
-                * T::fused(T::fused(chart5_3, link_6_e3 + t293, t330), t326, t335);
-            let t337 = T::fused(
-                -k(0.5),
-                T::fused(t294, t328, T::fused(-t295, t329, t292 * t336)),
-                t293,
-            );
-            let t338 = T::fused(
+            let t294 = k(1.0) / (t293 * t284);
+            let t295 = t294 * T::fused(k(4.0), t284 * t263, t292);
+            let t296 = t294 * T::fused(-t290, t293 * t275, t291 * (t293 * t282));
+            let t297 = T::fused(-(t293 * t283), t290, t293 * t281 * t291) * t294;
+            let t298 = T::fused(
                 k(0.5),
-                T::fused(-t292, t328, T::fused(-t293, t329, t294 * t336)),
-                t295,
+                T::fused(t262, t297, T::fused(t259, t295, t261 * t296)),
+                t258,
             );
-            let t339 = T::fused(
+            let t299 = T::fused(
                 k(0.5),
-                T::fused(t295, t328, T::fused(t294, t329, t293 * t336)),
-                t292,
+                T::fused(t259, t297, -T::fused(t262, t295, t258 * t296)),
+                t261,
             );
-            let t340 = T::fused(
+            let t300 = T::fused(
                 -k(0.5),
-                T::fused(-t293, t328, T::fused(t292, t329, t295 * t336)),
-                t294,
+                T::fused(t261, t297, -T::fused(-t258, t295, t262 * t296)),
+                t259,
             );
-            let t341 = T::fused(
-                k(0.2),
-                k(0.5) - T::fused(t340, t340, t337 * t337),
-                t288 + t289,
+            let t301 = T::fused(
+                -k(0.5),
+                T::fused(t258, t297, T::fused(-t261, t295, t259 * t296)),
+                t262,
             );
+            let t302 = k(0.05)
+                * (t255 + (t254 + (k(2.0) - T::fused(t301, t301, t298 * t298))));
             (
-                t211,
-                t212,
-                t214,
-                t215,
-                t219,
-                t222,
-                t226,
-                t274,
-                t275,
-                t276,
-                t277,
-                t279,
-                t280,
-                t284,
-                t285,
-                t289,
-                t337,
-                t338,
-                t339,
-                t340,
-                t341,
+                t200,
+                t243,
+                t244,
+                t245,
+                t246,
+                t247,
+                t248,
+                t251,
+                t252,
+                t255,
+                t298,
+                t299,
+                t300,
+                t301,
+                t302,
             )
         };
-        y[0] = -(k(0.2) * t32);
-        y[1] = k(0.2) * t35;
-        y[2] = k(0.2) * t37;
-        y[3] = -t31;
-        y[4] = -t29;
-        y[5] = -t30;
-        y[6] = -t28;
-        y[7] = -t93;
-        y[8] = t96;
-        y[9] = t100;
-        y[10] = -t89;
-        y[11] = -t86;
-        y[12] = -t88;
-        y[13] = -t85;
-        y[14] = -t154;
-        y[15] = t159;
-        y[16] = t163;
-        y[17] = -t151;
-        y[18] = -t149;
-        y[19] = -t150;
-        y[20] = -t148;
-        y[21] = -t219;
-        y[22] = t222;
-        y[23] = t226;
-        y[24] = -t215;
-        y[25] = -t212;
-        y[26] = -t214;
-        y[27] = -t211;
-        y[28] = -t280;
-        y[29] = t285;
-        y[30] = t289;
-        y[31] = -t277;
-        y[32] = -t275;
-        y[33] = -t276;
-        y[34] = -t274;
-        y[35] = -T::fused(k(0.2), T::fused(t338, t337, t340 * t339), t279 + t280);
-        y[36] = T::fused(k(0.2), T::fused(-t339, t337, t340 * t338), t284 + t285);
-        y[37] = t341;
-        y[38] = -t340;
-        y[39] = -t338;
-        y[40] = -t339;
-        y[41] = -t337;
+        y[0] = -(k(0.05) * t30);
+        y[1] = -(k(0.05) * t33);
+        y[2] = k(0.05) * t35;
+        y[3] = k(0.5) * t26;
+        y[4] = k(0.5) * t28;
+        y[5] = k(0.5) * t27;
+        y[6] = k(0.5) * t29;
+        y[7] = -(k(0.05) * t85);
+        y[8] = -(k(0.05) * t87);
+        y[9] = k(0.05) * t90;
+        y[10] = k(0.5) * t78;
+        y[11] = k(0.5) * t81;
+        y[12] = k(0.5) * t79;
+        y[13] = k(0.5) * t82;
+        y[14] = -(k(0.05) * t138);
+        y[15] = -(k(0.05) * t142);
+        y[16] = k(0.05) * t145;
+        y[17] = k(0.5) * t133;
+        y[18] = k(0.5) * t135;
+        y[19] = k(0.5) * t134;
+        y[20] = k(0.5) * t136;
+        y[21] = -(k(0.05) * t195);
+        y[22] = -(k(0.05) * t197);
+        y[23] = k(0.05) * t200;
+        y[24] = k(0.5) * t188;
+        y[25] = k(0.5) * t191;
+        y[26] = k(0.5) * t189;
+        y[27] = k(0.5) * t192;
+        y[28] = -(k(0.05) * t248);
+        y[29] = -(k(0.05) * t252);
+        y[30] = k(0.05) * t255;
+        y[31] = k(0.5) * t243;
+        y[32] = k(0.5) * t245;
+        y[33] = k(0.5) * t244;
+        y[34] = k(0.5) * t246;
+        y[35] = -(k(0.05) * (t248 + (t247 + T::fused(t299, t298, t301 * t300))));
+        y[36] = -(k(0.05) * (t252 + (t251 + T::fused(-t300, t298, t301 * t299))));
+        y[37] = t302;
+        y[38] = k(0.5) * t298;
+        y[39] = k(0.5) * t300;
+        y[40] = k(0.5) * t299;
+        y[41] = k(0.5) * t301;
     }
-    /// Solves eq. (19) for the dependent velocities: 635 operations (249 ±, 380 ×, 6 ÷).
+    /// Solves eq. (19) for the dependent velocities: 581 operations (249 ±, 326 ×, 6 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -2669,262 +2588,274 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let t0 = link_1_e0 * link_1_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t0));
-        let t3 = link_1_e0 * link_1_e2;
-        let t4 = link_1_e1 * link_1_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t1, t2, t6 * t5);
-        let t8 = T::fused(t1, link_1_wz, t6 * link_1_wx);
-        let t9 = T::fused(t5, link_1_wz, t2 * link_1_wx);
-        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t1 * t7, link_1_wx));
+        let t1 = k(0.5) - T::fused(link_1_e3, link_1_e3, t0);
+        let t2 = link_1_e0 * link_1_e2;
+        let t3 = link_1_e1 * link_1_e3;
+        let t4 = t3 - t2;
+        let t5 = T::fused(t1, link_1_wx, t4 * link_1_wz);
+        let t6 = t3 + t2;
+        let t7 = k(0.5) - T::fused(link_1_e1, link_1_e1, t0);
+        let t8 = k(1.0) / T::fused(-t6, t4, t7 * t1);
+        let t9 = T::fused(t6, link_1_wx, t7 * link_1_wz);
+        let t10 = T::fused(t4 * t8, t9, T::fused(-(t7 * t8), t5, link_1_wx));
         let t11 = link_1_e0 * link_1_e3;
         let t12 = link_1_e1 * link_1_e2;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = T::fused(t1, link_1_wy, t13 * t10);
-        let t15 = k(2.0) * (t12 + t11);
-        let t16 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t0));
-        let t17 = T::fused(t15, link_1_wy, t16 * t10);
+        let t13 = t12 - t11;
+        let t14 = T::fused(t13, t10, t7 * link_1_wy);
+        let t15 = k(0.5) - T::fused(link_1_e2, link_1_e2, t0);
+        let t16 = t12 + t11;
+        let t17 = T::fused(t15, t10, t16 * link_1_wy);
         let t18 = link_1_e0 * link_1_e1;
         let t19 = link_1_e2 * link_1_e3;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = T::fused(-t5, link_1_wy, t20 * t10);
-        let t22 = T::fused(t8, t2 * t7, T::fused(-t9, t6 * t7, link_1_wz));
-        let t23 = link_2_e0 * link_2_e0;
-        let t24 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t23));
-        let t25 = link_2_e0 * link_2_e3;
-        let t26 = link_2_e1 * link_2_e2;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = link_2_e0 * link_2_e1;
-        let t29 = link_2_e2 * link_2_e3;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = T::fused(t20, t30, T::fused(t16, t24, t13 * t27));
-        let t32 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t23));
-        let t33 = k(2.0) * (t29 - t28);
-        let t34 = k(2.0) * (t19 - t18);
-        let t35 = link_2_e0 * link_2_e2;
-        let t36 = link_2_e1 * link_2_e3;
-        let t37 = k(2.0) * (t36 + t35);
-        let t38 = T::fused(t2, t32, T::fused(t34, t33, t6 * t37));
-        let t39 = T::fused(t20, t32, -T::fused(-t16, t33, t13 * t37));
-        let t40 = T::fused(t2, t30, -T::fused(-t34, t24, t6 * t27));
-        let t41 = k(1.0) / T::fused(-t38, t31, t40 * t39);
-        let t42 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t23));
-        let t43 = k(2.0) * (t26 + t25);
-        let t44 = k(2.0) * (t36 - t35);
-        let t45 = T::fused(t5, t44, T::fused(t1, t42, t15 * t43));
-        let t46 = T::fused(
-            t22,
-            t45,
-            t10 * T::fused(t2, t44, -T::fused(-t6, t42, t34 * t43)),
+        let t20 = t19 + t18;
+        let t21 = T::fused(-t20, t10, t4 * link_1_wy);
+        let t22 = T::fused(t1 * t8, t9, -T::fused(t6 * t8, t5, link_1_wz));
+        let t23 = link_2_e0 * link_2_e2;
+        let t24 = link_2_e1 * link_2_e3;
+        let t25 = t24 - t23;
+        let t26 = link_2_e0 * link_2_e3;
+        let t27 = link_2_e1 * link_2_e2;
+        let t28 = t27 + t26;
+        let t29 = link_2_e0 * link_2_e0;
+        let t30 = k(0.5) - T::fused(link_2_e1, link_2_e1, t29);
+        let t31 = T::fused(t7, t30, T::fused(t4, t25, t16 * t28));
+        let t32 = T::fused(
+            T::fused(t13, t30, T::fused(-t20, t25, t15 * t28)),
+            t10,
+            link_1_wy * t31,
         );
-        let t47 = t46 - T::fused(link_2_wz, t31, link_2_wy * t39);
+        let t33 = t24 + t23;
+        let t34 = link_2_e0 * link_2_e1;
+        let t35 = link_2_e2 * link_2_e3;
+        let t36 = t35 - t34;
+        let t37 = t19 - t18;
+        let t38 = k(0.5) - T::fused(link_2_e3, link_2_e3, t29);
+        let t39 = T::fused(t1, t38, T::fused(t6, t33, t37 * t36));
+        let t40 = t35 + t34;
+        let t41 = t27 - t26;
+        let t42 = k(0.5) - T::fused(link_2_e2, link_2_e2, t29);
+        let t43 = T::fused(t37, t42, -T::fused(-t1, t40, t6 * t41));
+        let t44 = T::fused(link_2_wz, t43, T::fused(link_2_wy, t39, -t32));
+        let t45 = T::fused(t15, t36, -T::fused(-t20, t38, t13 * t33));
+        let t46 = T::fused(t15, t42, T::fused(t20, t40, t13 * t41));
+        let t47 = k(1.0) / T::fused(-t45, t43, t46 * t39);
         let t48 = T::fused(
-            -link_1_wy,
-            t45,
-            t10 * T::fused(t20, t44, -T::fused(t13, t42, t16 * t43)),
+            -T::fused(t6, t30, -T::fused(-t1, t25, t37 * t28)),
+            t10,
+            t31 * t22,
         );
-        let t49 = t48 + T::fused(link_2_wz, t40, link_2_wy * t38);
-        let t50 = T::fused(t47, t40 * t41, T::fused(t49, t31 * t41, link_2_wy));
-        let t51 = k(0.1) * T::fused(t42, t50, t27 * link_2_wx);
-        let t52 = T::fused(k(0.2), t14, t51);
-        let t53 = k(0.1) * T::fused(t43, t50, t24 * link_2_wx);
-        let t54 = T::fused(k(0.2), t17, t53);
-        let t55 = k(0.1) * T::fused(-t44, t50, t30 * link_2_wx);
-        let t56 = T::fused(k(0.2), t21, t55);
-        let t57 = T::fused(-t47, t38 * t41, T::fused(-t49, t39 * t41, link_2_wz));
-        let t58 = link_3_e0 * link_3_e0;
-        let t59 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t58));
-        let t60 = link_3_e0 * link_3_e3;
-        let t61 = link_3_e1 * link_3_e2;
-        let t62 = k(2.0) * (t61 + t60);
-        let t63 = link_3_e0 * link_3_e2;
-        let t64 = link_3_e1 * link_3_e3;
-        let t65 = k(2.0) * (t64 - t63);
-        let t66 = T::fused(t44, t65, T::fused(t42, t59, t43 * t62));
-        let t67 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t58));
-        let t68 = link_3_e0 * link_3_e1;
-        let t69 = link_3_e2 * link_3_e3;
-        let t70 = k(2.0) * (t69 - t68);
-        let t71 = k(2.0) * (t64 + t63);
-        let t72 = T::fused(t32, t67, T::fused(t33, t70, t37 * t71));
-        let t73 = T::fused(t44, t67, -T::fused(-t42, t71, t43 * t70));
-        let t74 = T::fused(t32, t65, -T::fused(-t37, t59, t33 * t62));
-        let t75 = k(1.0) / T::fused(-t72, t66, t74 * t73);
-        let t76 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t58));
-        let t77 = k(2.0) * (t61 - t60);
-        let t78 = k(2.0) * (t69 + t68);
-        let t79 = T::fused(t30, t78, T::fused(t24, t76, t27 * t77));
-        let t80 = T::fused(
-            t57,
-            t79,
-            t50 * T::fused(t32, t78, -T::fused(-t33, t76, t37 * t77)),
+        let t49 = T::fused(link_2_wz, t46, T::fused(link_2_wy, t45, t48));
+        let t50 = T::fused(t43 * t47, t49, T::fused(-(t46 * t47), t44, link_2_wy));
+        let t51 = T::fused(t30, t50, t41 * link_2_wx);
+        let t52 = T::fused(k(2.0), t14, t51);
+        let t53 = T::fused(t28, t50, t42 * link_2_wx);
+        let t54 = T::fused(k(2.0), t17, t53);
+        let t55 = T::fused(-t25, t50, t40 * link_2_wx);
+        let t56 = T::fused(-k(2.0), t21, t55);
+        let t57 = T::fused(t39 * t47, t49, -T::fused(t45 * t47, t44, link_2_wz));
+        let t58 = link_3_e0 * link_3_e1;
+        let t59 = link_3_e2 * link_3_e3;
+        let t60 = t59 + t58;
+        let t61 = link_3_e0 * link_3_e0;
+        let t62 = k(0.5) - T::fused(link_3_e2, link_3_e2, t61);
+        let t63 = link_3_e0 * link_3_e3;
+        let t64 = link_3_e1 * link_3_e2;
+        let t65 = t64 - t63;
+        let t66 = T::fused(t42, t62, T::fused(t40, t60, t41 * t65));
+        let t67 = T::fused(
+            T::fused(t30, t65, T::fused(-t25, t60, t28 * t62)),
+            t50,
+            link_2_wx * t66,
         );
-        let t81 = t80 - T::fused(link_3_wz, t66, link_3_wx * t73);
+        let t68 = link_3_e0 * link_3_e2;
+        let t69 = link_3_e1 * link_3_e3;
+        let t70 = t69 + t68;
+        let t71 = t59 - t58;
+        let t72 = k(0.5) - T::fused(link_3_e3, link_3_e3, t61);
+        let t73 = T::fused(t38, t72, T::fused(t33, t70, t36 * t71));
+        let t74 = t69 - t68;
+        let t75 = t64 + t63;
+        let t76 = k(0.5) - T::fused(link_3_e1, link_3_e1, t61);
+        let t77 = T::fused(t33, t76, -T::fused(-t38, t74, t36 * t75));
+        let t78 = T::fused(link_3_wz, t77, T::fused(link_3_wx, t73, -t67));
+        let t79 = T::fused(t30, t70, -T::fused(-t25, t72, t28 * t71));
+        let t80 = T::fused(t30, t76, T::fused(t25, t74, t28 * t75));
+        let t81 = k(1.0) / T::fused(-t79, t77, t80 * t73);
         let t82 = T::fused(
-            -t50,
-            T::fused(t44, t78, -T::fused(t42, t77, t43 * t76)),
-            link_2_wx * t79,
+            -T::fused(t36, t62, -T::fused(-t38, t60, t33 * t65)),
+            t50,
+            t66 * t57,
         );
-        let t83 = t82 - T::fused(link_3_wz, t74, link_3_wx * t72);
-        let t84 = T::fused(t81, t74 * t75, T::fused(-t83, t66 * t75, link_3_wx));
-        let t85 = k(0.1) * T::fused(t59, link_3_wy, t77 * t84);
-        let t86 = t51 + t52 + t85;
-        let t87 = k(0.1) * T::fused(t62, link_3_wy, t76 * t84);
-        let t88 = t53 + t54 + t87;
-        let t89 = k(0.1) * T::fused(-t65, link_3_wy, t78 * t84);
-        let t90 = t55 + t56 + t89;
-        let t91 = T::fused(-t81, t72 * t75, T::fused(t83, t73 * t75, link_3_wz));
-        let t92 = link_4_e0 * link_4_e0;
-        let t93 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t92));
-        let t94 = link_4_e0 * link_4_e3;
-        let t95 = link_4_e1 * link_4_e2;
-        let t96 = k(2.0) * (t95 - t94);
-        let t97 = link_4_e0 * link_4_e1;
-        let t98 = link_4_e2 * link_4_e3;
-        let t99 = k(2.0) * (t98 + t97);
-        let t100 = T::fused(t78, t99, T::fused(t76, t93, t77 * t96));
-        let t101 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t92));
-        let t102 = k(2.0) * (t98 - t97);
-        let t103 = link_4_e0 * link_4_e2;
-        let t104 = link_4_e1 * link_4_e3;
-        let t105 = k(2.0) * (t104 + t103);
-        let t106 = T::fused(t67, t101, T::fused(t70, t102, t71 * t105));
-        let t107 = T::fused(t78, t101, -T::fused(-t76, t102, t77 * t105));
-        let t108 = T::fused(t67, t99, -T::fused(-t70, t93, t71 * t96));
-        let t109 = k(1.0) / T::fused(-t106, t100, t108 * t107);
-        let t110 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t92));
-        let t111 = k(2.0) * (t95 + t94);
-        let t112 = k(2.0) * (t104 - t103);
-        let t113 = T::fused(t65, t112, T::fused(t59, t110, t62 * t111));
-        let t114 = T::fused(
-            t91,
-            t113,
-            t84 * T::fused(t67, t112, -T::fused(-t71, t110, t70 * t111)),
+        let t83 = T::fused(link_3_wz, t80, T::fused(link_3_wx, t79, t82));
+        let t84 = T::fused(t77 * t81, t83, T::fused(-(t80 * t81), t78, link_3_wx));
+        let t85 = T::fused(t65, t84, t76 * link_3_wy);
+        let t86 = t85 + (t51 + t52);
+        let t87 = T::fused(t62, t84, t75 * link_3_wy);
+        let t88 = t87 + (t53 + t54);
+        let t89 = T::fused(-t60, t84, t74 * link_3_wy);
+        let t90 = t89 - (t55 + t56);
+        let t91 = T::fused(t73 * t81, t83, -T::fused(t79 * t81, t78, link_3_wz));
+        let t92 = link_4_e0 * link_4_e2;
+        let t93 = link_4_e1 * link_4_e3;
+        let t94 = t93 - t92;
+        let t95 = link_4_e0 * link_4_e3;
+        let t96 = link_4_e1 * link_4_e2;
+        let t97 = t96 + t95;
+        let t98 = link_4_e0 * link_4_e0;
+        let t99 = k(0.5) - T::fused(link_4_e1, link_4_e1, t98);
+        let t100 = T::fused(t76, t99, T::fused(t74, t94, t75 * t97));
+        let t101 = T::fused(
+            T::fused(t65, t99, T::fused(-t60, t94, t62 * t97)),
+            t84,
+            link_3_wy * t100,
         );
-        let t115 = t114 - T::fused(link_4_wz, t100, link_4_wy * t107);
+        let t102 = t93 + t92;
+        let t103 = link_4_e0 * link_4_e1;
+        let t104 = link_4_e2 * link_4_e3;
+        let t105 = t104 - t103;
+        let t106 = k(0.5) - T::fused(link_4_e3, link_4_e3, t98);
+        let t107 = T::fused(t72, t106, T::fused(t70, t102, t71 * t105));
+        let t108 = t104 + t103;
+        let t109 = t96 - t95;
+        let t110 = k(0.5) - T::fused(link_4_e2, link_4_e2, t98);
+        let t111 = T::fused(t71, t110, -T::fused(-t72, t108, t70 * t109));
+        let t112 = T::fused(link_4_wz, t111, T::fused(link_4_wy, t107, -t101));
+        let t113 = T::fused(t62, t105, -T::fused(-t60, t106, t65 * t102));
+        let t114 = T::fused(t62, t110, T::fused(t60, t108, t65 * t109));
+        let t115 = k(1.0) / T::fused(-t113, t111, t114 * t107);
         let t116 = T::fused(
-            -link_3_wy,
-            t113,
-            t84 * T::fused(t78, t112, -T::fused(t77, t110, t76 * t111)),
+            -T::fused(t70, t99, -T::fused(-t72, t94, t71 * t97)),
+            t84,
+            t100 * t91,
         );
-        let t117 = t116 + T::fused(link_4_wz, t108, link_4_wy * t106);
-        let t118 = T::fused(t115, t108 * t109, T::fused(t117, t100 * t109, link_4_wy));
-        let t119 = k(0.1) * T::fused(t110, t118, t96 * link_4_wx);
-        let t120 = t85 + t86 + t119;
-        let t121 = k(0.1) * T::fused(t111, t118, t93 * link_4_wx);
-        let t122 = t87 + t88 + t121;
-        let t123 = k(0.1) * T::fused(-t112, t118, t99 * link_4_wx);
-        let t124 = t89 + t90 + t123;
-        let t125 = T::fused(-t115, t106 * t109, T::fused(-t117, t107 * t109, link_4_wz));
-        let t126 = link_5_e0 * link_5_e0;
-        let t127 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t126));
-        let t128 = link_5_e0 * link_5_e3;
-        let t129 = link_5_e1 * link_5_e2;
-        let t130 = k(2.0) * (t129 + t128);
-        let t131 = link_5_e0 * link_5_e2;
-        let t132 = link_5_e1 * link_5_e3;
-        let t133 = k(2.0) * (t132 - t131);
-        let t134 = T::fused(t112, t133, T::fused(t110, t127, t111 * t130));
-        let t135 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t126));
-        let t136 = link_5_e0 * link_5_e1;
-        let t137 = link_5_e2 * link_5_e3;
-        let t138 = k(2.0) * (t137 - t136);
-        let t139 = k(2.0) * (t132 + t131);
-        let t140 = T::fused(t101, t135, T::fused(t102, t138, t105 * t139));
-        let t141 = T::fused(t112, t135, -T::fused(-t110, t139, t111 * t138));
-        let t142 = T::fused(t101, t133, -T::fused(-t105, t127, t102 * t130));
-        let t143 = k(1.0) / T::fused(-t140, t134, t142 * t141);
-        let t144 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t126));
-        let t145 = k(2.0) * (t129 - t128);
-        let t146 = k(2.0) * (t137 + t136);
-        let t147 = T::fused(t99, t146, T::fused(t93, t144, t96 * t145));
-        let t148 = T::fused(
-            t125,
-            t147,
-            t118 * T::fused(t101, t146, -T::fused(-t102, t144, t105 * t145)),
+        let t117 = T::fused(link_4_wz, t114, T::fused(link_4_wy, t113, t116));
+        let t118 = T::fused(
+            t111 * t115,
+            t117,
+            T::fused(-(t114 * t115), t112, link_4_wy),
         );
-        let t149 = t148 - T::fused(link_5_wz, t134, link_5_wx * t141);
+        let t119 = T::fused(t99, t118, t109 * link_4_wx);
+        let t120 = t119 + (t85 + t86);
+        let t121 = T::fused(t97, t118, t110 * link_4_wx);
+        let t122 = t121 + (t87 + t88);
+        let t123 = T::fused(-t94, t118, t108 * link_4_wx);
+        let t124 = t123 - (t89 + t90);
+        let t125 = T::fused(t107 * t115, t117, -T::fused(t113 * t115, t112, link_4_wz));
+        let t126 = link_5_e0 * link_5_e1;
+        let t127 = link_5_e2 * link_5_e3;
+        let t128 = t127 + t126;
+        let t129 = link_5_e0 * link_5_e0;
+        let t130 = k(0.5) - T::fused(link_5_e2, link_5_e2, t129);
+        let t131 = link_5_e0 * link_5_e3;
+        let t132 = link_5_e1 * link_5_e2;
+        let t133 = t132 - t131;
+        let t134 = T::fused(t110, t130, T::fused(t108, t128, t109 * t133));
+        let t135 = T::fused(
+            T::fused(t99, t133, T::fused(-t94, t128, t97 * t130)),
+            t118,
+            link_4_wx * t134,
+        );
+        let t136 = link_5_e0 * link_5_e2;
+        let t137 = link_5_e1 * link_5_e3;
+        let t138 = t137 + t136;
+        let t139 = t127 - t126;
+        let t140 = k(0.5) - T::fused(link_5_e3, link_5_e3, t129);
+        let t141 = T::fused(t106, t140, T::fused(t102, t138, t105 * t139));
+        let t142 = t137 - t136;
+        let t143 = t132 + t131;
+        let t144 = k(0.5) - T::fused(link_5_e1, link_5_e1, t129);
+        let t145 = T::fused(t102, t144, -T::fused(-t106, t142, t105 * t143));
+        let t146 = T::fused(link_5_wz, t145, T::fused(link_5_wx, t141, -t135));
+        let t147 = T::fused(t99, t138, -T::fused(-t94, t140, t97 * t139));
+        let t148 = T::fused(t99, t144, T::fused(t94, t142, t97 * t143));
+        let t149 = k(1.0) / T::fused(-t147, t145, t148 * t141);
         let t150 = T::fused(
-            -t118,
-            T::fused(t112, t146, -T::fused(t110, t145, t111 * t144)),
-            link_4_wx * t147,
+            -T::fused(t105, t130, -T::fused(-t106, t128, t102 * t133)),
+            t118,
+            t134 * t125,
         );
-        let t151 = t150 - T::fused(link_5_wz, t142, link_5_wx * t140);
-        let t152 = T::fused(t149, t142 * t143, T::fused(-t151, t134 * t143, link_5_wx));
-        let t153 = k(0.1) * T::fused(t127, link_5_wy, t145 * t152);
-        let t154 = t119 + t120 + t153;
-        let t155 = k(0.1) * T::fused(t130, link_5_wy, t144 * t152);
-        let t156 = t121 + t122 + t155;
-        let t157 = k(0.1) * T::fused(-t133, link_5_wy, t146 * t152);
-        let t158 = t123 + t124 + t157;
-        let t159 = T::fused(-t149, t140 * t143, T::fused(t151, t141 * t143, link_5_wz));
-        let t160 = link_6_e0 * link_6_e0;
-        let t161 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t160));
-        let t162 = link_6_e0 * link_6_e3;
-        let t163 = link_6_e1 * link_6_e2;
-        let t164 = k(2.0) * (t163 - t162);
-        let t165 = link_6_e0 * link_6_e1;
-        let t166 = link_6_e2 * link_6_e3;
-        let t167 = k(2.0) * (t166 + t165);
-        let t168 = T::fused(t146, t167, T::fused(t144, t161, t145 * t164));
-        let t169 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t160));
-        let t170 = k(2.0) * (t166 - t165);
-        let t171 = link_6_e0 * link_6_e2;
-        let t172 = link_6_e1 * link_6_e3;
-        let t173 = k(2.0) * (t172 + t171);
-        let t174 = T::fused(t135, t169, T::fused(t138, t170, t139 * t173));
-        let t175 = T::fused(t146, t169, -T::fused(-t144, t170, t145 * t173));
-        let t176 = T::fused(t135, t167, -T::fused(-t138, t161, t139 * t164));
-        let t177 = k(1.0) / T::fused(-t174, t168, t176 * t175);
-        let t178 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t160));
-        let t179 = k(2.0) * (t163 + t162);
-        let t180 = k(2.0) * (t172 - t171);
-        let t181 = T::fused(t133, t180, T::fused(t127, t178, t130 * t179));
-        let t182 = T::fused(
-            t159,
-            t181,
-            t152 * T::fused(t135, t180, -T::fused(-t139, t178, t138 * t179)),
+        let t151 = T::fused(link_5_wz, t148, T::fused(link_5_wx, t147, t150));
+        let t152 = T::fused(
+            t145 * t149,
+            t151,
+            T::fused(-(t148 * t149), t146, link_5_wx),
         );
-        let t183 = t182 - T::fused(link_6_wz, t168, link_6_wy * t175);
+        let t153 = T::fused(t133, t152, t144 * link_5_wy);
+        let t154 = t153 + (t119 + t120);
+        let t155 = T::fused(t130, t152, t143 * link_5_wy);
+        let t156 = t155 + (t121 + t122);
+        let t157 = T::fused(-t128, t152, t142 * link_5_wy);
+        let t158 = t157 - (t123 + t124);
+        let t159 = T::fused(t141 * t149, t151, -T::fused(t147 * t149, t146, link_5_wz));
+        let t160 = link_6_e0 * link_6_e2;
+        let t161 = link_6_e1 * link_6_e3;
+        let t162 = t161 - t160;
+        let t163 = link_6_e0 * link_6_e3;
+        let t164 = link_6_e1 * link_6_e2;
+        let t165 = t164 + t163;
+        let t166 = link_6_e0 * link_6_e0;
+        let t167 = k(0.5) - T::fused(link_6_e1, link_6_e1, t166);
+        let t168 = T::fused(t144, t167, T::fused(t142, t162, t143 * t165));
+        let t169 = T::fused(
+            T::fused(t133, t167, T::fused(-t128, t162, t130 * t165)),
+            t152,
+            link_5_wy * t168,
+        );
+        let t170 = t161 + t160;
+        let t171 = link_6_e0 * link_6_e1;
+        let t172 = link_6_e2 * link_6_e3;
+        let t173 = t172 - t171;
+        let t174 = k(0.5) - T::fused(link_6_e3, link_6_e3, t166);
+        let t175 = T::fused(t140, t174, T::fused(t138, t170, t139 * t173));
+        let t176 = t172 + t171;
+        let t177 = t164 - t163;
+        let t178 = k(0.5) - T::fused(link_6_e2, link_6_e2, t166);
+        let t179 = T::fused(t139, t178, -T::fused(-t140, t176, t138 * t177));
+        let t180 = T::fused(link_6_wz, t179, T::fused(link_6_wy, t175, -t169));
+        let t181 = T::fused(t130, t173, -T::fused(-t128, t174, t133 * t170));
+        let t182 = T::fused(t130, t178, T::fused(t128, t176, t133 * t177));
+        let t183 = k(1.0) / T::fused(-t181, t179, t182 * t175);
         let t184 = T::fused(
-            -link_5_wy,
-            t181,
-            t152 * T::fused(t146, t180, -T::fused(t145, t178, t144 * t179)),
+            -T::fused(t138, t167, -T::fused(-t140, t162, t139 * t165)),
+            t152,
+            t168 * t159,
         );
-        let t185 = t184 + T::fused(link_6_wz, t176, link_6_wy * t174);
-        let t186 = T::fused(t183, t176 * t177, T::fused(t185, t168 * t177, link_6_wy));
-        y[42] = k(0.1) * t14;
-        y[43] = -(k(0.1) * t17);
-        y[44] = k(0.1) * t21;
+        let t185 = T::fused(link_6_wz, t182, T::fused(link_6_wy, t181, t184));
+        let t186 = T::fused(
+            t179 * t183,
+            t185,
+            T::fused(-(t182 * t183), t180, link_6_wy),
+        );
+        y[42] = k(0.2) * t14;
+        y[43] = -(k(0.2) * t17);
+        y[44] = -(k(0.2) * t21);
         y[45] = t10;
-        y[47] = t22;
-        y[48] = t52;
-        y[49] = -t54;
-        y[50] = t56;
+        y[47] = -t22;
+        y[48] = k(0.2) * t52;
+        y[49] = -(k(0.2) * t54);
+        y[50] = k(0.2) * t56;
         y[52] = t50;
-        y[53] = t57;
-        y[54] = t86;
-        y[55] = -t88;
-        y[56] = t90;
+        y[53] = -t57;
+        y[54] = k(0.2) * t86;
+        y[55] = -(k(0.2) * t88);
+        y[56] = -(k(0.2) * t90);
         y[57] = t84;
-        y[59] = t91;
-        y[60] = t120;
-        y[61] = -t122;
-        y[62] = t124;
+        y[59] = -t91;
+        y[60] = k(0.2) * t120;
+        y[61] = -(k(0.2) * t122);
+        y[62] = k(0.2) * t124;
         y[64] = t118;
-        y[65] = t125;
-        y[66] = t154;
-        y[67] = -t156;
-        y[68] = t158;
+        y[65] = -t125;
+        y[66] = k(0.2) * t154;
+        y[67] = -(k(0.2) * t156);
+        y[68] = -(k(0.2) * t158);
         y[69] = t152;
-        y[71] = t159;
-        y[72] = T::fused(k(0.1), T::fused(t178, t186, t164 * link_6_wx), t153 + t154);
-        y[73] = -T::fused(k(0.1), T::fused(t179, t186, t161 * link_6_wx), t155 + t156);
-        y[74] = T::fused(k(0.1), T::fused(-t180, t186, t167 * link_6_wx), t157 + t158);
+        y[71] = -t159;
+        y[72] = k(0.2) * (T::fused(t167, t186, t177 * link_6_wx) + (t153 + t154));
+        y[73] = -(k(0.2) * (T::fused(t165, t186, t178 * link_6_wx) + (t155 + t156)));
+        y[74] = k(0.2) * (T::fused(-t162, t186, t176 * link_6_wx) - (t157 + t158));
         y[76] = t186;
-        y[77] = T::fused(-t183, t174 * t177, T::fused(-t185, t175 * t177, link_6_wz));
+        y[77] = T::fused(-(t175 * t183), t185, T::fused(t181 * t183, t180, link_6_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for Chain<T> {
@@ -4168,7 +4099,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 755 operations (302 ±, 453 ×, 0 ÷).
+    /// Writes γ: 743 operations (302 ±, 441 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -4214,545 +4145,517 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let (
-            t3,
-            t4,
+            t1,
             t7,
             t8,
             t11,
-            t13,
-            t14,
+            t12,
+            t18,
+            t19,
+            t20,
             t21,
             t22,
             t23,
             t24,
-            t25,
-            t26,
-            t27,
-            t32,
-            t36,
-            t41,
-            t42,
-            t49,
-            t53,
-            t54,
-            t55,
-            t56,
-            t60,
-            t62,
-            t64,
-            t65,
-            t70,
+            t37,
+            t43,
+            t47,
+            t59,
+            t61,
             t74,
-            t79,
             t80,
-            t87,
-            t91,
-            t92,
-            t93,
-            t94,
-            t99,
-            t100,
-            t102,
-            t103,
-            t108,
-            t112,
+            t84,
+            t96,
+            t98,
+            t111,
             t117,
-            t118,
-            t125,
-            t129,
-            t130,
-            t131,
-            t132,
-            t136,
+            t121,
+            t133,
+            t135,
+            t137,
             t138,
             t140,
-            t141,
-            t145,
-            t146,
+            t143,
+            t144,
+            t147,
+            t148,
             t149,
-            t150,
+            t152,
             t153,
+            t154,
             t155,
             t156,
             t157,
-            t159,
-            t162,
-            t163,
+            t158,
             t164,
-            t165,
             t166,
-            t167,
-            t168,
-            t169,
             t170,
-            t175,
-            t176,
-            t178,
-            t179,
-            t182,
+            t172,
+            t173,
+            t181,
             t183,
             t184,
-            t187,
-            t188,
+            t185,
             t189,
             t190,
             t191,
-            t192,
             t193,
             t194,
             t195,
+            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = k(2.0) * link_1_e1;
-            let t1 = k(2.0) * link_1_e0;
-            let t2 = T::fused(-link_1_e0, t1, k(1.0));
-            let t3 = T::fused(-link_1_e1, t0, t2);
-            let t4 = link_1_wx * link_1_wz;
-            let t5 = link_1_e3 * t1;
-            let t6 = link_1_e2 * t0;
-            let t7 = t6 - t5;
+            let t0 = T::fused(-link_1_e0, link_1_e0, k(0.5));
+            let t1 = T::fused(link_1_e1, link_1_e1, -t0);
+            let t2 = link_1_wx * link_1_wz;
+            let t3 = link_1_wx * link_1_wx;
+            let t4 = T::fused(link_1_wy, link_1_wy, t3);
+            let t5 = link_1_e0 * link_1_e2;
+            let t6 = link_1_e1 * link_1_e3;
+            let t7 = t6 + t5;
             let t8 = link_1_wy * link_1_wz;
-            let t9 = link_1_e2 * t1;
-            let t10 = link_1_e3 * t0;
-            let t11 = t10 + t9;
-            let t12 = link_1_wx * link_1_wx;
-            let t13 = T::fused(link_1_wy, link_1_wy, t12);
-            let t14 = T::fused(t13, t11, -T::fused(-t4, t3, t8 * t7));
-            let t15 = t6 + t5;
-            let t16 = k(2.0) * link_1_e2;
-            let t17 = T::fused(-link_1_e2, t16, t2);
-            let t18 = link_1_e1 * t1;
-            let t19 = link_1_e3 * t16;
-            let t20 = t19 - t18;
-            let t21 = T::fused(t13, t20, T::fused(-t4, t15, t8 * t17));
-            let t22 = t10 - t9;
-            let t23 = t19 + t18;
-            let t24 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t2);
-            let t25 = T::fused(t13, t24, T::fused(t4, t22, t8 * t23));
-            let t26 = link_1_wx * link_1_wy;
-            let t27 = T::fused(link_1_wz, link_1_wz, t12);
-            let t28 = k(2.0) * link_2_e1;
-            let t29 = k(2.0) * link_2_e0;
-            let t30 = T::fused(-link_2_e0, t29, k(1.0));
-            let t31 = T::fused(-link_2_e1, t28, t30);
-            let t32 = link_2_wx * link_2_wz;
-            let t33 = link_2_e3 * t29;
-            let t34 = link_2_e2 * t28;
-            let t35 = t34 - t33;
-            let t36 = link_2_wy * link_2_wz;
-            let t37 = link_2_e2 * t29;
-            let t38 = link_2_e3 * t28;
-            let t39 = t38 + t37;
-            let t40 = link_2_wy * link_2_wy;
-            let t41 = T::fused(link_2_wx, link_2_wx, t40);
-            let t42 = T::fused(t41, t39, -T::fused(-t32, t31, t36 * t35));
-            let t43 = t34 + t33;
-            let t44 = k(2.0) * link_2_e2;
-            let t45 = T::fused(-link_2_e2, t44, t30);
-            let t46 = link_2_e1 * t29;
-            let t47 = link_2_e3 * t44;
-            let t48 = t47 - t46;
-            let t49 = T::fused(t41, t48, T::fused(-t32, t43, t36 * t45));
-            let t50 = t38 - t37;
-            let t51 = t47 + t46;
-            let t52 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t30);
-            let t53 = T::fused(t41, t52, T::fused(t32, t50, t36 * t51));
-            let t54 = T::fused(t22, t50, T::fused(t3, t31, t15 * t43));
-            let t55 = T::fused(t23, t50, -T::fused(t7, t31, t17 * t43));
-            let t56 = T::fused(t24, t50, -T::fused(-t11, t31, t20 * t43));
-            let t57 = T::fused(
-                link_2_wz,
-                T::fused(t22, t51, -T::fused(t3, t35, t15 * t45)),
-                link_2_wy * T::fused(t22, t52, -T::fused(-t3, t39, t15 * t48)),
+            let t9 = link_1_e0 * link_1_e3;
+            let t10 = link_1_e1 * link_1_e2;
+            let t11 = t10 - t9;
+            let t12 = T::fused(t2, t1, T::fused(-t7, t4, t11 * t8));
+            let t13 = T::fused(link_1_e2, link_1_e2, -t0);
+            let t14 = link_1_e0 * link_1_e1;
+            let t15 = link_1_e2 * link_1_e3;
+            let t16 = t15 - t14;
+            let t17 = t10 + t9;
+            let t18 = T::fused(t17, t2, -T::fused(-t8, t13, t16 * t4));
+            let t19 = T::fused(link_1_e3, link_1_e3, -t0);
+            let t20 = t15 + t14;
+            let t21 = t6 - t5;
+            let t22 = T::fused(t21, t2, T::fused(-t4, t19, t20 * t8));
+            let t23 = T::fused(link_1_wz, link_1_wz, t3);
+            let t24 = link_1_wx * link_1_wy;
+            let t25 = T::fused(-link_2_e0, link_2_e0, k(0.5));
+            let t26 = T::fused(link_2_e1, link_2_e1, -t25);
+            let t27 = link_2_wx * link_2_wz;
+            let t28 = link_2_wy * link_2_wy;
+            let t29 = T::fused(link_2_wx, link_2_wx, t28);
+            let t30 = link_2_e0 * link_2_e2;
+            let t31 = link_2_e1 * link_2_e3;
+            let t32 = t31 + t30;
+            let t33 = link_2_wy * link_2_wz;
+            let t34 = link_2_e0 * link_2_e3;
+            let t35 = link_2_e1 * link_2_e2;
+            let t36 = t35 - t34;
+            let t37 = T::fused(t27, t26, T::fused(-t32, t29, t36 * t33));
+            let t38 = T::fused(link_2_e2, link_2_e2, -t25);
+            let t39 = link_2_e0 * link_2_e1;
+            let t40 = link_2_e2 * link_2_e3;
+            let t41 = t40 - t39;
+            let t42 = t35 + t34;
+            let t43 = T::fused(t42, t27, -T::fused(-t33, t38, t41 * t29));
+            let t44 = T::fused(link_2_e3, link_2_e3, -t25);
+            let t45 = t40 + t39;
+            let t46 = t31 - t30;
+            let t47 = T::fused(t46, t27, T::fused(-t29, t44, t45 * t33));
+            let t48 = T::fused(t11, t32, T::fused(t20, t44, t41 * t13));
+            let t49 = T::fused(t11, t36, T::fused(t38, t13, t20 * t45));
+            let t50 = T::fused(
+                -link_2_wy,
+                T::fused(t32, t1, T::fused(t21, t44, t17 * t41)),
+                link_2_wz * T::fused(t36, t1, T::fused(t17, t38, t21 * t45)),
             );
-            let t58 = T::fused(t23, t51, T::fused(t7, t35, t17 * t45));
-            let t59 = T::fused(t23, t52, T::fused(-t7, t39, t17 * t48));
-            let t60 = T::fused(link_2_wz, link_2_wz, t40);
-            let t61 = T::fused(t24, t51, T::fused(-t11, t35, t20 * t45));
-            let t62 = link_2_wx * link_2_wy;
-            let t63 = T::fused(t24, t52, T::fused(t11, t39, t20 * t48));
-            let t64 = T::fused(
+            let t51 = T::fused(t7, t32, T::fused(t44, t19, t16 * t41));
+            let t52 = T::fused(t7, t36, T::fused(t45, t19, t16 * t38));
+            let t53 = link_2_wx * link_2_wy;
+            let t54 = T::fused(t7, t26, T::fused(t46, t19, t16 * t42));
+            let t55 = T::fused(link_2_wz, link_2_wz, t28);
+            let t56 = T::fused(
                 -k(2.0),
                 T::fused(
-                    -link_1_wy,
-                    t57,
-                    link_1_wx * T::fused(link_2_wz, t58, link_2_wy * t59),
+                    -link_1_wx,
+                    T::fused(-link_2_wy, t48, link_2_wz * t49),
+                    link_1_wy * t50,
                 ),
-                T::fused(t32, t63, -T::fused(-t60, t56, t62 * t61)),
+                T::fused(t55, t54, -T::fused(t27, t51, t53 * t52)),
             );
-            let t65 = T::fused(
+            let t57 = T::fused(t11, t26, T::fused(t42, t13, t20 * t46));
+            let t58 = T::fused(t26, t1, T::fused(t21, t46, t17 * t42));
+            let t59 = k(4.0)
+                * T::fused(t2, t58, T::fused(t8, t57, -T::fused(t4, t54, t56)));
+            let t60 = T::fused(
                 k(2.0),
                 T::fused(
-                    link_1_wz,
-                    t57,
-                    link_1_wx * T::fused(link_2_wz, t61, link_2_wy * t63),
+                    -link_1_wx,
+                    T::fused(-link_2_wy, t51, link_2_wz * t52),
+                    link_1_wz * t50,
                 ),
-                T::fused(t32, t59, -T::fused(-t60, t55, t62 * t58)),
+                T::fused(t55, t57, -T::fused(t27, t48, t53 * t49)),
             );
-            let t66 = k(2.0) * link_3_e1;
-            let t67 = k(2.0) * link_3_e0;
-            let t68 = T::fused(-link_3_e0, t67, k(1.0));
-            let t69 = T::fused(-link_3_e1, t66, t68);
-            let t70 = link_3_wx * link_3_wz;
-            let t71 = link_3_e3 * t67;
-            let t72 = link_3_e2 * t66;
+            let t61 = k(4.0)
+                * T::fused(t24, t58, -T::fused(t23, t57, -T::fused(t8, t54, -t60)));
+            let t62 = T::fused(-link_3_e0, link_3_e0, k(0.5));
+            let t63 = T::fused(link_3_e1, link_3_e1, -t62);
+            let t64 = link_3_wx * link_3_wz;
+            let t65 = link_3_wx * link_3_wx;
+            let t66 = T::fused(link_3_wy, link_3_wy, t65);
+            let t67 = link_3_e0 * link_3_e2;
+            let t68 = link_3_e1 * link_3_e3;
+            let t69 = t68 + t67;
+            let t70 = link_3_wy * link_3_wz;
+            let t71 = link_3_e0 * link_3_e3;
+            let t72 = link_3_e1 * link_3_e2;
             let t73 = t72 - t71;
-            let t74 = link_3_wy * link_3_wz;
-            let t75 = link_3_e2 * t67;
-            let t76 = link_3_e3 * t66;
-            let t77 = t76 + t75;
-            let t78 = link_3_wx * link_3_wx;
-            let t79 = T::fused(link_3_wy, link_3_wy, t78);
-            let t80 = T::fused(t79, t77, -T::fused(-t70, t69, t74 * t73));
-            let t81 = t72 + t71;
-            let t82 = k(2.0) * link_3_e2;
-            let t83 = T::fused(-link_3_e2, t82, t68);
-            let t84 = link_3_e1 * t67;
-            let t85 = link_3_e3 * t82;
-            let t86 = t85 - t84;
-            let t87 = T::fused(t79, t86, T::fused(-t70, t81, t74 * t83));
-            let t88 = t76 - t75;
-            let t89 = t85 + t84;
-            let t90 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t68);
-            let t91 = T::fused(t79, t90, T::fused(t70, t88, t74 * t89));
-            let t92 = T::fused(t50, t89, -T::fused(t31, t73, t43 * t83));
-            let t93 = T::fused(t51, t89, T::fused(t35, t73, t45 * t83));
-            let t94 = T::fused(t52, t89, T::fused(-t39, t73, t48 * t83));
-            let t95 = T::fused(t50, t88, T::fused(t31, t69, t43 * t81));
-            let t96 = T::fused(t50, t90, -T::fused(-t31, t77, t43 * t86));
-            let t97 = T::fused(
-                link_3_wz,
-                T::fused(t51, t88, -T::fused(t35, t69, t45 * t81)),
-                link_3_wx * T::fused(t51, t90, T::fused(-t35, t77, t45 * t86)),
+            let t74 = T::fused(t64, t63, T::fused(-t69, t66, t73 * t70));
+            let t75 = T::fused(link_3_e2, link_3_e2, -t62);
+            let t76 = link_3_e0 * link_3_e1;
+            let t77 = link_3_e2 * link_3_e3;
+            let t78 = t77 - t76;
+            let t79 = t72 + t71;
+            let t80 = T::fused(t79, t64, -T::fused(-t70, t75, t78 * t66));
+            let t81 = T::fused(link_3_e3, link_3_e3, -t62);
+            let t82 = t77 + t76;
+            let t83 = t68 - t67;
+            let t84 = T::fused(t83, t64, T::fused(-t66, t81, t82 * t70));
+            let t85 = T::fused(
+                -link_3_wx,
+                T::fused(t36, t69, T::fused(t45, t81, t78 * t38)),
+                link_3_wz * T::fused(t36, t63, T::fused(t79, t38, t45 * t83)),
             );
-            let t98 = T::fused(t52, t88, -T::fused(-t39, t69, t48 * t81));
-            let t99 = link_3_wx * link_3_wy;
-            let t100 = T::fused(link_3_wz, link_3_wz, t78);
-            let t101 = T::fused(t52, t90, T::fused(t39, t77, t48 * t86));
-            let t102 = T::fused(
-                k(2.0),
+            let t86 = T::fused(t69, t26, T::fused(t46, t81, t42 * t78));
+            let t87 = T::fused(t63, t26, T::fused(t46, t83, t42 * t79));
+            let t88 = T::fused(t32, t69, T::fused(t81, t44, t41 * t78));
+            let t89 = T::fused(t32, t73, T::fused(t82, t44, t41 * t75));
+            let t90 = T::fused(link_3_wz, link_3_wz, t65);
+            let t91 = T::fused(t32, t63, T::fused(t83, t44, t41 * t79));
+            let t92 = link_3_wx * link_3_wy;
+            let t93 = T::fused(
+                -k(2.0),
+                T::fused(
+                    -link_2_wx,
+                    t85,
+                    link_2_wy * T::fused(-link_3_wx, t86, link_3_wz * t87),
+                ),
+                T::fused(t92, t91, -T::fused(-t70, t88, t90 * t89)),
+            );
+            let t94 = T::fused(t36, t73, T::fused(t75, t38, t45 * t82));
+            let t95 = T::fused(t73, t26, T::fused(t42, t75, t46 * t82));
+            let t96 = k(4.0)
+                * T::fused(t27, t95, T::fused(t33, t94, -T::fused(t29, t89, -t93)));
+            let t97 = T::fused(
+                -k(2.0),
                 T::fused(
                     -link_2_wy,
-                    T::fused(link_3_wz, t95, link_3_wx * t96),
-                    link_2_wx * t97,
+                    T::fused(-link_3_wx, t88, link_3_wz * t91),
+                    link_2_wz * t85,
                 ),
-                T::fused(t74, t101, T::fused(-t99, t98, t100 * t94)),
+                T::fused(t92, t87, -T::fused(-t70, t86, t90 * t95)),
             );
-            let t103 = T::fused(
-                k(2.0),
-                T::fused(
-                    link_2_wz,
-                    t97,
-                    link_2_wy * T::fused(link_3_wz, t98, link_3_wx * t101),
-                ),
-                T::fused(t74, t96, T::fused(-t99, t95, t100 * t92)),
+            let t98 = k(4.0)
+                * T::fused(t55, t95, -T::fused(t53, t94, T::fused(t27, t89, t97)));
+            let t99 = T::fused(-link_4_e0, link_4_e0, k(0.5));
+            let t100 = T::fused(link_4_e1, link_4_e1, -t99);
+            let t101 = link_4_wx * link_4_wz;
+            let t102 = link_4_wy * link_4_wy;
+            let t103 = T::fused(link_4_wx, link_4_wx, t102);
+            let t104 = link_4_e0 * link_4_e2;
+            let t105 = link_4_e1 * link_4_e3;
+            let t106 = t105 + t104;
+            let t107 = link_4_wy * link_4_wz;
+            let t108 = link_4_e0 * link_4_e3;
+            let t109 = link_4_e1 * link_4_e2;
+            let t110 = t109 - t108;
+            let t111 = T::fused(t101, t100, T::fused(-t106, t103, t110 * t107));
+            let t112 = T::fused(link_4_e2, link_4_e2, -t99);
+            let t113 = link_4_e0 * link_4_e1;
+            let t114 = link_4_e2 * link_4_e3;
+            let t115 = t114 - t113;
+            let t116 = t109 + t108;
+            let t117 = T::fused(t116, t101, -T::fused(-t107, t112, t115 * t103));
+            let t118 = T::fused(link_4_e3, link_4_e3, -t99);
+            let t119 = t114 + t113;
+            let t120 = t105 - t104;
+            let t121 = T::fused(t120, t101, T::fused(-t103, t118, t119 * t107));
+            let t122 = T::fused(t73, t106, T::fused(t82, t118, t115 * t75));
+            let t123 = T::fused(t73, t110, T::fused(t112, t75, t82 * t119));
+            let t124 = T::fused(
+                -link_4_wy,
+                T::fused(t106, t63, T::fused(t83, t118, t79 * t115)),
+                link_4_wz * T::fused(t110, t63, T::fused(t79, t112, t83 * t119)),
             );
-            let t104 = k(2.0) * link_4_e1;
-            let t105 = k(2.0) * link_4_e0;
-            let t106 = T::fused(-link_4_e0, t105, k(1.0));
-            let t107 = T::fused(-link_4_e1, t104, t106);
-            let t108 = link_4_wx * link_4_wz;
-            let t109 = link_4_e3 * t105;
-            let t110 = link_4_e2 * t104;
-            let t111 = t110 - t109;
-            let t112 = link_4_wy * link_4_wz;
-            let t113 = link_4_e2 * t105;
-            let t114 = link_4_e3 * t104;
-            let t115 = t114 + t113;
-            let t116 = link_4_wy * link_4_wy;
-            let t117 = T::fused(link_4_wx, link_4_wx, t116);
-            let t118 = T::fused(t117, t115, -T::fused(-t108, t107, t112 * t111));
-            let t119 = t110 + t109;
-            let t120 = k(2.0) * link_4_e2;
-            let t121 = T::fused(-link_4_e2, t120, t106);
-            let t122 = link_4_e1 * t105;
-            let t123 = link_4_e3 * t120;
-            let t124 = t123 - t122;
-            let t125 = T::fused(t117, t124, T::fused(-t108, t119, t112 * t121));
-            let t126 = t114 - t113;
-            let t127 = t123 + t122;
-            let t128 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t106);
-            let t129 = T::fused(t117, t128, T::fused(t108, t126, t112 * t127));
-            let t130 = T::fused(t88, t126, T::fused(t69, t107, t81 * t119));
-            let t131 = T::fused(t89, t126, -T::fused(t73, t107, t83 * t119));
-            let t132 = T::fused(t90, t126, -T::fused(-t77, t107, t86 * t119));
-            let t133 = T::fused(
-                link_4_wz,
-                T::fused(t88, t127, -T::fused(t69, t111, t81 * t121)),
-                link_4_wy * T::fused(t88, t128, -T::fused(-t69, t115, t81 * t124)),
-            );
-            let t134 = T::fused(t89, t127, T::fused(t73, t111, t83 * t121));
-            let t135 = T::fused(t89, t128, T::fused(-t73, t115, t83 * t124));
-            let t136 = T::fused(link_4_wz, link_4_wz, t116);
-            let t137 = T::fused(t90, t127, T::fused(-t77, t111, t86 * t121));
-            let t138 = link_4_wx * link_4_wy;
-            let t139 = T::fused(t90, t128, T::fused(t77, t115, t86 * t124));
-            let t140 = T::fused(
+            let t125 = T::fused(t69, t106, T::fused(t118, t81, t78 * t115));
+            let t126 = T::fused(t69, t110, T::fused(t119, t81, t78 * t112));
+            let t127 = link_4_wx * link_4_wy;
+            let t128 = T::fused(t69, t100, T::fused(t120, t81, t78 * t116));
+            let t129 = T::fused(link_4_wz, link_4_wz, t102);
+            let t130 = T::fused(
                 -k(2.0),
                 T::fused(
-                    -link_3_wy,
-                    t133,
-                    link_3_wx * T::fused(link_4_wz, t134, link_4_wy * t135),
+                    -link_3_wx,
+                    T::fused(-link_4_wy, t122, link_4_wz * t123),
+                    link_3_wy * t124,
                 ),
-                T::fused(t108, t139, -T::fused(-t136, t132, t138 * t137)),
+                T::fused(t129, t128, -T::fused(t101, t125, t127 * t126)),
             );
-            let t141 = T::fused(
+            let t131 = T::fused(t73, t100, T::fused(t116, t75, t82 * t120));
+            let t132 = T::fused(t100, t63, T::fused(t83, t120, t79 * t116));
+            let t133 = k(4.0)
+                * T::fused(t64, t132, T::fused(t70, t131, -T::fused(t66, t128, t130)));
+            let t134 = T::fused(
                 k(2.0),
                 T::fused(
-                    link_3_wz,
-                    t133,
-                    link_3_wx * T::fused(link_4_wz, t137, link_4_wy * t139),
+                    -link_3_wx,
+                    T::fused(-link_4_wy, t125, link_4_wz * t126),
+                    link_3_wz * t124,
                 ),
-                T::fused(t108, t135, -T::fused(-t136, t131, t138 * t134)),
+                T::fused(t129, t131, -T::fused(t101, t122, t127 * t123)),
             );
-            let t142 = k(2.0) * link_5_e1;
-            let t143 = k(2.0) * link_5_e0;
-            let t144 = T::fused(-link_5_e0, t143, k(1.0));
-            let t145 = T::fused(-link_5_e1, t142, t144);
-            let t146 = link_5_wx * link_5_wz;
-            let t147 = link_5_e3 * t143;
-            let t148 = link_5_e2 * t142;
-            let t149 = t148 - t147;
-            let t150 = link_5_wy * link_5_wz;
-            let t151 = link_5_e2 * t143;
-            let t152 = link_5_e3 * t142;
-            let t153 = t152 + t151;
-            let t154 = link_5_wx * link_5_wx;
-            let t155 = T::fused(link_5_wy, link_5_wy, t154);
-            let t156 = T::fused(t155, t153, -T::fused(-t146, t145, t150 * t149));
-            let t157 = t148 + t147;
-            let t158 = k(2.0) * link_5_e2;
-            let t159 = T::fused(-link_5_e2, t158, t144);
-            let t160 = link_5_e1 * t143;
-            let t161 = link_5_e3 * t158;
-            let t162 = t161 - t160;
-            let t163 = T::fused(t155, t162, T::fused(-t146, t157, t150 * t159));
-            let t164 = t152 - t151;
-            let t165 = t161 + t160;
-            let t166 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t144);
-            let t167 = T::fused(t155, t166, T::fused(t146, t164, t150 * t165));
-            let t168 = T::fused(t126, t165, -T::fused(t107, t149, t119 * t159));
-            let t169 = T::fused(t127, t165, T::fused(t111, t149, t121 * t159));
-            let t170 = T::fused(t128, t165, T::fused(-t115, t149, t124 * t159));
-            let t171 = T::fused(t126, t164, T::fused(t107, t145, t119 * t157));
-            let t172 = T::fused(t126, t166, -T::fused(-t107, t153, t119 * t162));
-            let t173 = T::fused(
-                link_5_wz,
-                T::fused(t127, t164, -T::fused(t111, t145, t121 * t157)),
-                link_5_wx * T::fused(t127, t166, T::fused(-t111, t153, t121 * t162)),
+            let t135 = k(4.0)
+                * T::fused(t92, t132, -T::fused(t90, t131, -T::fused(t70, t128, -t134)));
+            let t136 = T::fused(-link_5_e0, link_5_e0, k(0.5));
+            let t137 = T::fused(link_5_e1, link_5_e1, -t136);
+            let t138 = link_5_wx * link_5_wz;
+            let t139 = link_5_wx * link_5_wx;
+            let t140 = T::fused(link_5_wy, link_5_wy, t139);
+            let t141 = link_5_e0 * link_5_e2;
+            let t142 = link_5_e1 * link_5_e3;
+            let t143 = t142 + t141;
+            let t144 = link_5_wy * link_5_wz;
+            let t145 = link_5_e0 * link_5_e3;
+            let t146 = link_5_e1 * link_5_e2;
+            let t147 = t146 - t145;
+            let t148 = T::fused(t138, t137, T::fused(-t143, t140, t147 * t144));
+            let t149 = T::fused(link_5_e2, link_5_e2, -t136);
+            let t150 = link_5_e0 * link_5_e1;
+            let t151 = link_5_e2 * link_5_e3;
+            let t152 = t151 - t150;
+            let t153 = t146 + t145;
+            let t154 = T::fused(t153, t138, -T::fused(-t144, t149, t152 * t140));
+            let t155 = T::fused(link_5_e3, link_5_e3, -t136);
+            let t156 = t151 + t150;
+            let t157 = t142 - t141;
+            let t158 = T::fused(t157, t138, T::fused(-t140, t155, t156 * t144));
+            let t159 = T::fused(
+                -link_5_wx,
+                T::fused(t110, t143, T::fused(t119, t155, t152 * t112)),
+                link_5_wz * T::fused(t110, t137, T::fused(t153, t112, t119 * t157)),
             );
-            let t174 = T::fused(t128, t164, -T::fused(-t115, t145, t124 * t157));
-            let t175 = link_5_wx * link_5_wy;
-            let t176 = T::fused(link_5_wz, link_5_wz, t154);
-            let t177 = T::fused(t128, t166, T::fused(t115, t153, t124 * t162));
-            let t178 = T::fused(
-                k(2.0),
+            let t160 = T::fused(t143, t100, T::fused(t120, t155, t116 * t152));
+            let t161 = T::fused(t137, t100, T::fused(t120, t157, t116 * t153));
+            let t162 = T::fused(t106, t143, T::fused(t155, t118, t115 * t152));
+            let t163 = T::fused(t106, t147, T::fused(t156, t118, t115 * t149));
+            let t164 = T::fused(link_5_wz, link_5_wz, t139);
+            let t165 = T::fused(t106, t137, T::fused(t157, t118, t115 * t153));
+            let t166 = link_5_wx * link_5_wy;
+            let t167 = T::fused(
+                -k(2.0),
+                T::fused(
+                    -link_4_wx,
+                    t159,
+                    link_4_wy * T::fused(-link_5_wx, t160, link_5_wz * t161),
+                ),
+                T::fused(t166, t165, -T::fused(-t144, t162, t164 * t163)),
+            );
+            let t168 = T::fused(t110, t147, T::fused(t149, t112, t119 * t156));
+            let t169 = T::fused(t147, t100, T::fused(t116, t149, t120 * t156));
+            let t170 = k(4.0)
+                * T::fused(
+                    t101,
+                    t169,
+                    T::fused(t107, t168, -T::fused(t103, t163, -t167)),
+                );
+            let t171 = T::fused(
+                -k(2.0),
                 T::fused(
                     -link_4_wy,
-                    T::fused(link_5_wz, t171, link_5_wx * t172),
-                    link_4_wx * t173,
+                    T::fused(-link_5_wx, t162, link_5_wz * t165),
+                    link_4_wz * t159,
                 ),
-                T::fused(t150, t177, T::fused(-t175, t174, t176 * t170)),
+                T::fused(t166, t161, -T::fused(-t144, t160, t164 * t169)),
             );
-            let t179 = T::fused(
-                k(2.0),
-                T::fused(
-                    link_4_wz,
-                    t173,
-                    link_4_wy * T::fused(link_5_wz, t174, link_5_wx * t177),
-                ),
-                T::fused(t150, t172, T::fused(-t175, t171, t176 * t168)),
-            );
-            let t180 = k(2.0) * link_6_e1;
-            let t181 = k(2.0) * link_6_e0;
-            let t182 = T::fused(-link_6_e0, t181, k(1.0));
-            let t183 = T::fused(-link_6_e1, t180, t182);
+            let t172 = k(4.0)
+                * T::fused(
+                    t129,
+                    t169,
+                    -T::fused(t127, t168, T::fused(t101, t163, t171)),
+                );
+            let t173 = link_6_wy * link_6_wy;
+            let t174 = T::fused(link_6_wx, link_6_wx, t173);
+            let t175 = link_6_e0 * link_6_e2;
+            let t176 = link_6_e1 * link_6_e3;
+            let t177 = t176 + t175;
+            let t178 = link_6_wy * link_6_wz;
+            let t179 = link_6_e0 * link_6_e3;
+            let t180 = link_6_e1 * link_6_e2;
+            let t181 = t180 - t179;
+            let t182 = T::fused(-link_6_e0, link_6_e0, k(0.5));
+            let t183 = T::fused(link_6_e1, link_6_e1, -t182);
             let t184 = link_6_wx * link_6_wz;
-            let t185 = link_6_e3 * t181;
-            let t186 = link_6_e2 * t180;
-            let t187 = t186 - t185;
-            let t188 = link_6_wy * link_6_wz;
-            let t189 = link_6_e2 * t181;
-            let t190 = link_6_e3 * t180;
-            let t191 = t190 + t189;
-            let t192 = link_6_wy * link_6_wy;
-            let t193 = T::fused(link_6_wx, link_6_wx, t192);
-            let t194 = k(0.1)
-                * (t156 + T::fused(t193, t191, -T::fused(-t184, t183, t188 * t187)));
-            let t195 = t186 + t185;
-            let t196 = k(2.0) * link_6_e2;
-            let t197 = T::fused(-link_6_e2, t196, t182);
-            let t198 = link_6_e1 * t181;
-            let t199 = link_6_e3 * t196;
+            let t185 = k(0.2)
+                * T::fused(
+                    t184,
+                    t183,
+                    T::fused(t181, t178, -T::fused(t177, t174, -t148)),
+                );
+            let t186 = link_6_e0 * link_6_e1;
+            let t187 = link_6_e2 * link_6_e3;
+            let t188 = t187 - t186;
+            let t189 = T::fused(link_6_e2, link_6_e2, -t182);
+            let t190 = t180 + t179;
+            let t191 = k(0.2)
+                * T::fused(
+                    t190,
+                    t184,
+                    T::fused(t178, t189, -T::fused(t188, t174, -t154)),
+                );
+            let t192 = T::fused(link_6_e3, link_6_e3, -t182);
+            let t193 = t187 + t186;
+            let t194 = t176 - t175;
+            let t195 = k(0.2)
+                * T::fused(
+                    t194,
+                    t184,
+                    T::fused(t193, t178, T::fused(-t174, t192, t158)),
+                );
+            let t196 = T::fused(t147, t177, T::fused(t156, t192, t188 * t149));
+            let t197 = T::fused(t147, t181, T::fused(t189, t149, t156 * t193));
+            let t198 = T::fused(
+                -link_6_wy,
+                T::fused(t177, t137, T::fused(t157, t192, t153 * t188)),
+                link_6_wz * T::fused(t181, t137, T::fused(t153, t189, t157 * t193)),
+            );
+            let t199 = T::fused(t143, t177, T::fused(t192, t155, t152 * t188));
             (
-                t3,
-                t4,
+                t1,
                 t7,
                 t8,
                 t11,
-                t13,
-                t14,
+                t12,
+                t18,
+                t19,
+                t20,
                 t21,
                 t22,
                 t23,
                 t24,
-                t25,
-                t26,
-                t27,
-                t32,
-                t36,
-                t41,
-                t42,
-                t49,
-                t53,
-                t54,
-                t55,
-                t56,
-                t60,
-                t62,
-                t64,
-                t65,
-                t70,
+                t37,
+                t43,
+                t47,
+                t59,
+                t61,
                 t74,
-                t79,
                 t80,
-                t87,
-                t91,
-                t92,
-                t93,
-                t94,
-                t99,
-                t100,
-                t102,
-                t103,
-                t108,
-                t112,
+                t84,
+                t96,
+                t98,
+                t111,
                 t117,
-                t118,
-                t125,
-                t129,
-                t130,
-                t131,
-                t132,
-                t136,
+                t121,
+                t133,
+                t135,
+                t137,
                 t138,
                 t140,
-                t141,
-                t145,
-                t146,
+                t143,
+                t144,
+                t147,
+                t148,
                 t149,
-                t150,
+                t152,
                 t153,
+                t154,
                 t155,
                 t156,
                 t157,
-                t159,
-                t162,
-                t163,
+                t158,
                 t164,
-                t165,
                 t166,
-                t167,
-                t168,
-                t169,
                 t170,
-                t175,
-                t176,
-                t178,
-                t179,
-                t182,
+                t172,
+                t173,
+                t181,
                 t183,
                 t184,
-                t187,
-                t188,
+                t185,
                 t189,
                 t190,
                 t191,
-                t192,
                 t193,
                 t194,
                 t195,
+                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t201, t205, t206, t207, t208, t216, t217) = {
-            let t200 = t199 - t198;
-            let t201 = k(0.1)
-                * (t163 + T::fused(t193, t200, T::fused(-t184, t195, t188 * t197)));
-            let t202 = t190 - t189;
-            let t203 = t199 + t198;
-            let t204 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t182);
-            let t205 = k(0.1)
-                * (t167 + T::fused(t193, t204, T::fused(t184, t202, t188 * t203)));
-            let t206 = T::fused(t164, t202, T::fused(t145, t183, t157 * t195));
-            let t207 = T::fused(t165, t202, -T::fused(t149, t183, t159 * t195));
-            let t208 = T::fused(t166, t202, -T::fused(-t153, t183, t162 * t195));
-            let t209 = T::fused(
-                link_6_wz,
-                T::fused(t164, t203, -T::fused(t145, t187, t157 * t197)),
-                link_6_wy * T::fused(t164, t204, -T::fused(-t145, t191, t157 * t200)),
-            );
-            let t210 = T::fused(t165, t203, T::fused(t149, t187, t159 * t197));
-            let t211 = T::fused(t165, t204, T::fused(-t149, t191, t159 * t200));
-            let t212 = T::fused(link_6_wz, link_6_wz, t192);
-            let t213 = T::fused(t166, t203, T::fused(-t153, t187, t162 * t197));
-            let t214 = link_6_wx * link_6_wy;
-            let t215 = T::fused(t166, t204, T::fused(t153, t191, t162 * t200));
-            let t216 = T::fused(
+        let (t207, t209) = {
+            let t200 = T::fused(t143, t181, T::fused(t193, t155, t152 * t189));
+            let t201 = link_6_wx * link_6_wy;
+            let t202 = T::fused(t143, t183, T::fused(t194, t155, t152 * t190));
+            let t203 = T::fused(link_6_wz, link_6_wz, t173);
+            let t204 = T::fused(
                 -k(2.0),
                 T::fused(
-                    -link_5_wy,
-                    t209,
-                    link_5_wx * T::fused(link_6_wz, t210, link_6_wy * t211),
+                    -link_5_wx,
+                    T::fused(-link_6_wy, t196, link_6_wz * t197),
+                    link_5_wy * t198,
                 ),
-                T::fused(t184, t215, -T::fused(-t212, t208, t214 * t213)),
+                T::fused(t203, t202, -T::fused(t184, t199, t201 * t200)),
             );
-            let t217 = T::fused(
+            let t205 = T::fused(t147, t183, T::fused(t190, t149, t156 * t194));
+            let t206 = T::fused(t137, t183, T::fused(t157, t194, t153 * t190));
+            let t207 = k(4.0)
+                * T::fused(
+                    t138,
+                    t206,
+                    T::fused(t144, t205, -T::fused(t140, t202, t204)),
+                );
+            let t208 = T::fused(
                 k(2.0),
                 T::fused(
-                    link_5_wz,
-                    t209,
-                    link_5_wx * T::fused(link_6_wz, t213, link_6_wy * t215),
+                    -link_5_wx,
+                    T::fused(-link_6_wy, t199, link_6_wz * t200),
+                    link_5_wz * t198,
                 ),
-                T::fused(t184, t211, -T::fused(-t212, t207, t214 * t210)),
+                T::fused(t203, t205, -T::fused(t184, t196, t201 * t197)),
             );
-            (t201, t205, t206, t207, t208, t216, t217)
+            let t209 = k(4.0)
+                * T::fused(
+                    t166,
+                    t206,
+                    -T::fused(t164, t205, -T::fused(t144, t202, -t208)),
+                );
+            (t207, t209)
         };
         *out = [
-            k(0.1) * t14,
-            k(0.1) * t21,
-            -(k(0.1) * t25),
-            T::fused(t8, t24, T::fused(-t26, t22, t27 * t23)),
-            T::fused(-t8, t11, T::fused(t26, t3, t27 * t7)),
-            k(0.1) * (t14 + t42),
-            k(0.1) * (t21 + t49),
-            -(k(0.1) * (t25 + t53)),
-            -(t64 + T::fused(t13, t56, T::fused(t4, t54, t8 * t55))),
-            -(t65 + T::fused(t8, t56, T::fused(-t26, t54, t27 * t55))),
-            k(0.1) * (t42 + t80),
-            k(0.1) * (t49 + t87),
-            -(k(0.1) * (t53 + t91)),
-            -(t102 + T::fused(t41, t94, T::fused(t32, t92, t36 * t93))),
-            t103 + T::fused(t32, t94, -T::fused(-t60, t92, t62 * t93)),
-            k(0.1) * (t80 + t118),
-            k(0.1) * (t87 + t125),
-            -(k(0.1) * (t91 + t129)),
-            -(t140 + T::fused(t79, t132, T::fused(t70, t130, t74 * t131))),
-            -(t141 + T::fused(t74, t132, T::fused(-t99, t130, t100 * t131))),
-            k(0.1) * (t118 + t156),
-            k(0.1) * (t125 + t163),
-            -(k(0.1) * (t129 + t167)),
-            -(t178 + T::fused(t117, t170, T::fused(t108, t168, t112 * t169))),
-            t179 + T::fused(t108, t170, -T::fused(-t136, t168, t138 * t169)),
-            t194,
-            t201,
-            -t205,
-            -(t216 + T::fused(t155, t208, T::fused(t146, t206, t150 * t207))),
-            -(t217 + T::fused(t150, t208, T::fused(-t175, t206, t176 * t207))),
+            -(k(0.2) * t12),
+            -(k(0.2) * t18),
+            -(k(0.2) * t22),
+            -(k(2.0) * T::fused(t21, t24, -T::fused(-t8, t19, t20 * t23))),
+            k(2.0) * T::fused(-t24, t1, T::fused(-t7, t8, t11 * t23)),
+            -(k(0.2) * (t12 + t37)),
+            -(k(0.2) * (t18 + t43)),
+            -(k(0.2) * (t22 + t47)),
+            -t59,
+            t61,
+            -(k(0.2) * (t37 + t74)),
+            -(k(0.2) * (t43 + t80)),
+            -(k(0.2) * (t47 + t84)),
+            -t96,
+            t98,
+            -(k(0.2) * (t74 + t111)),
+            -(k(0.2) * (t80 + t117)),
+            -(k(0.2) * (t84 + t121)),
+            -t133,
+            t135,
+            -(k(0.2) * (t111 + t148)),
+            -(k(0.2) * (t117 + t154)),
+            -(k(0.2) * (t121 + t158)),
+            -t170,
+            t172,
+            -t185,
+            -t191,
+            -t195,
+            -t207,
+            t209,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 36 operations (0 ±, 36 ×, 0 ÷).
@@ -6621,7 +6524,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t450 + T::fused(t89, t700, T::fused(t28, t699, t49 * t702)),
         ];
     }
-    /// Writes λ: 792 operations (306 ±, 480 ×, 6 ÷).
+    /// Writes λ: 772 operations (306 ±, 460 ×, 6 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -6708,7 +6611,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_dwy = accelerations[34];
         let link_6_dwz = accelerations[35];
         let (
+            t0,
+            t1,
+            t2,
+            t3,
             t4,
+            t5,
+            t6,
+            t7,
+            t8,
             t9,
             t10,
             t11,
@@ -6716,389 +6627,501 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t13,
             t14,
             t15,
-            t21,
-            t25,
-            t47,
-            t52,
-            t64,
-            t65,
-            t66,
+            t41,
+            t43,
+            t57,
+            t67,
+            t68,
+            t69,
             t77,
-            t78,
+            t79,
             t80,
-            t90,
-            t92,
-            t93,
-            t94,
+            t82,
             t105,
-            t106,
+            t110,
             t111,
             t114,
-            t117,
-            t124,
-            t129,
-            t131,
-            t132,
-            t134,
+            t125,
+            t135,
+            t136,
             t137,
-            t141,
-            t144,
             t145,
             t146,
-            t149,
+            t148,
             t150,
-            t153,
+            t151,
             t154,
             t155,
-            t156,
-            t157,
-            t158,
-            t160,
-            t165,
+            t161,
             t167,
-            t168,
-            t169,
-            t170,
             t172,
             t173,
             t174,
             t175,
+            t176,
+            t177,
             t178,
-            t180,
             t181,
             t182,
+            t184,
             t185,
             t186,
             t187,
-            t189,
-            t190,
             t191,
             t192,
             t193,
-            t194,
-            t195,
-            t196,
-            t197,
             t199,
         ) = {
             let t0 = link_5_dsx + link_6_dsx;
             let t1 = link_4_dsx + t0;
             let t2 = link_3_dsx + t1;
             let t3 = link_2_dsx + t2;
-            let t4 = k(0.5) * (link_1_dsx + t3);
+            let t4 = link_1_dsx + t3;
             let t5 = link_5_dsy + link_6_dsy;
             let t6 = link_4_dsy + t5;
             let t7 = link_3_dsy + t6;
             let t8 = link_2_dsy + t7;
-            let t9 = k(0.5) * (link_1_dsy + t8);
-            let t10 = T::fused(k(0.5), link_6_dsz, k(4.905));
-            let t11 = T::fused(k(0.5), link_5_dsz, k(4.905)) + t10;
-            let t12 = T::fused(k(0.5), link_4_dsz, k(4.905)) + t11;
-            let t13 = T::fused(k(0.5), link_3_dsz, k(4.905)) + t12;
-            let t14 = T::fused(k(0.5), link_2_dsz, k(4.905)) + t13;
-            let t15 = T::fused(k(0.5), link_1_dsz, k(4.905)) + t14;
-            let t16 = k(2.0) * link_6_e0;
-            let t17 = link_6_e3 * t16;
-            let t18 = k(2.0) * link_6_e1;
-            let t19 = link_6_e2 * t18;
-            let t20 = t19 - t17;
-            let t21 = k(0.5) * link_6_dsx;
-            let t22 = k(2.0) * link_6_e2;
-            let t23 = T::fused(-link_6_e0, t16, k(1.0));
-            let t24 = T::fused(-link_6_e2, t22, t23);
-            let t25 = k(0.5) * link_6_dsy;
-            let t26 = link_6_e1 * t16;
-            let t27 = link_6_e3 * t22;
-            let t28 = t27 + t26;
-            let t29 = T::fused(
-                t10,
-                k(0.1) * t28,
-                -T::fused(-t21, k(0.1) * t20, t25 * (k(0.1) * t24)),
+            let t9 = link_1_dsy + t8;
+            let t10 = link_6_dsz + k(9.81);
+            let t11 = k(9.81) + (link_5_dsz + t10);
+            let t12 = k(9.81) + (link_4_dsz + t11);
+            let t13 = k(9.81) + (link_3_dsz + t12);
+            let t14 = k(9.81) + (link_2_dsz + t13);
+            let t15 = k(9.81) + (link_1_dsz + t14);
+            let t16 = T::fused(-link_6_e0, link_6_e0, k(0.5));
+            let t17 = T::fused(link_6_e2, link_6_e2, -t16);
+            let t18 = link_6_e0 * link_6_e1;
+            let t19 = link_6_e2 * link_6_e3;
+            let t20 = t19 + t18;
+            let t21 = T::fused(
+                link_6_dsy,
+                t17,
+                T::fused(
+                    t20,
+                    t10,
+                    -T::fused(-k(0.017), link_6_dwx, k(0.014) * (link_6_wy * link_6_wz)),
+                ),
             );
-            let t30 = T::fused(
-                -k(0.0017),
-                link_6_dwx,
-                k(0.0014) * (link_6_wy * link_6_wz),
-            ) - t29;
-            let t31 = T::fused(-link_6_e1, t18, t23);
-            let t32 = k(2.0) * link_5_e1;
-            let t33 = k(2.0) * link_5_e0;
-            let t34 = T::fused(-link_5_e0, t33, k(1.0));
-            let t35 = T::fused(-link_5_e1, t32, t34);
-            let t36 = t19 + t17;
-            let t37 = link_5_e3 * t33;
-            let t38 = link_5_e2 * t32;
+            let t22 = link_6_e0 * link_6_e3;
+            let t23 = link_6_e1 * link_6_e2;
+            let t24 = t23 - t22;
+            let t25 = T::fused(t24, link_6_dsx, t21);
+            let t26 = k(4.0) * t25;
+            let t27 = T::fused(link_6_e1, link_6_e1, -t16);
+            let t28 = T::fused(-link_5_e0, link_5_e0, k(0.5));
+            let t29 = T::fused(link_5_e1, link_5_e1, -t28);
+            let t30 = link_6_e0 * link_6_e2;
+            let t31 = link_6_e1 * link_6_e3;
+            let t32 = t31 - t30;
+            let t33 = link_5_e0 * link_5_e2;
+            let t34 = link_5_e1 * link_5_e3;
+            let t35 = t34 - t33;
+            let t36 = t23 + t22;
+            let t37 = link_5_e0 * link_5_e3;
+            let t38 = link_5_e1 * link_5_e2;
             let t39 = t38 + t37;
-            let t40 = link_6_e2 * t16;
-            let t41 = link_6_e3 * t18;
-            let t42 = t41 - t40;
-            let t43 = link_5_e2 * t33;
-            let t44 = link_5_e3 * t32;
-            let t45 = t44 - t43;
-            let t46 = T::fused(
-                t10,
-                k(0.1) * t42,
-                T::fused(-t21, k(0.1) * t31, t25 * (k(0.1) * t36)),
+            let t40 = T::fused(
+                t36,
+                link_6_dsy,
+                T::fused(
+                    t32,
+                    t10,
+                    -T::fused(k(0.016), link_6_dwy, k(0.015) * (link_6_wx * link_6_wz)),
+                ),
             );
-            let t47 = T::fused(
-                k(0.0016),
-                link_6_dwy,
-                k(0.0015) * (link_6_wx * link_6_wz),
-            ) - t46;
-            let t48 = T::fused(
-                -T::fused(t45, t42, T::fused(t35, t31, t39 * t36)),
-                t30,
-                T::fused(t45, t28, -T::fused(t35, t20, t39 * t24)) * t47,
-            );
-            let t49 = t41 + t40;
-            let t50 = t27 - t26;
-            let t51 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t23);
-            let t52 = T::fused(
-                -k(0.0002),
-                link_6_dwz,
-                k(0.0001) * (link_6_wx * link_6_wy),
-            );
+            let t41 = T::fused(link_6_dsx, t27, t40);
+            let t42 = k(4.0) * t41;
+            let t43 = T::fused(-k(2.0), link_6_dwz, link_6_wx * link_6_wy);
+            let t44 = k(0.004) * t43;
+            let t45 = T::fused(link_6_e3, link_6_e3, -t16);
+            let t46 = t19 - t18;
+            let t47 = t31 + t30;
+            let t48 = T::fused(link_5_e2, link_5_e2, -t28);
+            let t49 = link_5_e0 * link_5_e1;
+            let t50 = link_5_e2 * link_5_e3;
+            let t51 = t50 + t49;
+            let t52 = t38 - t37;
             let t53 = T::fused(
+                k(0.014),
+                link_5_wy * link_5_wz,
+                -T::fused(t52, t0, T::fused(t5, t48, t51 * t11)),
+            );
+            let t54 = T::fused(
                 t52,
-                T::fused(t45, t51, -T::fused(-t35, t49, t39 * t50)),
-                t48,
+                link_6_dsx,
+                T::fused(
+                    link_6_dsy,
+                    t48,
+                    T::fused(t51, t10, T::fused(k(0.017), link_5_dwx, -t53)),
+                ),
             );
-            let t54 = t38 - t37;
-            let t55 = k(0.1) * t54;
-            let t56 = k(2.0) * link_5_e2;
-            let t57 = T::fused(-link_5_e2, t56, t34);
-            let t58 = k(0.1) * t57;
-            let t59 = link_5_e1 * t33;
-            let t60 = link_5_e3 * t56;
-            let t61 = t60 + t59;
-            let t62 = k(0.1) * t61;
-            let t63 = T::fused(
-                -k(0.0017),
-                link_5_dwx,
-                k(0.0014) * (link_5_wy * link_5_wz),
-            ) - (T::fused(t10, t62, -T::fused(-t21, t55, t25 * t58)) + t53);
-            let t64 = k(0.5) * t0;
-            let t65 = k(0.5) * t5;
-            let t66 = T::fused(t11, t62, -T::fused(-t64, t55, t65 * t58)) - t63;
-            let t67 = k(2.0) * link_4_e1;
-            let t68 = k(2.0) * link_4_e0;
-            let t69 = T::fused(-link_4_e0, t68, k(1.0));
-            let t70 = T::fused(-link_4_e1, t67, t69);
-            let t71 = link_4_e3 * t68;
-            let t72 = link_4_e2 * t67;
-            let t73 = t72 + t71;
-            let t74 = link_4_e2 * t68;
-            let t75 = link_4_e3 * t67;
-            let t76 = t75 - t74;
-            let t77 = T::fused(t76, t45, T::fused(t70, t35, t73 * t39));
-            let t78 = T::fused(t61, t28, T::fused(t54, t20, t57 * t24));
-            let t79 = T::fused(
-                -T::fused(t61, t42, -T::fused(t54, t31, t57 * t36)),
-                t30,
-                t78 * t47,
+            let t55 = T::fused(
+                -T::fused(t47, t29, T::fused(t35, t45, t39 * t46)),
+                t44,
+                t54,
             );
-            let t80 = T::fused(t61, t51, T::fused(-t54, t49, t57 * t50));
-            let t81 = k(0.1) * t35;
-            let t82 = k(0.1) * t39;
-            let t83 = k(0.1) * t45;
-            let t84 = T::fused(t10, t83, T::fused(-t21, t81, t25 * t82))
-                - T::fused(t52, t80, t79);
-            let t85 = T::fused(t11, t83, T::fused(-t64, t81, t65 * t82))
-                - (T::fused(k(0.0016), link_5_dwy, k(0.0015) * (link_5_wx * link_5_wz))
-                    - t84);
-            let t86 = T::fused(
-                -t77,
-                t66,
-                T::fused(t76, t61, -T::fused(t70, t54, t73 * t57)) * t85,
+            let t56 = T::fused(
+                -T::fused(t24, t29, T::fused(t39, t17, t35 * t20)),
+                t42,
+                t55,
             );
-            let t87 = t44 + t43;
-            let t88 = t60 - t59;
-            let t89 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t34);
-            let t90 = T::fused(t89, t28, T::fused(-t87, t20, t88 * t24));
-            let t91 = T::fused(
-                -T::fused(t89, t42, -T::fused(-t87, t31, t88 * t36)),
-                t30,
-                t90 * t47,
+            let t57 = T::fused(
+                T::fused(t29, t27, T::fused(t35, t32, t39 * t36)),
+                t26,
+                t56,
             );
-            let t92 = T::fused(t89, t51, T::fused(t87, t49, t88 * t50));
-            let t93 = T::fused(
-                -k(0.0002),
-                link_5_dwz,
-                k(0.0001) * (link_5_wx * link_5_wy),
-            ) + T::fused(t52, t92, t91);
-            let t94 = T::fused(t76, t89, -T::fused(-t70, t87, t73 * t88));
-            let t95 = t72 - t71;
-            let t96 = k(0.1) * t95;
-            let t97 = k(2.0) * link_4_e2;
-            let t98 = T::fused(-link_4_e2, t97, t69);
-            let t99 = k(0.1) * t98;
-            let t100 = link_4_e1 * t68;
-            let t101 = link_4_e3 * t97;
-            let t102 = t101 + t100;
-            let t103 = k(0.1) * t102;
-            let t104 = T::fused(t11, t103, -T::fused(-t64, t96, t65 * t99))
-                + T::fused(t94, t93, -t86);
-            let t105 = k(0.5) * t1;
-            let t106 = k(0.5) * t6;
-            let t107 = T::fused(t12, t103, -T::fused(-t105, t96, t106 * t99))
-                - (T::fused(-k(0.0017), link_4_dwx, k(0.0014) * (link_4_wy * link_4_wz))
-                    - t104);
-            let t108 = k(2.0) * link_3_e1;
-            let t109 = k(2.0) * link_3_e0;
-            let t110 = T::fused(-link_3_e0, t109, k(1.0));
-            let t111 = T::fused(-link_3_e1, t108, t110);
-            let t112 = link_3_e3 * t109;
-            let t113 = link_3_e2 * t108;
-            let t114 = t113 + t112;
-            let t115 = link_3_e2 * t109;
-            let t116 = link_3_e3 * t108;
-            let t117 = t116 - t115;
-            let t118 = T::fused(
-                -T::fused(t102, t45, -T::fused(t95, t35, t98 * t39)),
-                t66,
-                T::fused(t102, t61, T::fused(t95, t54, t98 * t57)) * t85,
+            let t58 = k(4.0) * t57;
+            let t59 = T::fused(-link_4_e0, link_4_e0, k(0.5));
+            let t60 = T::fused(link_4_e1, link_4_e1, -t59);
+            let t61 = link_4_e0 * link_4_e2;
+            let t62 = link_4_e1 * link_4_e3;
+            let t63 = t62 - t61;
+            let t64 = link_4_e0 * link_4_e3;
+            let t65 = link_4_e1 * link_4_e2;
+            let t66 = t65 + t64;
+            let t67 = T::fused(t29, t60, T::fused(t63, t35, t66 * t39));
+            let t68 = T::fused(t52, t24, T::fused(t17, t48, t51 * t20));
+            let t69 = T::fused(t52, t47, T::fused(t51, t45, t46 * t48));
+            let t70 = T::fused(
+                k(0.015),
+                link_5_wx * link_5_wz,
+                -T::fused(t0, t29, T::fused(t35, t11, t39 * t5)),
             );
-            let t119 = T::fused(
-                T::fused(t102, t89, T::fused(-t95, t87, t98 * t88)),
-                t93,
-                -t118,
+            let t71 = T::fused(
+                link_6_dsx,
+                t29,
+                T::fused(
+                    t39,
+                    link_6_dsy,
+                    T::fused(t35, t10, -T::fused(k(0.016), link_5_dwy, t70)),
+                ),
             );
-            let t120 = k(0.1) * t70;
-            let t121 = k(0.1) * t73;
-            let t122 = k(0.1) * t76;
+            let t72 = T::fused(
+                -T::fused(t52, t27, T::fused(t36, t48, t51 * t32)),
+                t26,
+                T::fused(t68, t42, T::fused(t69, t44, t71)),
+            );
+            let t73 = k(4.0) * t72;
+            let t74 = T::fused(link_5_e3, link_5_e3, -t28);
+            let t75 = t50 - t49;
+            let t76 = t34 + t33;
+            let t77 = T::fused(t76, t47, T::fused(t45, t74, t75 * t46));
+            let t78 = T::fused(
+                k(0.001),
+                t77 * t43,
+                T::fused(-k(0.0005), link_5_dwz, k(0.00025) * (link_5_wx * link_5_wy)),
+            );
+            let t79 = T::fused(t76, t24, T::fused(t20, t74, t75 * t17));
+            let t80 = T::fused(
+                T::fused(t76, t27, T::fused(t32, t74, t75 * t36)),
+                t25,
+                -T::fused(t79, t41, t78),
+            );
+            let t81 = k(16.0) * t80;
+            let t82 = T::fused(t76, t60, T::fused(t63, t74, t66 * t75));
+            let t83 = T::fused(link_4_e2, link_4_e2, -t59);
+            let t84 = link_4_e0 * link_4_e1;
+            let t85 = link_4_e2 * link_4_e3;
+            let t86 = t85 + t84;
+            let t87 = t65 - t64;
+            let t88 = T::fused(
+                k(0.014),
+                link_4_wy * link_4_wz,
+                -T::fused(t87, t1, T::fused(t6, t83, t86 * t12)),
+            );
+            let t89 = T::fused(
+                t87,
+                t0,
+                T::fused(
+                    t5,
+                    t83,
+                    T::fused(t86, t11, T::fused(k(0.017), link_4_dwx, -t88)),
+                ),
+            );
+            let t90 = T::fused(
+                -T::fused(t52, t60, T::fused(t66, t48, t63 * t51)),
+                t73,
+                T::fused(t82, t81, t89),
+            );
+            let t91 = T::fused(t67, t58, t90);
+            let t92 = k(4.0) * t91;
+            let t93 = T::fused(-link_3_e0, link_3_e0, k(0.5));
+            let t94 = T::fused(link_3_e1, link_3_e1, -t93);
+            let t95 = link_3_e0 * link_3_e2;
+            let t96 = link_3_e1 * link_3_e3;
+            let t97 = t96 - t95;
+            let t98 = link_3_e0 * link_3_e3;
+            let t99 = link_3_e1 * link_3_e2;
+            let t100 = t99 + t98;
+            let t101 = T::fused(
+                k(0.015),
+                link_4_wx * link_4_wz,
+                -T::fused(t1, t60, T::fused(t63, t12, t66 * t6)),
+            );
+            let t102 = T::fused(
+                t0,
+                t60,
+                T::fused(
+                    t66,
+                    t5,
+                    T::fused(t63, t11, -T::fused(k(0.016), link_4_dwy, t101)),
+                ),
+            );
+            let t103 = T::fused(
+                -T::fused(t87, t76, T::fused(t86, t74, t75 * t83)),
+                t81,
+                t102,
+            );
+            let t104 = T::fused(
+                T::fused(t87, t52, T::fused(t48, t83, t86 * t51)),
+                t73,
+                t103,
+            );
+            let t105 = T::fused(
+                -T::fused(t87, t29, T::fused(t39, t83, t86 * t35)),
+                t58,
+                t104,
+            );
+            let t106 = k(4.0) * t105;
+            let t107 = T::fused(link_4_e3, link_4_e3, -t59);
+            let t108 = t85 - t84;
+            let t109 = t62 + t61;
+            let t110 = T::fused(t109, t29, T::fused(t35, t107, t108 * t39));
+            let t111 = T::fused(t109, t76, T::fused(t74, t107, t108 * t75));
+            let t112 = T::fused(
+                -k(4.0),
+                t111 * t80,
+                T::fused(-k(0.0005), link_4_dwz, k(0.00025) * (link_4_wx * link_4_wy)),
+            );
+            let t113 = T::fused(
+                T::fused(t109, t52, T::fused(t51, t107, t108 * t48)),
+                t72,
+                t112,
+            );
+            let t114 = T::fused(-t110, t57, t113);
+            let t115 = k(16.0) * t114;
+            let t116 = T::fused(link_3_e2, link_3_e2, -t93);
+            let t117 = link_3_e0 * link_3_e1;
+            let t118 = link_3_e2 * link_3_e3;
+            let t119 = t118 + t117;
+            let t120 = t99 - t98;
+            let t121 = T::fused(
+                k(0.014),
+                link_3_wy * link_3_wz,
+                -T::fused(t120, t2, T::fused(t7, t116, t119 * t13)),
+            );
+            let t122 = T::fused(
+                t120,
+                t1,
+                T::fused(
+                    t6,
+                    t116,
+                    T::fused(t119, t12, T::fused(k(0.017), link_3_dwx, -t121)),
+                ),
+            );
             let t123 = T::fused(
-                k(0.0016),
-                link_4_dwy,
-                k(0.0015) * (link_4_wx * link_4_wz),
-            ) - (T::fused(t11, t122, T::fused(-t64, t120, t65 * t121)) - t119);
-            let t124 = T::fused(t12, t122, T::fused(-t105, t120, t106 * t121)) - t123;
+                -T::fused(t109, t94, T::fused(t97, t107, t100 * t108)),
+                t115,
+                t122,
+            );
+            let t124 = T::fused(
+                -T::fused(t87, t94, T::fused(t100, t83, t97 * t86)),
+                t106,
+                t123,
+            );
             let t125 = T::fused(
-                -T::fused(t117, t76, T::fused(t111, t70, t114 * t73)),
-                t107,
-                T::fused(t117, t102, -T::fused(t111, t95, t114 * t98)) * t124,
+                T::fused(t60, t94, T::fused(t97, t63, t100 * t66)),
+                t92,
+                t124,
             );
-            let t126 = t75 + t74;
-            let t127 = t101 - t100;
-            let t128 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t69);
-            let t129 = T::fused(t128, t45, -T::fused(-t126, t35, t127 * t39));
-            let t130 = T::fused(
-                -t129,
-                t66,
-                T::fused(t128, t61, T::fused(-t126, t54, t127 * t57)) * t85,
+            let t126 = k(4.0) * t125;
+            let t127 = T::fused(-link_2_e0, link_2_e0, k(0.5));
+            let t128 = T::fused(link_2_e1, link_2_e1, -t127);
+            let t129 = link_2_e0 * link_2_e2;
+            let t130 = link_2_e1 * link_2_e3;
+            let t131 = t130 - t129;
+            let t132 = link_2_e0 * link_2_e3;
+            let t133 = link_2_e1 * link_2_e2;
+            let t134 = t133 + t132;
+            let t135 = T::fused(t94, t128, T::fused(t131, t97, t134 * t100));
+            let t136 = T::fused(t120, t87, T::fused(t83, t116, t119 * t86));
+            let t137 = T::fused(t120, t109, T::fused(t119, t107, t108 * t116));
+            let t138 = T::fused(
+                k(0.015),
+                link_3_wx * link_3_wz,
+                -T::fused(t2, t94, T::fused(t97, t13, t100 * t7)),
             );
-            let t131 = T::fused(t128, t89, T::fused(t126, t87, t127 * t88));
-            let t132 = T::fused(
-                -k(0.0002),
-                link_4_dwz,
-                k(0.0001) * (link_4_wx * link_4_wy),
-            ) + T::fused(t131, t93, -t130);
-            let t133 = T::fused(
-                T::fused(t117, t128, -T::fused(-t111, t126, t114 * t127)),
-                t132,
-                -t125,
+            let t139 = T::fused(
+                t1,
+                t94,
+                T::fused(
+                    t100,
+                    t6,
+                    T::fused(t97, t12, -T::fused(k(0.016), link_3_dwy, t138)),
+                ),
             );
-            let t134 = t113 - t112;
-            let t135 = k(0.1) * t134;
-            let t136 = k(2.0) * link_3_e2;
-            let t137 = T::fused(-link_3_e2, t136, t110);
-            let t138 = k(0.1) * t137;
-            let t139 = link_3_e1 * t109;
-            let t140 = link_3_e3 * t136;
-            let t141 = t140 + t139;
-            let t142 = k(0.1) * t141;
-            let t143 = T::fused(
-                -k(0.0017),
-                link_3_dwx,
-                k(0.0014) * (link_3_wy * link_3_wz),
-            ) - (T::fused(t12, t142, -T::fused(-t105, t135, t106 * t138)) + t133);
-            let t144 = k(0.5) * t2;
-            let t145 = k(0.5) * t7;
-            let t146 = T::fused(t13, t142, -T::fused(-t144, t135, t145 * t138)) - t143;
-            let t147 = k(2.0) * link_2_e1;
-            let t148 = k(2.0) * link_2_e0;
-            let t149 = T::fused(-link_2_e0, t148, k(1.0));
-            let t150 = T::fused(-link_2_e1, t147, t149);
-            let t151 = link_2_e3 * t148;
-            let t152 = link_2_e2 * t147;
-            let t153 = t152 + t151;
-            let t154 = link_2_e2 * t148;
-            let t155 = link_2_e3 * t147;
-            let t156 = t155 - t154;
-            let t157 = T::fused(t156, t117, T::fused(t150, t111, t153 * t114));
-            let t158 = T::fused(t141, t102, T::fused(t134, t95, t137 * t98));
-            let t159 = T::fused(
-                -T::fused(t141, t76, -T::fused(t134, t70, t137 * t73)),
-                t107,
-                t158 * t124,
+            let t140 = T::fused(
+                -T::fused(t120, t60, T::fused(t66, t116, t119 * t63)),
+                t92,
+                T::fused(t136, t106, T::fused(t137, t115, t139)),
             );
-            let t160 = T::fused(t141, t128, T::fused(-t134, t126, t137 * t127));
-            let t161 = k(0.1) * t111;
-            let t162 = k(0.1) * t114;
-            let t163 = k(0.1) * t117;
-            let t164 = T::fused(t12, t163, T::fused(-t105, t161, t106 * t162))
-                - T::fused(t160, t132, -t159);
-            let t165 = T::fused(t13, t163, T::fused(-t144, t161, t145 * t162))
-                - (T::fused(k(0.0016), link_3_dwy, k(0.0015) * (link_3_wx * link_3_wz))
-                    - t164);
-            let t166 = T::fused(
-                -t157,
-                t146,
-                T::fused(t156, t141, -T::fused(t150, t134, t153 * t137)) * t165,
+            let t141 = k(4.0) * t140;
+            let t142 = T::fused(link_3_e3, link_3_e3, -t93);
+            let t143 = t118 - t117;
+            let t144 = t96 + t95;
+            let t145 = T::fused(t144, t87, T::fused(t86, t142, t143 * t83));
+            let t146 = T::fused(t144, t109, T::fused(t107, t142, t143 * t108));
+            let t147 = T::fused(
+                k(4.0),
+                t146 * t114,
+                T::fused(-k(0.0005), link_3_dwz, k(0.00025) * (link_3_wx * link_3_wy)),
             );
-            let t167 = t116 + t115;
-            let t168 = t140 - t139;
-            let t169 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t110);
-            let t170 = T::fused(t169, t102, T::fused(-t167, t95, t168 * t98));
+            let t148 = T::fused(
+                -T::fused(t144, t60, T::fused(t63, t142, t143 * t66)),
+                t91,
+                T::fused(t145, t105, t147),
+            );
+            let t149 = k(16.0) * t148;
+            let t150 = T::fused(t144, t128, T::fused(t131, t142, t134 * t143));
+            let t151 = T::fused(link_2_e2, link_2_e2, -t127);
+            let t152 = link_2_e0 * link_2_e1;
+            let t153 = link_2_e2 * link_2_e3;
+            let t154 = t153 + t152;
+            let t155 = t133 - t132;
+            let t156 = T::fused(
+                k(0.014),
+                link_2_wy * link_2_wz,
+                -T::fused(t155, t3, T::fused(t8, t151, t154 * t14)),
+            );
+            let t157 = T::fused(
+                t155,
+                t2,
+                T::fused(
+                    t7,
+                    t151,
+                    T::fused(t154, t13, T::fused(k(0.017), link_2_dwx, -t156)),
+                ),
+            );
+            let t158 = T::fused(
+                -T::fused(t120, t128, T::fused(t134, t116, t131 * t119)),
+                t141,
+                T::fused(-t150, t149, t157),
+            );
+            let t159 = T::fused(t135, t126, t158);
+            let t160 = T::fused(-link_1_e0, link_1_e0, k(0.5));
+            let t161 = T::fused(link_1_e3, link_1_e3, -t160);
+            let t162 = link_1_e0 * link_1_e1;
+            let t163 = link_1_e2 * link_1_e3;
+            let t164 = t163 - t162;
+            let t165 = link_1_e0 * link_1_e2;
+            let t166 = link_1_e1 * link_1_e3;
+            let t167 = t166 + t165;
+            let t168 = T::fused(
+                k(0.015),
+                link_2_wx * link_2_wz,
+                -T::fused(t3, t128, T::fused(t131, t14, t134 * t8)),
+            );
+            let t169 = T::fused(
+                t2,
+                t128,
+                T::fused(
+                    t134,
+                    t7,
+                    T::fused(t131, t13, -T::fused(k(0.016), link_2_dwy, t168)),
+                ),
+            );
+            let t170 = T::fused(
+                T::fused(t155, t144, T::fused(t154, t142, t143 * t151)),
+                t149,
+                t169,
+            );
             let t171 = T::fused(
-                -T::fused(t169, t76, -T::fused(-t167, t70, t168 * t73)),
-                t107,
-                t170 * t124,
+                T::fused(t155, t120, T::fused(t116, t151, t154 * t119)),
+                t141,
+                t170,
             );
-            let t172 = T::fused(t169, t128, T::fused(t167, t126, t168 * t127));
-            let t173 = T::fused(
-                -k(0.0002),
-                link_3_dwz,
-                k(0.0001) * (link_3_wx * link_3_wy),
-            ) + T::fused(t172, t132, -t171);
-            let t174 = T::fused(t156, t169, -T::fused(-t150, t167, t153 * t168));
-            let t175 = t152 - t151;
-            let t176 = k(0.1) * t175;
-            let t177 = k(2.0) * link_2_e2;
-            let t178 = T::fused(-link_2_e2, t177, t149);
-            let t179 = k(0.1) * t178;
-            let t180 = link_2_e1 * t148;
-            let t181 = link_2_e3 * t177;
-            let t182 = t181 + t180;
-            let t183 = k(0.1) * t182;
-            let t184 = T::fused(t13, t183, -T::fused(-t144, t176, t145 * t179))
-                + T::fused(t174, t173, -t166);
-            let t185 = k(0.5) * t3;
-            let t186 = k(0.5) * t8;
-            let t187 = T::fused(t14, t183, -T::fused(-t185, t176, t186 * t179))
-                - (T::fused(-k(0.0017), link_2_dwx, k(0.0014) * (link_2_wy * link_2_wz))
-                    - t184);
-            let t188 = k(2.0) * link_1_e1;
-            let t189 = k(2.0) * link_1_e0;
-            let t190 = T::fused(-link_1_e0, t189, k(1.0));
-            let t191 = T::fused(-link_1_e1, t188, t190);
-            let t192 = link_1_e3 * t189;
-            let t193 = link_1_e2 * t188;
-            let t194 = t193 + t192;
-            let t195 = link_1_e2 * t189;
-            let t196 = link_1_e3 * t188;
-            let t197 = t196 - t195;
+            let t172 = T::fused(
+                -T::fused(t155, t94, T::fused(t100, t151, t154 * t97)),
+                t126,
+                t171,
+            );
+            let t173 = T::fused(t167, t155, T::fused(t154, t161, t164 * t151));
+            let t174 = T::fused(link_2_e3, link_2_e3, -t127);
+            let t175 = t153 - t152;
+            let t176 = t130 + t129;
+            let t177 = T::fused(t176, t94, T::fused(t97, t174, t175 * t100));
+            let t178 = T::fused(t176, t144, T::fused(t142, t174, t175 * t143));
+            let t179 = T::fused(
+                k(4.0),
+                t178 * t148,
+                T::fused(-k(0.0005), link_2_dwz, k(0.00025) * (link_2_wx * link_2_wy)),
+            );
+            let t180 = T::fused(
+                T::fused(t176, t120, T::fused(t119, t174, t175 * t116)),
+                t140,
+                t179,
+            );
+            let t181 = T::fused(-t177, t125, t180);
+            let t182 = T::fused(t167, t176, T::fused(t174, t161, t164 * t175));
+            let t183 = T::fused(
+                k(4.0),
+                t182 * t181,
+                T::fused(-k(0.0005), link_1_dwz, k(0.00025) * (link_1_wx * link_1_wy)),
+            );
+            let t184 = T::fused(
+                -T::fused(t167, t128, T::fused(t131, t161, t164 * t134)),
+                t159,
+                T::fused(t173, t172, t183),
+            );
+            let t185 = T::fused(link_1_e1, link_1_e1, -t160);
+            let t186 = t166 - t165;
+            let t187 = k(1.0) / T::fused(-t185, t161, t167 * t186);
+            let t188 = link_1_e0 * link_1_e3;
+            let t189 = link_1_e1 * link_1_e2;
+            let t190 = t189 + t188;
+            let t191 = T::fused(link_1_e2, link_1_e2, -t160);
+            let t192 = t163 + t162;
+            let t193 = t189 - t188;
+            let t194 = T::fused(
+                k(0.014),
+                link_1_wy * link_1_wz,
+                -T::fused(t193, t4, T::fused(t9, t191, t192 * t15)),
+            );
+            let t195 = T::fused(
+                t193,
+                t3,
+                T::fused(
+                    t8,
+                    t191,
+                    T::fused(t192, t14, T::fused(k(0.017), link_1_dwx, -t194)),
+                ),
+            );
+            let t196 = T::fused(
+                -k(16.0),
+                T::fused(t176, t185, T::fused(t186, t174, t190 * t175)) * t181,
+                t195,
+            );
+            let t197 = T::fused(
+                -k(4.0),
+                T::fused(t155, t185, T::fused(t190, t151, t186 * t154)) * t172,
+                t196,
+            );
             let t198 = T::fused(
-                -T::fused(t182, t117, -T::fused(t175, t111, t178 * t114)),
-                t146,
-                T::fused(t182, t141, T::fused(t175, t134, t178 * t137)) * t165,
+                k(4.0),
+                T::fused(t128, t185, T::fused(t186, t131, t190 * t134)) * t159,
+                t197,
             );
-            let t199 = T::fused(
-                T::fused(t182, t169, T::fused(-t175, t167, t178 * t168)),
-                t173,
-                -t198,
-            );
+            let t199 = k(0.25) * t198;
             (
+                t0,
+                t1,
+                t2,
+                t3,
                 t4,
+                t5,
+                t6,
+                t7,
+                t8,
                 t9,
                 t10,
                 t11,
@@ -7106,216 +7129,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t13,
                 t14,
                 t15,
-                t21,
-                t25,
-                t47,
-                t52,
-                t64,
-                t65,
-                t66,
+                t41,
+                t43,
+                t57,
+                t67,
+                t68,
+                t69,
                 t77,
-                t78,
+                t79,
                 t80,
-                t90,
-                t92,
-                t93,
-                t94,
+                t82,
                 t105,
-                t106,
+                t110,
                 t111,
                 t114,
-                t117,
-                t124,
-                t129,
-                t131,
-                t132,
-                t134,
+                t125,
+                t135,
+                t136,
                 t137,
-                t141,
-                t144,
                 t145,
                 t146,
-                t149,
+                t148,
                 t150,
-                t153,
+                t151,
                 t154,
                 t155,
-                t156,
-                t157,
-                t158,
-                t160,
-                t165,
+                t161,
                 t167,
-                t168,
-                t169,
-                t170,
                 t172,
                 t173,
                 t174,
                 t175,
+                t176,
+                t177,
                 t178,
-                t180,
                 t181,
                 t182,
+                t184,
                 t185,
                 t186,
                 t187,
-                t189,
-                t190,
                 t191,
                 t192,
                 t193,
-                t194,
-                t195,
-                t196,
-                t197,
                 t199,
             )
         };
-        let (
-            t204,
-            t209,
-            t211,
-            t212,
-            t224,
-            t225,
-            t226,
-            t227,
-            t229,
-            t231,
-            t232,
-            t233,
-            t234,
-            t235,
-            t236,
-            t237,
-            t238,
-            t239,
-        ) = {
-            let t200 = k(0.1) * t150;
-            let t201 = k(0.1) * t153;
-            let t202 = k(0.1) * t156;
-            let t203 = T::fused(
-                k(0.0016),
-                link_2_dwy,
-                k(0.0015) * (link_2_wx * link_2_wz),
-            ) - (T::fused(t13, t202, T::fused(-t144, t200, t145 * t201)) - t199);
-            let t204 = T::fused(t14, t202, T::fused(-t185, t200, t186 * t201)) - t203;
-            let t205 = T::fused(
-                -T::fused(t197, t156, T::fused(t191, t150, t194 * t153)),
-                t187,
-                T::fused(t197, t182, -T::fused(t191, t175, t194 * t178)) * t204,
-            );
-            let t206 = t155 + t154;
-            let t207 = t181 - t180;
-            let t208 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t149);
-            let t209 = T::fused(t208, t117, -T::fused(-t206, t111, t207 * t114));
-            let t210 = T::fused(
-                -t209,
-                t146,
-                T::fused(t208, t141, T::fused(-t206, t134, t207 * t137)) * t165,
-            );
-            let t211 = T::fused(t208, t169, T::fused(t206, t167, t207 * t168));
-            let t212 = T::fused(
-                -k(0.0002),
-                link_2_dwz,
-                k(0.0001) * (link_2_wx * link_2_wy),
-            ) + T::fused(t211, t173, -t210);
-            let t213 = T::fused(
-                T::fused(t197, t208, -T::fused(-t191, t206, t194 * t207)),
-                t212,
-                -t205,
-            );
-            let t214 = t193 - t192;
-            let t215 = k(0.1) * t214;
-            let t216 = k(2.0) * link_1_e2;
-            let t217 = T::fused(-link_1_e2, t216, t190);
-            let t218 = k(0.1) * t217;
-            let t219 = link_1_e1 * t189;
-            let t220 = link_1_e3 * t216;
-            let t221 = t220 + t219;
-            let t222 = k(0.1) * t221;
-            let t223 = T::fused(
-                -k(0.0017),
-                link_1_dwx,
-                k(0.0014) * (link_1_wy * link_1_wz),
-            ) - (T::fused(t14, t222, -T::fused(-t185, t215, t186 * t218)) + t213);
-            let t224 = T::fused(t15, t222, -T::fused(-t4, t215, t9 * t218)) - t223;
-            let t225 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t190);
-            let t226 = t196 + t195;
-            let t227 = k(1.0) / T::fused(-t191, t225, t226 * t197);
-            let t228 = t220 - t219;
-            let t229 = T::fused(t225, t182, T::fused(-t226, t175, t228 * t178));
-            let t230 = T::fused(
-                -T::fused(t225, t156, -T::fused(-t226, t150, t228 * t153)),
-                t187,
-                t229 * t204,
-            );
-            let t231 = T::fused(t225, t208, T::fused(t226, t206, t228 * t207));
-            let t232 = T::fused(
-                -k(0.0002),
-                link_1_dwz,
-                k(0.0001) * (link_1_wx * link_1_wy),
-            ) + T::fused(t231, t212, -t230);
-            let t233 = T::fused(t221, t182, T::fused(t214, t175, t217 * t178));
-            let t234 = T::fused(t221, t208, T::fused(-t214, t206, t217 * t207));
-            let t235 = k(1.0) / T::fused(-t231, t233, t229 * t234);
-            let t236 = k(1.0) / T::fused(-t157, t211, t174 * t209);
-            let t237 = k(1.0) / T::fused(-t158, t172, t160 * t170);
-            let t238 = k(1.0) / T::fused(-t77, t131, t94 * t129);
-            let t239 = k(1.0) / T::fused(-t78, t92, t80 * t90);
-            (
-                t204,
-                t209,
-                t211,
-                t212,
-                t224,
-                t225,
-                t226,
-                t227,
-                t229,
-                t231,
-                t232,
-                t233,
-                t234,
-                t235,
-                t236,
-                t237,
-                t238,
-                t239,
-            )
+        let (t200, t201, t202, t203, t204, t205, t206, t207, t208, t209, t210, t211) = {
+            let t200 = T::fused(t193, t176, T::fused(t192, t174, t175 * t191));
+            let t201 = T::fused(t193, t155, T::fused(t151, t191, t192 * t154));
+            let t202 = k(1.0) / T::fused(-t200, t173, t201 * t182);
+            let t203 = k(0.25) * t172;
+            let t204 = k(1.0) / T::fused(-t150, t177, t135 * t178);
+            let t205 = k(0.25) * t125;
+            let t206 = k(1.0) / T::fused(-t137, t145, t136 * t146);
+            let t207 = k(0.25) * t105;
+            let t208 = k(0.25) * t57;
+            let t209 = k(1.0) / T::fused(-t82, t110, t67 * t111);
+            let t210 = k(1000.0) * t41;
+            let t211 = k(1.0) / T::fused(-t69, t79, t68 * t77);
+            (t200, t201, t202, t203, t204, t205, t206, t207, t208, t209, t210, t211)
         };
         *lambda = [
-            -t4,
-            -t9,
-            -t15,
-            -T::fused(t191 * t227, t224, t226 * t227 * t232),
-            -T::fused(t197 * t227, t224, t225 * t227 * t232),
-            -t185,
-            -t186,
-            -t14,
-            T::fused(-(t234 * t235), t212, t233 * t235 * t204),
-            T::fused(-(t229 * t235), t204, t231 * t235 * t212),
-            -t144,
-            -t145,
-            -t13,
-            T::fused(t157 * t236, t146, t174 * t236 * t173),
-            T::fused(t209 * t236, t146, t211 * t236 * t173),
-            -t105,
-            -t106,
-            -t12,
-            T::fused(-(t160 * t237), t132, t158 * t237 * t124),
-            T::fused(-(t170 * t237), t124, t172 * t237 * t132),
-            -t64,
-            -t65,
-            -t11,
-            T::fused(t77 * t238, t66, t94 * t238 * t93),
-            T::fused(t129 * t238, t66, t131 * t238 * t93),
-            -t21,
-            -t25,
-            -t10,
-            -T::fused(t78 * t239, t47, t52 * (t80 * t239)),
-            T::fused(t90 * t239, t47, t52 * (t92 * t239)),
+            -(k(0.5) * t4),
+            -(k(0.5) * t9),
+            -(k(0.5) * t15),
+            k(0.2) * T::fused(-(t167 * t187), t184, t185 * t187 * t199),
+            -(k(0.2) * T::fused(-(t161 * t187), t184, t186 * t187 * t199)),
+            -(k(0.5) * t3),
+            -(k(0.5) * t8),
+            -(k(0.5) * t14),
+            -(k(0.1) * T::fused(t200 * t202, t181, t201 * t202 * t203)),
+            -(k(0.1) * T::fused(t182 * t202, t181, t173 * t202 * t203)),
+            -(k(0.5) * t2),
+            -(k(0.5) * t7),
+            -(k(0.5) * t13),
+            -(k(0.1) * T::fused(-(t150 * t204), t148, t135 * t204 * t205)),
+            k(0.1) * T::fused(-(t178 * t204), t148, t177 * t204 * t205),
+            -(k(0.5) * t1),
+            -(k(0.5) * t6),
+            -(k(0.5) * t12),
+            -(k(0.1) * T::fused(t137 * t206, t114, t136 * t206 * t207)),
+            -(k(0.1) * T::fused(t146 * t206, t114, t145 * t206 * t207)),
+            -(k(0.5) * t0),
+            -(k(0.5) * t5),
+            -(k(0.5) * t11),
+            -(k(0.1) * T::fused(t67 * t209, t208, t82 * t209 * t80)),
+            k(0.1) * T::fused(t110 * t209, t208, t111 * t209 * t80),
+            -(k(0.5) * link_6_dsx),
+            -(k(0.5) * link_6_dsy),
+            -(k(0.5) * t10),
+            -(k(2.5e-5) * T::fused(t68 * t211, t210, t69 * t211 * t43)),
+            -(k(2.5e-5) * T::fused(t79 * t211, t210, t77 * t211 * t43)),
         ];
     }
 }
@@ -8865,7 +8770,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 66]
     }
-    /// Writes u̇: 1108 operations (498 ±, 605 ×, 5 ÷) and 12 functions.
+    /// Writes u̇: 1013 operations (464 ±, 544 ×, 5 ÷) and 12 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -8882,774 +8787,753 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let u5 = x[11];
         let (
             t0,
+            t1,
             t2,
-            t4,
-            t7,
-            t9,
+            t3,
+            t6,
+            t8,
             t10,
             t12,
             t13,
-            t17,
+            t15,
             t18,
-            t21,
-            t22,
-            t28,
-            t29,
+            t19,
+            t30,
+            t32,
             t33,
-            t35,
-            t38,
-            t42,
-            t44,
+            t37,
+            t39,
+            t40,
+            t41,
+            t43,
+            t45,
+            t46,
             t49,
-            t50,
             t51,
-            t55,
-            t56,
+            t52,
             t57,
             t60,
+            t62,
             t63,
             t64,
-            t68,
-            t72,
-            t74,
+            t66,
+            t70,
+            t73,
             t75,
             t76,
             t78,
+            t79,
+            t81,
+            t82,
+            t83,
             t84,
+            t85,
             t86,
             t88,
-            t89,
             t91,
             t92,
-            t95,
-            t96,
-            t97,
-            t98,
             t99,
             t100,
-            t102,
-            t106,
-            t107,
-            t119,
-            t120,
+            t101,
+            t105,
+            t108,
+            t109,
+            t110,
+            t113,
+            t115,
+            t116,
+            t117,
+            t118,
+            t122,
             t124,
-            t128,
             t129,
-            t130,
-            t133,
+            t131,
+            t132,
             t134,
-            t136,
+            t135,
             t137,
+            t139,
+            t140,
             t141,
+            t142,
+            t144,
+            t145,
             t147,
+            t148,
             t149,
+            t150,
+            t152,
+            t153,
             t154,
+            t155,
             t156,
             t157,
+            t158,
             t159,
-            t162,
+            t160,
+            t161,
             t163,
             t164,
+            t165,
             t166,
-            t167,
             t169,
-            t171,
-            t172,
-            t173,
-            t175,
-            t177,
-            t178,
-            t179,
+            t176,
             t180,
-            t182,
+            t181,
+            t183,
             t184,
             t185,
-            t186,
             t187,
-            t188,
             t189,
-            t190,
             t191,
             t192,
             t193,
             t194,
-            t195,
             t196,
-            t197,
             t198,
             t199,
         ) = {
             let t0 = x5.cos();
-            let t1 = T::fused(k(0.05), t0, k(0.05));
-            let t2 = k(0.1) + t1;
-            let t3 = k(0.0066) * t0;
-            let t4 = x5.sin();
-            let t5 = k(0.0002) * t4;
-            let t6 = k(0.0016)
-                + T::fused(k(0.01), t0, k(0.005) + T::fused(t0, t3, t4 * t5));
-            let t7 = k(1.0) / T::fused(k(0.2), t1, k(0.01) + t6);
-            let t8 = t7 * t2;
-            let t9 = t2 * t8;
-            let t10 = x4.cos();
-            let t11 = t10 * t9;
-            let t12 = t4 * (k(0.373134328358209) * t4);
-            let t13 = x4.sin();
+            let t1 = x5.sin();
+            let t2 = t1 * t0;
+            let t3 = x4.sin();
+            let t4 = t3 * t2;
+            let t5 = k(2.985074626865672) * t4;
+            let t6 = x4.cos();
+            let t7 = k(2.0) * t1;
+            let t8 = T::fused(k(1.32), t2, -T::fused(k(0.04), t2, -t7));
+            let t9 = t0 * t0;
+            let t10 = t1 * t1;
+            let t11 = k(1.0) + t0;
+            let t12 = k(1.0)
+                / (t11 + (t0 + T::fused(k(0.66), t9, k(0.02) * t10)) + k(1.66));
+            let t13 = k(2.0) + t11;
             let t14 = t13 * t12;
-            let t15 = T::fused(t10, t11, t13 * t14);
-            let t16 = k(0.373134328358209) * t0;
-            let t17 = t4 * t16;
-            let t18 = k(0.2) * t17;
-            let t19 = t13 * t18;
-            let t20 = k(0.005) * t4;
-            let t21 = t20 + (t20 - T::fused(-t4, t3, t0 * t5));
-            let t22 = T::fused(-k(0.05), t4, t21 * t8);
-            let t23 = t10 * t22;
-            let t24 = T::fused(-t10, t19, t13 * t23);
-            let t25 = t13 * t17;
-            let t26 = k(0.1) * t25;
-            let t27 = t26 - t24;
-            let t28 = t26 + t27;
-            let t29 = t0 * t16;
-            let t30 = k(0.01) * t29;
-            let t31 = k(0.1) * t29;
-            let t32 = k(0.05) - t31;
-            let t33 = T::fused(-k(0.2), t32, t30)
-                - (k(0.01) + (k(0.0017) + (k(0.005) - t30)));
-            let t34 = t10 * t33;
-            let t35 = T::fused(
+            let t15 = T::fused(-t14, t8, t7);
+            let t16 = t6 * t15;
+            let t17 = k(0.67) * T::fused(t6, t5, t3 * t16);
+            let t18 = t4 + (t4 + t17);
+            let t19 = k(0.67) * t3;
+            let t20 = k(0.08)
+                - T::fused(-k(2.64), t10, T::fused(-k(0.08), t9, t8 * (t12 * t8)));
+            let t21 = t3 * t20;
+            let t22 = k(2.68) - t9;
+            let t23 = k(1.34) - t9;
+            let t24 = t23 + t22;
+            let t25 = t6 * t24;
+            let t26 = t22 + t25;
+            let t27 = T::fused(
                 t21,
-                t7 * t21,
-                -(k(0.0002) + T::fused(t4, k(0.0066) * t4, t0 * (k(0.0002) * t0))),
+                t19,
+                T::fused(k(2.0), t25, -(t9 + T::fused(-k(2.0), t26, t9))),
             );
-            let t36 = t13 * t35;
-            let t37 = k(0.1) - t31;
-            let t38 = t37 + t32;
-            let t39 = t10 * t38;
-            let t40 = T::fused(-k(0.2), t39, t30)
-                - (k(0.01) - T::fused(t10, t34, t13 * t36));
-            let t41 = t37 + t39;
-            let t42 = k(1.0)
-                / (T::fused(k(0.2), t41, -t30) + (k(0.015) + (k(0.0017) - t40)));
-            let t43 = t42 * t28;
-            let t44 = T::fused(t28, t43, t15);
-            let t45 = k(0.1) * t44;
-            let t46 = k(0.1) * t15;
-            let t47 = k(0.1) - t46;
-            let t48 = k(0.01) * t25;
-            let t49 = t48 + T::fused(k(0.1), t27, t48) + T::fused(-k(0.1), t24, t48);
-            let t50 = T::fused(t43, t49, -(k(0.15) - t46 + t47));
-            let t51 = x3.cos();
-            let t52 = T::fused(t13, t19, t10 * t23);
-            let t53 = t13 * t38;
-            let t54 = k(0.1) * t53;
-            let t55 = t54 + (t54 + T::fused(-t13, t34, t10 * t36));
-            let t56 = T::fused(t43, t55, -t52);
-            let t57 = x3.sin();
-            let t58 = T::fused(t51, t50, t57 * t56);
-            let t59 = k(0.15) - t45 - t58;
-            let t60 = t59 + (k(0.2) - t45);
-            let t61 = k(0.01) * t15;
-            let t62 = t42 * t49;
-            let t63 = T::fused(
-                t49,
-                t62,
-                -(T::fused(k(0.2), t47, -t61)
-                    + (k(0.015) + (k(0.0016) + (k(0.01) - t61)))),
+            let t28 = k(4.4756) - (t9 + T::fused(-k(2.0), t23, t9));
+            let t29 = t6 * t28;
+            let t30 = k(1.0) / (k(7.1556) + T::fused(t6, t29, t27));
+            let t31 = t30 * t18;
+            let t32 = k(0.67) * t6;
+            let t33 = t13 * t14;
+            let t34 = t6 * t33;
+            let t35 = t3 * t10;
+            let t36 = T::fused(t34, t32, t3 * t35);
+            let t37 = T::fused(t18, t31, t36);
+            let t38 = k(2.68) - t36;
+            let t39 = t17 + (t4 + (t4 + t18));
+            let t40 = k(4.02) - (T::fused(t39, t31, t36) - t38);
+            let t41 = x3.cos();
+            let t42 = t3 * t24;
+            let t43 = T::fused(t3, t29, T::fused(-t21, t32, k(2.0) * t42));
+            let t44 = T::fused(-t3, t5, t6 * t16);
+            let t45 = T::fused(t43, t31, k(0.67) * t44);
+            let t46 = x3.sin();
+            let t47 = T::fused(-t41, t40, t46 * t45);
+            let t48 = k(4.02) - (t47 + t37);
+            let t49 = k(5.36) - (t37 - t48);
+            let t50 = t30 * t39;
+            let t51 = k(7.1288) - (t36 + (t36 + T::fused(-k(2.0), t38, t39 * t50)));
+            let t52 = T::fused(t43, t50, k(1.34) * t44);
+            let t53 = t46 * t52;
+            let t54 = T::fused(-t41, t51, t53);
+            let t55 = t41 * t52;
+            let t56 = T::fused(t3, t3 * t28, T::fused(-t43, t30 * t43, t6 * t20 * t32));
+            let t57 = k(0.0536) + t56;
+            let t58 = T::fused(t46, t57, -t55);
+            let t59 = T::fused(
+                -t46,
+                t58,
+                T::fused(k(2.0), t47, t37 + T::fused(-k(2.0), t48, t37)),
             );
-            let t64 = T::fused(-k(0.2), t52, t55 * t62);
-            let t65 = t57 * t64;
-            let t66 = T::fused(t51, t63, t65);
-            let t67 = t51 * t64;
-            let t68 = T::fused(
-                t55,
-                t42 * t55,
-                -(k(0.0002) - T::fused(t13, t13 * t33, t10 * (t10 * t35))),
+            let t60 = k(1.0) / (k(9.8088) - T::fused(t41, t54, t59));
+            let t61 = t60 * t49;
+            let t62 = T::fused(t49, t61, t37);
+            let t63 = x2.cos();
+            let t64 = k(4.02) - (t9 - t26);
+            let t65 = t64 * t30;
+            let t66 = T::fused(-t65, t39, k(2.0) * t4);
+            let t67 = t6 * t2;
+            let t68 = k(2.0) * t67;
+            let t69 = t3 * t15;
+            let t70 = T::fused(t6, t68, T::fused(-t69, t19, t68));
+            let t71 = t70 * t30;
+            let t72 = T::fused(-t34, t19, t6 * t35);
+            let t73 = T::fused(t71, t39, k(2.0) * t72);
+            let t74 = T::fused(t46, t66, t41 * t73);
+            let t75 = T::fused(-t43, t65, t42);
+            let t76 = T::fused(t3, t68, T::fused(-t71, t43, t69 * t32));
+            let t77 = T::fused(-t46, t75, t41 * t76);
+            let t78 = T::fused(-t64, t31, t4);
+            let t79 = T::fused(t70, t31, t72);
+            let t80 = T::fused(t46, t78, t41 * t79);
+            let t81 = T::fused(t41, t74, T::fused(-t46, t77, k(2.0) * t80));
+            let t82 = T::fused(-t81, t61, t80);
+            let t83 = x2.sin();
+            let t84 = T::fused(t63, t62, t83 * t82);
+            let t85 = T::fused(t64, t65, t9);
+            let t86 = T::fused(-t70, t65, t67);
+            let t87 = t41 * t86;
+            let t88 = T::fused(t3 * t33, t19, T::fused(t70, t71, t6 * (t6 * t10)));
+            let t89 = t46 * t86;
+            let t90 = t60 * t81;
+            let t91 = T::fused(
+                t46,
+                T::fused(t46, t85, t87),
+                T::fused(t41, T::fused(t41, t88, t89), t81 * t90),
             );
-            let t69 = T::fused(t57, t68, t67);
-            let t70 = k(0.01) * t44;
-            let t71 = T::fused(k(0.2), t58, t70)
-                - (k(0.015) - T::fused(t51, t66, t57 * t69));
-            let t72 = k(1.0)
-                / (T::fused(k(0.2), t59, -t70) + (k(0.02) + (k(0.0016) - t71)));
-            let t73 = t72 * t60;
-            let t74 = T::fused(t60, t73, t44);
-            let t75 = x2.cos();
-            let t76 = t41 + (k(0.15) - t31);
-            let t77 = t42 * t76;
-            let t78 = T::fused(-k(0.2), t25, t49 * t77);
-            let t79 = T::fused(-t13, t11, t10 * t14);
-            let t80 = t10 * t18;
-            let t81 = t13 * t22;
-            let t82 = t10 * t17;
-            let t83 = k(0.1) * t82;
-            let t84 = t83 + (t83 + T::fused(t10, t80, t13 * t81));
-            let t85 = t42 * t84;
-            let t86 = T::fused(k(0.2), t79, t49 * t85);
-            let t87 = T::fused(-t57, t78, t51 * t86);
-            let t88 = T::fused(-t55, t77, t53);
-            let t89 = T::fused(t55, t85, T::fused(-t13, t80, t10 * t81));
-            let t90 = T::fused(t57, t88, t51 * t89);
-            let t91 = T::fused(-t43, t76, t25);
-            let t92 = T::fused(t43, t84, t79);
-            let t93 = T::fused(t57, t91, t51 * t92);
-            let t94 = k(0.1) * t93;
-            let t95 = t94 + (t94 + T::fused(t51, t87, t57 * t90));
-            let t96 = T::fused(-t95, t73, t93);
-            let t97 = x2.sin();
-            let t98 = T::fused(t75, t74, t97 * t96);
-            let t99 = T::fused(t76, t77, t29);
-            let t100 = T::fused(-t84, t77, t82);
-            let t101 = t51 * t100;
-            let t102 = T::fused(t84, t85, T::fused(t13, t13 * t9, t10 * (t10 * t12)));
-            let t103 = t57 * t100;
-            let t104 = T::fused(
-                t57,
-                T::fused(t57, t99, t101),
-                t51 * T::fused(t51, t102, t103),
+            let t92 = T::fused(t63, t82, t83 * t91);
+            let t93 = T::fused(t63, t84, t83 * t92);
+            let t94 = k(5.36) - t93;
+            let t95 = T::fused(-t41, t78, t46 * t79);
+            let t96 = T::fused(-t41, t66, t46 * t73);
+            let t97 = T::fused(t41, t75, t46 * t76);
+            let t98 = T::fused(-t41, t96, t46 * t97);
+            let t99 = t95 - (t98 - t95);
+            let t100 = t98 - (t95 + (t95 + t99));
+            let t101 = T::fused(t100, t61, k(2.0) * t95);
+            let t102 = T::fused(t41, t85, -t89);
+            let t103 = T::fused(t46, t88, -t87);
+            let t104 = T::fused(-t46, t102, t41 * t103);
+            let t105 = T::fused(-t100, t90, k(2.0) * t104);
+            let t106 = T::fused(t63, t101, t83 * t105);
+            let t107 = T::fused(t46, t40, t41 * t45);
+            let t108 = T::fused(-t46, t54, T::fused(-t41, t58, k(2.0) * t107));
+            let t109 = T::fused(-t108, t61, t107);
+            let t110 = T::fused(-t46, t74, T::fused(-t41, t77, t108 * t90));
+            let t111 = T::fused(t63, t109, t83 * t110);
+            let t112 = T::fused(-t63, t106, t83 * t111);
+            let t113 = T::fused(-t99, t61, t95);
+            let t114 = t99 * t60;
+            let t115 = T::fused(t114, t81, t104);
+            let t116 = T::fused(t63, t113, t83 * t115);
+            let t117 = t116 + (t116 - t112);
+            let t118 = t112 - (t116 + (t116 + t117));
+            let t119 = T::fused(t41, t102, t46 * t103);
+            let t120 = k(4.02) - t119;
+            let t121 = t60 * t100;
+            let t122 = k(9.8356)
+                - (t119 + (t119 + T::fused(-k(2.0), t120, t100 * t121)));
+            let t123 = T::fused(t46, t96, t41 * t97);
+            let t124 = T::fused(t108, t121, k(2.0) * t123);
+            let t125 = t83 * t124;
+            let t126 = T::fused(-t63, t122, t125);
+            let t127 = t63 * t124;
+            let t128 = T::fused(
+                -t46,
+                T::fused(t46, t51, t55),
+                T::fused(-t41, T::fused(t41, t57, t53), t108 * (t60 * t108)),
             );
-            let t105 = t72 * t95;
-            let t106 = T::fused(t95, t105, t104);
-            let t107 = T::fused(t75, t96, t97 * t106);
-            let t108 = T::fused(t75, t98, t97 * t107);
-            let t109 = k(0.01) * t108;
-            let t110 = k(0.1) * t108;
-            let t111 = k(0.2) - t110;
-            let t112 = T::fused(-t51, t91, t57 * t92);
-            let t113 = T::fused(t51, t78, t57 * t86);
-            let t114 = T::fused(-t51, t88, t57 * t89);
-            let t115 = T::fused(t51, t113, t57 * t114);
-            let t116 = k(0.01) * t112;
-            let t117 = k(0.1) * t112;
-            let t118 = t117 + t115;
-            let t119 = t116 + T::fused(k(0.1), t118, t116)
-                + T::fused(k(0.1), t115, t116);
-            let t120 = T::fused(-k(0.2), t112, t119 * t73);
-            let t121 = T::fused(-t51, t99, t103);
-            let t122 = T::fused(t57, t102, -t101);
-            let t123 = T::fused(t57, t121, t51 * t122);
-            let t124 = T::fused(k(0.2), t123, t119 * t105);
-            let t125 = T::fused(-t75, t120, t97 * t124);
-            let t126 = T::fused(-t57, t50, t51 * t56);
-            let t127 = k(0.1) * t126;
-            let t128 = t127 + (t127 + T::fused(-t57, t66, t51 * t69));
-            let t129 = T::fused(-t128, t73, t126);
-            let t130 = T::fused(t128, t105, T::fused(-t57, t87, t51 * t90));
-            let t131 = T::fused(t75, t129, t97 * t130);
-            let t132 = T::fused(-t75, t125, t97 * t131);
-            let t133 = t117 + t118;
-            let t134 = T::fused(-t133, t73, t112);
-            let t135 = t72 * t133;
-            let t136 = T::fused(t135, t95, t123);
-            let t137 = T::fused(t75, t134, t97 * t136);
-            let t138 = k(0.01) * t137;
-            let t139 = k(0.1) * t137;
-            let t140 = t139 - t132;
-            let t141 = t138 + T::fused(k(0.1), t140, t138)
-                + T::fused(-k(0.1), t132, t138);
-            let t142 = T::fused(-t51, t121, t57 * t122);
-            let t143 = k(0.01) * t142;
-            let t144 = k(0.1) * t142;
-            let t145 = k(0.15) - t144;
-            let t146 = t72 * t119;
-            let t147 = T::fused(
-                t119,
-                t146,
-                -(T::fused(k(0.2), t145, -t143)
-                    + (k(0.02) + (k(0.0017) + (k(0.015) - t143)))),
+            let t129 = k(0.0536) - t128;
+            let t130 = T::fused(t83, t129, -t127);
+            let t131 = k(5.36) - (T::fused(-t114, t100, t119) - t120);
+            let t132 = T::fused(t114, t108, -t123);
+            let t133 = T::fused(t63, t131, t83 * t132);
+            let t134 = T::fused(t99, t114, t119);
+            let t135 = k(5.36) - (t134 - t133);
+            let t136 = T::fused(
+                -t83,
+                t130,
+                T::fused(-k(2.0), t133, t134 + T::fused(-k(2.0), t135, t134)),
             );
-            let t148 = T::fused(-t57, t113, t51 * t114);
-            let t149 = T::fused(k(0.2), t148, t128 * t146);
-            let t150 = t97 * t149;
-            let t151 = T::fused(-t75, t147, t150);
-            let t152 = t75 * t149;
-            let t153 = T::fused(
-                t57,
-                T::fused(-t57, t63, t67),
-                t51 * T::fused(-t51, t68, t65),
+            let t137 = k(1.0) / (k(12.5156) - T::fused(t63, t126, t136));
+            let t138 = t137 * t118;
+            let t139 = k(12.4888) - (t93 + (t93 + T::fused(-k(2.0), t94, t118 * t138)));
+            let t140 = x1.cos();
+            let t141 = T::fused(-t83, t131, t63 * t132);
+            let t142 = T::fused(t83, t126, T::fused(t63, t130, k(2.0) * t141));
+            let t143 = T::fused(t83, t106, t63 * t111);
+            let t144 = T::fused(-t142, t138, k(2.0) * t143);
+            let t145 = x1.sin();
+            let t146 = T::fused(
+                -t83,
+                T::fused(t83, t122, t127),
+                T::fused(-t63, T::fused(t63, t129, t125), t142 * (t137 * t142)),
             );
-            let t154 = T::fused(t128, t72 * t128, -(k(0.0002) + t153));
-            let t155 = T::fused(t97, t154, -t152);
-            let t156 = T::fused(t135, t119, -(k(0.2) - t144 + t145));
-            let t157 = T::fused(t135, t128, t148);
-            let t158 = T::fused(-t75, t156, t97 * t157);
-            let t159 = T::fused(t133, t135, t142);
-            let t160 = k(0.01) * t159;
-            let t161 = T::fused(-k(0.2), t158, t160)
-                - (k(0.02) - T::fused(-t75, t151, t97 * t155));
-            let t162 = k(0.1) * t159;
-            let t163 = k(0.2) - t162 + t158;
-            let t164 = k(1.0)
-                / (T::fused(k(0.2), t163, -t160) + (k(0.025) + (k(0.0017) - t161)));
-            let t165 = t164 * t141;
-            let t166 = T::fused(
-                t141,
-                t165,
-                -(T::fused(k(0.2), t111, -t109)
-                    + (k(0.025) + (k(0.0016) + (k(0.02) - t109)))),
+            let t147 = k(0.0536) - t146;
+            let t148 = t137 * t117;
+            let t149 = k(6.7) - (T::fused(-t148, t118, t93) - t94);
+            let t150 = T::fused(t148, t142, t143);
+            let t151 = T::fused(-t140, t149, t145 * t150);
+            let t152 = T::fused(t117, t148, t93);
+            let t153 = k(6.7) - (t152 + t151);
+            let t154 = T::fused(
+                -t145,
+                T::fused(-t140, t144, t145 * t147),
+                T::fused(k(2.0), t151, t152 + T::fused(-k(2.0), t153, t152)),
             );
-            let t167 = x1.cos();
-            let t168 = T::fused(t97, t125, t75 * t131);
-            let t169 = T::fused(t97, t156, t75 * t157);
-            let t170 = k(0.1) * t169;
-            let t171 = t170 + (t170 - T::fused(t97, t151, t75 * t155));
-            let t172 = T::fused(k(0.2), t168, t171 * t165);
-            let t173 = x1.sin();
-            let t174 = T::fused(
-                t97,
-                T::fused(t97, t147, t152),
-                t75 * T::fused(t75, t154, t150),
+            let t155 = u0 * t145;
+            let t156 = T::fused(u1, t63, t83 * t155);
+            let t157 = u3 + t156;
+            let t158 = u0 * t140;
+            let t159 = u2 + t158;
+            let t160 = T::fused(-u1, t83, t63 * t155);
+            let t161 = T::fused(t46, t159, t41 * t160);
+            let t162 = T::fused(t6, t157, t3 * t161);
+            let t163 = u4 * t162;
+            let t164 = T::fused(-t41, t159, t46 * t160);
+            let t165 = T::fused(t164, t164, t157 * t157);
+            let t166 = t161 * t157;
+            let t167 = T::fused(-t3, t157, t6 * t161);
+            let t168 = t167 * t162;
+            let t169 = t168 + T::fused(-t3, t165, t6 * t166);
+            let t170 = u4 - t164;
+            let t171 = T::fused(t1, t170, t0 * t167);
+            let t172 = u5 + t162;
+            let t173 = t172 * t171;
+            let t174 = t173 + t168;
+            let t175 = u5 * t171;
+            let t176 = k(2.0) * (t175 + t174);
+            let t177 = T::fused(-t0, t170, t1 * t167);
+            let t178 = T::fused(k(0.5), t177 * t172, u5 * t177);
+            let t179 = T::fused(
+                k(0.22727272727272727),
+                t173,
+                T::fused(k(0.7575757575757576), t174, t175),
             );
-            let t175 = T::fused(t171, t164 * t171, -(k(0.0002) - t174));
-            let t176 = T::fused(
-                t167,
-                T::fused(t167, t166, t173 * t172),
-                t173 * T::fused(t167, t172, t173 * t175),
+            let t180 = T::fused(
+                k(0.3),
+                t168,
+                T::fused(k(1.32), t0 * t179, T::fused(k(0.04), t1 * t178, t176)),
             );
-            let t177 = t139 + t140;
-            let t178 = t164 * t177;
-            let t179 = T::fused(t178, t141, -(k(0.25) - t110 + t111));
-            let t180 = T::fused(t178, t171, t168);
-            let t181 = T::fused(t167, t179, t173 * t180);
-            let t182 = T::fused(t177, t178, t108);
-            let t183 = k(0.01) * t182;
-            let t184 = k(0.1) * t182;
-            let t185 = k(0.25) - t184 - t181;
-            let t186 = T::fused(k(0.2), t185, -t183)
-                + (k(0.03)
-                    + (k(0.0016) - (T::fused(k(0.2), t181, t183) - (k(0.025) - t176))));
-            let t187 = u0 * t173;
-            let t188 = u1 * t187;
-            let t189 = T::fused(-u1, t97, t75 * t187);
-            let t190 = T::fused(u1, t75, t97 * t187);
-            let t191 = u3 + t190;
-            let t192 = u0 * t167;
-            let t193 = u2 + t192;
-            let t194 = T::fused(t57, t193, t51 * t189);
-            let t195 = T::fused(t10, t191, t13 * t194);
-            let t196 = T::fused(-t13, t191, t10 * t194);
-            let t197 = T::fused(-t51, t193, t57 * t189);
-            let t198 = u4 - t197;
-            let t199 = T::fused(t4, t198, t0 * t196);
+            let t181 = t12 * t180;
+            let t182 = T::fused(
+                k(0.08),
+                t0 * t178,
+                T::fused(t8, t181, -T::fused(-t163, t20, t15 * t169)),
+            );
+            let t183 = T::fused(
+                k(0.04),
+                t170 * t162,
+                T::fused(k(2.64), t1 * t179, -t182),
+            );
+            let t184 = u4 * t167;
+            let t185 = t164 * t161;
+            let t186 = t167 * t170;
+            let t187 = t186 - t185;
+            let t188 = T::fused(t170, t170, t162 * t162);
+            let t189 = t188 + T::fused(t6, t165, t3 * t166);
+            let t190 = t2 * t189;
+            let t191 = t177 * t171;
+            let t192 = t191 - T::fused(t1, t188, t0 * t186);
+            let t193 = T::fused(-k(0.8235294117647058), t191, t192);
+            let t194 = T::fused(
+                t172,
+                t172,
+                T::fused(t177, t177, -T::fused(-t0, t188, t1 * t186)),
+            );
+            let t195 = k(1.34) * T::fused(k(0.2537313432835821), t0 * t193, t1 * t194);
+            let t196 = t195
+                + T::fused(t9, t187, t190 - T::fused(t184, t24, k(2.68) * t187));
+            let t197 = t195
+                - (T::fused(t24, t187, T::fused(-k(2.0), t190, t184 * t28)) - t195);
+            let t198 = T::fused(-k(0.3752), t186, t197);
+            let t199 = T::fused(
+                k(0.3752),
+                t185,
+                T::fused(t6, t198, T::fused(t183, t19, k(2.0) * t196)),
+            );
             (
                 t0,
+                t1,
                 t2,
-                t4,
-                t7,
-                t9,
+                t3,
+                t6,
+                t8,
                 t10,
                 t12,
                 t13,
-                t17,
+                t15,
                 t18,
-                t21,
-                t22,
-                t28,
-                t29,
+                t19,
+                t30,
+                t32,
                 t33,
-                t35,
-                t38,
-                t42,
-                t44,
+                t37,
+                t39,
+                t40,
+                t41,
+                t43,
+                t45,
+                t46,
                 t49,
-                t50,
                 t51,
-                t55,
-                t56,
+                t52,
                 t57,
                 t60,
+                t62,
                 t63,
                 t64,
-                t68,
-                t72,
-                t74,
+                t66,
+                t70,
+                t73,
                 t75,
                 t76,
                 t78,
+                t79,
+                t81,
+                t82,
+                t83,
                 t84,
+                t85,
                 t86,
                 t88,
-                t89,
                 t91,
                 t92,
-                t95,
-                t96,
-                t97,
-                t98,
                 t99,
                 t100,
-                t102,
-                t106,
-                t107,
-                t119,
-                t120,
+                t101,
+                t105,
+                t108,
+                t109,
+                t110,
+                t113,
+                t115,
+                t116,
+                t117,
+                t118,
+                t122,
                 t124,
-                t128,
                 t129,
-                t130,
-                t133,
+                t131,
+                t132,
                 t134,
-                t136,
+                t135,
                 t137,
+                t139,
+                t140,
                 t141,
+                t142,
+                t144,
+                t145,
                 t147,
+                t148,
                 t149,
+                t150,
+                t152,
+                t153,
                 t154,
+                t155,
                 t156,
                 t157,
+                t158,
                 t159,
-                t162,
+                t160,
+                t161,
                 t163,
                 t164,
+                t165,
                 t166,
-                t167,
                 t169,
-                t171,
-                t172,
-                t173,
-                t175,
-                t177,
-                t178,
-                t179,
+                t176,
                 t180,
-                t182,
+                t181,
+                t183,
                 t184,
                 t185,
-                t186,
                 t187,
-                t188,
                 t189,
-                t190,
                 t191,
                 t192,
                 t193,
                 t194,
-                t195,
                 t196,
-                t197,
                 t198,
                 t199,
             )
         };
-        let (
-            t212,
-            t221,
-            t226,
-            t331,
-            t336,
-            t339,
-            t346,
-            t349,
-            t356,
-            t359,
-            t362,
-            t364,
-            t366,
-        ) = {
-            let t200 = u5 + t195;
-            let t201 = k(0.1) * t200;
-            let t202 = k(0.1) * t195;
-            let t203 = t196 * t202;
-            let t204 = T::fused(t201, t199, t203);
-            let t205 = u5 * t199;
-            let t206 = T::fused(
-                k(0.0015),
-                t200 * t199,
-                T::fused(k(0.05), t204, k(0.0066) * t205),
+        let (t279, t283, t286, t291, t294, t299, t302, t304, t305, t306) = {
+            let t200 = t30 * t199;
+            let t201 = t156 * t160;
+            let t202 = t166 + t201;
+            let t203 = T::fused(t159, t159, t156 * t156);
+            let t204 = t160 * t159;
+            let t205 = t185 - T::fused(t46, t203, t41 * t204);
+            let t206 = t165 - T::fused(-t41, t203, t46 * t204);
+            let t207 = u3 * t161;
+            let t208 = u3 * t164;
+            let t209 = T::fused(
+                -t205,
+                t66,
+                T::fused(t206, t73, T::fused(-t207, t51, t208 * t52)),
             );
-            let t207 = T::fused(-t0, t198, t4 * t196);
-            let t208 = T::fused(k(0.0001), t207 * t200, k(0.0002) * (u5 * t207));
-            let t209 = T::fused(k(0.5), t204, k(0.05) * t205);
-            let t210 = k(0.1) * t209;
+            let t210 = T::fused(
+                t13,
+                t181,
+                -(t176 - T::fused(t33, t169, T::fused(-k(4.0), t169, t163 * t15))),
+            );
             let t211 = T::fused(
-                k(0.0015),
-                t196 * t195,
-                t210 + T::fused(t0, t206, t4 * t208),
-            );
-            let t212 = t210 + t211;
-            let t213 = t7 * t212;
-            let t214 = k(0.1) * t191;
-            let t215 = t194 * t214;
-            let t216 = k(0.1) * t197;
-            let t217 = T::fused(t191, t214, t197 * t216);
-            let t218 = T::fused(-t10, t215, t13 * t217) - t203;
-            let t219 = u4 * t195;
-            let t220 = T::fused(t22, t219, -T::fused(-t9, t218, t218))
-                + T::fused(-t2, t213, t209);
-            let t221 = t207 * t199;
-            let t222 = k(0.1) * t207;
-            let t223 = k(0.1) * t198;
-            let t224 = t196 * t223;
-            let t225 = T::fused(t195, t202, t198 * t223);
-            let t226 = T::fused(-t222, t199, T::fused(t0, t224, t4 * t225));
-            let t227 = T::fused(
-                k(0.010447761194029851),
-                t221,
-                k(0.12686567164179105) * t226,
-            );
-            let t228 = T::fused(-t4, t224, t0 * t225)
-                + T::fused(t200, t201, t207 * t222);
-            let t229 = k(0.5) * t228;
-            let t230 = t194 * t216;
-            let t231 = t230 - t224;
-            let t232 = T::fused(t13, t215, t10 * t217) + t225;
-            let t233 = u4 * t196;
-            let t234 = T::fused(t18, t233, -(t232 - T::fused(-t17, t231, t12 * t232)))
-                - T::fused(t4, t227, t0 * t229);
-            let t235 = T::fused(-t10, t220, t13 * t234);
-            let t236 = k(0.1) * t235;
-            let t237 = T::fused(-t0, t227, t4 * t229);
-            let t238 = k(0.1) * t237;
-            let t239 = T::fused(t33, t233, T::fused(t38, t231, t18 * t232))
-                + (t238 + T::fused(-k(0.0014), t196 * t198, t238));
-            let t240 = T::fused(
-                t21,
-                t213,
-                T::fused(-k(0.0001), t198 * t195, T::fused(-t4, t206, t0 * t208)),
-            );
-            let t241 = T::fused(t22, t218, t35 * t219) - t240;
-            let t242 = T::fused(t38, t233, -(t231 + T::fused(-t29, t231, t17 * t232)))
-                - t237;
-            let t243 = k(0.1) * t242;
-            let t244 = T::fused(
-                -k(0.0014),
-                t197 * t194,
-                t243 - T::fused(t10, t239, t13 * t241),
-            );
-            let t245 = t243 + t244;
-            let t246 = t42 * t245;
-            let t247 = k(0.1) * t190;
-            let t248 = t189 * t247;
-            let t249 = t248 + t215;
-            let t250 = k(0.1) * t193;
-            let t251 = t189 * t250;
-            let t252 = T::fused(t190, t247, t193 * t250);
-            let t253 = T::fused(t51, t251, t57 * t252) - t230;
-            let t254 = T::fused(-t57, t251, t51 * t252) + t217;
-            let t255 = u3 * t194;
-            let t256 = u3 * t197;
-            let t257 = T::fused(t63, t255, t64 * t256)
-                + T::fused(t86, t254, -T::fused(-t50, t249, t78 * t253));
-            let t258 = t257
-                - T::fused(t49, t246, -(t236 + T::fused(-k(0.0015), t194 * t191, t236)));
-            let t259 = T::fused(
-                t55,
-                t246,
-                -T::fused(-k(0.0001), t197 * t191, T::fused(-t13, t239, t10 * t241)),
-            );
-            let t260 = T::fused(t64, t255, t68 * t256)
-                + T::fused(t89, t254, T::fused(t56, t249, t88 * t253));
-            let t261 = t260 - t259;
-            let t262 = T::fused(
-                -k(1.5),
-                t249,
-                T::fused(t92, t254, T::fused(t44, t249, t91 * t253)),
-            );
-            let t263 = T::fused(t50, t255, t56 * t256) + t262
-                - T::fused(t28, t246, -t235);
-            let t264 = k(0.1) * t263;
-            let t265 = T::fused(
-                -k(0.0015),
-                t190 * t189,
-                t264 + T::fused(t51, t258, t57 * t261),
-            );
-            let t266 = t264 + t265;
-            let t267 = t72 * t266;
-            let t268 = k(0.1) * u1;
-            let t269 = t268 * t187;
-            let t270 = k(0.1) * t192;
-            let t271 = T::fused(t192, t270, u1 * t268);
-            let t272 = T::fused(-t75, t269, t97 * t271) - t248;
-            let t273 = t187 * t270;
-            let t274 = t273 + t251;
-            let t275 = T::fused(t97, t269, t75 * t271) + t252;
-            let t276 = T::fused(
-                k(2.0),
-                t272,
-                T::fused(t96, t275, -T::fused(t74, t272, t134 * t274)),
-            );
-            let t277 = u2 * t189;
-            let t278 = u2 * t190;
-            let t279 = T::fused(t120, t277, t129 * t278) + t276
-                + T::fused(-t60, t267, t263);
-            let t280 = T::fused(
-                -k(1.5),
-                t253,
-                T::fused(t100, t254, T::fused(t91, t249, t99 * t253)),
-            );
-            let t281 = T::fused(-t78, t255, t88 * t256) + t280
-                - T::fused(-t76, t246, t242);
-            let t282 = T::fused(
-                -k(1.5),
-                t254,
-                T::fused(t102, t254, T::fused(t92, t249, t100 * t253)),
-            );
-            let t283 = T::fused(t86, t255, t89 * t256) + t282
-                - T::fused(t84, t246, -T::fused(t13, t220, t10 * t234));
-            let t284 = T::fused(
-                -k(2.0),
-                t275,
-                T::fused(t106, t275, -T::fused(t96, t272, t136 * t274)),
-            );
-            let t285 = T::fused(-t124, t277, t130 * t278) + t284
-                + T::fused(t95, t267, T::fused(t57, t281, t51 * t283));
-            let t286 = T::fused(t75, t279, t97 * t285);
-            let t287 = k(0.1) * t286;
-            let t288 = T::fused(-t51, t281, t57 * t283);
-            let t289 = k(0.1) * t288;
-            let t290 = T::fused(-t147, t277, t149 * t278)
-                + T::fused(t124, t275, -T::fused(-t120, t272, t156 * t274));
-            let t291 = t290
-                + T::fused(t119, t267, t289 + T::fused(k(0.0014), t189 * t193, t289));
-            let t292 = T::fused(
-                t128,
-                t267,
-                T::fused(k(0.0001), t190 * t193, T::fused(-t57, t258, t51 * t261)),
-            );
-            let t293 = T::fused(-t149, t277, t154 * t278)
-                + T::fused(t130, t275, -T::fused(t129, t272, t157 * t274));
-            let t294 = t293 + t292;
-            let t295 = T::fused(
-                k(2.0),
-                t274,
-                T::fused(t136, t275, -T::fused(t134, t272, t159 * t274)),
-            );
-            let t296 = T::fused(-t156, t277, t157 * t278) + t295
-                + T::fused(t133, t267, t288);
-            let t297 = k(0.1) * t296;
-            let t298 = T::fused(
-                k(0.0014),
-                t192 * t187,
-                t297 - T::fused(-t75, t291, t97 * t294),
-            );
-            let t299 = t297 + t298;
-            let t300 = t164 * t299;
-            let t301 = u0 * (k(0.1) * u0);
-            let t302 = T::fused(t173, t301, t273);
-            let t303 = t163 + (k(0.25) - t162);
-            let t304 = t164 * t303;
-            let t305 = T::fused(-k(0.2), t137, t304 * t141);
-            let t306 = T::fused(t167, t301, t271);
-            let t307 = T::fused(-t97, t98, t75 * t107);
-            let t308 = T::fused(t97, t120, t75 * t124);
-            let t309 = T::fused(-t97, t129, t75 * t130);
-            let t310 = k(0.1) * T::fused(-t97, t134, t75 * t136);
-            let t311 = t310 + (t310 - T::fused(-t75, t308, t97 * t309));
-            let t312 = t164 * t311;
-            let t313 = T::fused(k(0.2), t307, t312 * t141);
-            let t314 = u1 * t192;
-            let t315 = T::fused(-t188, t166, t314 * t172)
-                - T::fused(t313, t306, T::fused(t179, t269, t305 * t302));
-            let t316 = T::fused(
-                t171,
-                t300,
-                T::fused(k(0.0001), t314, T::fused(t97, t291, t75 * t294)),
-            );
-            let t317 = T::fused(-t171, t304, t169);
-            let t318 = T::fused(t312, t171, T::fused(t97, t308, t75 * t309));
-            let t319 = T::fused(-t188, t172, t314 * t175)
-                - T::fused(t318, t306, -T::fused(-t180, t269, t317 * t302));
-            let t320 = T::fused(
-                t167,
-                t315 - T::fused(t141, t300, t287 + T::fused(-k(0.0015), t188, t287)),
-                t173 * (t319 - t316),
-            );
-            let t321 = T::fused(-t178, t303, t137);
-            let t322 = T::fused(t178, t311, t307);
-            let t323 = T::fused(
-                -k(2.5),
-                t269,
-                T::fused(t322, t306, -T::fused(-t182, t269, t321 * t302)),
-            );
-            let t324 = T::fused(-t179, t188, t180 * t314) - t323
-                - T::fused(t177, t300, t286);
-            let t325 = k(0.1) * t324;
-            let t326 = k(9.81) * x0.sin();
-            let t327 = T::fused(k(9.81), x0.cos(), t301);
-            let t328 = T::fused(
-                t167,
-                T::fused(t173, t305, t167 * t313),
-                t173 * T::fused(-t173, t317, t167 * t318),
-            );
-            let t329 = k(0.1) * T::fused(-t173, t321, t167 * t322);
-            let t330 = T::fused(
-                k(0.3) - t184 + t185,
-                t326,
-                (t329 + (t329 + t328)) * t327,
-            );
-            let t331 = (t330 - (t325 + (t325 + t320))) / t186;
-            let t332 = k(0.1) * t331;
-            let t333 = t269 + (t332 - (t326 - t332));
-            let t334 = T::fused(t173, t327, t302);
-            let t335 = T::fused(t167, t327, t306);
-            let t336 = T::fused(t167, t331, t188);
-            let t337 = T::fused(-t173, t331, t314);
-            let t338 = T::fused(-t141, t336, t171 * t337)
-                - T::fused(t311, t335, T::fused(t177, t333, t303 * t334));
-            let t339 = t164 * (t299 - t338);
-            let t340 = k(0.1) * t336;
-            let t341 = t340 + (t333 + t340);
-            let t342 = t272 + T::fused(-t75, t341, t97 * t335);
-            let t343 = k(0.1) * t339;
-            let t344 = t274 - (t343 - (t334 - t343));
-            let t345 = t275 + T::fused(t97, t341, t75 * t335);
-            let t346 = t277 + T::fused(-t75, t339, t97 * t337);
-            let t347 = t278 - T::fused(t97, t339, t75 * t337);
-            let t348 = T::fused(-t119, t346, t128 * t347)
-                + T::fused(t95, t345, -T::fused(-t60, t342, t133 * t344));
-            let t349 = t72 * (t266 + t348);
-            let t350 = k(0.1) * t349;
-            let t351 = t249 + (t350 - (t342 - t350));
-            let t352 = k(0.1) * t346;
-            let t353 = t352 + (t344 + t352);
-            let t354 = t253 + T::fused(t51, t353, t57 * t345);
-            let t355 = t254 + T::fused(-t57, t353, t51 * t345);
-            let t356 = t255 - T::fused(-t51, t349, t57 * t347);
-            let t357 = t256 + T::fused(t57, t349, t51 * t347);
-            let t358 = T::fused(t49, t356, t55 * t357)
-                + T::fused(t84, t355, -T::fused(-t28, t351, t76 * t354));
-            let t359 = t42 * (t245 - t358);
-            let t360 = k(0.1) * t356;
-            let t361 = t360 + (t351 + t360);
-            let t362 = T::fused(
                 t2,
-                t218 + T::fused(-t10, t361, t13 * t355),
-                t21 * (t219 + T::fused(-t13, t359, t10 * t357)),
+                t187,
+                T::fused(t10, t189, -T::fused(-k(2.0), t184 * t2, k(2.68) * t189)),
             );
-            let t363 = k(0.1) * t359;
-            let t364 = t233 - T::fused(t10, t359, t13 * t357);
-            let t365 = k(0.1) * t364;
-            let t366 = T::fused(
-                t0,
-                t365 + (t365 - (t231 + (t363 - (t354 - t363)))),
-                t4 * (t232 + T::fused(t13, t361, t10 * t355)),
+            let t212 = T::fused(k(0.34), t1 * t193, T::fused(-k(1.34), t0 * t194, t211));
+            let t213 = T::fused(t210, t32, t3 * t212);
+            let t214 = T::fused(
+                k(0.402),
+                t166,
+                -(t213 + (t213 + T::fused(t39, t200, T::fused(-t202, t40, t209)))),
             );
-            (
+            let t215 = T::fused(
+                t205,
+                t75,
+                T::fused(t206, t76, T::fused(-t207, t52, t208 * t57)),
+            );
+            let t216 = T::fused(
+                t3,
+                t198,
+                T::fused(-t183, t32, T::fused(-t43, t200, T::fused(-t202, t45, t215))),
+            );
+            let t217 = T::fused(k(0.0268), t164 * t157, t216);
+            let t218 = T::fused(
+                -t205,
+                t78,
+                T::fused(t206, t79, T::fused(-t207, t40, t208 * t45)),
+            );
+            let t219 = T::fused(
+                -t18,
+                t200,
+                T::fused(k(4.02), t202, -T::fused(t202, t37, t218)),
+            ) - t213;
+            let t220 = T::fused(
+                k(0.402),
+                t201,
+                T::fused(t41, t214, T::fused(t46, t217, k(2.0) * t219)),
+            );
+            let t221 = t60 * t220;
+            let t222 = T::fused(t158, t158, u1 * u1);
+            let t223 = u1 * t155;
+            let t224 = t201 + T::fused(-t83, t222, t63 * t223);
+            let t225 = t158 * t155;
+            let t226 = t204 + t225;
+            let t227 = t203 + T::fused(t63, t222, t83 * t223);
+            let t228 = u2 * t160;
+            let t229 = u2 * t156;
+            let t230 = T::fused(
+                -t226,
+                t131,
+                T::fused(-t227, t105, T::fused(-t228, t122, t229 * t124)),
+            );
+            let t231 = T::fused(
+                -t205,
+                t85,
+                T::fused(t206, t86, T::fused(t207, t66, t208 * t75)),
+            );
+            let t232 = T::fused(
+                -t64,
+                t200,
+                t196 + T::fused(k(4.02), t205, T::fused(t202, t78, t231)),
+            );
+            let t233 = T::fused(
+                t205,
+                t86,
+                T::fused(-t206, t88, T::fused(-t207, t73, t208 * t76)),
+            );
+            let t234 = T::fused(
+                t6,
                 t212,
-                t221,
+                -T::fused(
+                    -t70,
+                    t200,
+                    T::fused(k(4.02), t206, T::fused(-t202, t79, t233)),
+                ),
+            );
+            let t235 = T::fused(-t210, t19, t234);
+            let t236 = T::fused(-t41, t232, t46 * t235);
+            let t237 = T::fused(
+                k(0.3752),
+                t204,
+                t236 + (t236 - T::fused(-t100, t221, T::fused(-t224, t101, t230))),
+            );
+            let t238 = T::fused(
                 t226,
-                t331,
-                t336,
-                t339,
-                t346,
-                t349,
-                t356,
-                t359,
-                t362,
-                t364,
-                t366,
-            )
+                t132,
+                T::fused(-t227, t110, T::fused(-t228, t124, t229 * t129)),
+            );
+            let t239 = T::fused(
+                -t46,
+                t214,
+                T::fused(t41, t217, T::fused(t108, t221, T::fused(-t224, t109, t238))),
+            );
+            let t240 = T::fused(k(0.0268), t156 * t159, -t239);
+            let t241 = T::fused(
+                -t226,
+                t134,
+                T::fused(t227, t115, T::fused(t228, t131, t229 * t132)),
+            );
+            let t242 = T::fused(
+                -t99,
+                t221,
+                T::fused(k(5.36), t226, T::fused(t224, t113, t241)),
+            ) + t236;
+            let t243 = T::fused(
+                k(0.3752),
+                t225,
+                T::fused(t63, t237, T::fused(-t83, t240, k(2.0) * t242)),
+            );
+            let t244 = t137 * t243;
+            let t245 = k(6.7) - (t134 - t135);
+            let t246 = t137 * t245;
+            let t247 = T::fused(t118, t246, k(2.0) * t116);
+            let t248 = u0 * u0;
+            let t249 = T::fused(t145, t248, t225);
+            let t250 = T::fused(-t83, t101, t63 * t105);
+            let t251 = T::fused(-t83, t109, t63 * t110);
+            let t252 = T::fused(
+                t63,
+                t250,
+                T::fused(-t83, t251, k(2.0) * T::fused(-t83, t113, t63 * t115)),
+            );
+            let t253 = t137 * t252;
+            let t254 = T::fused(-t83, t84, t63 * t92);
+            let t255 = T::fused(-t118, t253, k(2.0) * t254);
+            let t256 = T::fused(t140, t248, t222);
+            let t257 = u1 * t158;
+            let t258 = T::fused(
+                t249,
+                t247,
+                T::fused(-t256, t255, T::fused(t223, t139, t257 * t144)),
+            );
+            let t259 = t223 * t149;
+            let t260 = T::fused(
+                -t226,
+                t113,
+                T::fused(t227, t82, T::fused(-t228, t101, t229 * t109)),
+            );
+            let t261 = T::fused(
+                -t49,
+                t221,
+                t219 + T::fused(k(5.36), t224, -T::fused(t224, t62, t260)),
+            );
+            let t262 = T::fused(
+                -t226,
+                t115,
+                T::fused(t227, t91, T::fused(-t228, t105, t229 * t110)),
+            );
+            let t263 = T::fused(
+                -t41,
+                t235,
+                T::fused(t81, t221, T::fused(k(5.36), t227, -T::fused(t224, t82, t262))),
+            );
+            let t264 = T::fused(t63, t261, t83 * T::fused(-t46, t232, t263));
+            let t265 = T::fused(
+                k(0.402),
+                t223,
+                t264 + (t264 + T::fused(t118, t244, t259 + t258)),
+            );
+            let t266 = T::fused(-t142, t246, t141);
+            let t267 = T::fused(t83, t250, T::fused(t63, t251, t142 * t253));
+            let t268 = T::fused(
+                -t249,
+                t266,
+                T::fused(t256, t267, T::fused(t223, t144, t257 * t147)),
+            );
+            let t269 = T::fused(
+                t83,
+                t237,
+                T::fused(t63, t240, T::fused(t142, t244, T::fused(t223, t150, t268))),
+            );
+            let t270 = T::fused(-t148, t245, t116);
+            let t271 = T::fused(t148, t252, t254);
+            let t272 = T::fused(
+                -t223,
+                t152,
+                T::fused(t249, t270, T::fused(-t256, t271, T::fused(t257, t150, t259))),
+            );
+            let t273 = T::fused(-t117, t244, T::fused(k(6.7), t223, t272)) + t264;
+            let t274 = T::fused(
+                t145,
+                T::fused(-t145, t266, t140 * t267),
+                k(2.0) * T::fused(-t145, t270, t140 * t271),
+            );
+            let t275 = T::fused(k(98.1), x0.cos(), t248);
+            let t276 = x0.sin();
+            let t277 = T::fused(
+                t275,
+                T::fused(t140, T::fused(-t145, t247, t140 * t255), t274),
+                k(98.1) * (t276 * (k(8.04) - (t152 - t153))),
+            );
+            let t278 = T::fused(
+                t140,
+                t265,
+                T::fused(-t145, T::fused(k(0.0268), t257, t269), t273 - (t277 - t273)),
+            );
+            let t279 = t278
+                / (k(15.1688)
+                    - T::fused(t140, T::fused(-t140, t139, t145 * t144), t154));
+            let t280 = t279 + T::fused(k(98.1), t276, -(t223 - t279));
+            let t281 = T::fused(t145, t275, t249);
+            let t282 = T::fused(t140, t275, t256);
+            let t283 = T::fused(-t140, t279, t223);
+            let t284 = T::fused(t145, t279, t257);
+            let t285 = T::fused(
+                t281,
+                t245,
+                T::fused(t282, t252, T::fused(-t118, t283, T::fused(-t142, t284, t243))),
+            );
+            let t286 = t137 * T::fused(-t117, t280, t285);
+            let t287 = t283 + (t283 - t280);
+            let t288 = T::fused(t63, t287, T::fused(-t83, t282, t224));
+            let t289 = t286 - (t281 + (t226 - t286));
+            let t290 = T::fused(t83, t287, T::fused(t63, t282, t227));
+            let t291 = T::fused(-t63, t286, T::fused(t83, t284, t228));
+            let t292 = T::fused(-t83, t286, T::fused(-t63, t284, t229));
+            let t293 = T::fused(
+                -t99,
+                t289,
+                T::fused(-t81, t290, T::fused(-t100, t291, T::fused(-t108, t292, t220))),
+            );
+            let t294 = t60 * T::fused(t49, t288, t293);
+            let t295 = t294 - (t288 + (t202 - t294));
+            let t296 = t291 + (t291 - t289);
+            let t297 = T::fused(-t41, t296, T::fused(-t46, t290, t205));
+            let t298 = T::fused(-t46, t296, T::fused(t41, t290, t206));
+            let t299 = T::fused(-t41, t294, T::fused(-t46, t292, t207));
+            let t300 = T::fused(-t46, t294, T::fused(t41, t292, t208));
+            let t301 = T::fused(
+                t64,
+                t297,
+                T::fused(t70, t298, T::fused(t39, t299, T::fused(t43, t300, t199))),
+            );
+            let t302 = t30 * T::fused(-t18, t295, t301);
+            let t303 = t299 + (t299 - t295);
+            let t304 = T::fused(
+                t13,
+                T::fused(t6, t303, T::fused(-t3, t298, t169)),
+                T::fused(-t8, T::fused(t3, t302, T::fused(t6, t300, t163)), t180),
+            );
+            let t305 = T::fused(t6, t302, T::fused(-t3, t300, t184));
+            let t306 = T::fused(
+                -t0,
+                t302 - (t297 - (t302 + T::fused(k(2.0), t305, t187))),
+                T::fused(-t1, T::fused(t3, t303, T::fused(t6, t298, t189)), t192),
+            );
+            (t279, t283, t286, t291, t294, t299, t302, t304, t305, t306)
         };
         *out = [
-            -t331,
-            -t339,
-            t336 - t349,
-            -(t346 + t359),
-            T::fused(t7, t212 - t362, t356),
-            -T::fused(
-                k(149.2537313432836),
-                T::fused(-k(0.0014), t221, k(0.05) * (t226 + t366)),
-                t364,
-            ),
+            t279,
+            -t286,
+            t283 + t294,
+            t302 - t291,
+            T::fused(k(0.5), t12 * t304, t299),
+            T::fused(k(0.746268656716418), T::fused(k(0.28), t191, t306), -t305),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -9677,7 +9561,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             rates[5],
         ];
     }
-    /// Writes the maximal state of a joint state: 384 operations (159 ±, 225 ×, 0 ÷) and 12 functions.
+    /// Writes the maximal state of a joint state: 370 operations (164 ±, 206 ×, 0 ÷) and 12 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -9706,14 +9590,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t11 = t2 * t10;
         let t12 = t1 * t10;
         let t13 = t12 * t11;
-        let t14 = k(0.2) * (t13 - t9);
-        let t15 = T::fused(-k(0.4), t3, t14);
+        let t14 = t13 - t9;
+        let t15 = T::fused(k(2.0), t3, -t14);
         let t16 = t8 * t12;
         let t17 = t7 * t11;
         let t18 = t17 + t16;
         let t19 = t8 * t8;
-        let t20 = k(0.2) * (k(0.5) - T::fused(t11, t11, t19));
-        let t21 = T::fused(k(0.4), t4, t20);
+        let t20 = k(0.5) - T::fused(t11, t11, t19);
+        let t21 = T::fused(k(2.0), t4, t20);
         let t22 = k(0.5) * x2;
         let t23 = t22.sin();
         let t24 = t22.cos();
@@ -9723,15 +9607,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t28 = T::fused(-t12, t23, t11 * t24);
         let t29 = T::fused(t11, t23, t12 * t24);
         let t30 = t29 * t28;
-        let t31 = k(0.2) * (t30 - t27);
-        let t32 = t31 + (t14 + t15);
+        let t31 = t30 - t27;
+        let t32 = t15 - (t14 + t31);
         let t33 = t26 * t29;
         let t34 = t25 * t28;
-        let t35 = k(0.2) * (t34 + t33);
-        let t36 = T::fused(k(0.4), t18, t35);
+        let t35 = t34 + t33;
+        let t36 = T::fused(k(2.0), t18, t35);
         let t37 = t26 * t26;
-        let t38 = k(0.2) * (k(0.5) - T::fused(t28, t28, t37));
-        let t39 = t38 + (t20 + t21);
+        let t38 = k(0.5) - T::fused(t28, t28, t37);
+        let t39 = t21 + (t20 + t38);
         let t40 = k(0.5) * x3;
         let t41 = t40.sin();
         let t42 = t40.cos();
@@ -9741,15 +9625,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t46 = T::fused(t25, t41, t28 * t42);
         let t47 = T::fused(t26, t41, t29 * t42);
         let t48 = t47 * t46;
-        let t49 = k(0.2) * (t48 - t45);
-        let t50 = t49 + (t31 + t32);
+        let t49 = t48 - t45;
+        let t50 = t32 - (t31 + t49);
         let t51 = t44 * t47;
         let t52 = t43 * t46;
-        let t53 = k(0.2) * (t52 + t51);
-        let t54 = t53 + (t35 + t36);
+        let t53 = t52 + t51;
+        let t54 = t36 + (t35 + t53);
         let t55 = t44 * t44;
-        let t56 = k(0.2) * (k(0.5) - T::fused(t46, t46, t55));
-        let t57 = t56 + (t38 + t39);
+        let t56 = k(0.5) - T::fused(t46, t46, t55);
+        let t57 = t39 + (t38 + t56);
         let t58 = k(0.5) * x4;
         let t59 = t58.sin();
         let t60 = t58.cos();
@@ -9759,15 +9643,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t64 = T::fused(-t47, t59, t46 * t60);
         let t65 = T::fused(t46, t59, t47 * t60);
         let t66 = t65 * t64;
-        let t67 = k(0.2) * (t66 - t63);
-        let t68 = t67 + (t49 + t50);
+        let t67 = t66 - t63;
+        let t68 = t50 - (t49 + t67);
         let t69 = t62 * t65;
         let t70 = t61 * t64;
-        let t71 = k(0.2) * (t70 + t69);
-        let t72 = t71 + (t53 + t54);
+        let t71 = t70 + t69;
+        let t72 = t54 + (t53 + t71);
         let t73 = t62 * t62;
-        let t74 = k(0.2) * (k(0.5) - T::fused(t64, t64, t73));
-        let t75 = t74 + (t56 + t57);
+        let t74 = k(0.5) - T::fused(t64, t64, t73);
+        let t75 = t57 + (t56 + t74);
         let t76 = k(0.5) * x5;
         let t77 = t76.sin();
         let t78 = t76.cos();
@@ -9780,121 +9664,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t85 = t80 * t83;
         let t86 = t79 * t82;
         let t87 = t80 * t80;
-        let t88 = k(0.1) * u0;
-        let t89 = k(2.0) * t4 * t88;
-        let t90 = k(2.0) * t3 * t88;
-        let t91 = k(2.0) * t10;
-        let t92 = u0 * T::fused(-t10, t91, k(1.0));
-        let t93 = k(0.1) * t92;
-        let t94 = k(0.1) * u1;
-        let t95 = t8 * t11;
-        let t96 = t12 * t7;
-        let t97 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t12, t12, t19)),
-            t93,
-            k(2.0) * (t96 + t95) * t94,
+        let t88 = u0 * t4;
+        let t89 = u0 * t3;
+        let t90 = t8 * t11;
+        let t91 = t12 * t7;
+        let t92 = u0 * ((t10 - t6) * (t10 + t6));
+        let t93 = T::fused(-u1, t91 + t90, (k(0.5) - T::fused(t12, t12, t19)) * t92);
+        let t94 = T::fused(-k(0.5), t93, t88);
+        let t95 = T::fused(-u1, k(0.5) - T::fused(t7, t7, t19), (t91 - t90) * t92);
+        let t96 = T::fused(u1, t17 - t16, (t13 + t9) * t92);
+        let t97 = T::fused(-k(0.5), t96, t89);
+        let t98 = u0 * (t10 * t6);
+        let t99 = t23 * t24;
+        let t100 = (t23 - t24) * (t23 + t24);
+        let t101 = T::fused(-k(4.0), t98 * t99, u1 * t100);
+        let t102 = t26 * t28;
+        let t103 = t29 * t25;
+        let t104 = u2 - t92;
+        let t105 = T::fused(
+            -(t103 + t102),
+            t101,
+            (k(0.5) - T::fused(t29, t29, t37)) * t104,
         );
-        let t98 = T::fused(k(2.0), t89, t97);
-        let t99 = T::fused(
-            k(2.0) * (t96 - t95),
-            t93,
-            k(2.0) * (k(0.5) - T::fused(t7, t7, t19)) * t94,
+        let t106 = t105 - T::fused(-k(2.0), t94, t93);
+        let t107 = T::fused(
+            -(k(0.5) - T::fused(t25, t25, t37)),
+            t101,
+            (t103 - t102) * t104,
         );
-        let t100 = T::fused(-(k(2.0) * (t13 + t9)), t93, k(2.0) * (t17 - t16) * t94);
-        let t101 = T::fused(k(2.0), t90, -t100);
-        let t102 = u0 * (t6 * t91);
-        let t103 = u2 + t92;
-        let t104 = k(0.1) * t103;
-        let t105 = k(2.0) * t23;
-        let t106 = T::fused(-t23, t105, k(1.0));
-        let t107 = t24 * t105;
-        let t108 = T::fused(u1, t106, t107 * t102);
-        let t109 = k(0.1) * t108;
-        let t110 = t26 * t28;
-        let t111 = t29 * t25;
-        let t112 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t29, t29, t37)),
-            t104,
-            k(2.0) * (t111 + t110) * t109,
+        let t108 = T::fused(-k(0.5), t107, t95);
+        let t109 = T::fused(t34 - t33, t101, (t30 + t27) * t104);
+        let t110 = t109 - T::fused(-k(2.0), t97, t96);
+        let t111 = T::fused(t100, t98, u1 * t99);
+        let t112 = u3 - t101;
+        let t113 = t44 * t46;
+        let t114 = t47 * t43;
+        let t115 = t41 * t42;
+        let t116 = (t41 - t42) * (t41 + t42);
+        let t117 = T::fused(-k(4.0), t111 * t115, t116 * t104);
+        let t118 = T::fused(
+            -(t114 + t113),
+            t112,
+            (k(0.5) - T::fused(t47, t47, t55)) * t117,
         );
-        let t113 = t97 + t98 + t112;
-        let t114 = T::fused(
-            k(2.0) * (t111 - t110),
-            t104,
-            k(2.0) * (k(0.5) - T::fused(t25, t25, t37)) * t109,
+        let t119 = t118 - (t105 + t106);
+        let t120 = T::fused(
+            -(k(0.5) - T::fused(t43, t43, t55)),
+            t112,
+            (t114 - t113) * t117,
         );
-        let t115 = T::fused(k(2.0), t99, t114);
-        let t116 = T::fused(-(k(2.0) * (t30 + t27)), t104, k(2.0) * (t34 - t33) * t109);
-        let t117 = t100 - t101 + t116;
-        let t118 = T::fused(-u1, t107, t106 * t102);
-        let t119 = k(2.0) * t41;
-        let t120 = T::fused(-t41, t119, k(1.0));
-        let t121 = t42 * t119;
-        let t122 = T::fused(-t120, t103, t121 * t118);
-        let t123 = k(0.1) * t122;
-        let t124 = u3 + t108;
-        let t125 = k(0.1) * t124;
-        let t126 = t44 * t46;
-        let t127 = t47 * t43;
-        let t128 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(t47, t47, t55))),
-            t123,
-            k(2.0) * (t127 + t126) * t125,
+        let t121 = t120 - T::fused(-k(2.0), t108, t107);
+        let t122 = T::fused(t52 - t51, t112, (t48 + t45) * t117);
+        let t123 = t122 - (t109 + t110);
+        let t124 = T::fused(t116, t111, t104 * t115);
+        let t125 = t59 * t60;
+        let t126 = (t59 - t60) * (t59 + t60);
+        let t127 = T::fused(-k(4.0), t124 * t125, t126 * t112);
+        let t128 = t62 * t64;
+        let t129 = t65 * t61;
+        let t130 = u4 - t117;
+        let t131 = T::fused(
+            -(t129 + t128),
+            t127,
+            (k(0.5) - T::fused(t65, t65, t73)) * t130,
         );
-        let t129 = t112 + t113 + t128;
-        let t130 = T::fused(
-            -(k(2.0) * (t127 - t126)),
-            t123,
-            k(2.0) * (k(0.5) - T::fused(t43, t43, t55)) * t125,
+        let t132 = t131 - (t118 + t119);
+        let t133 = T::fused(
+            -(k(0.5) - T::fused(t61, t61, t73)),
+            t127,
+            (t129 - t128) * t130,
         );
-        let t131 = t114 + t115 + t130;
-        let t132 = T::fused(k(2.0) * (t48 + t45), t123, k(2.0) * (t52 - t51) * t125);
-        let t133 = t116 + t117 + t132;
-        let t134 = T::fused(t121, t103, t120 * t118);
-        let t135 = u4 - t122;
-        let t136 = k(0.1) * t135;
-        let t137 = k(2.0) * t59;
-        let t138 = T::fused(-t59, t137, k(1.0));
-        let t139 = t60 * t137;
-        let t140 = T::fused(t138, t124, t139 * t134);
-        let t141 = k(0.1) * t140;
-        let t142 = t62 * t64;
-        let t143 = t65 * t61;
+        let t134 = t133 - (t120 + t121);
+        let t135 = T::fused(t70 - t69, t127, (t66 + t63) * t130);
+        let t136 = t135 - (t122 + t123);
+        let t137 = T::fused(t126, t124, t112 * t125);
+        let t138 = u5 - t127;
+        let t139 = t80 * t82;
+        let t140 = t83 * t79;
+        let t141 = t77 * t78;
+        let t142 = (t77 - t78) * (t77 + t78);
+        let t143 = T::fused(-k(4.0), t137 * t141, t142 * t130);
         let t144 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(t65, t65, t73)),
-            t136,
-            k(2.0) * (t143 + t142) * t141,
+            k(0.5) - T::fused(t83, t83, t87),
+            t143,
+            -T::fused(t140 + t139, t138, t131 + t132),
         );
-        let t145 = t128 + t129 + t144;
-        let t146 = T::fused(
-            k(2.0) * (t143 - t142),
-            t136,
-            k(2.0) * (k(0.5) - T::fused(t61, t61, t73)) * t141,
+        let t145 = T::fused(
+            t140 - t139,
+            t143,
+            -T::fused(k(0.5) - T::fused(t79, t79, t87), t138, t133 + t134),
         );
-        let t147 = t130 + t131 + t146;
-        let t148 = T::fused(-(k(2.0) * (t66 + t63)), t136, k(2.0) * (t70 - t69) * t141);
-        let t149 = t132 + t133 + t148;
-        let t150 = T::fused(-t139, t124, t138 * t134);
-        let t151 = k(2.0) * t77;
-        let t152 = T::fused(-t77, t151, k(1.0));
-        let t153 = t78 * t151;
-        let t154 = T::fused(-t152, t135, t153 * t150);
-        let t155 = k(0.1) * t154;
-        let t156 = u5 + t140;
-        let t157 = k(0.1) * t156;
-        let t158 = t80 * t82;
-        let t159 = t83 * t79;
-        let t160 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(t83, t83, t87))),
-            t155,
-            k(2.0) * (t159 + t158) * t157,
-        );
-        let t161 = T::fused(
-            -(k(2.0) * (t159 - t158)),
-            t155,
-            k(2.0) * (k(0.5) - T::fused(t79, t79, t87)) * t157,
-        );
-        let t162 = T::fused(k(2.0) * (t84 + t81), t155, k(2.0) * (t86 - t85) * t157);
+        let t146 = T::fused(t84 + t81, t143, T::fused(t86 - t85, t138, -(t135 + t136)));
         *y = [
             -(k(0.2) * t3),
             k(0.0),
@@ -9903,80 +9763,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             k(0.0),
             t2,
             k(0.0),
-            t15,
+            -(k(0.2) * t15),
             k(0.2) * t18,
-            t21,
+            k(0.2) * t21,
             t8,
             t12,
             t7,
             -t11,
-            t32,
-            t36,
-            t39,
+            -(k(0.2) * t32),
+            k(0.2) * t36,
+            k(0.2) * t39,
             t26,
             t29,
             t25,
             -t28,
-            t50,
-            t54,
-            t57,
+            -(k(0.2) * t50),
+            k(0.2) * t54,
+            k(0.2) * t57,
             t44,
             t47,
             t43,
             -t46,
-            t68,
-            t72,
-            t75,
+            -(k(0.2) * t68),
+            k(0.2) * t72,
+            k(0.2) * t75,
             t62,
             t65,
             t61,
             -t64,
-            T::fused(k(0.2), t84 - t81, t67 + t68),
-            T::fused(k(0.2), t86 + t85, t71 + t72),
-            T::fused(k(0.2), k(0.5) - T::fused(t82, t82, t87), t74 + t75),
+            -(k(0.2) * (t68 - (t67 + (t84 - t81)))),
+            k(0.2) * (t72 + (t71 + (t86 + t85))),
+            k(0.2) * (t75 + (t74 + (k(0.5) - T::fused(t82, t82, t87)))),
             t80,
             t83,
             t79,
             -t82,
-            t89,
+            k(0.2) * t88,
             k(0.0),
-            t90,
+            k(0.2) * t89,
             k(0.0),
             u0,
             k(0.0),
-            t98,
-            -t99,
-            t101,
+            k(0.4) * t94,
+            k(0.2) * t95,
+            k(0.4) * t97,
             u1,
-            t92,
-            -t102,
-            t113,
-            -t115,
+            -t92,
+            -(k(2.0) * t98),
+            k(0.2) * t106,
+            k(0.4) * t108,
+            k(0.2) * t110,
+            -t101,
+            t104,
+            k(2.0) * t111,
+            -(k(0.2) * t119),
+            k(0.2) * t121,
+            -(k(0.2) * t123),
+            t112,
             -t117,
-            t108,
-            t103,
-            -t118,
-            t129,
-            -t131,
-            -t133,
-            t124,
-            -t122,
-            -t134,
-            t145,
-            -t147,
-            -t149,
-            t140,
-            t135,
-            -t150,
-            t144 + t145 + t160,
-            -(t146 + t147 + t161),
-            -(t148 + t149 + t162),
-            t156,
-            -t154,
-            -T::fused(t153, t135, t152 * t150),
+            -(k(2.0) * t124),
+            k(0.2) * t132,
+            -(k(0.2) * t134),
+            k(0.2) * t136,
+            -t127,
+            t130,
+            k(2.0) * t137,
+            -(k(0.2) * t144),
+            k(0.2) * t145,
+            -(k(0.2) * t146),
+            t138,
+            -t143,
+            -(k(2.0) * T::fused(t142, t137, t130 * t141)),
         ];
     }
-    /// Writes the joint state of a maximal state: 265 operations (120 ±, 145 ×, 0 ÷) and 18 functions.
+    /// Writes the joint state of a maximal state: 248 operations (117 ±, 131 ×, 0 ÷) and 18 functions.
     fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -10020,124 +9880,125 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let x3 = x[3];
         let x4 = x[4];
         let x5 = x[5];
-        let t0 = x0.sin();
-        let t1 = k(2.0) * T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
-        let t2 = x0.cos();
-        let t3 = link_1_e2 * link_1_e2;
-        let t4 = link_1_e0 * link_1_e0;
-        let t5 = link_1_e3 * link_1_e3;
-        let t6 = k(1.0) - (t5 + (T::fused(link_1_e1, link_1_e1, t4) + t3));
-        let t7 = T::fused(k(2.0), k(0.5) - (t4 + t5), -t6);
-        let t8 = T::fused(t1, t2, t7 * t0).atan2(T::fused(-t7, t2, t1 * t0));
-        let t9 = x1.sin();
+        let t0 = link_1_e0 * link_1_e0;
+        let t1 = T::fused(link_1_e3, link_1_e3, t0);
+        let t2 = link_1_e2 * link_1_e2;
+        let t3 = k(0.5) * (k(1.0) - (t2 + T::fused(link_1_e1, link_1_e1, t1)));
+        let t4 = k(0.5) - t1 - t3;
+        let t5 = x0.cos();
+        let t6 = x0.sin();
+        let t7 = T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
+        let t8 = (k(2.0) * T::fused(t6, t4, t7 * t5))
+            .atan2(k(2.0) * T::fused(-t5, t4, t7 * t6));
+        let t9 = link_2_e3 * link_2_e3;
         let t10 = link_2_e0 * link_2_e0;
         let t11 = T::fused(link_2_e1, link_2_e1, t10);
-        let t12 = link_2_e3 * link_2_e3;
-        let t13 = k(1.0) - (t12 + T::fused(link_2_e2, link_2_e2, t11));
-        let t14 = T::fused(k(2.0), k(0.5) - (t10 + t12), -t13);
-        let t15 = link_1_e0 * link_1_e1;
-        let t16 = link_1_e2 * link_1_e3;
-        let t17 = k(2.0) * T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
-        let t18 = link_2_e0 * link_2_e2;
-        let t19 = link_2_e1 * link_2_e3;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = T::fused(
+        let t12 = k(0.5) * (k(1.0) - T::fused(link_2_e2, link_2_e2, t11 + t9));
+        let t13 = k(0.5) - (t10 + t9) - t12;
+        let t14 = link_2_e0 * link_2_e2;
+        let t15 = link_2_e1 * link_2_e3;
+        let t16 = t15 + t14;
+        let t17 = T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
+        let t18 = link_1_e0 * link_1_e1;
+        let t19 = link_1_e2 * link_1_e3;
+        let t20 = T::fused(t4, t13, T::fused(t7, t16, (t19 - t18) * t17));
+        let t21 = x1.cos();
+        let t22 = T::fused(
             -t17,
-            T::fused(k(2.0), k(0.5) - (t4 + t3), -t6),
-            k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2) * t20,
+            k(0.5) - (t0 + t2) - t3,
+            T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2) * t16,
         );
-        let t22 = T::fused(-(k(2.0) * (t16 + t15)), t14, t21);
-        let t23 = x1.cos();
-        let t24 = T::fused(t7, t14, T::fused(k(2.0) * (t16 - t15), t17, t1 * t20));
-        let t25 = -T::fused(t22, t23, t24 * t9).atan2(T::fused(-t22, t9, t24 * t23));
-        let t26 = x2.sin();
-        let t27 = link_3_e2 * link_3_e2;
-        let t28 = link_3_e0 * link_3_e0;
-        let t29 = link_3_e3 * link_3_e3;
-        let t30 = k(1.0) - (t29 + (T::fused(link_3_e1, link_3_e1, t28) + t27));
-        let t31 = T::fused(k(2.0), k(0.5) - (t28 + t29), -t30);
+        let t23 = T::fused(t19 + t18, t13, -t22);
+        let t24 = x1.sin();
+        let t25 = (k(4.0) * T::fused(-t24, t20, t21 * t23))
+            .atan2(k(4.0) * T::fused(t21, t20, t24 * t23));
+        let t26 = link_3_e0 * link_3_e0;
+        let t27 = T::fused(link_3_e3, link_3_e3, t26);
+        let t28 = link_3_e2 * link_3_e2;
+        let t29 = k(0.5) * (k(1.0) - (t28 + T::fused(link_3_e1, link_3_e1, t27)));
+        let t30 = k(0.5) - t27 - t29;
+        let t31 = T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
         let t32 = link_3_e0 * link_3_e1;
         let t33 = link_3_e2 * link_3_e3;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = k(2.0) * T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
-        let t36 = T::fused(
-            -(k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2)),
-            t34,
-            t35 * T::fused(k(2.0), k(0.5) - t11, -t13),
+        let t34 = t33 - t32;
+        let t35 = T::fused(t13, t30, T::fused(t16, t31, t17 * t34));
+        let t36 = x2.cos();
+        let t37 = T::fused(
+            -t31,
+            k(0.5) - t11 - t12,
+            T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2) * t34,
         );
-        let t37 = T::fused(k(2.0) * (t19 - t18), t31, t36);
-        let t38 = x2.cos();
-        let t39 = T::fused(t14, t31, T::fused(t17, t34, t20 * t35));
-        let t40 = -T::fused(t37, t38, t39 * t26).atan2(T::fused(-t37, t26, t39 * t38));
-        let t41 = x3.sin();
+        let t38 = T::fused(t15 - t14, t30, -t37);
+        let t39 = x2.sin();
+        let t40 = -(k(4.0) * T::fused(t39, t35, t36 * t38))
+            .atan2(-(k(4.0) * T::fused(-t36, t35, t39 * t38)));
+        let t41 = link_4_e3 * link_4_e3;
         let t42 = link_4_e0 * link_4_e0;
         let t43 = T::fused(link_4_e1, link_4_e1, t42);
-        let t44 = link_4_e3 * link_4_e3;
-        let t45 = k(1.0) - (t44 + T::fused(link_4_e2, link_4_e2, t43));
-        let t46 = T::fused(k(2.0), k(0.5) - (t42 + t44), -t45);
-        let t47 = k(2.0) * T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
-        let t48 = link_4_e0 * link_4_e2;
-        let t49 = link_4_e1 * link_4_e3;
-        let t50 = k(2.0) * (t49 + t48);
-        let t51 = T::fused(
-            -t47,
-            T::fused(k(2.0), k(0.5) - (t28 + t27), -t30),
-            k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2) * t50,
+        let t44 = k(0.5) * (k(1.0) - T::fused(link_4_e2, link_4_e2, t43 + t41));
+        let t45 = k(0.5) - (t42 + t41) - t44;
+        let t46 = link_4_e0 * link_4_e2;
+        let t47 = link_4_e1 * link_4_e3;
+        let t48 = t47 + t46;
+        let t49 = T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
+        let t50 = T::fused(t30, t45, T::fused(t31, t48, t34 * t49));
+        let t51 = x3.cos();
+        let t52 = T::fused(
+            -t49,
+            k(0.5) - (t26 + t28) - t29,
+            T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2) * t48,
         );
-        let t52 = T::fused(-(k(2.0) * (t33 + t32)), t46, t51);
-        let t53 = x3.cos();
-        let t54 = T::fused(t31, t46, T::fused(t34, t47, t35 * t50));
-        let t55 = -T::fused(t52, t53, t54 * t41).atan2(T::fused(-t52, t41, t54 * t53));
-        let t56 = x4.sin();
-        let t57 = link_5_e2 * link_5_e2;
-        let t58 = link_5_e0 * link_5_e0;
-        let t59 = link_5_e3 * link_5_e3;
-        let t60 = k(1.0) - (t59 + (T::fused(link_5_e1, link_5_e1, t58) + t57));
-        let t61 = T::fused(k(2.0), k(0.5) - (t58 + t59), -t60);
+        let t53 = T::fused(t33 + t32, t45, -t52);
+        let t54 = x3.sin();
+        let t55 = (k(4.0) * T::fused(-t54, t50, t51 * t53))
+            .atan2(k(4.0) * T::fused(t51, t50, t54 * t53));
+        let t56 = link_5_e0 * link_5_e0;
+        let t57 = T::fused(link_5_e3, link_5_e3, t56);
+        let t58 = link_5_e2 * link_5_e2;
+        let t59 = k(0.5) * (k(1.0) - (t58 + T::fused(link_5_e1, link_5_e1, t57)));
+        let t60 = k(0.5) - t57 - t59;
+        let t61 = T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
         let t62 = link_5_e0 * link_5_e1;
         let t63 = link_5_e2 * link_5_e3;
-        let t64 = k(2.0) * (t63 - t62);
-        let t65 = k(2.0) * T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
-        let t66 = T::fused(
-            -(k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2)),
-            t64,
-            t65 * T::fused(k(2.0), k(0.5) - t43, -t45),
+        let t64 = t63 - t62;
+        let t65 = T::fused(t45, t60, T::fused(t48, t61, t49 * t64));
+        let t66 = x4.cos();
+        let t67 = T::fused(
+            -t61,
+            k(0.5) - t43 - t44,
+            T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2) * t64,
         );
-        let t67 = T::fused(k(2.0) * (t49 - t48), t61, t66);
-        let t68 = x4.cos();
-        let t69 = T::fused(t46, t61, T::fused(t47, t64, t50 * t65));
-        let t70 = -T::fused(t67, t68, t69 * t56).atan2(T::fused(-t67, t56, t69 * t68));
-        let t71 = x5.sin();
+        let t68 = T::fused(t47 - t46, t60, -t67);
+        let t69 = x4.sin();
+        let t70 = -(k(4.0) * T::fused(t69, t65, t66 * t68))
+            .atan2(-(k(4.0) * T::fused(-t66, t65, t69 * t68)));
+        let t71 = link_6_e3 * link_6_e3;
         let t72 = link_6_e0 * link_6_e0;
-        let t73 = link_6_e3 * link_6_e3;
-        let t74 = T::fused(
-            k(2.0),
-            k(0.5) - (t72 + t73),
-            -(k(1.0)
-                - (t73
-                    + T::fused(
-                        link_6_e2,
-                        link_6_e2,
-                        T::fused(link_6_e1, link_6_e1, t72),
-                    ))),
+        let t73 = T::fused(
+            link_6_e1,
+            link_6_e1,
+            t72 + T::fused(k(2.0), k(0.5) - (t72 + t71), t71),
         );
-        let t75 = k(2.0) * T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3);
-        let t76 = k(2.0) * T::fused(link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
+        let t74 = k(0.5) * (k(1.0) - T::fused(link_6_e2, link_6_e2, t73));
+        let t75 = T::fused(-link_6_e0, link_6_e1, link_6_e2 * link_6_e3);
+        let t76 = T::fused(link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
         let t77 = T::fused(
             -t75,
-            T::fused(k(2.0), k(0.5) - (t58 + t57), -t60),
-            k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2) * t76,
+            k(0.5) - (t56 + t58) - t59,
+            T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2) * t76,
         );
-        let t78 = T::fused(-(k(2.0) * (t63 + t62)), t74, t77);
-        let t79 = x5.cos();
-        let t80 = T::fused(t61, t74, T::fused(t64, t75, t65 * t76));
-        let t81 = -T::fused(t78, t79, t80 * t71).atan2(T::fused(-t78, t71, t80 * t79));
+        let t78 = T::fused(t63 + t62, t74, t77);
+        let t79 = x5.sin();
+        let t80 = T::fused(-t60, t74, T::fused(t61, t76, t64 * t75));
+        let t81 = x5.cos();
+        let t82 = -(k(4.0) * T::fused(t81, t78, t79 * t80))
+            .atan2(k(4.0) * T::fused(-t79, t78, t81 * t80));
         x[0] = x0 + t8;
         x[1] = x1 + t25;
         x[2] = x2 + t40;
         x[3] = x3 + t55;
         x[4] = x4 + t70;
-        x[5] = x5 + t81;
+        x[5] = x5 + t82;
         x[6] = link_1_wy;
         x[7] = link_2_wx - link_1_wx;
         x[8] = link_3_wy - link_2_wy;
@@ -10145,7 +10006,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         x[10] = link_5_wy - link_4_wy;
         x[11] = link_6_wx - link_5_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 1207 operations (539 ±, 663 ×, 5 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 1213 operations (545 ±, 663 ×, 5 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -10186,83 +10047,85 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let (
             t2,
             t4,
-            t7,
-            t10,
-            t12,
-            t15,
+            t6,
+            t9,
+            t11,
+            t14,
+            t16,
             t17,
-            t19,
-            t23,
-            t24,
-            t27,
-            t28,
-            t34,
-            t35,
+            t21,
+            t22,
+            t25,
+            t26,
+            t32,
+            t33,
+            t37,
             t39,
-            t41,
-            t44,
+            t42,
+            t46,
             t48,
-            t50,
-            t55,
-            t56,
-            t59,
+            t53,
+            t54,
+            t57,
+            t61,
+            t62,
             t63,
-            t64,
             t66,
             t69,
-            t72,
-            t73,
-            t77,
-            t81,
+            t70,
+            t74,
+            t78,
+            t80,
             t83,
+            t84,
             t86,
-            t87,
-            t89,
-            t95,
+            t92,
+            t94,
+            t96,
             t97,
             t99,
             t100,
-            t102,
             t103,
+            t104,
+            t105,
             t106,
             t107,
-            t109,
+            t108,
             t110,
-            t111,
-            t112,
             t114,
-            t118,
-            t119,
-            t131,
+            t115,
+            t127,
+            t128,
             t132,
             t136,
-            t140,
+            t137,
+            t138,
             t141,
             t142,
+            t144,
             t145,
-            t146,
-            t148,
             t149,
-            t153,
-            t159,
-            t161,
-            t166,
-            t168,
-            t169,
+            t155,
+            t157,
+            t162,
+            t164,
+            t165,
+            t167,
+            t170,
             t171,
+            t172,
             t174,
-            t175,
-            t176,
-            t178,
+            t177,
+            t179,
             t181,
+            t182,
             t183,
             t185,
-            t186,
+            t187,
             t188,
+            t189,
             t190,
-            t191,
             t192,
-            t193,
             t194,
             t195,
             t196,
@@ -10279,12 +10142,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
                 ),
             );
-            let t1 = k(2.0) * t0;
-            let t2 = T::fused(-t0, t1, k(1.0));
-            let t3 = T::fused(k(0.05), t2, k(0.05));
-            let t4 = k(0.1) + t3;
-            let t5 = k(0.0066) * t2;
-            let t6 = T::fused(
+            let t1 = T::fused(
                 link_5_e3,
                 link_6_e3,
                 T::fused(
@@ -10293,14 +10151,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
                 ),
             );
-            let t7 = t6 * t1;
-            let t8 = k(0.0002) * t7;
-            let t9 = k(0.0016)
-                + T::fused(k(0.01), t2, k(0.005) + T::fused(t2, t5, t7 * t8));
-            let t10 = k(1.0) / T::fused(k(0.2), t3, k(0.01) + t9);
-            let t11 = t10 * t4;
-            let t12 = t4 * t11;
-            let t13 = T::fused(
+            let t2 = (t1 + t0) * (t1 - t0);
+            let t3 = T::fused(k(0.05), t2, k(0.05));
+            let t4 = k(0.1) + t3;
+            let t5 = k(0.0066) * t2;
+            let t6 = t1 * (k(2.0) * t0);
+            let t7 = k(0.0002) * t6;
+            let t8 = k(0.0016)
+                + T::fused(k(0.01), t2, k(0.005) + T::fused(t2, t5, t6 * t7));
+            let t9 = k(1.0) / T::fused(k(0.2), t3, k(0.01) + t8);
+            let t10 = t9 * t4;
+            let t11 = t4 * t10;
+            let t12 = T::fused(
                 -link_4_e1,
                 link_5_e3,
                 T::fused(
@@ -10309,11 +10171,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
                 ),
             );
-            let t14 = k(2.0) * t13;
-            let t15 = T::fused(-t13, t14, k(1.0));
-            let t16 = t15 * t12;
-            let t17 = t7 * (k(0.373134328358209) * t7);
-            let t18 = T::fused(
+            let t13 = T::fused(
                 link_4_e3,
                 link_5_e3,
                 T::fused(
@@ -10322,52 +10180,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
                 ),
             );
-            let t19 = t18 * t14;
-            let t20 = t19 * t17;
-            let t21 = T::fused(t15, t16, t19 * t20);
-            let t22 = k(0.373134328358209) * t2;
-            let t23 = t7 * t22;
-            let t24 = k(0.2) * t23;
-            let t25 = t19 * t24;
-            let t26 = k(0.005) * t7;
-            let t27 = t26 + (t26 - T::fused(-t7, t5, t2 * t8));
-            let t28 = T::fused(-k(0.05), t7, t27 * t11);
-            let t29 = t15 * t28;
-            let t30 = T::fused(-t15, t25, t19 * t29);
-            let t31 = t19 * t23;
-            let t32 = k(0.1) * t31;
-            let t33 = t32 - t30;
-            let t34 = t32 + t33;
-            let t35 = t2 * t22;
-            let t36 = k(0.01) * t35;
-            let t37 = k(0.1) * t35;
-            let t38 = k(0.05) - t37;
-            let t39 = T::fused(-k(0.2), t38, t36)
-                - (k(0.01) + (k(0.0017) + (k(0.005) - t36)));
-            let t40 = t15 * t39;
-            let t41 = T::fused(
-                t27,
-                t10 * t27,
-                -(k(0.0002) + T::fused(t7, k(0.0066) * t7, t2 * (k(0.0002) * t2))),
+            let t14 = (t13 + t12) * (t13 - t12);
+            let t15 = t14 * t11;
+            let t16 = t6 * (k(0.373134328358209) * t6);
+            let t17 = t13 * (k(2.0) * t12);
+            let t18 = t17 * t16;
+            let t19 = T::fused(t14, t15, t17 * t18);
+            let t20 = k(0.373134328358209) * t2;
+            let t21 = t6 * t20;
+            let t22 = k(0.2) * t21;
+            let t23 = t17 * t22;
+            let t24 = k(0.005) * t6;
+            let t25 = t24 + (t24 - T::fused(-t6, t5, t2 * t7));
+            let t26 = T::fused(-k(0.05), t6, t25 * t10);
+            let t27 = t14 * t26;
+            let t28 = T::fused(-t14, t23, t17 * t27);
+            let t29 = t17 * t21;
+            let t30 = k(0.1) * t29;
+            let t31 = t30 - t28;
+            let t32 = t30 + t31;
+            let t33 = t2 * t20;
+            let t34 = k(0.01) * t33;
+            let t35 = k(0.1) * t33;
+            let t36 = k(0.05) - t35;
+            let t37 = T::fused(-k(0.2), t36, t34)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t34)));
+            let t38 = t14 * t37;
+            let t39 = T::fused(
+                t25,
+                t9 * t25,
+                -(k(0.0002) + T::fused(t6, k(0.0066) * t6, t2 * (k(0.0002) * t2))),
             );
-            let t42 = t19 * t41;
-            let t43 = k(0.1) - t37;
-            let t44 = t43 + t38;
-            let t45 = t15 * t44;
-            let t46 = T::fused(-k(0.2), t45, t36)
-                - (k(0.01) - T::fused(t15, t40, t19 * t42));
-            let t47 = t43 + t45;
-            let t48 = k(1.0)
-                / (T::fused(k(0.2), t47, -t36) + (k(0.015) + (k(0.0017) - t46)));
-            let t49 = t48 * t34;
-            let t50 = T::fused(t34, t49, t21);
-            let t51 = k(0.1) * t50;
-            let t52 = k(0.1) * t21;
-            let t53 = k(0.1) - t52;
-            let t54 = k(0.01) * t31;
-            let t55 = t54 + T::fused(k(0.1), t33, t54) + T::fused(-k(0.1), t30, t54);
-            let t56 = T::fused(t49, t55, -(k(0.15) - t52 + t53));
-            let t57 = T::fused(
+            let t40 = t17 * t39;
+            let t41 = k(0.1) - t35;
+            let t42 = t41 + t36;
+            let t43 = t14 * t42;
+            let t44 = T::fused(-k(0.2), t43, t34)
+                - (k(0.01) - T::fused(t14, t38, t17 * t40));
+            let t45 = t41 + t43;
+            let t46 = k(1.0)
+                / (T::fused(k(0.2), t45, -t34) + (k(0.015) + (k(0.0017) - t44)));
+            let t47 = t46 * t32;
+            let t48 = T::fused(t32, t47, t19);
+            let t49 = k(0.1) * t48;
+            let t50 = k(0.1) * t19;
+            let t51 = k(0.1) - t50;
+            let t52 = k(0.01) * t29;
+            let t53 = t52 + T::fused(k(0.1), t31, t52) + T::fused(-k(0.1), t28, t52);
+            let t54 = T::fused(t47, t53, -(k(0.15) - t50 + t51));
+            let t55 = T::fused(
                 link_3_e2,
                 link_4_e3,
                 T::fused(
@@ -10376,14 +10237,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
                 ),
             );
-            let t58 = k(2.0) * t57;
-            let t59 = T::fused(-t57, t58, k(1.0));
-            let t60 = T::fused(t19, t25, t15 * t29);
-            let t61 = t19 * t44;
-            let t62 = k(0.1) * t61;
-            let t63 = t62 + (t62 + T::fused(-t19, t40, t15 * t42));
-            let t64 = T::fused(t49, t63, -t60);
-            let t65 = T::fused(
+            let t56 = T::fused(
                 link_3_e3,
                 link_4_e3,
                 T::fused(
@@ -10392,36 +10246,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
                 ),
             );
-            let t66 = t65 * t58;
-            let t67 = T::fused(t59, t56, t66 * t64);
-            let t68 = k(0.15) - t51 - t67;
-            let t69 = t68 + (k(0.2) - t51);
-            let t70 = k(0.01) * t21;
-            let t71 = t48 * t55;
-            let t72 = T::fused(
-                t55,
-                t71,
-                -(T::fused(k(0.2), t53, -t70)
-                    + (k(0.015) + (k(0.0016) + (k(0.01) - t70)))),
+            let t57 = (t56 + t55) * (t56 - t55);
+            let t58 = T::fused(t17, t23, t14 * t27);
+            let t59 = t17 * t42;
+            let t60 = k(0.1) * t59;
+            let t61 = t60 + (t60 + T::fused(-t17, t38, t14 * t40));
+            let t62 = T::fused(t47, t61, -t58);
+            let t63 = t56 * (k(2.0) * t55);
+            let t64 = T::fused(t57, t54, t63 * t62);
+            let t65 = k(0.15) - t49 - t64;
+            let t66 = t65 + (k(0.2) - t49);
+            let t67 = k(0.01) * t19;
+            let t68 = t46 * t53;
+            let t69 = T::fused(
+                t53,
+                t68,
+                -(T::fused(k(0.2), t51, -t67)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t67)))),
             );
-            let t73 = T::fused(-k(0.2), t60, t63 * t71);
-            let t74 = t66 * t73;
-            let t75 = T::fused(t59, t72, t74);
-            let t76 = t59 * t73;
-            let t77 = T::fused(
-                t63,
-                t48 * t63,
-                -(k(0.0002) - T::fused(t19, t19 * t39, t15 * (t15 * t41))),
+            let t70 = T::fused(-k(0.2), t58, t61 * t68);
+            let t71 = t63 * t70;
+            let t72 = T::fused(t57, t69, t71);
+            let t73 = t57 * t70;
+            let t74 = T::fused(
+                t61,
+                t46 * t61,
+                -(k(0.0002) - T::fused(t17, t17 * t37, t14 * (t14 * t39))),
             );
-            let t78 = T::fused(t66, t77, t76);
-            let t79 = k(0.01) * t50;
-            let t80 = T::fused(k(0.2), t67, t79)
-                - (k(0.015) - T::fused(t59, t75, t66 * t78));
-            let t81 = k(1.0)
-                / (T::fused(k(0.2), t68, -t79) + (k(0.02) + (k(0.0016) - t80)));
-            let t82 = t81 * t69;
-            let t83 = T::fused(t69, t82, t50);
-            let t84 = T::fused(
+            let t75 = T::fused(t63, t74, t73);
+            let t76 = k(0.01) * t48;
+            let t77 = T::fused(k(0.2), t64, t76)
+                - (k(0.015) - T::fused(t57, t72, t63 * t75));
+            let t78 = k(1.0)
+                / (T::fused(k(0.2), t65, -t76) + (k(0.02) + (k(0.0016) - t77)));
+            let t79 = t78 * t66;
+            let t80 = T::fused(t66, t79, t48);
+            let t81 = T::fused(
                 -link_2_e1,
                 link_3_e3,
                 T::fused(
@@ -10430,30 +10290,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
                 ),
             );
-            let t85 = k(2.0) * t84;
-            let t86 = T::fused(-t84, t85, k(1.0));
-            let t87 = t47 + (k(0.15) - t37);
-            let t88 = t48 * t87;
-            let t89 = T::fused(-k(0.2), t31, t55 * t88);
-            let t90 = T::fused(-t19, t16, t15 * t20);
-            let t91 = t15 * t24;
-            let t92 = t19 * t28;
-            let t93 = t15 * t23;
-            let t94 = k(0.1) * t93;
-            let t95 = t94 + (t94 + T::fused(t15, t91, t19 * t92));
-            let t96 = t48 * t95;
-            let t97 = T::fused(k(0.2), t90, t55 * t96);
-            let t98 = T::fused(-t66, t89, t59 * t97);
-            let t99 = T::fused(-t63, t88, t61);
-            let t100 = T::fused(t63, t96, T::fused(-t19, t91, t15 * t92));
-            let t101 = T::fused(t66, t99, t59 * t100);
-            let t102 = T::fused(-t49, t87, t31);
-            let t103 = T::fused(t49, t95, t90);
-            let t104 = T::fused(t66, t102, t59 * t103);
-            let t105 = k(0.1) * t104;
-            let t106 = t105 + (t105 + T::fused(t59, t98, t66 * t101));
-            let t107 = T::fused(-t106, t82, t104);
-            let t108 = T::fused(
+            let t82 = T::fused(
                 link_2_e3,
                 link_3_e3,
                 T::fused(
@@ -10462,99 +10299,121 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
                 ),
             );
-            let t109 = t108 * t85;
-            let t110 = T::fused(t86, t83, t109 * t107);
-            let t111 = T::fused(t87, t88, t35);
-            let t112 = T::fused(-t95, t88, t93);
-            let t113 = t59 * t112;
-            let t114 = T::fused(t95, t96, T::fused(t19, t19 * t12, t15 * (t15 * t17)));
-            let t115 = t66 * t112;
-            let t116 = T::fused(
-                t66,
-                T::fused(t66, t111, t113),
-                t59 * T::fused(t59, t114, t115),
+            let t83 = (t82 + t81) * (t82 - t81);
+            let t84 = t45 + (k(0.15) - t35);
+            let t85 = t46 * t84;
+            let t86 = T::fused(-k(0.2), t29, t53 * t85);
+            let t87 = T::fused(-t17, t15, t14 * t18);
+            let t88 = t14 * t22;
+            let t89 = t17 * t26;
+            let t90 = t14 * t21;
+            let t91 = k(0.1) * t90;
+            let t92 = t91 + (t91 + T::fused(t14, t88, t17 * t89));
+            let t93 = t46 * t92;
+            let t94 = T::fused(k(0.2), t87, t53 * t93);
+            let t95 = T::fused(-t63, t86, t57 * t94);
+            let t96 = T::fused(-t61, t85, t59);
+            let t97 = T::fused(t61, t93, T::fused(-t17, t88, t14 * t89));
+            let t98 = T::fused(t63, t96, t57 * t97);
+            let t99 = T::fused(-t47, t84, t29);
+            let t100 = T::fused(t47, t92, t87);
+            let t101 = T::fused(t63, t99, t57 * t100);
+            let t102 = k(0.1) * t101;
+            let t103 = t102 + (t102 + T::fused(t57, t95, t63 * t98));
+            let t104 = T::fused(-t103, t79, t101);
+            let t105 = t82 * (k(2.0) * t81);
+            let t106 = T::fused(t83, t80, t105 * t104);
+            let t107 = T::fused(t84, t85, t33);
+            let t108 = T::fused(-t92, t85, t90);
+            let t109 = t57 * t108;
+            let t110 = T::fused(t92, t93, T::fused(t17, t17 * t11, t14 * (t14 * t16)));
+            let t111 = t63 * t108;
+            let t112 = T::fused(
+                t63,
+                T::fused(t63, t107, t109),
+                t57 * T::fused(t57, t110, t111),
             );
-            let t117 = t81 * t106;
-            let t118 = T::fused(t106, t117, t116);
-            let t119 = T::fused(t86, t107, t109 * t118);
-            let t120 = T::fused(t86, t110, t109 * t119);
-            let t121 = k(0.01) * t120;
-            let t122 = k(0.1) * t120;
-            let t123 = k(0.2) - t122;
-            let t124 = T::fused(-t59, t102, t66 * t103);
-            let t125 = T::fused(t59, t89, t66 * t97);
-            let t126 = T::fused(-t59, t99, t66 * t100);
-            let t127 = T::fused(t59, t125, t66 * t126);
-            let t128 = k(0.01) * t124;
-            let t129 = k(0.1) * t124;
-            let t130 = t129 + t127;
-            let t131 = t128 + T::fused(k(0.1), t130, t128)
-                + T::fused(k(0.1), t127, t128);
-            let t132 = T::fused(-k(0.2), t124, t131 * t82);
-            let t133 = T::fused(-t59, t111, t115);
-            let t134 = T::fused(t66, t114, -t113);
-            let t135 = T::fused(t66, t133, t59 * t134);
-            let t136 = T::fused(k(0.2), t135, t131 * t117);
-            let t137 = T::fused(-t86, t132, t109 * t136);
-            let t138 = T::fused(-t66, t56, t59 * t64);
-            let t139 = k(0.1) * t138;
-            let t140 = t139 + (t139 + T::fused(-t66, t75, t59 * t78));
-            let t141 = T::fused(-t140, t82, t138);
-            let t142 = T::fused(t140, t117, T::fused(-t66, t98, t59 * t101));
-            let t143 = T::fused(t86, t141, t109 * t142);
-            let t144 = T::fused(-t86, t137, t109 * t143);
-            let t145 = t129 + t130;
-            let t146 = T::fused(-t145, t82, t124);
-            let t147 = t81 * t145;
-            let t148 = T::fused(t147, t106, t135);
-            let t149 = T::fused(t86, t146, t109 * t148);
-            let t150 = k(0.01) * t149;
-            let t151 = k(0.1) * t149;
-            let t152 = t151 - t144;
-            let t153 = t150 + T::fused(k(0.1), t152, t150)
-                + T::fused(-k(0.1), t144, t150);
-            let t154 = T::fused(-t59, t133, t66 * t134);
-            let t155 = k(0.01) * t154;
-            let t156 = k(0.1) * t154;
-            let t157 = k(0.15) - t156;
-            let t158 = t81 * t131;
-            let t159 = T::fused(
-                t131,
-                t158,
-                -(T::fused(k(0.2), t157, -t155)
-                    + (k(0.02) + (k(0.0017) + (k(0.015) - t155)))),
+            let t113 = t78 * t103;
+            let t114 = T::fused(t103, t113, t112);
+            let t115 = T::fused(t83, t104, t105 * t114);
+            let t116 = T::fused(t83, t106, t105 * t115);
+            let t117 = k(0.01) * t116;
+            let t118 = k(0.1) * t116;
+            let t119 = k(0.2) - t118;
+            let t120 = T::fused(-t57, t99, t63 * t100);
+            let t121 = T::fused(t57, t86, t63 * t94);
+            let t122 = T::fused(-t57, t96, t63 * t97);
+            let t123 = T::fused(t57, t121, t63 * t122);
+            let t124 = k(0.01) * t120;
+            let t125 = k(0.1) * t120;
+            let t126 = t125 + t123;
+            let t127 = t124 + T::fused(k(0.1), t126, t124)
+                + T::fused(k(0.1), t123, t124);
+            let t128 = T::fused(-k(0.2), t120, t127 * t79);
+            let t129 = T::fused(-t57, t107, t111);
+            let t130 = T::fused(t63, t110, -t109);
+            let t131 = T::fused(t63, t129, t57 * t130);
+            let t132 = T::fused(k(0.2), t131, t127 * t113);
+            let t133 = T::fused(-t83, t128, t105 * t132);
+            let t134 = T::fused(-t63, t54, t57 * t62);
+            let t135 = k(0.1) * t134;
+            let t136 = t135 + (t135 + T::fused(-t63, t72, t57 * t75));
+            let t137 = T::fused(-t136, t79, t134);
+            let t138 = T::fused(t136, t113, T::fused(-t63, t95, t57 * t98));
+            let t139 = T::fused(t83, t137, t105 * t138);
+            let t140 = T::fused(-t83, t133, t105 * t139);
+            let t141 = t125 + t126;
+            let t142 = T::fused(-t141, t79, t120);
+            let t143 = t78 * t141;
+            let t144 = T::fused(t143, t103, t131);
+            let t145 = T::fused(t83, t142, t105 * t144);
+            let t146 = k(0.01) * t145;
+            let t147 = k(0.1) * t145;
+            let t148 = t147 - t140;
+            let t149 = t146 + T::fused(k(0.1), t148, t146)
+                + T::fused(-k(0.1), t140, t146);
+            let t150 = T::fused(-t57, t129, t63 * t130);
+            let t151 = k(0.01) * t150;
+            let t152 = k(0.1) * t150;
+            let t153 = k(0.15) - t152;
+            let t154 = t78 * t127;
+            let t155 = T::fused(
+                t127,
+                t154,
+                -(T::fused(k(0.2), t153, -t151)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t151)))),
             );
-            let t160 = T::fused(-t66, t125, t59 * t126);
-            let t161 = T::fused(k(0.2), t160, t140 * t158);
-            let t162 = t109 * t161;
-            let t163 = T::fused(-t86, t159, t162);
-            let t164 = t86 * t161;
-            let t165 = T::fused(
-                t66,
-                T::fused(-t66, t72, t76),
-                t59 * T::fused(-t59, t77, t74),
+            let t156 = T::fused(-t63, t121, t57 * t122);
+            let t157 = T::fused(k(0.2), t156, t136 * t154);
+            let t158 = t105 * t157;
+            let t159 = T::fused(-t83, t155, t158);
+            let t160 = t83 * t157;
+            let t161 = T::fused(
+                t63,
+                T::fused(-t63, t69, t73),
+                t57 * T::fused(-t57, t74, t71),
             );
-            let t166 = T::fused(t140, t81 * t140, -(k(0.0002) + t165));
-            let t167 = T::fused(t109, t166, -t164);
-            let t168 = T::fused(t147, t131, -(k(0.2) - t156 + t157));
-            let t169 = T::fused(t147, t140, t160);
-            let t170 = T::fused(-t86, t168, t109 * t169);
-            let t171 = T::fused(t145, t147, t154);
-            let t172 = k(0.01) * t171;
-            let t173 = T::fused(-k(0.2), t170, t172)
-                - (k(0.02) - T::fused(-t86, t163, t109 * t167));
-            let t174 = k(0.1) * t171;
-            let t175 = k(0.2) - t174 + t170;
-            let t176 = k(1.0)
-                / (T::fused(k(0.2), t175, -t172) + (k(0.025) + (k(0.0017) - t173)));
-            let t177 = t176 * t153;
-            let t178 = T::fused(
-                t153,
-                t177,
-                -(T::fused(k(0.2), t123, -t121)
-                    + (k(0.025) + (k(0.0016) + (k(0.02) - t121)))),
+            let t162 = T::fused(t136, t78 * t136, -(k(0.0002) + t161));
+            let t163 = T::fused(t105, t162, -t160);
+            let t164 = T::fused(t143, t127, -(k(0.2) - t152 + t153));
+            let t165 = T::fused(t143, t136, t156);
+            let t166 = T::fused(-t83, t164, t105 * t165);
+            let t167 = T::fused(t141, t143, t150);
+            let t168 = k(0.01) * t167;
+            let t169 = T::fused(-k(0.2), t166, t168)
+                - (k(0.02) - T::fused(-t83, t159, t105 * t163));
+            let t170 = k(0.1) * t167;
+            let t171 = k(0.2) - t170 + t166;
+            let t172 = k(1.0)
+                / (T::fused(k(0.2), t171, -t168) + (k(0.025) + (k(0.0017) - t169)));
+            let t173 = t172 * t149;
+            let t174 = T::fused(
+                t149,
+                t173,
+                -(T::fused(k(0.2), t119, -t117)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t117)))),
             );
-            let t179 = T::fused(
+            let t175 = T::fused(
                 link_1_e2,
                 link_2_e3,
                 T::fused(
@@ -10563,14 +10422,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
                 ),
             );
-            let t180 = k(2.0) * t179;
-            let t181 = T::fused(-t179, t180, k(1.0));
-            let t182 = T::fused(t109, t137, t86 * t143);
-            let t183 = T::fused(t109, t168, t86 * t169);
-            let t184 = k(0.1) * t183;
-            let t185 = t184 + (t184 - T::fused(t109, t163, t86 * t167));
-            let t186 = T::fused(k(0.2), t182, t185 * t177);
-            let t187 = T::fused(
+            let t176 = T::fused(
                 link_1_e3,
                 link_2_e3,
                 T::fused(
@@ -10579,106 +10431,121 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
                 ),
             );
-            let t188 = t187 * t180;
-            let t189 = T::fused(
-                t109,
-                T::fused(t109, t159, t164),
-                t86 * T::fused(t86, t166, t162),
+            let t177 = (t176 + t175) * (t176 - t175);
+            let t178 = T::fused(t105, t133, t83 * t139);
+            let t179 = T::fused(t105, t164, t83 * t165);
+            let t180 = k(0.1) * t179;
+            let t181 = t180 + (t180 - T::fused(t105, t159, t83 * t163));
+            let t182 = T::fused(k(0.2), t178, t181 * t173);
+            let t183 = t176 * (k(2.0) * t175);
+            let t184 = T::fused(
+                t105,
+                T::fused(t105, t155, t160),
+                t83 * T::fused(t83, t162, t158),
             );
-            let t190 = T::fused(t185, t176 * t185, -(k(0.0002) - t189));
-            let t191 = T::fused(
-                t181,
-                T::fused(t181, t178, t188 * t186),
-                t188 * T::fused(t181, t186, t188 * t190),
+            let t185 = T::fused(t181, t172 * t181, -(k(0.0002) - t184));
+            let t186 = T::fused(
+                t177,
+                T::fused(t177, t174, t183 * t182),
+                t183 * T::fused(t177, t182, t183 * t185),
             );
-            let t192 = t151 + t152;
-            let t193 = t176 * t192;
-            let t194 = T::fused(t193, t153, -(k(0.25) - t122 + t123));
-            let t195 = T::fused(t193, t185, t182);
-            let t196 = T::fused(t181, t194, t188 * t195);
-            let t197 = T::fused(t192, t193, t120);
-            let t198 = k(0.01) * t197;
-            let t199 = k(0.1) * t197;
+            let t187 = t147 + t148;
+            let t188 = t172 * t187;
+            let t189 = T::fused(t188, t149, -(k(0.25) - t118 + t119));
+            let t190 = T::fused(t188, t181, t178);
+            let t191 = T::fused(t177, t189, t183 * t190);
+            let t192 = T::fused(t187, t188, t116);
+            let t193 = k(0.01) * t192;
+            let t194 = k(0.1) * t192;
+            let t195 = k(0.25) - t194 - t191;
+            let t196 = T::fused(k(0.2), t195, -t193)
+                + (k(0.03)
+                    + (k(0.0016) - (T::fused(k(0.2), t191, t193) - (k(0.025) - t186))));
+            let t197 = link_1_wy * t183;
+            let t198 = link_1_wx - link_2_wx;
+            let t199 = t198 * t197;
             (
                 t2,
                 t4,
-                t7,
-                t10,
-                t12,
-                t15,
+                t6,
+                t9,
+                t11,
+                t14,
+                t16,
                 t17,
-                t19,
-                t23,
-                t24,
-                t27,
-                t28,
-                t34,
-                t35,
+                t21,
+                t22,
+                t25,
+                t26,
+                t32,
+                t33,
+                t37,
                 t39,
-                t41,
-                t44,
+                t42,
+                t46,
                 t48,
-                t50,
-                t55,
-                t56,
-                t59,
+                t53,
+                t54,
+                t57,
+                t61,
+                t62,
                 t63,
-                t64,
                 t66,
                 t69,
-                t72,
-                t73,
-                t77,
-                t81,
+                t70,
+                t74,
+                t78,
+                t80,
                 t83,
+                t84,
                 t86,
-                t87,
-                t89,
-                t95,
+                t92,
+                t94,
+                t96,
                 t97,
                 t99,
                 t100,
-                t102,
                 t103,
+                t104,
+                t105,
                 t106,
                 t107,
-                t109,
+                t108,
                 t110,
-                t111,
-                t112,
                 t114,
-                t118,
-                t119,
-                t131,
+                t115,
+                t127,
+                t128,
                 t132,
                 t136,
-                t140,
+                t137,
+                t138,
                 t141,
                 t142,
+                t144,
                 t145,
-                t146,
-                t148,
                 t149,
-                t153,
-                t159,
-                t161,
-                t166,
-                t168,
-                t169,
+                t155,
+                t157,
+                t162,
+                t164,
+                t165,
+                t167,
+                t170,
                 t171,
+                t172,
                 t174,
-                t175,
-                t176,
-                t178,
+                t177,
+                t179,
                 t181,
+                t182,
                 t183,
                 t185,
-                t186,
+                t187,
                 t188,
+                t189,
                 t190,
-                t191,
                 t192,
-                t193,
                 t194,
                 t195,
                 t196,
@@ -10688,350 +10555,346 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             )
         };
         let (
-            t232,
+            t227,
+            t236,
             t241,
-            t246,
-            t352,
-            t357,
-            t360,
-            t367,
-            t370,
+            t346,
+            t351,
+            t354,
+            t361,
+            t364,
+            t371,
+            t374,
             t377,
-            t380,
-            t383,
-            t385,
-            t387,
+            t379,
+            t381,
         ) = {
-            let t200 = k(0.25) - t199 - t196;
-            let t201 = T::fused(k(0.2), t200, -t198)
-                + (k(0.03)
-                    + (k(0.0016) - (T::fused(k(0.2), t196, t198) - (k(0.025) - t191))));
-            let t202 = link_1_wy * t188;
-            let t203 = link_1_wx - link_2_wx;
-            let t204 = t203 * t202;
-            let t205 = T::fused(t203, t109, t86 * t202);
-            let t206 = T::fused(-t203, t86, t109 * t202);
-            let t207 = link_3_wx - link_4_wx;
-            let t208 = t207 - t206;
-            let t209 = link_1_wy * t181;
-            let t210 = link_2_wy - link_3_wy;
-            let t211 = t210 - t209;
-            let t212 = T::fused(-t66, t211, t59 * t205);
-            let t213 = T::fused(-t15, t208, t19 * t212);
-            let t214 = T::fused(t19, t208, t15 * t212);
-            let t215 = T::fused(t59, t211, t66 * t205);
-            let t216 = link_4_wy - link_5_wy;
-            let t217 = t216 + t215;
-            let t218 = T::fused(-t7, t217, t2 * t214);
-            let t219 = link_5_wx - link_6_wx;
-            let t220 = t219 - t213;
-            let t221 = k(0.1) * t220;
-            let t222 = k(0.1) * t213;
-            let t223 = t214 * t222;
-            let t224 = T::fused(-t221, t218, t223);
-            let t225 = t219 * t218;
-            let t226 = T::fused(
+            let t200 = T::fused(t198, t105, t83 * t197);
+            let t201 = T::fused(-t198, t83, t105 * t197);
+            let t202 = link_3_wx - link_4_wx;
+            let t203 = t202 - t201;
+            let t204 = link_1_wy * t177;
+            let t205 = link_2_wy - link_3_wy;
+            let t206 = t205 - t204;
+            let t207 = T::fused(-t63, t206, t57 * t200);
+            let t208 = T::fused(-t14, t203, t17 * t207);
+            let t209 = T::fused(t17, t203, t14 * t207);
+            let t210 = T::fused(t57, t206, t63 * t200);
+            let t211 = link_4_wy - link_5_wy;
+            let t212 = t211 + t210;
+            let t213 = T::fused(-t6, t212, t2 * t209);
+            let t214 = link_5_wx - link_6_wx;
+            let t215 = t214 - t208;
+            let t216 = k(0.1) * t215;
+            let t217 = k(0.1) * t208;
+            let t218 = t209 * t217;
+            let t219 = T::fused(-t216, t213, t218);
+            let t220 = t214 * t213;
+            let t221 = T::fused(
                 k(0.0015),
-                t220 * t218,
-                T::fused(-k(0.05), t224, k(0.0066) * t225),
+                t215 * t213,
+                T::fused(-k(0.05), t219, k(0.0066) * t220),
             );
-            let t227 = T::fused(t2, t217, t7 * t214);
-            let t228 = T::fused(k(0.0001), t227 * t220, k(0.0002) * (t219 * t227));
-            let t229 = T::fused(-k(0.5), t224, k(0.05) * t225);
-            let t230 = k(0.1) * t229;
-            let t231 = T::fused(
+            let t222 = T::fused(t2, t212, t6 * t209);
+            let t223 = T::fused(k(0.0001), t222 * t215, k(0.0002) * (t214 * t222));
+            let t224 = T::fused(-k(0.5), t219, k(0.05) * t220);
+            let t225 = k(0.1) * t224;
+            let t226 = T::fused(
                 -k(0.0015),
-                t214 * t213,
-                t230 + T::fused(t2, t226, t7 * t228),
+                t209 * t208,
+                t225 + T::fused(t2, t221, t6 * t223),
             );
-            let t232 = t230 + t231;
-            let t233 = t10 * t232;
-            let t234 = k(0.1) * t208;
-            let t235 = t212 * t234;
-            let t236 = k(0.1) * t215;
-            let t237 = T::fused(t208, t234, t215 * t236);
-            let t238 = T::fused(t15, t235, t19 * t237) - t223;
-            let t239 = t216 * t213;
-            let t240 = T::fused(t28, t239, T::fused(-t12, t238, t238))
-                + T::fused(-t4, t233, t229);
-            let t241 = t227 * t218;
-            let t242 = k(0.1) * t227;
-            let t243 = k(0.1) * t217;
-            let t244 = t214 * t243;
-            let t245 = T::fused(t213, t222, t217 * t243);
-            let t246 = T::fused(-t242, t218, T::fused(-t2, t244, t7 * t245));
-            let t247 = T::fused(
+            let t227 = t225 + t226;
+            let t228 = t9 * t227;
+            let t229 = k(0.1) * t203;
+            let t230 = t207 * t229;
+            let t231 = k(0.1) * t210;
+            let t232 = T::fused(t203, t229, t210 * t231);
+            let t233 = T::fused(t14, t230, t17 * t232) - t218;
+            let t234 = t211 * t208;
+            let t235 = T::fused(t26, t234, T::fused(-t11, t233, t233))
+                + T::fused(-t4, t228, t224);
+            let t236 = t222 * t213;
+            let t237 = k(0.1) * t222;
+            let t238 = k(0.1) * t212;
+            let t239 = t209 * t238;
+            let t240 = T::fused(t208, t217, t212 * t238);
+            let t241 = T::fused(-t237, t213, T::fused(-t2, t239, t6 * t240));
+            let t242 = T::fused(
                 k(0.010447761194029851),
-                t241,
-                k(0.12686567164179105) * t246,
+                t236,
+                k(0.12686567164179105) * t241,
             );
-            let t248 = T::fused(t7, t244, t2 * t245) + T::fused(t220, t221, t227 * t242);
-            let t249 = k(0.5) * t248;
-            let t250 = t212 * t236;
-            let t251 = t250 + t244;
-            let t252 = T::fused(-t19, t235, t15 * t237) + t245;
-            let t253 = t216 * t214;
-            let t254 = T::fused(t24, t253, t252 - T::fused(-t23, t251, t17 * t252))
-                + T::fused(t7, t247, t2 * t249);
-            let t255 = T::fused(-t15, t240, t19 * t254);
-            let t256 = k(0.1) * t255;
-            let t257 = T::fused(-t2, t247, t7 * t249);
+            let t243 = T::fused(t6, t239, t2 * t240) + T::fused(t215, t216, t222 * t237);
+            let t244 = k(0.5) * t243;
+            let t245 = t207 * t231;
+            let t246 = t245 + t239;
+            let t247 = T::fused(-t17, t230, t14 * t232) + t240;
+            let t248 = t211 * t209;
+            let t249 = T::fused(t22, t248, t247 - T::fused(-t21, t246, t16 * t247))
+                + T::fused(t6, t242, t2 * t244);
+            let t250 = T::fused(-t14, t235, t17 * t249);
+            let t251 = k(0.1) * t250;
+            let t252 = T::fused(-t2, t242, t6 * t244);
+            let t253 = k(0.1) * t252;
+            let t254 = T::fused(t37, t248, -T::fused(t42, t246, t22 * t247))
+                - (t253 + T::fused(k(0.0014), t209 * t212, t253));
+            let t255 = T::fused(
+                t25,
+                t228,
+                T::fused(-k(0.0001), t212 * t208, T::fused(-t6, t221, t2 * t223)),
+            );
+            let t256 = T::fused(-t26, t233, t39 * t234) - t255;
+            let t257 = T::fused(t42, t248, t246 + T::fused(-t33, t246, t21 * t247))
+                + t252;
             let t258 = k(0.1) * t257;
-            let t259 = T::fused(t39, t253, -T::fused(t44, t251, t24 * t252))
-                - (t258 + T::fused(k(0.0014), t214 * t217, t258));
-            let t260 = T::fused(
-                t27,
-                t233,
-                T::fused(-k(0.0001), t217 * t213, T::fused(-t7, t226, t2 * t228)),
-            );
-            let t261 = T::fused(-t28, t238, t41 * t239) - t260;
-            let t262 = T::fused(t44, t253, t251 + T::fused(-t35, t251, t23 * t252))
-                + t257;
-            let t263 = k(0.1) * t262;
-            let t264 = T::fused(
+            let t259 = T::fused(
                 k(0.0014),
-                t215 * t212,
-                t263 - T::fused(t15, t259, t19 * t261),
+                t210 * t207,
+                t258 - T::fused(t14, t254, t17 * t256),
             );
-            let t265 = t263 + t264;
-            let t266 = t48 * t265;
-            let t267 = k(0.1) * t206;
-            let t268 = t205 * t267;
-            let t269 = t268 - t235;
-            let t270 = k(0.1) * t211;
-            let t271 = t205 * t270;
-            let t272 = T::fused(t206, t267, t211 * t270);
-            let t273 = T::fused(-t59, t271, t66 * t272) - t250;
-            let t274 = T::fused(t66, t271, t59 * t272) + t237;
-            let t275 = t207 * t212;
-            let t276 = t207 * t215;
-            let t277 = T::fused(t72, t275, t73 * t276)
-                - T::fused(t97, t274, -T::fused(-t56, t269, t89 * t273));
-            let t278 = t277
-                - T::fused(t55, t266, -(t256 + T::fused(-k(0.0015), t212 * t208, t256)));
-            let t279 = T::fused(
-                t63,
-                t266,
-                -T::fused(-k(0.0001), t215 * t208, T::fused(-t19, t259, t15 * t261)),
+            let t260 = t258 + t259;
+            let t261 = t46 * t260;
+            let t262 = k(0.1) * t201;
+            let t263 = t200 * t262;
+            let t264 = t263 - t230;
+            let t265 = k(0.1) * t206;
+            let t266 = t200 * t265;
+            let t267 = T::fused(t201, t262, t206 * t265);
+            let t268 = T::fused(-t57, t266, t63 * t267) - t245;
+            let t269 = T::fused(t63, t266, t57 * t267) + t232;
+            let t270 = t202 * t207;
+            let t271 = t202 * t210;
+            let t272 = T::fused(t69, t270, t70 * t271)
+                - T::fused(t94, t269, -T::fused(-t54, t264, t86 * t268));
+            let t273 = t272
+                - T::fused(t53, t261, -(t251 + T::fused(-k(0.0015), t207 * t203, t251)));
+            let t274 = T::fused(
+                t61,
+                t261,
+                -T::fused(-k(0.0001), t210 * t203, T::fused(-t17, t254, t14 * t256)),
             );
-            let t280 = T::fused(t73, t275, t77 * t276)
-                - T::fused(t100, t274, T::fused(t64, t269, t99 * t273));
-            let t281 = t280 - t279;
-            let t282 = T::fused(
+            let t275 = T::fused(t70, t270, t74 * t271)
+                - T::fused(t97, t269, T::fused(t62, t264, t96 * t268));
+            let t276 = t275 - t274;
+            let t277 = T::fused(
+                -k(1.5),
+                t264,
+                T::fused(t100, t269, T::fused(t48, t264, t99 * t268)),
+            );
+            let t278 = T::fused(t54, t270, t62 * t271) - t277
+                - T::fused(t32, t261, -t250);
+            let t279 = k(0.1) * t278;
+            let t280 = T::fused(
+                k(0.0015),
+                t201 * t200,
+                t279 + T::fused(t57, t273, t63 * t276),
+            );
+            let t281 = t279 + t280;
+            let t282 = t78 * t281;
+            let t283 = k(0.1) * t198;
+            let t284 = t197 * t283;
+            let t285 = k(0.1) * t204;
+            let t286 = T::fused(t198, t283, t204 * t285);
+            let t287 = T::fused(t83, t284, t105 * t286) - t263;
+            let t288 = t197 * t285;
+            let t289 = t288 - t266;
+            let t290 = T::fused(-t105, t284, t83 * t286) + t267;
+            let t291 = T::fused(
+                k(2.0),
+                t287,
+                T::fused(t104, t290, -T::fused(t80, t287, t142 * t289)),
+            );
+            let t292 = t205 * t200;
+            let t293 = t205 * t201;
+            let t294 = T::fused(t128, t292, t137 * t293) - t291
+                + T::fused(-t66, t282, t278);
+            let t295 = T::fused(
+                -k(1.5),
+                t268,
+                T::fused(t108, t269, T::fused(t99, t264, t107 * t268)),
+            );
+            let t296 = T::fused(-t86, t270, t96 * t271) - t295
+                - T::fused(-t84, t261, t257);
+            let t297 = T::fused(
                 -k(1.5),
                 t269,
-                T::fused(t103, t274, T::fused(t50, t269, t102 * t273)),
+                T::fused(t110, t269, T::fused(t100, t264, t108 * t268)),
             );
-            let t283 = T::fused(t56, t275, t64 * t276) - t282
-                - T::fused(t34, t266, -t255);
-            let t284 = k(0.1) * t283;
-            let t285 = T::fused(
-                k(0.0015),
-                t206 * t205,
-                t284 + T::fused(t59, t278, t66 * t281),
-            );
-            let t286 = t284 + t285;
-            let t287 = t81 * t286;
-            let t288 = k(0.1) * t203;
-            let t289 = t202 * t288;
-            let t290 = k(0.1) * t209;
-            let t291 = T::fused(t203, t288, t209 * t290);
-            let t292 = T::fused(t86, t289, t109 * t291) - t268;
-            let t293 = t202 * t290;
-            let t294 = t293 - t271;
-            let t295 = T::fused(-t109, t289, t86 * t291) + t272;
-            let t296 = T::fused(
-                k(2.0),
-                t292,
-                T::fused(t107, t295, -T::fused(t83, t292, t146 * t294)),
-            );
-            let t297 = t210 * t205;
-            let t298 = t210 * t206;
-            let t299 = T::fused(t132, t297, t141 * t298) - t296
-                + T::fused(-t69, t287, t283);
-            let t300 = T::fused(
-                -k(1.5),
-                t273,
-                T::fused(t112, t274, T::fused(t102, t269, t111 * t273)),
-            );
-            let t301 = T::fused(-t89, t275, t99 * t276) - t300
-                - T::fused(-t87, t266, t262);
-            let t302 = T::fused(
-                -k(1.5),
-                t274,
-                T::fused(t114, t274, T::fused(t103, t269, t112 * t273)),
-            );
-            let t303 = T::fused(t97, t275, t100 * t276) - t302
-                - T::fused(t95, t266, -T::fused(t19, t240, t15 * t254));
-            let t304 = T::fused(
+            let t298 = T::fused(t94, t270, t97 * t271) - t297
+                - T::fused(t92, t261, -T::fused(t17, t235, t14 * t249));
+            let t299 = T::fused(
                 -k(2.0),
-                t295,
-                T::fused(t118, t295, -T::fused(t107, t292, t148 * t294)),
+                t290,
+                T::fused(t114, t290, -T::fused(t104, t287, t144 * t289)),
             );
-            let t305 = T::fused(-t136, t297, t142 * t298) - t304
-                + T::fused(t106, t287, T::fused(t66, t301, t59 * t303));
-            let t306 = T::fused(t86, t299, t109 * t305);
-            let t307 = k(0.1) * t306;
-            let t308 = T::fused(-t59, t301, t66 * t303);
-            let t309 = k(0.1) * t308;
-            let t310 = T::fused(-t159, t297, t161 * t298)
-                - T::fused(t136, t295, -T::fused(-t132, t292, t168 * t294));
-            let t311 = t310
-                + T::fused(t131, t287, t309 + T::fused(k(0.0014), t205 * t211, t309));
-            let t312 = T::fused(
-                t140,
-                t287,
-                T::fused(k(0.0001), t206 * t211, T::fused(-t66, t278, t59 * t281)),
+            let t300 = T::fused(-t132, t292, t138 * t293) - t299
+                + T::fused(t103, t282, T::fused(t63, t296, t57 * t298));
+            let t301 = T::fused(t83, t294, t105 * t300);
+            let t302 = k(0.1) * t301;
+            let t303 = T::fused(-t57, t296, t63 * t298);
+            let t304 = k(0.1) * t303;
+            let t305 = T::fused(-t155, t292, t157 * t293)
+                - T::fused(t132, t290, -T::fused(-t128, t287, t164 * t289));
+            let t306 = t305
+                + T::fused(t127, t282, t304 + T::fused(k(0.0014), t200 * t206, t304));
+            let t307 = T::fused(
+                t136,
+                t282,
+                T::fused(k(0.0001), t201 * t206, T::fused(-t63, t273, t57 * t276)),
             );
-            let t313 = T::fused(-t161, t297, t166 * t298)
-                - T::fused(t142, t295, -T::fused(t141, t292, t169 * t294));
-            let t314 = t313 + t312;
-            let t315 = T::fused(
+            let t308 = T::fused(-t157, t292, t162 * t293)
+                - T::fused(t138, t290, -T::fused(t137, t287, t165 * t289));
+            let t309 = t308 + t307;
+            let t310 = T::fused(
                 k(2.0),
-                t294,
-                T::fused(t148, t295, -T::fused(t146, t292, t171 * t294)),
-            );
-            let t316 = T::fused(-t168, t297, t169 * t298) - t315
-                + T::fused(t145, t287, t308);
-            let t317 = k(0.1) * t316;
-            let t318 = T::fused(
-                -k(0.0014),
-                t209 * t202,
-                t317 - T::fused(-t86, t311, t109 * t314),
-            );
-            let t319 = t317 + t318;
-            let t320 = t176 * t319;
-            let t321 = link_1_wy * (k(0.1) * link_1_wy);
-            let t322 = T::fused(t321, t188, t293);
-            let t323 = t175 + (k(0.25) - t174);
-            let t324 = t176 * t323;
-            let t325 = T::fused(-k(0.2), t149, t324 * t153);
-            let t326 = T::fused(t321, t181, t291);
-            let t327 = T::fused(-t109, t110, t86 * t119);
-            let t328 = T::fused(t109, t132, t86 * t136);
-            let t329 = T::fused(-t109, t141, t86 * t142);
-            let t330 = k(0.1) * T::fused(-t109, t146, t86 * t148);
-            let t331 = t330 + (t330 - T::fused(-t86, t328, t109 * t329));
-            let t332 = t176 * t331;
-            let t333 = T::fused(k(0.2), t327, t332 * t153);
-            let t334 = t203 * t209;
-            let t335 = T::fused(-t204, t178, t334 * t186)
-                + T::fused(t333, t326, T::fused(-t194, t289, t325 * t322));
-            let t336 = T::fused(
-                t185,
-                t320,
-                T::fused(k(0.0001), t334, T::fused(t109, t311, t86 * t314)),
-            );
-            let t337 = T::fused(-t185, t324, t183);
-            let t338 = T::fused(t332, t185, T::fused(t109, t328, t86 * t329));
-            let t339 = T::fused(-t204, t186, t334 * t190)
-                + T::fused(t338, t326, -T::fused(t195, t289, t337 * t322));
-            let t340 = T::fused(
-                t181,
-                t335 - T::fused(t153, t320, t307 + T::fused(-k(0.0015), t204, t307)),
-                t188 * (t339 - t336),
-            );
-            let t341 = T::fused(-t193, t323, t149);
-            let t342 = T::fused(t193, t331, t327);
-            let t343 = T::fused(
-                k(2.5),
                 t289,
-                T::fused(t342, t326, -T::fused(t197, t289, t341 * t322)),
+                T::fused(t144, t290, -T::fused(t142, t287, t167 * t289)),
             );
-            let t344 = T::fused(-t194, t204, t195 * t334) + t343
-                - T::fused(t192, t320, t306);
-            let t345 = k(0.1) * t344;
-            let t346 = k(2.0) * link_1_e2;
-            let t347 = k(9.81) * (link_1_e0 * t346);
-            let t348 = T::fused(k(9.81), T::fused(-link_1_e2, t346, k(1.0)), t321);
-            let t349 = T::fused(
+            let t311 = T::fused(-t164, t292, t165 * t293) - t310
+                + T::fused(t141, t282, t303);
+            let t312 = k(0.1) * t311;
+            let t313 = T::fused(
+                -k(0.0014),
+                t204 * t197,
+                t312 - T::fused(-t83, t306, t105 * t309),
+            );
+            let t314 = t312 + t313;
+            let t315 = t172 * t314;
+            let t316 = link_1_wy * (k(0.1) * link_1_wy);
+            let t317 = T::fused(t316, t183, t288);
+            let t318 = t171 + (k(0.25) - t170);
+            let t319 = t172 * t318;
+            let t320 = T::fused(-k(0.2), t145, t319 * t149);
+            let t321 = T::fused(t316, t177, t286);
+            let t322 = T::fused(-t105, t106, t83 * t115);
+            let t323 = T::fused(t105, t128, t83 * t132);
+            let t324 = T::fused(-t105, t137, t83 * t138);
+            let t325 = k(0.1) * T::fused(-t105, t142, t83 * t144);
+            let t326 = t325 + (t325 - T::fused(-t83, t323, t105 * t324));
+            let t327 = t172 * t326;
+            let t328 = T::fused(k(0.2), t322, t327 * t149);
+            let t329 = t198 * t204;
+            let t330 = T::fused(-t199, t174, t329 * t182)
+                + T::fused(t328, t321, T::fused(-t189, t284, t320 * t317));
+            let t331 = T::fused(
                 t181,
-                T::fused(t188, t325, t181 * t333),
-                t188 * T::fused(-t188, t337, t181 * t338),
+                t315,
+                T::fused(k(0.0001), t329, T::fused(t105, t306, t83 * t309)),
             );
-            let t350 = k(0.1) * T::fused(-t188, t341, t181 * t342);
-            let t351 = T::fused(
-                -(k(0.3) - t199 + t200),
-                t347,
-                (t350 + (t350 + t349)) * t348,
+            let t332 = T::fused(-t181, t319, t179);
+            let t333 = T::fused(t327, t181, T::fused(t105, t323, t83 * t324));
+            let t334 = T::fused(-t199, t182, t329 * t185)
+                + T::fused(t333, t321, -T::fused(t190, t284, t332 * t317));
+            let t335 = T::fused(
+                t177,
+                t330 - T::fused(t149, t315, t302 + T::fused(-k(0.0015), t199, t302)),
+                t183 * (t334 - t331),
             );
-            let t352 = (t351 + (t345 + (t345 + t340))) / t201;
-            let t353 = k(0.1) * t352;
-            let t354 = t289 - (t353 + (t347 + t353));
-            let t355 = T::fused(t188, t348, t322);
-            let t356 = T::fused(t181, t348, t326);
-            let t357 = T::fused(-t181, t352, t204);
-            let t358 = T::fused(t188, t352, t334);
-            let t359 = T::fused(-t153, t357, t185 * t358)
-                + T::fused(t331, t356, T::fused(-t192, t354, t323 * t355));
-            let t360 = t176 * (t319 - t359);
-            let t361 = k(0.1) * t357;
-            let t362 = t361 + (t354 + t361);
-            let t363 = t292 + T::fused(t86, t362, t109 * t356);
-            let t364 = k(0.1) * t360;
-            let t365 = t294 + (t364 + (t355 + t364));
-            let t366 = t295 + T::fused(-t109, t362, t86 * t356);
-            let t367 = t297 + T::fused(-t86, t360, t109 * t358);
-            let t368 = t298 - T::fused(t109, t360, t86 * t358);
-            let t369 = T::fused(-t131, t367, t140 * t368)
-                - T::fused(t106, t366, -T::fused(-t69, t363, t145 * t365));
-            let t370 = t81 * (t286 + t369);
-            let t371 = k(0.1) * t370;
-            let t372 = t269 - (t371 + (t363 + t371));
-            let t373 = k(0.1) * t367;
-            let t374 = t373 - (t365 - t373);
-            let t375 = t273 + T::fused(-t59, t374, t66 * t366);
-            let t376 = t274 + T::fused(t66, t374, t59 * t366);
-            let t377 = t275 - T::fused(-t59, t370, t66 * t368);
-            let t378 = t276 + T::fused(t66, t370, t59 * t368);
-            let t379 = T::fused(t55, t377, t63 * t378)
-                - T::fused(t95, t376, -T::fused(-t34, t372, t87 * t375));
-            let t380 = t48 * (t265 - t379);
-            let t381 = k(0.1) * t377;
-            let t382 = t381 - (t372 - t381);
-            let t383 = T::fused(
+            let t336 = T::fused(-t188, t318, t145);
+            let t337 = T::fused(t188, t326, t322);
+            let t338 = T::fused(
+                k(2.5),
+                t284,
+                T::fused(t337, t321, -T::fused(t192, t284, t336 * t317)),
+            );
+            let t339 = T::fused(-t189, t199, t190 * t329) + t338
+                - T::fused(t187, t315, t301);
+            let t340 = k(0.1) * t339;
+            let t341 = k(9.81) * (link_1_e0 * (k(2.0) * link_1_e2));
+            let t342 = T::fused(
+                k(9.81),
+                (link_1_e0 - link_1_e2) * (link_1_e0 + link_1_e2),
+                t316,
+            );
+            let t343 = T::fused(
+                t177,
+                T::fused(t183, t320, t177 * t328),
+                t183 * T::fused(-t183, t332, t177 * t333),
+            );
+            let t344 = k(0.1) * T::fused(-t183, t336, t177 * t337);
+            let t345 = T::fused(
+                -(k(0.3) - t194 + t195),
+                t341,
+                (t344 + (t344 + t343)) * t342,
+            );
+            let t346 = (t345 + (t340 + (t340 + t335))) / t196;
+            let t347 = k(0.1) * t346;
+            let t348 = t284 - (t347 + (t341 + t347));
+            let t349 = T::fused(t183, t342, t317);
+            let t350 = T::fused(t177, t342, t321);
+            let t351 = T::fused(-t177, t346, t199);
+            let t352 = T::fused(t183, t346, t329);
+            let t353 = T::fused(-t149, t351, t181 * t352)
+                + T::fused(t326, t350, T::fused(-t187, t348, t318 * t349));
+            let t354 = t172 * (t314 - t353);
+            let t355 = k(0.1) * t351;
+            let t356 = t355 + (t348 + t355);
+            let t357 = t287 + T::fused(t83, t356, t105 * t350);
+            let t358 = k(0.1) * t354;
+            let t359 = t289 + (t358 + (t349 + t358));
+            let t360 = t290 + T::fused(-t105, t356, t83 * t350);
+            let t361 = t292 + T::fused(-t83, t354, t105 * t352);
+            let t362 = t293 - T::fused(t105, t354, t83 * t352);
+            let t363 = T::fused(-t127, t361, t136 * t362)
+                - T::fused(t103, t360, -T::fused(-t66, t357, t141 * t359));
+            let t364 = t78 * (t281 + t363);
+            let t365 = k(0.1) * t364;
+            let t366 = t264 - (t365 + (t357 + t365));
+            let t367 = k(0.1) * t361;
+            let t368 = t367 - (t359 - t367);
+            let t369 = t268 + T::fused(-t57, t368, t63 * t360);
+            let t370 = t269 + T::fused(t63, t368, t57 * t360);
+            let t371 = t270 - T::fused(-t57, t364, t63 * t362);
+            let t372 = t271 + T::fused(t63, t364, t57 * t362);
+            let t373 = T::fused(t53, t371, t61 * t372)
+                - T::fused(t92, t370, -T::fused(-t32, t366, t84 * t369));
+            let t374 = t46 * (t260 - t373);
+            let t375 = k(0.1) * t371;
+            let t376 = t375 - (t366 - t375);
+            let t377 = T::fused(
                 -t4,
-                t238 + T::fused(t15, t382, t19 * t376),
-                t27 * (t239 + T::fused(-t19, t380, t15 * t378)),
+                t233 + T::fused(t14, t376, t17 * t370),
+                t25 * (t234 + T::fused(-t17, t374, t14 * t372)),
             );
-            let t384 = k(0.1) * t380;
-            let t385 = t253 - T::fused(t15, t380, t19 * t378);
-            let t386 = k(0.1) * t385;
-            let t387 = T::fused(
+            let t378 = k(0.1) * t374;
+            let t379 = t248 - T::fused(t14, t374, t17 * t372);
+            let t380 = k(0.1) * t379;
+            let t381 = T::fused(
                 -t2,
-                t386 + (t386 + (t251 - (t384 + (t375 + t384)))),
-                t7 * (t252 + T::fused(-t19, t382, t15 * t376)),
+                t380 + (t380 + (t246 - (t378 + (t369 + t378)))),
+                t6 * (t247 + T::fused(-t17, t376, t14 * t370)),
             );
             (
-                t232,
+                t227,
+                t236,
                 t241,
-                t246,
-                t352,
-                t357,
-                t360,
-                t367,
-                t370,
+                t346,
+                t351,
+                t354,
+                t361,
+                t364,
+                t371,
+                t374,
                 t377,
-                t380,
-                t383,
-                t385,
-                t387,
+                t379,
+                t381,
             )
         };
         *out = [
-            t352,
-            -t360,
-            t357 - t370,
-            -(t367 + t380),
-            T::fused(t10, t232 - t383, t377),
+            t346,
+            -t354,
+            t351 - t364,
+            -(t361 + t374),
+            T::fused(t9, t227 - t377, t371),
             T::fused(
                 k(149.2537313432836),
-                T::fused(-k(0.0014), t241, k(0.05) * (t246 + t387)),
-                -t385,
+                T::fused(-k(0.0014), t236, k(0.05) * (t241 + t381)),
+                -t379,
             ),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1625 operations (731 ±, 889 ×, 5 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1519 operations (689 ±, 825 ×, 5 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -11082,89 +10945,112 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let (
-            t1,
-            t5,
-            t9,
-            t10,
+            t2,
+            t6,
+            t7,
+            t8,
+            t11,
             t13,
-            t17,
+            t14,
+            t15,
+            t16,
+            t18,
+            t19,
+            t21,
             t22,
-            t24,
+            t26,
             t27,
-            t31,
-            t34,
-            t36,
+            t30,
+            t33,
             t38,
-            t40,
+            t41,
             t42,
-            t47,
-            t48,
+            t44,
+            t49,
             t50,
-            t55,
-            t56,
-            t57,
+            t52,
+            t54,
             t58,
-            t60,
-            t65,
+            t59,
+            t61,
+            t63,
+            t66,
+            t67,
+            t69,
+            t72,
+            t73,
             t76,
+            t78,
             t79,
+            t80,
+            t83,
             t85,
-            t86,
-            t94,
+            t87,
+            t88,
+            t89,
+            t92,
+            t93,
+            t96,
+            t97,
             t100,
+            t101,
             t102,
-            t105,
-            t108,
+            t103,
+            t107,
             t112,
-            t114,
+            t113,
             t115,
             t116,
-            t117,
             t118,
+            t121,
             t122,
             t124,
-            t125,
-            t126,
             t128,
             t131,
-            t132,
-            t136,
+            t133,
+            t134,
+            t137,
+            t138,
             t139,
+            t140,
             t141,
-            t142,
             t143,
             t144,
+            t145,
             t146,
-            t148,
-            t149,
-            t151,
+            t147,
+            t150,
+            t153,
             t154,
             t155,
-            t156,
             t157,
             t158,
+            t159,
+            t161,
+            t162,
+            t163,
             t164,
             t165,
             t166,
+            t168,
             t169,
+            t170,
             t171,
-            t173,
+            t172,
+            t174,
             t175,
-            t176,
             t177,
-            t178,
             t179,
             t180,
             t181,
             t182,
+            t183,
             t184,
             t185,
-            t186,
             t187,
-            t188,
             t189,
             t190,
-            t191,
+            t192,
             t194,
             t195,
             t196,
@@ -11172,177 +11058,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t198,
             t199,
         ) = {
-            let t0 = link_5_wx - link_6_wx;
-            let t1 = link_6_wz * t0;
-            let t2 = k(0.1) * link_6_wx;
-            let t3 = k(0.1) * link_5_wx;
-            let t4 = link_5_wz * t3;
-            let t5 = T::fused(link_6_wz, t2, t4);
-            let t6 = T::fused(
-                k(0.0015),
-                link_6_wx * link_6_wz,
-                T::fused(-k(0.0066), t1, k(0.05) * t5),
-            );
-            let t7 = T::fused(
-                link_5_e2,
-                link_6_e3,
-                T::fused(
-                    -link_5_e3,
-                    link_6_e2,
-                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
-                ),
-            );
-            let t8 = k(2.0) * t7;
-            let t9 = T::fused(-t7, t8, k(1.0));
-            let t10 = link_6_wy * t0;
-            let t11 = T::fused(-k(0.0002), t10, k(0.0001) * (link_6_wx * link_6_wy));
-            let t12 = T::fused(
-                link_5_e3,
-                link_6_e3,
-                T::fused(
-                    link_5_e2,
-                    link_6_e2,
-                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
-                ),
-            );
-            let t13 = t12 * t8;
-            let t14 = T::fused(-k(0.05), t1, k(0.5) * t5);
-            let t15 = k(0.1) * t14;
-            let t16 = T::fused(
-                k(0.0015),
-                link_5_wx * link_5_wz,
-                t15 - T::fused(-t9, t6, t13 * t11),
-            );
-            let t17 = t15 + t16;
-            let t18 = T::fused(k(0.05), t9, k(0.05));
-            let t19 = k(0.0066) * t9;
-            let t20 = k(0.0002) * t13;
-            let t21 = k(0.0016)
-                + T::fused(k(0.01), t9, k(0.005) + T::fused(t9, t19, t13 * t20));
-            let t22 = k(1.0) / T::fused(k(0.2), t18, k(0.01) + t21);
-            let t23 = t22 * t17;
-            let t24 = k(0.1) + t18;
-            let t25 = T::fused(
-                -link_4_e1,
-                link_5_e3,
-                T::fused(
-                    -link_4_e0,
-                    link_5_e2,
-                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
-                ),
-            );
-            let t26 = k(2.0) * t25;
-            let t27 = T::fused(-t25, t26, k(1.0));
-            let t28 = k(0.1) * link_4_wx;
-            let t29 = link_4_wz * t28;
-            let t30 = T::fused(
-                link_4_e3,
-                link_5_e3,
-                T::fused(
-                    link_4_e2,
-                    link_5_e2,
-                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
-                ),
-            );
-            let t31 = t30 * t26;
-            let t32 = k(0.1) * link_4_wy;
-            let t33 = T::fused(link_4_wy, t32, link_4_wx * t28);
-            let t34 = t4 - T::fused(-t29, t27, t33 * t31);
-            let t35 = t22 * t24;
-            let t36 = t24 * t35;
-            let t37 = link_4_wy - link_5_wy;
-            let t38 = link_5_wx * t37;
-            let t39 = k(0.005) * t13;
-            let t40 = t39 + (t39 - T::fused(-t13, t19, t9 * t20));
-            let t41 = T::fused(-k(0.05), t13, t40 * t35);
-            let t42 = T::fused(t41, t38, -T::fused(-t36, t34, t34))
-                - T::fused(-t24, t23, t14);
-            let t43 = k(0.1) * link_5_wy;
-            let t44 = link_5_wz * t43;
-            let t45 = T::fused(link_5_wy, t43, link_5_wx * t3);
-            let t46 = k(0.1) * link_6_wy;
-            let t47 = T::fused(link_6_wz, t46, T::fused(t44, t9, t45 * t13));
-            let t48 = link_6_wy * link_6_wz;
-            let t49 = T::fused(
-                -k(0.12686567164179105),
-                t47,
-                k(0.010447761194029851) * t48,
-            );
-            let t50 = T::fused(link_6_wy, t46, link_6_wx * t2)
-                + T::fused(-t44, t13, t45 * t9);
-            let t51 = k(0.5) * t50;
-            let t52 = k(0.373134328358209) * t9;
-            let t53 = t13 * t52;
-            let t54 = link_4_wz * t32;
-            let t55 = t54 + t44;
-            let t56 = t45 + T::fused(t29, t31, t33 * t27);
-            let t57 = t13 * (k(0.373134328358209) * t13);
-            let t58 = link_5_wz * t37;
-            let t59 = k(0.2) * t53;
-            let t60 = T::fused(t59, t58, t56 - T::fused(t55, t53, t57 * t56))
-                + T::fused(-t13, t49, t9 * t51);
-            let t61 = T::fused(-t27, t42, t31 * t60);
-            let t62 = k(0.1) * t61;
-            let t63 = T::fused(t9, t49, t13 * t51);
-            let t64 = k(0.1) * t63;
-            let t65 = t9 * t52;
-            let t66 = k(0.1) * t65;
-            let t67 = k(0.05) - t66;
-            let t68 = k(0.1) - t66;
-            let t69 = t68 + t67;
-            let t70 = k(0.01) * t65;
-            let t71 = T::fused(-k(0.2), t67, t70)
-                - (k(0.01) + (k(0.0017) + (k(0.005) - t70)));
-            let t72 = T::fused(t71, t58, -T::fused(-t55, t69, t59 * t56))
-                - (t64 - T::fused(k(0.0014), link_5_wy * link_5_wz, -t64));
-            let t73 = T::fused(
-                t40,
-                t23,
-                -T::fused(k(0.0001), link_5_wx * link_5_wy, T::fused(t13, t6, t9 * t11)),
-            );
-            let t74 = T::fused(
-                t40,
-                t22 * t40,
-                -(k(0.0002) + T::fused(t13, k(0.0066) * t13, t9 * (k(0.0002) * t9))),
-            );
-            let t75 = T::fused(t41, t34, t74 * t38) + t73;
-            let t76 = T::fused(t69, t58, -(t55 - T::fused(t55, t65, t53 * t56))) + t63;
-            let t77 = k(0.1) * t76;
-            let t78 = T::fused(
-                k(0.0014),
-                link_4_wy * link_4_wz,
-                -(t77 - T::fused(t27, t72, t31 * t75)),
-            );
-            let t79 = t77 - t78;
-            let t80 = t27 * t71;
-            let t81 = t31 * t74;
-            let t82 = t27 * t69;
-            let t83 = T::fused(-k(0.2), t82, t70)
-                - (k(0.01) - T::fused(t27, t80, t31 * t81));
-            let t84 = t68 + t82;
-            let t85 = k(1.0)
-                / (T::fused(k(0.2), t84, -t70) + (k(0.015) + (k(0.0017) - t83)));
-            let t86 = t85 * t79;
-            let t87 = t31 * t59;
-            let t88 = t27 * t41;
-            let t89 = T::fused(-t27, t87, t31 * t88);
-            let t90 = t31 * t53;
-            let t91 = k(0.01) * t90;
-            let t92 = k(0.1) * t90;
-            let t93 = t92 - t89;
-            let t94 = t91 + T::fused(k(0.1), t93, t91) + T::fused(-k(0.1), t89, t91);
-            let t95 = t27 * t36;
-            let t96 = t31 * t57;
-            let t97 = T::fused(t27, t95, t31 * t96);
-            let t98 = k(0.1) * t97;
-            let t99 = k(0.1) - t98;
-            let t100 = t92 + t93;
-            let t101 = t85 * t100;
-            let t102 = T::fused(t101, t94, -(k(0.15) - t98 + t99));
-            let t103 = k(0.1) * link_3_wx;
-            let t104 = link_3_wz * t103;
-            let t105 = t104 + t29;
-            let t106 = T::fused(
+            let t0 = T::fused(
                 link_3_e2,
                 link_4_e3,
                 T::fused(
@@ -11351,11 +11067,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
                 ),
             );
-            let t107 = k(2.0) * t106;
-            let t108 = T::fused(-t106, t107, k(1.0));
-            let t109 = k(0.1) * link_3_wy;
-            let t110 = link_3_wz * t109;
-            let t111 = T::fused(
+            let t1 = T::fused(
                 link_3_e3,
                 link_4_e3,
                 T::fused(
@@ -11364,97 +11076,125 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
                 ),
             );
-            let t112 = t111 * t107;
-            let t113 = T::fused(link_3_wy, t109, link_3_wx * t103);
-            let t114 = t54 + T::fused(t110, t108, t113 * t112);
-            let t115 = t84 + (k(0.15) - t66);
-            let t116 = t85 * t115;
-            let t117 = T::fused(-k(0.2), t90, t94 * t116);
-            let t118 = t33 + T::fused(-t110, t112, t113 * t108);
-            let t119 = T::fused(-t31, t95, t27 * t96);
-            let t120 = t27 * t59;
-            let t121 = t31 * t41;
-            let t122 = t27 * t53;
-            let t123 = k(0.1) * t122;
-            let t124 = t123 + (t123 + T::fused(t27, t120, t31 * t121));
-            let t125 = t85 * t124;
-            let t126 = T::fused(k(0.2), t119, t94 * t125);
-            let t127 = link_3_wx - link_4_wx;
-            let t128 = link_4_wz * t127;
-            let t129 = k(0.01) * t97;
-            let t130 = t85 * t94;
-            let t131 = T::fused(
-                t94,
-                t130,
-                -(T::fused(k(0.2), t99, -t129)
-                    + (k(0.015) + (k(0.0016) + (k(0.01) - t129)))),
-            );
-            let t132 = link_4_wy * t127;
-            let t133 = T::fused(t31, t87, t27 * t88);
-            let t134 = t31 * t69;
-            let t135 = k(0.1) * t134;
-            let t136 = t135 + (t135 + T::fused(-t31, t80, t27 * t81));
-            let t137 = T::fused(-k(0.2), t133, t136 * t130);
-            let t138 = T::fused(-t131, t128, t137 * t132)
-                + T::fused(t126, t118, -T::fused(-t105, t102, t117 * t114));
-            let t139 = t138
-                + T::fused(
-                    t94,
-                    t86,
-                    -(t62 + T::fused(k(0.0015), link_4_wx * link_4_wz, t62)),
-                );
-            let t140 = T::fused(
-                t136,
-                t86,
+            let t2 = t1 * t0;
+            let t3 = k(4.0) * t2;
+            let t4 = T::fused(
+                link_5_e2,
+                link_6_e3,
                 T::fused(
-                    k(0.0001),
-                    link_4_wx * link_4_wy,
-                    -T::fused(-t31, t72, t27 * t75),
+                    -link_5_e3,
+                    link_6_e2,
+                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
                 ),
             );
-            let t141 = T::fused(t101, t136, -t133);
-            let t142 = T::fused(-t136, t116, t134);
-            let t143 = T::fused(t136, t125, T::fused(-t31, t120, t27 * t121));
-            let t144 = T::fused(
-                t136,
-                t85 * t136,
-                -(k(0.0002) - T::fused(t31, t31 * t71, t27 * (t27 * t74))),
+            let t5 = T::fused(
+                link_5_e3,
+                link_6_e3,
+                T::fused(
+                    link_5_e2,
+                    link_6_e2,
+                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
+                ),
             );
-            let t145 = T::fused(-t137, t128, t144 * t132)
-                + T::fused(t143, t118, T::fused(t105, t141, t142 * t114));
-            let t146 = t145 + t140;
-            let t147 = T::fused(t100, t101, t97);
-            let t148 = T::fused(-t101, t115, t90);
-            let t149 = T::fused(t101, t124, t119);
-            let t150 = T::fused(
-                k(1.5),
-                t105,
-                -T::fused(t149, t118, T::fused(t105, t147, t148 * t114)),
+            let t6 = (t5 + t4) * (t5 - t4);
+            let t7 = t5 * t4;
+            let t8 = t7 * t6;
+            let t9 = T::fused(
+                -link_4_e1,
+                link_5_e3,
+                T::fused(
+                    -link_4_e0,
+                    link_5_e2,
+                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+                ),
             );
-            let t151 = T::fused(-t102, t128, t141 * t132) - t150
-                + T::fused(t100, t86, -t61);
-            let t152 = k(0.1) * t151;
-            let t153 = T::fused(
-                k(0.0015),
-                link_3_wx * link_3_wz,
-                -(t152 + T::fused(t108, t139, t112 * t146)),
+            let t10 = T::fused(
+                link_4_e3,
+                link_5_e3,
+                T::fused(
+                    link_4_e2,
+                    link_5_e2,
+                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
+                ),
             );
-            let t154 = t152 - t153;
-            let t155 = t112 * t137;
-            let t156 = T::fused(t108, t131, t155);
-            let t157 = t108 * t137;
-            let t158 = T::fused(t112, t144, t157);
-            let t159 = T::fused(t108, t102, t112 * t141);
-            let t160 = k(0.01) * t147;
-            let t161 = T::fused(k(0.2), t159, t160)
-                - (k(0.015) - T::fused(t108, t156, t112 * t158));
-            let t162 = k(0.1) * t147;
-            let t163 = k(0.15) - t162 - t159;
-            let t164 = k(1.0)
-                / (T::fused(k(0.2), t163, -t160) + (k(0.02) + (k(0.0016) - t161)));
-            let t165 = t164 * t154;
-            let t166 = t163 + (k(0.2) - t162);
-            let t167 = T::fused(
+            let t11 = t10 * t9;
+            let t12 = t11 * t8;
+            let t13 = k(2.0) * t7;
+            let t14 = T::fused(k(1.32), t8, -T::fused(k(0.04), t8, -t13));
+            let t15 = t6 * t6;
+            let t16 = t7 * t7;
+            let t17 = k(1.0) + t6;
+            let t18 = k(1.0)
+                / (k(1.66) + (t17 + (t6 + T::fused(k(0.66), t15, k(0.08) * t16))));
+            let t19 = k(2.0) + t17;
+            let t20 = t19 * t18;
+            let t21 = T::fused(-t20, t14, t13);
+            let t22 = (t10 + t9) * (t10 - t9);
+            let t23 = t22 * t21;
+            let t24 = T::fused(-k(11.940298507462687), t11 * t12, t22 * t23);
+            let t25 = k(0.67) * T::fused(k(2.985074626865672), t22 * t12, t11 * t23);
+            let t26 = t12 + (t12 + t25);
+            let t27 = t25 + (t12 + (t12 + t26));
+            let t28 = k(2.68) - t15;
+            let t29 = k(1.34) - t15;
+            let t30 = t29 + t28;
+            let t31 = t22 * t30;
+            let t32 = t28 + t31;
+            let t33 = k(0.02)
+                - T::fused(-k(2.64), t16, T::fused(-k(0.02), t15, t14 * (t18 * t14)));
+            let t34 = t11 * t33;
+            let t35 = T::fused(
+                k(10.72),
+                t11 * t34,
+                T::fused(k(2.0), t31, -(t15 + T::fused(-k(2.0), t32, t15))),
+            );
+            let t36 = k(4.4756) - (t15 + T::fused(-k(2.0), t29, t15));
+            let t37 = t22 * t36;
+            let t38 = k(1.0) / (k(7.1556) + T::fused(t22, t37, t35));
+            let t39 = t38 * t27;
+            let t40 = t11 * t30;
+            let t41 = T::fused(t11, t37, -T::fused(-k(2.0), t40, k(2.68) * (t22 * t34)));
+            let t42 = T::fused(k(0.335), t24, t41 * t39);
+            let t43 = t2 * t42;
+            let t44 = t19 * t20;
+            let t45 = t22 * t44;
+            let t46 = t11 * t16;
+            let t47 = T::fused(k(0.041875), t22 * t45, t11 * t46);
+            let t48 = k(0.1675) - t47;
+            let t49 = k(0.44555) - (t47 + (t47 - T::fused(-t27, t39, k(2.0) * t48)));
+            let t50 = (t1 + t0) * (t1 - t0);
+            let t51 = T::fused(t50, t49, -t43);
+            let t52 = k(0.67) * t22;
+            let t53 = T::fused(
+                t11,
+                t11 * t36,
+                -T::fused(-(t22 * t33), t52, t41 * (t38 * t41)),
+            );
+            let t54 = k(0.0134) + t53;
+            let t55 = t50 * t42;
+            let t56 = T::fused(-t2, t54, t55);
+            let t57 = t26 * t38;
+            let t58 = k(0.25125) + (t48 - T::fused(t57, t27, t47));
+            let t59 = T::fused(k(0.1675), t24, t57 * t41);
+            let t60 = T::fused(t58, t3, t50 * t59);
+            let t61 = T::fused(t51, t3, T::fused(t50, t56, k(2.0) * t60));
+            let t62 = T::fused(-t2, t59, t50 * t58);
+            let t63 = T::fused(t26, t57, t47);
+            let t64 = k(0.25125) - (t63 - t62);
+            let t65 = T::fused(
+                -t2,
+                t56,
+                T::fused(k(2.0), t62, -(t63 + T::fused(-k(2.0), t64, t63))),
+            );
+            let t66 = k(1.0) / (k(0.61305) + T::fused(t50, t51, t65));
+            let t67 = k(0.25) * t50;
+            let t68 = T::fused(
+                -k(0.25),
+                t61 * (t66 * t61),
+                t50 * T::fused(t67, t54, t43),
+            );
+            let t69 = k(0.00335) + T::fused(t2, T::fused(t49, t3, t55), t68);
+            let t70 = T::fused(
                 -link_2_e1,
                 link_3_e3,
                 T::fused(
@@ -11463,11 +11203,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
                 ),
             );
-            let t168 = k(2.0) * t167;
-            let t169 = T::fused(-t167, t168, k(1.0));
-            let t170 = k(0.1) * link_2_wx;
-            let t171 = link_2_wz * t170;
-            let t172 = T::fused(
+            let t71 = T::fused(
                 link_2_e3,
                 link_3_e3,
                 T::fused(
@@ -11476,121 +11212,291 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
                 ),
             );
-            let t173 = t172 * t168;
-            let t174 = k(0.1) * link_2_wy;
-            let t175 = T::fused(link_2_wy, t174, link_2_wx * t170);
-            let t176 = t104 - T::fused(-t171, t169, t175 * t173);
-            let t177 = t164 * t166;
-            let t178 = T::fused(t166, t177, t147);
-            let t179 = T::fused(t108, t117, t112 * t126);
-            let t180 = T::fused(-t108, t142, t112 * t143);
-            let t181 = T::fused(t108, t179, t112 * t180);
-            let t182 = T::fused(-t108, t148, t112 * t149);
-            let t183 = k(0.1) * t182;
-            let t184 = t183 + t181;
-            let t185 = t183 + t184;
-            let t186 = T::fused(-t185, t177, t182);
-            let t187 = link_2_wz * t174;
-            let t188 = t187 + t110;
-            let t189 = t113 + T::fused(t171, t173, t175 * t169);
-            let t190 = T::fused(-t112, t117, t108 * t126);
-            let t191 = T::fused(t112, t142, t108 * t143);
-            let t192 = T::fused(t112, t148, t108 * t149);
-            let t193 = k(0.1) * t192;
-            let t194 = t193 + (t193 + T::fused(t108, t190, t112 * t191));
-            let t195 = T::fused(-t194, t177, t192);
-            let t196 = T::fused(
-                -k(2.0),
-                t176,
-                T::fused(t195, t189, -T::fused(-t178, t176, t188 * t186)),
-            );
-            let t197 = link_2_wy - link_3_wy;
-            let t198 = link_3_wz * t197;
-            let t199 = k(0.01) * t182;
-            (
-                t1,
-                t5,
-                t9,
-                t10,
-                t13,
-                t17,
-                t22,
-                t24,
-                t27,
-                t31,
-                t34,
-                t36,
-                t38,
-                t40,
-                t42,
-                t47,
-                t48,
-                t50,
-                t55,
-                t56,
-                t57,
-                t58,
-                t60,
-                t65,
-                t76,
-                t79,
-                t85,
-                t86,
-                t94,
+            let t72 = t71 * t70;
+            let t73 = k(2.68) * t11;
+            let t74 = t11 * t21;
+            let t75 = t22 * t8;
+            let t76 = T::fused(k(2.0), t22 * t75, T::fused(-t74, t73, k(2.0) * t75));
+            let t77 = T::fused(-k(0.1675), t11 * t45, t22 * t46);
+            let t78 = T::fused(t57, t76, t77);
+            let t79 = k(4.02) - (t15 - t32);
+            let t80 = T::fused(-t57, t79, t12);
+            let t81 = T::fused(-t2, t78, t80 * t67);
+            let t82 = t38 * t76;
+            let t83 = T::fused(t27, t82, k(2.0) * t77);
+            let t84 = t38 * t79;
+            let t85 = T::fused(-k(2.0), t12, t27 * t84);
+            let t86 = T::fused(t2, t83, t85 * t67);
+            let t87 = k(2.0) * t11;
+            let t88 = T::fused(t75, t87, T::fused(-t41, t82, t74 * t52));
+            let t89 = T::fused(-t41, t84, t40);
+            let t90 = T::fused(t2, t88, t89 * t67);
+            let t91 = T::fused(-t50, t86, t2 * t90);
+            let t92 = t81 + (t91 + t81);
+            let t93 = t91 + (t81 + (t81 + t92));
+            let t94 = t66 * t93;
+            let t95 = T::fused(t50, t90, t86 * t3);
+            let t96 = T::fused(t61, t94, k(2.0) * t95);
+            let t97 = (t71 + t70) * (t71 - t70);
+            let t98 = t97 * t96;
+            let t99 = T::fused(-t72, t69, k(0.25) * t98);
+            let t100 = k(4.0) * t72;
+            let t101 = k(0.67) * t11;
+            let t102 = T::fused(t11 * t44, t101, T::fused(t76, t82, t22 * (t22 * t16)));
+            let t103 = T::fused(-t84, t76, t75);
+            let t104 = t50 * t103;
+            let t105 = T::fused(-t2, t102, k(0.25) * t104);
+            let t106 = t2 * t103;
+            let t107 = T::fused(t79, t84, t15);
+            let t108 = T::fused(t107, t67, -t106);
+            let t109 = T::fused(-t2, t105, t67 * t108);
+            let t110 = k(0.25125) - t109;
+            let t111 = t92 * t66;
+            let t112 = k(0.335) - (T::fused(t111, t93, t109) - t110);
+            let t113 = T::fused(t111, t61, t95);
+            let t114 = T::fused(-t97, t112, t72 * t113);
+            let t115 = T::fused(t92, t111, t109);
+            let t116 = k(0.335) - (t115 + t114);
+            let t117 = T::fused(
                 t100,
+                t99,
+                T::fused(k(2.0), t114, t115 + T::fused(-k(2.0), t116, t115)),
+            );
+            let t118 = k(0.614725)
+                - (t109 + (t109 + T::fused(-k(2.0), t110, t93 * t94)));
+            let t119 = t72 * t96;
+            let t120 = T::fused(-t97, t118, t119);
+            let t121 = k(1.0) / (k(0.782225) - T::fused(t97, t120, t117));
+            let t122 = k(0.335) - (t63 - t64);
+            let t123 = t122 * t66;
+            let t124 = T::fused(-t93, t123, k(2.0) * t81);
+            let t125 = T::fused(-t50, t83, t2 * t85);
+            let t126 = T::fused(-t50, t88, t2 * t89);
+            let t127 = T::fused(t50, t78, t2 * t80);
+            let t128 = T::fused(-t50, t125, T::fused(t2, t126, k(2.0) * t127));
+            let t129 = t66 * t128;
+            let t130 = T::fused(t2, t108, t50 * t105);
+            let t131 = T::fused(t93, t129, k(2.0) * t130);
+            let t132 = T::fused(t97, t124, t72 * t131);
+            let t133 = T::fused(-t61, t123, t60);
+            let t134 = T::fused(t3, t125, T::fused(t50, t126, t61 * t129));
+            let t135 = T::fused(t97, t133, t72 * t134);
+            let t136 = T::fused(t97, t132, t72 * t135);
+            let t137 = T::fused(-t92, t123, t81);
+            let t138 = T::fused(t111, t128, t130);
+            let t139 = T::fused(t97, t137, t72 * t138);
+            let t140 = t139 + (t139 + t136);
+            let t141 = t136 + (t139 + (t139 + t140));
+            let t142 = t141 * t121;
+            let t143 = T::fused(t122, t123, t63);
+            let t144 = T::fused(-t128, t123, t127);
+            let t145 = T::fused(t97, t143, t72 * t144);
+            let t146 = T::fused(
+                t2,
+                T::fused(t2, t107, t104),
+                T::fused(t50, T::fused(t50, t102, t106), t128 * t129),
+            );
+            let t147 = T::fused(t97, t144, t72 * t146);
+            let t148 = T::fused(t97, t145, t72 * t147);
+            let t149 = k(0.335) - t148;
+            let t150 = k(0.78055)
+                - (t148 + (t148 - T::fused(-t141, t142, k(2.0) * t149)));
+            let t151 = T::fused(
+                link_1_e2,
+                link_2_e3,
+                T::fused(
+                    -link_1_e3,
+                    link_2_e2,
+                    T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
+                ),
+            );
+            let t152 = T::fused(
+                link_1_e3,
+                link_2_e3,
+                T::fused(
+                    link_1_e2,
+                    link_2_e2,
+                    T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
+                ),
+            );
+            let t153 = (t152 + t151) * (t152 - t151);
+            let t154 = T::fused(t97, t113, t112 * t100);
+            let t155 = T::fused(t100, t120, -T::fused(k(4.0), t97 * t99, k(2.0) * t154));
+            let t156 = T::fused(-t97, t135, t100 * t132);
+            let t157 = T::fused(t155, t142, k(2.0) * t156);
+            let t158 = t152 * t151;
+            let t159 = T::fused(t153, t150, t158 * t157);
+            let t160 = T::fused(
+                -t97,
+                T::fused(t97, t69, t119),
+                k(0.25) * (t155 * (t121 * t155)),
+            );
+            let t161 = k(0.00335) + T::fused(t72, T::fused(t100, t118, t98), -t160);
+            let t162 = T::fused(t158, t161, k(0.25) * (t153 * t157));
+            let t163 = k(4.0) * t158;
+            let t164 = t140 * t121;
+            let t165 = k(0.41875) + (t149 - T::fused(t141, t164, t148));
+            let t166 = T::fused(t164, t155, t156);
+            let t167 = T::fused(t153, t165, t158 * t166);
+            let t168 = T::fused(t140, t164, t148);
+            let t169 = k(0.41875) - (t168 - t167);
+            let t170 = T::fused(
+                -t163,
+                t162,
+                T::fused(-k(2.0), t167, t168 + T::fused(-k(2.0), t169, t168)),
+            );
+            let t171 = link_4_wx * link_4_wz;
+            let t172 = T::fused(link_4_wx, link_4_wx, link_4_wy * link_4_wy);
+            let t173 = T::fused(link_5_wx, link_5_wx, link_5_wy * link_5_wy);
+            let t174 = T::fused(t171, t87, T::fused(t172, t22, t173));
+            let t175 = t8 * t174;
+            let t176 = link_4_wy - link_5_wy;
+            let t177 = link_5_wz * t176;
+            let t178 = link_5_wy * link_5_wz;
+            let t179 = link_4_wy * link_4_wz;
+            let t180 = t179 + t178;
+            let t181 = T::fused(
+                -t178,
+                t13,
+                T::fused(t173, t6, T::fused(link_6_wx, link_6_wx, link_6_wy * link_6_wy)),
+            );
+            let t182 = link_6_wy * link_6_wz;
+            let t183 = T::fused(t178, t6, T::fused(t173, t13, t182));
+            let t184 = T::fused(-k(1.2142857142857142), t183, t182);
+            let t185 = k(2.68) * T::fused(t7, t181, k(0.1044776119402985) * (t6 * t184));
+            let t186 = T::fused(
+                k(0.3752),
+                t178,
+                -(t185 - T::fused(t30, t180, -T::fused(k(4.0), t175, t177 * t36))),
+            );
+            let t187 = t185 - t186;
+            let t188 = link_5_wx * link_5_wz;
+            let t189 = T::fused(t171, t22, T::fused(-t172, t87, t188));
+            let t190 = link_5_wx * t176;
+            let t191 = link_6_wx * link_6_wz;
+            let t192 = t188 + t191;
+            let t193 = link_5_wx - link_6_wx;
+            let t194 = link_6_wz * t193;
+            let t195 = t194 - t192;
+            let t196 = link_6_wy * t193;
+            let t197 = T::fused(-k(2.0), t196, link_6_wx * link_6_wy);
+            let t198 = T::fused(
+                -k(4.4),
+                t194,
+                T::fused(k(3.3333333333333335), t192, t191),
+            );
+            let t199 = T::fused(
+                k(0.3),
+                t6 * t198,
+                -T::fused(k(0.04), t7 * t197, t195 + T::fused(-k(0.3), t188, t195)),
+            );
+            (
+                t2,
+                t6,
+                t7,
+                t8,
+                t11,
+                t13,
+                t14,
+                t15,
+                t16,
+                t18,
+                t19,
+                t21,
+                t22,
+                t26,
+                t27,
+                t30,
+                t33,
+                t38,
+                t41,
+                t42,
+                t44,
+                t49,
+                t50,
+                t52,
+                t54,
+                t58,
+                t59,
+                t61,
+                t63,
+                t66,
+                t67,
+                t69,
+                t72,
+                t73,
+                t76,
+                t78,
+                t79,
+                t80,
+                t83,
+                t85,
+                t87,
+                t88,
+                t89,
+                t92,
+                t93,
+                t96,
+                t97,
+                t100,
+                t101,
                 t102,
-                t105,
-                t108,
+                t103,
+                t107,
                 t112,
-                t114,
+                t113,
                 t115,
                 t116,
-                t117,
                 t118,
+                t121,
                 t122,
                 t124,
-                t125,
-                t126,
                 t128,
                 t131,
-                t132,
-                t136,
+                t133,
+                t134,
+                t137,
+                t138,
                 t139,
+                t140,
                 t141,
-                t142,
                 t143,
                 t144,
+                t145,
                 t146,
-                t148,
-                t149,
-                t151,
+                t147,
+                t150,
+                t153,
                 t154,
                 t155,
-                t156,
                 t157,
                 t158,
+                t159,
+                t161,
+                t162,
+                t163,
                 t164,
                 t165,
                 t166,
+                t168,
                 t169,
+                t170,
                 t171,
-                t173,
+                t172,
+                t174,
                 t175,
-                t176,
                 t177,
-                t178,
                 t179,
                 t180,
                 t181,
                 t182,
+                t183,
                 t184,
                 t185,
-                t186,
                 t187,
-                t188,
                 t189,
                 t190,
-                t191,
+                t192,
                 t194,
                 t195,
                 t196,
@@ -11600,34 +11506,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             )
         };
         let (
-            t200,
-            t202,
-            t205,
-            t293,
+            t278,
+            t315,
+            t322,
+            t327,
+            t328,
+            t330,
+            t331,
+            t332,
+            t333,
+            t336,
+            t337,
+            t338,
+            t339,
+            t343,
             t349,
-            t353,
-            t357,
+            t351,
+            t352,
+            t354,
+            t355,
+            t356,
+            t359,
             t360,
+            t364,
             t365,
-            t366,
-            t367,
-            t368,
-            t369,
             t370,
             t371,
-            t372,
+            t374,
             t375,
+            t377,
+            t378,
             t379,
-            t381,
             t382,
+            t383,
             t384,
             t385,
             t386,
-            t387,
+            t388,
             t390,
             t391,
             t392,
-            t393,
             t394,
             t395,
             t396,
@@ -11635,384 +11553,482 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t398,
             t399,
         ) = {
-            let t200 = t199 + T::fused(k(0.1), t184, t199)
-                + T::fused(k(0.1), t181, t199);
-            let t201 = T::fused(-k(0.2), t182, t200 * t177);
-            let t202 = link_3_wx * t197;
-            let t203 = T::fused(-t112, t102, t108 * t141);
-            let t204 = k(0.1) * t203;
-            let t205 = t204 + (t204 + T::fused(-t112, t156, t108 * t158));
-            let t206 = T::fused(-t205, t177, t203);
-            let t207 = T::fused(t201, t198, t206 * t202) - t196
-                - T::fused(-t166, t165, t151);
-            let t208 = T::fused(t115, t116, t65);
-            let t209 = T::fused(-t124, t116, t122);
-            let t210 = T::fused(
-                -k(1.5),
-                t114,
-                T::fused(t209, t118, T::fused(t105, t148, t208 * t114)),
+            let t200 = t18 * t199;
+            let t201 = T::fused(
+                k(0.02),
+                link_5_wx * link_5_wy,
+                -T::fused(t14, t200, -T::fused(t21, t189, k(2.0) * (t190 * t33))),
             );
-            let t211 = T::fused(t117, t128, t142 * t132) + t210
-                + T::fused(-t115, t86, t76);
-            let t212 = T::fused(t124, t125, T::fused(t31, t31 * t36, t27 * (t27 * t57)));
-            let t213 = T::fused(
-                -k(1.5),
-                t118,
-                T::fused(t212, t118, T::fused(t105, t149, t209 * t114)),
+            let t202 = T::fused(k(0.6), t7 * t198, T::fused(k(0.02), t6 * t197, t201));
+            let t203 = T::fused(
+                t15,
+                t180,
+                T::fused(k(2.0), t175, T::fused(-k(2.68), t180, t177 * t30)),
             );
-            let t214 = T::fused(-t126, t128, t143 * t132) + t213
-                + T::fused(t124, t86, -T::fused(t31, t42, t27 * t60));
-            let t215 = t112 * t209;
-            let t216 = T::fused(-t108, t208, t215);
-            let t217 = t108 * t209;
-            let t218 = T::fused(t112, t212, -t217);
-            let t219 = T::fused(t112, t216, t108 * t218);
-            let t220 = t164 * t185;
-            let t221 = T::fused(t220, t194, t219);
+            let t204 = t203 + t185;
+            let t205 = T::fused(
+                t22,
+                t187,
+                T::fused(t73, t202, t204 - T::fused(k(0.3752), t179, -t204)),
+            );
+            let t206 = t38 * t205;
+            let t207 = k(0.5) * t206;
+            let t208 = link_3_wx * link_3_wz;
+            let t209 = t208 + t171;
+            let t210 = k(2.0) * t209;
+            let t211 = k(2.0) * t2;
+            let t212 = T::fused(link_3_wx, link_3_wx, link_3_wy * link_3_wy);
+            let t213 = link_3_wy * link_3_wz;
+            let t214 = T::fused(t213, t50, T::fused(t212, t211, t179));
+            let t215 = k(0.5) * t214;
+            let t216 = T::fused(-t213, t211, T::fused(t212, t50, t172));
+            let t217 = link_3_wx - link_4_wx;
+            let t218 = link_4_wz * t217;
+            let t219 = k(2.0) * t218;
+            let t220 = link_4_wy * t217;
+            let t221 = T::fused(
+                -t85,
+                t215,
+                T::fused(t83, t216, T::fused(t49, t219, t220 * t42)),
+            );
             let t222 = T::fused(
-                t112,
-                T::fused(t112, t208, t217),
-                t108 * T::fused(t108, t212, t215),
+                k(0.5),
+                t8 * t180,
+                -T::fused(-t16, t174, T::fused(k(0.67), t174, t177 * t8)),
             );
-            let t223 = t164 * t194;
-            let t224 = T::fused(t194, t223, t222);
-            let t225 = T::fused(
-                -k(2.0),
-                t189,
-                T::fused(t224, t189, -T::fused(-t195, t176, t188 * t221)),
+            let t223 = T::fused(
+                k(0.14),
+                t7 * t184,
+                -T::fused(k(0.335), t6 * t181, -t222),
             );
-            let t226 = T::fused(k(0.2), t219, t200 * t223);
-            let t227 = T::fused(t205, t223, T::fused(-t112, t190, t108 * t191));
-            let t228 = T::fused(-t226, t198, t227 * t202) - t225
-                - T::fused(t194, t165, T::fused(t112, t211, t108 * t214));
-            let t229 = T::fused(t169, t207, t173 * t228);
-            let t230 = k(0.1) * t229;
-            let t231 = T::fused(-t108, t211, t112 * t214);
-            let t232 = k(0.1) * t231;
-            let t233 = T::fused(-t108, t216, t112 * t218);
-            let t234 = k(0.1) * t233;
-            let t235 = k(0.15) - t234;
-            let t236 = T::fused(t220, t200, -(k(0.2) - t234 + t235));
-            let t237 = k(0.01) * t233;
-            let t238 = t164 * t200;
+            let t224 = t195
+                + T::fused(k(0.5), t44 * t189, -T::fused(k(2.0), t189, t190 * t21));
+            let t225 = T::fused(k(0.5), t19 * t200, t224);
+            let t226 = T::fused(t11, t223, k(0.1675) * (t22 * t225));
+            let t227 = T::fused(
+                k(0.05025),
+                t171,
+                -(t226 + T::fused(t27, t207, T::fused(-t58, t210, t221))),
+            );
+            let t228 = t226 - t227;
+            let t229 = k(0.5) * t2;
+            let t230 = k(4.0) * t209;
+            let t231 = k(2.0) * t220;
+            let t232 = k(4.0) * t218;
+            let t233 = k(2.0) * t216;
+            let t234 = T::fused(
+                -t89,
+                t214,
+                T::fused(t88, t233, T::fused(t54, t231, t42 * t232)),
+            );
+            let t235 = T::fused(
+                k(0.0134),
+                link_4_wx * link_4_wy,
+                -T::fused(-t41, t206, T::fused(-t59, t230, t234)),
+            );
+            let t236 = T::fused(-t11, t187, T::fused(t52, t202, t235));
+            let t237 = T::fused(
+                -t78,
+                t216,
+                T::fused(k(0.5025), t209, -T::fused(t58, t219, t220 * t59)),
+            );
+            let t238 = T::fused(
+                t26,
+                t207,
+                -T::fused(-t63, t210, T::fused(-t80, t215, t237)),
+            ) + t226;
             let t239 = T::fused(
-                t200,
-                t238,
-                -(T::fused(k(0.2), t235, -t237)
-                    + (k(0.02) + (k(0.0017) + (k(0.015) - t237)))),
+                t50,
+                t228,
+                T::fused(t236, t229, t238 - T::fused(k(0.05025), t208, -t238)),
             );
-            let t240 = T::fused(-t112, t179, t108 * t180);
-            let t241 = T::fused(k(0.2), t240, t205 * t238);
-            let t242 = T::fused(-t239, t198, t241 * t202)
-                - T::fused(t226, t189, -T::fused(t201, t176, t188 * t236));
-            let t243 = t242
-                - T::fused(
-                    t200,
-                    t165,
-                    t232 + T::fused(k(0.0014), link_3_wy * link_3_wz, t232),
-                );
-            let t244 = T::fused(
-                t205,
-                t165,
-                T::fused(
-                    k(0.0001),
-                    link_3_wx * link_3_wy,
-                    T::fused(-t112, t139, t108 * t146),
-                ),
-            );
-            let t245 = T::fused(t220, t205, t240);
-            let t246 = T::fused(
+            let t240 = t66 * t239;
+            let t241 = k(2.0) * t72;
+            let t242 = link_2_wx * link_2_wz;
+            let t243 = T::fused(link_2_wx, link_2_wx, link_2_wy * link_2_wy);
+            let t244 = T::fused(t242, t241, T::fused(t243, t97, t212));
+            let t245 = link_2_wy - link_3_wy;
+            let t246 = link_3_wx * t245;
+            let t247 = link_3_wz * t245;
+            let t248 = k(2.0) * t247;
+            let t249 = link_2_wy * link_2_wz;
+            let t250 = t249 + t213;
+            let t251 = k(2.0) * t250;
+            let t252 = T::fused(
                 t112,
-                T::fused(-t112, t131, t157),
-                t108 * T::fused(-t108, t144, t155),
+                t251,
+                -T::fused(t131, t244, T::fused(-t246, t96, t118 * t248)),
             );
-            let t247 = T::fused(t205, t164 * t205, -(k(0.0002) + t246));
-            let t248 = T::fused(-t241, t198, t247 * t202)
-                - T::fused(t227, t189, -T::fused(-t206, t176, t188 * t245));
-            let t249 = t248 - t244;
-            let t250 = T::fused(t185, t220, t233);
-            let t251 = T::fused(
-                k(2.0),
-                t188,
-                T::fused(t221, t189, -T::fused(-t186, t176, t188 * t250)),
+            let t253 = T::fused(t242, t97, T::fused(-t243, t241, t208));
+            let t254 = k(2.0) * t253;
+            let t255 = T::fused(
+                -t103,
+                t215,
+                T::fused(-t102, t216, T::fused(t220, t88, t83 * t219)),
             );
-            let t252 = T::fused(-t236, t198, t245 * t202) - t251
-                - T::fused(t185, t165, t231);
-            let t253 = k(0.1) * t252;
-            let t254 = T::fused(
-                k(0.0014),
-                link_2_wy * link_2_wz,
-                -(t253 - T::fused(-t169, t243, t173 * t249)),
-            );
-            let t255 = t253 - t254;
-            let t256 = t173 * t241;
-            let t257 = T::fused(-t169, t239, t256);
-            let t258 = t169 * t241;
-            let t259 = T::fused(t173, t247, -t258);
-            let t260 = T::fused(-t169, t236, t173 * t245);
-            let t261 = k(0.01) * t250;
-            let t262 = T::fused(-k(0.2), t260, t261)
-                - (k(0.02) - T::fused(-t169, t257, t173 * t259));
-            let t263 = k(0.1) * t250;
-            let t264 = k(0.2) - t263 + t260;
-            let t265 = k(1.0)
-                / (T::fused(k(0.2), t264, -t261) + (k(0.025) + (k(0.0017) - t262)));
-            let t266 = t265 * t255;
-            let t267 = T::fused(-t169, t201, t173 * t226);
-            let t268 = T::fused(t169, t206, t173 * t227);
-            let t269 = T::fused(-t169, t267, t173 * t268);
-            let t270 = T::fused(t169, t186, t173 * t221);
-            let t271 = k(0.01) * t270;
-            let t272 = k(0.1) * t270;
-            let t273 = t272 - t269;
-            let t274 = t271 + T::fused(k(0.1), t273, t271)
-                + T::fused(-k(0.1), t269, t271);
-            let t275 = T::fused(t169, t178, t173 * t195);
-            let t276 = T::fused(t169, t195, t173 * t224);
-            let t277 = T::fused(t169, t275, t173 * t276);
-            let t278 = k(0.1) * t277;
-            let t279 = k(0.2) - t278;
-            let t280 = t272 + t273;
-            let t281 = t265 * t280;
-            let t282 = T::fused(t281, t274, -(k(0.25) - t278 + t279));
-            let t283 = k(0.1) * link_1_wx;
-            let t284 = link_1_wz * t283;
-            let t285 = t284 + t171;
-            let t286 = T::fused(
-                link_1_e2,
-                link_2_e3,
+            let t256 = T::fused(
+                t22,
+                t223,
                 T::fused(
-                    -link_1_e3,
-                    link_2_e2,
-                    T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
+                    t76,
+                    t207,
+                    -T::fused(k(1.005), t216, T::fused(-t78, t210, t255)),
                 ),
             );
-            let t287 = k(2.0) * t286;
-            let t288 = T::fused(-t286, t287, k(1.0));
-            let t289 = k(0.1) * link_1_wy;
-            let t290 = link_1_wz * t289;
-            let t291 = T::fused(
-                link_1_e3,
-                link_2_e3,
+            let t257 = T::fused(-t101, t225, t256);
+            let t258 = T::fused(
+                t107,
+                t214,
+                T::fused(t103, t233, T::fused(t89, t231, t85 * t232)),
+            );
+            let t259 = T::fused(
+                -t79,
+                t206,
+                t204 - T::fused(k(4.02), t214, -T::fused(t80, t230, t258)),
+            );
+            let t260 = T::fused(-t2, t257, k(0.125) * (t50 * t259));
+            let t261 = T::fused(
+                k(0.0469),
+                t213,
+                -(t260 + T::fused(t93, t240, T::fused(t124, t254, -t252))),
+            );
+            let t262 = t260 - t261;
+            let t263 = T::fused(
+                k(0.5),
+                t134 * t244,
+                T::fused(-t247, t96, k(2.0) * (t246 * t69)),
+            );
+            let t264 = T::fused(
+                k(0.5),
+                t61 * t240,
+                T::fused(t133, t253, T::fused(t250, t113, t263)),
+            );
+            let t265 = T::fused(
+                t211,
+                t228,
+                -T::fused(t67, t236, T::fused(k(0.00335), link_3_wx * link_3_wy, t264)),
+            );
+            let t266 = T::fused(
+                -t138,
+                t244,
+                T::fused(k(0.67), t250, -T::fused(-t246, t113, t112 * t248)),
+            );
+            let t267 = T::fused(
+                t92,
+                t240,
+                T::fused(t137, t254, T::fused(t115, t251, -t266)),
+            ) + t260;
+            let t268 = T::fused(
+                t97,
+                t262,
+                T::fused(-t241, t265, t267 - T::fused(k(0.0469), t249, -t267)),
+            );
+            let t269 = t121 * t268;
+            let t270 = T::fused(-t97, t131, t100 * t124);
+            let t271 = T::fused(-t97, t134, t100 * t133);
+            let t272 = T::fused(
+                t97,
+                t270,
+                T::fused(t72, t271, k(2.0) * T::fused(-t97, t138, t100 * t137)),
+            );
+            let t273 = t272 * t121;
+            let t274 = T::fused(-t97, t147, t100 * t145);
+            let t275 = T::fused(t141, t273, k(2.0) * t274);
+            let t276 = T::fused(link_1_wx, link_1_wx, link_1_wy * link_1_wy);
+            let t277 = t276 * t153;
+            let t278 = link_1_wy * link_1_wz;
+            let t279 = t278 * t158;
+            let t280 = T::fused(k(2.0), t279, -(t243 + t277));
+            let t281 = link_1_wx - link_2_wx;
+            let t282 = link_2_wy * t281;
+            let t283 = link_2_wz * t281;
+            let t284 = k(2.0) * t283;
+            let t285 = k(2.0) * t158;
+            let t286 = t276 * t285;
+            let t287 = t278 * t153;
+            let t288 = t287 + (t249 + t286);
+            let t289 = k(2.0) * t288;
+            let t290 = k(0.41875) - (t115 - t116);
+            let t291 = t290 * t121;
+            let t292 = T::fused(-t141, t291, k(2.0) * t139);
+            let t293 = T::fused(
+                t292,
+                t289,
+                T::fused(t280, t275, T::fused(-t282, t157, t150 * t284)),
+            );
+            let t294 = link_1_wx * link_1_wz;
+            let t295 = t294 + t242;
+            let t296 = k(2.0) * t295;
+            let t297 = T::fused(
+                t137,
+                t251,
+                -T::fused(-t144, t244, T::fused(t246, t133, t124 * t248)),
+            );
+            let t298 = T::fused(
+                -t122,
+                t240,
+                t238 - T::fused(k(0.67), t253, -T::fused(t143, t254, t297)),
+            );
+            let t299 = T::fused(
+                t138,
+                t251,
+                -T::fused(-t146, t244, T::fused(t246, t134, t131 * t248)),
+            );
+            let t300 = T::fused(
+                -t50,
+                t257,
                 T::fused(
-                    link_1_e2,
-                    link_2_e2,
-                    T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
+                    -t128,
+                    t240,
+                    T::fused(k(1.34), t244, -T::fused(t144, t254, t299)),
                 ),
             );
-            let t292 = t291 * t287;
-            let t293 = T::fused(link_1_wy, t289, link_1_wx * t283);
-            let t294 = t293 * t292;
-            let t295 = t187 + T::fused(t290, t288, t294);
-            let t296 = t264 + (k(0.25) - t263);
-            let t297 = t265 * t296;
-            let t298 = T::fused(-k(0.2), t270, t297 * t274);
-            let t299 = t293 * t288;
-            let t300 = t175 + T::fused(-t290, t292, t299);
-            let t301 = T::fused(-t173, t275, t169 * t276);
-            let t302 = T::fused(t173, t201, t169 * t226);
-            let t303 = T::fused(-t173, t206, t169 * t227);
-            let t304 = k(0.1) * T::fused(-t173, t186, t169 * t221);
-            let t305 = t304 + (t304 - T::fused(-t169, t302, t173 * t303));
-            let t306 = t265 * t305;
-            let t307 = T::fused(k(0.2), t301, t306 * t274);
-            let t308 = link_1_wx - link_2_wx;
-            let t309 = link_2_wz * t308;
-            let t310 = k(0.01) * t277;
-            let t311 = t265 * t274;
+            let t301 = T::fused(-t97, t298, t72 * T::fused(-t229, t259, t300));
+            let t302 = T::fused(
+                k(0.05025),
+                t242,
+                t301 + T::fused(-t141, t269, T::fused(t165, t296, -t293)),
+            );
+            let t303 = T::fused(t155, t291, t154);
+            let t304 = T::fused(t100, t270, -T::fused(-t155, t273, t97 * t271));
+            let t305 = T::fused(
+                k(0.5),
+                t280 * t304,
+                T::fused(-t283, t157, k(2.0) * (t282 * t161)),
+            );
+            let t306 = T::fused(
+                k(0.5),
+                t155 * t269,
+                T::fused(t295, t166, T::fused(-t303, t288, t305)),
+            );
+            let t307 = T::fused(
+                -t241,
+                t262,
+                T::fused(-t97, t265, T::fused(k(0.00335), link_2_wx * link_2_wy, -t306)),
+            );
+            let t308 = T::fused(t272, t164, t274);
+            let t309 = T::fused(
+                -t280,
+                t308,
+                T::fused(k(0.8375), t295, -T::fused(-t282, t166, t165 * t284)),
+            );
+            let t310 = T::fused(-t290, t164, t139);
+            let t311 = T::fused(
+                t140,
+                t269,
+                T::fused(t168, t296, T::fused(t310, t289, -t309)),
+            ) - t301;
             let t312 = T::fused(
-                t274,
-                t311,
-                -(T::fused(k(0.2), t279, -t310)
-                    + (k(0.025) + (k(0.0016) + (k(0.02) - t310)))),
+                t158,
+                T::fused(t153, t304, t163 * t303),
+                k(2.0) * T::fused(-t153, t308, t163 * t310),
             );
-            let t313 = link_2_wy * t308;
-            let t314 = T::fused(t173, t267, t169 * t268);
-            let t315 = T::fused(t173, t236, t169 * t245);
-            let t316 = k(0.1) * t315;
-            let t317 = t316 + (t316 - T::fused(t173, t257, t169 * t259));
-            let t318 = T::fused(k(0.2), t314, t317 * t311);
-            let t319 = T::fused(-t312, t309, t318 * t313)
-                + T::fused(t307, t300, T::fused(t285, t282, t298 * t295));
-            let t320 = t319
-                - T::fused(
-                    t274,
-                    t266,
-                    t230 + T::fused(k(0.0015), link_2_wx * link_2_wz, t230),
-                );
+            let t313 = T::fused(
+                k(98.1),
+                (link_1_e0 - link_1_e2) * (link_1_e0 + link_1_e2),
+                t276,
+            );
+            let t314 = T::fused(
+                -k(2.0),
+                T::fused(-t153, t166, t163 * t165),
+                k(4.0) * (t153 * t162),
+            );
+            let t315 = link_1_wx * link_1_wy;
+            let t316 = T::fused(
+                -t153,
+                T::fused(t153, t292, t158 * t275),
+                t158 * T::fused(-t153, t303, t158 * t304),
+            );
+            let t317 = T::fused(t153, t310, t158 * t308);
+            let t318 = t317 + (t317 - t316);
+            let t319 = k(2.0) * t278;
+            let t320 = T::fused(
+                -t315,
+                T::fused(t163, t159, -t314),
+                t319 * (t316 - (t317 + (t317 + t318))),
+            );
             let t321 = T::fused(
-                t317,
-                t266,
-                -T::fused(
-                    k(0.0001),
-                    link_2_wx * link_2_wy,
-                    -T::fused(t173, t243, t169 * t249),
-                ),
+                -t313,
+                T::fused(t153, T::fused(-t153, t275, t163 * t292), t312),
+                t320,
             );
-            let t322 = T::fused(t281, t317, t314);
-            let t323 = T::fused(-t317, t297, t315);
-            let t324 = T::fused(t306, t317, T::fused(t173, t302, t169 * t303));
+            let t322 = link_1_e0 * link_1_e2;
+            let t323 = T::fused(k(196.2), t322, t294);
+            let t324 = T::fused(
+                k(2.0),
+                t323 * (k(0.5025) - (t168 - t169)),
+                -T::fused(t319, t318, -t321),
+            );
             let t325 = T::fused(
-                t173,
-                T::fused(t173, t239, t258),
-                t169 * T::fused(t169, t247, t256),
+                -t153,
+                t301 + t302,
+                T::fused(t285, t307, t311 - T::fused(k(0.05025), t294, t324 - t311)),
             );
-            let t326 = T::fused(t317, t265 * t317, -(k(0.0002) - t325));
-            let t327 = T::fused(-t318, t309, t326 * t313)
-                + T::fused(t324, t300, -T::fused(-t285, t322, t323 * t295));
-            let t328 = T::fused(t280, t281, t277);
-            let t329 = T::fused(-t281, t296, t270);
-            let t330 = T::fused(t281, t305, t301);
-            let t331 = T::fused(
-                k(2.5),
-                t285,
-                -T::fused(t330, t300, -T::fused(-t285, t328, t329 * t295)),
+            let t326 = t325 / (k(0.94805) - T::fused(-t153, t159, t170));
+            let t327 = k(0.5) * t326;
+            let t328 = t294 + t327;
+            let t329 = link_1_e0 * link_1_e0;
+            let t330 = link_1_e0 * link_1_e3;
+            let t331 = link_1_e1 * link_1_e2;
+            let t332 = link_1_e1 * link_1_e3;
+            let t333 = T::fused(
+                k(0.5) - T::fused(link_1_e1, link_1_e1, t329),
+                t328,
+                T::fused(-(t331 - t330), t319, (t332 + t322) * t276),
             );
-            let t332 = T::fused(-t282, t309, t322 * t313) - t331
-                - T::fused(t280, t266, t229);
-            let t333 = k(0.1) * t332;
-            let t334 = T::fused(
-                k(0.0015),
-                link_1_wx * link_1_wz,
-                -(t333 + T::fused(t288, t320, t292 * (t327 - t321))),
+            let t334 = link_1_e0 * link_1_e1;
+            let t335 = link_1_e2 * link_1_e3;
+            let t336 = T::fused(
+                k(0.5) - T::fused(link_1_e2, link_1_e2, t329),
+                t319,
+                (t335 - t334) * t276,
             );
-            let t335 = k(2.0) * link_1_e2;
-            let t336 = T::fused(k(9.81), link_1_e0 * t335, t284);
-            let t337 = T::fused(t288, t282, t292 * t322);
-            let t338 = k(0.1) * t328;
-            let t339 = k(0.25) - t338 - t337;
-            let t340 = T::fused(
-                t288,
-                T::fused(-t288, t298, t292 * t307),
-                t292 * T::fused(t288, t323, t292 * t324),
+            let t337 = T::fused(
+                t335 + t334,
+                t319,
+                (k(0.5) - T::fused(link_1_e3, link_1_e3, t329)) * t276,
             );
-            let t341 = T::fused(t288, t329, t292 * t330);
-            let t342 = k(0.1) * t341;
-            let t343 = t342 + t340;
-            let t344 = T::fused(k(9.81), T::fused(-link_1_e2, t335, k(1.0)), t293);
-            let t345 = T::fused(
-                t288,
-                T::fused(t292, t298, t288 * t307),
-                t292 * T::fused(-t292, t323, t288 * t324),
+            let t338 = T::fused(k(0.5), t153 * t326, -T::fused(t315, t285, t283));
+            let t339 = t328 + (t327 + (t295 + t338));
+            let t340 = link_2_e0 * link_2_e0;
+            let t341 = k(6.0) * t279;
+            let t342 = t341 + T::fused(-t153, t313, t280);
+            let t343 = T::fused(t158, t326, T::fused(t315, t153, t282));
+            let t344 = T::fused(
+                t342,
+                t272,
+                T::fused(k(2.0), t141 * t338, T::fused(-t155, t343, t268)),
             );
-            let t346 = k(0.1) * T::fused(-t292, t329, t288 * t330);
-            let t347 = T::fused(
-                t346 + (t346 + t345),
-                t344,
-                -T::fused(k(0.3) - t338 + t339, t336, t290 * (t342 + t343)),
+            let t345 = k(3.0) * t287;
+            let t346 = t345 + T::fused(t313, t285, t288);
+            let t347 = t327 + (t323 + (t295 + t327));
+            let t348 = t121
+                * T::fused(k(2.0), t140 * t347, -T::fused(k(2.0), t290 * t346, -t344));
+            let t349 = k(0.5) * t348;
+            let t350 = t345 + (t286 + t288) + t349;
+            let t351 = link_2_e0 * link_2_e3;
+            let t352 = link_2_e1 * link_2_e2;
+            let t353 = t341 - (t277 - t280);
+            let t354 = link_2_e0 * link_2_e2;
+            let t355 = link_2_e1 * link_2_e3;
+            let t356 = T::fused(
+                -(k(0.5) - T::fused(link_2_e1, link_2_e1, t340)),
+                t339,
+                T::fused(t352 - t351, t350, (t355 + t354) * t353),
             );
-            let t348 = k(0.01) * t341;
-            let t349 = link_1_wy * link_1_wz;
-            let t350 = T::fused(t288, t312, t292 * t318);
-            let t351 = T::fused(t288, t318, t292 * t326);
-            let t352 = k(0.1) * T::fused(-t292, t282, t288 * t322);
-            let t353 = link_1_wx * link_1_wy;
-            let t354 = T::fused(
-                -t349,
-                t348 + T::fused(k(0.1), t343, t348) + T::fused(k(0.1), t340, t348),
-                t353 * (t352 + (t352 + T::fused(-t292, t350, t288 * t351))),
+            let t357 = link_2_e0 * link_2_e1;
+            let t358 = link_2_e2 * link_2_e3;
+            let t359 = T::fused(
+                -(k(0.5) - T::fused(link_2_e2, link_2_e2, t340)),
+                t350,
+                (t358 - t357) * t353,
             );
-            let t355 = k(0.01) * t328;
-            let t356 = T::fused(k(0.2), t337, t355)
-                - (k(0.025) - T::fused(t288, t350, t292 * t351));
-            let t357 = (t354 + t347 + (t333 - t334))
-                / (T::fused(k(0.2), t339, -t355) + (k(0.03) + (k(0.0016) - t356)));
-            let t358 = k(0.1) * t357;
-            let t359 = t284 + t358;
-            let t360 = link_1_e0 * link_1_e0;
-            let t361 = k(0.1) * t349;
-            let t362 = t290 + t361;
-            let t363 = link_1_e0 * link_1_e3;
-            let t364 = link_1_e1 * link_1_e2;
-            let t365 = T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t360))),
-                t359,
-                k(2.0) * (t364 - t363) * t362,
+            let t360 = T::fused(
+                -(t358 + t357),
+                t350,
+                (k(0.5) - T::fused(link_2_e3, link_2_e3, t340)) * t353,
             );
-            let t366 = link_1_e0 * link_1_e2;
-            let t367 = link_1_e1 * link_1_e3;
-            let t368 = T::fused(
-                -(k(2.0) * (t364 + t363)),
-                t359,
-                k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t360)) * t362,
+            let t361 = t338 + t339;
+            let t362 = t338 + (t347 + t338);
+            let t363 = T::fused(-t241, t362, T::fused(t97, t342, -t244));
+            let t364 = T::fused(k(0.5), t97 * t348, -T::fused(t241, t343, t247));
+            let t365 = T::fused(-t72, t348, T::fused(-t97, t343, t246));
+            let t366 = T::fused(
+                -t128,
+                t363,
+                T::fused(k(2.0), t93 * t364, T::fused(-t61, t365, t239)),
             );
-            let t369 = link_1_e0 * link_1_e1;
-            let t370 = link_1_e2 * link_1_e3;
-            let t371 = T::fused(
-                k(2.0) * (t367 - t366),
-                t359,
-                k(2.0) * (t370 + t369) * t362,
+            let t367 = t349 + (t346 + (t250 + t349));
+            let t368 = T::fused(t97, t362, T::fused(t342, t241, t253));
+            let t369 = t66
+                * T::fused(k(2.0), t122 * t368, -T::fused(k(2.0), t92 * t367, t366));
+            let t370 = k(0.5) * t369;
+            let t371 = T::fused(t97, t361, T::fused(t353, t241, t253 - t370));
+            let t372 = link_3_e0 * link_3_e0;
+            let t373 = t350 + (t349 + (t250 + t364));
+            let t374 = link_3_e0 * link_3_e3;
+            let t375 = link_3_e1 * link_3_e2;
+            let t376 = T::fused(-t241, t361, T::fused(t97, t353, -t244));
+            let t377 = link_3_e0 * link_3_e2;
+            let t378 = link_3_e1 * link_3_e3;
+            let t379 = T::fused(
+                -(k(0.5) - T::fused(link_3_e1, link_3_e1, t372)),
+                t371,
+                T::fused(t375 - t374, t373, (t378 + t377) * t376),
             );
-            let t372 = t309 + T::fused(-t288, t357, t353 * t292);
-            let t373 = k(0.1) * t372;
-            let t374 = t373 - (t285 + (t358 + t359));
-            let t375 = link_2_e0 * link_2_e0;
-            let t376 = t285 + (t358 + (t336 + t358));
-            let t377 = t361 + t362;
-            let t378 = t288 * t377;
-            let t379 = t295 + T::fused(t292, t344, t378);
-            let t380 = t292 * t377;
-            let t381 = t300 + T::fused(t288, t344, -t380);
-            let t382 = t313 + T::fused(t292, t357, t353 * t288);
-            let t383 = T::fused(-t274, t372, t317 * t382)
-                + T::fused(t305, t381, T::fused(t280, t376, t296 * t379));
-            let t384 = t265 * (t255 - t383);
-            let t385 = t349 - (t349 - t384);
-            let t386 = k(0.1) * t385;
-            let t387 = t295 + (t294 + t378) + t386;
-            let t388 = link_2_e0 * link_2_e3;
-            let t389 = link_2_e1 * link_2_e2;
-            let t390 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t375)),
-                t374,
-                k(2.0) * (t389 - t388) * t387,
+            let t380 = link_3_e0 * link_3_e1;
+            let t381 = link_3_e2 * link_3_e3;
+            let t382 = T::fused(
+                -(k(0.5) - T::fused(link_3_e2, link_3_e2, t372)),
+                t373,
+                (t381 - t380) * t376,
             );
-            let t391 = t300 + (t299 - t380);
-            let t392 = link_2_e0 * link_2_e2;
-            let t393 = link_2_e1 * link_2_e3;
-            let t394 = T::fused(
-                k(2.0) * (t389 + t388),
-                t374,
-                k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t375)) * t387,
+            let t383 = T::fused(
+                -(t381 + t380),
+                t373,
+                (k(0.5) - T::fused(link_3_e3, link_3_e3, t372)) * t376,
             );
-            let t395 = link_2_e0 * link_2_e1;
-            let t396 = link_2_e2 * link_2_e3;
-            let t397 = T::fused(
-                -(k(2.0) * (t393 - t392)),
-                t374,
-                k(2.0) * (t396 + t395) * t387,
+            let t384 = T::fused(k(0.5), t50 * t369, T::fused(-t211, t365, t218));
+            let t385 = t371 - (t370 - (t209 - t384));
+            let t386 = link_4_e0 * link_4_e0;
+            let t387 = t364 + t373;
+            let t388 = t370 - (t368 + (t209 - t370));
+            let t389 = t364 + (t364 + t367);
+            let t390 = T::fused(t50, t389, T::fused(-t211, t363, t214));
+            let t391 = T::fused(-t2, t369, T::fused(-t50, t365, t220));
+            let t392 = T::fused(-t211, t389, T::fused(-t50, t363, t216));
+            let t393 = T::fused(
+                k(2.0),
+                t76 * t392,
+                -T::fused(k(4.0), t27 * t384, -T::fused(k(2.0), t41 * t391, t205)),
             );
-            let t398 = t373 + t374;
-            let t399 = t373 - (t376 - t373);
+            let t394 = t38 * T::fused(-k(4.0), t26 * t388, T::fused(-t79, t390, t393));
+            let t395 = t364 - (t364 - t394);
+            let t396 = T::fused(t50, t387, T::fused(-t211, t376, t214 + t395));
+            let t397 = link_4_e0 * link_4_e3;
+            let t398 = link_4_e1 * link_4_e2;
+            let t399 = T::fused(-t211, t387, T::fused(-t50, t376, t216));
             (
-                t200,
-                t202,
-                t205,
-                t293,
+                t278,
+                t315,
+                t322,
+                t327,
+                t328,
+                t330,
+                t331,
+                t332,
+                t333,
+                t336,
+                t337,
+                t338,
+                t339,
+                t343,
                 t349,
-                t353,
-                t357,
+                t351,
+                t352,
+                t354,
+                t355,
+                t356,
+                t359,
                 t360,
+                t364,
                 t365,
-                t366,
-                t367,
-                t368,
-                t369,
                 t370,
                 t371,
-                t372,
+                t374,
                 t375,
+                t377,
+                t378,
                 t379,
-                t381,
                 t382,
+                t383,
                 t384,
                 t385,
                 t386,
-                t387,
+                t388,
                 t390,
                 t391,
                 t392,
-                t393,
                 t394,
                 t395,
                 t396,
@@ -12022,329 +12038,197 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             )
         };
         let (
-            t410,
-            t413,
-            t414,
-            t419,
+            t400,
+            t401,
+            t402,
+            t405,
+            t406,
+            t411,
+            t412,
+            t415,
+            t417,
+            t418,
             t420,
             t421,
             t422,
-            t423,
-            t424,
             t425,
             t426,
             t427,
             t428,
-            t431,
-            t443,
-            t448,
-            t449,
-            t450,
-            t451,
-            t452,
-            t453,
-            t454,
-            t455,
-            t456,
-            t461,
-            t464,
-            t465,
-            t470,
-            t471,
-            t472,
-            t473,
-            t474,
-            t475,
-            t476,
-            t477,
-            t478,
-            t479,
-            t481,
-            t487,
-            t491,
-            t492,
-            t493,
-            t494,
-            t495,
-            t496,
-            t497,
-            t498,
+            t429,
+            t434,
+            t436,
+            t437,
+            t439,
+            t440,
+            t441,
+            t444,
+            t445,
         ) = {
-            let t400 = t176 - T::fused(t169, t399, t173 * t381);
-            let t401 = k(0.1) * t384;
-            let t402 = t188 + (t401 + (t379 + t401));
-            let t403 = t189 + T::fused(-t173, t399, t169 * t381);
-            let t404 = t173 * t382;
-            let t405 = t198 + T::fused(-t169, t384, t404);
-            let t406 = t169 * t382;
-            let t407 = t202 - T::fused(t173, t384, t406);
-            let t408 = T::fused(-t200, t405, t205 * t407)
-                - T::fused(t194, t403, -T::fused(t166, t400, t185 * t402));
-            let t409 = t164 * (t154 - t408);
-            let t410 = t372 - (t372 + t409);
-            let t411 = k(0.1) * t410;
-            let t412 = t411 - (t176 - T::fused(t169, t398, t173 * t391));
-            let t413 = link_3_e0 * link_3_e0;
-            let t414 = t198 + T::fused(-t169, t385, t404);
-            let t415 = k(0.1) * t414;
-            let t416 = t415 - (t188 + (t386 + t387));
-            let t417 = link_3_e0 * link_3_e3;
-            let t418 = link_3_e1 * link_3_e2;
-            let t419 = T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t413))),
-                t412,
-                k(2.0) * (t418 - t417) * t416,
+            let t400 = link_4_e0 * link_4_e2;
+            let t401 = link_4_e1 * link_4_e3;
+            let t402 = T::fused(
+                k(0.5) - T::fused(link_4_e1, link_4_e1, t386),
+                t385,
+                T::fused(-(t398 - t397), t396, (t401 + t400) * t399),
             );
-            let t420 = t189 + T::fused(-t173, t398, t169 * t391);
-            let t421 = link_3_e0 * link_3_e2;
-            let t422 = link_3_e1 * link_3_e3;
-            let t423 = T::fused(
-                -(k(2.0) * (t418 + t417)),
-                t412,
-                k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t413)) * t416,
+            let t403 = link_4_e0 * link_4_e1;
+            let t404 = link_4_e2 * link_4_e3;
+            let t405 = T::fused(
+                k(0.5) - T::fused(link_4_e2, link_4_e2, t386),
+                t396,
+                (t404 - t403) * t399,
             );
-            let t424 = link_3_e0 * link_3_e1;
-            let t425 = link_3_e2 * link_3_e3;
+            let t406 = T::fused(
+                t404 + t403,
+                t396,
+                (k(0.5) - T::fused(link_4_e3, link_4_e3, t386)) * t399,
+            );
+            let t407 = t384 - t385;
+            let t408 = t384 + (t384 + t388);
+            let t409 = T::fused(-t22, t391, t190);
+            let t410 = T::fused(
+                t19,
+                T::fused(-t22, t408, T::fused(-t87, t392, t189)),
+                T::fused(k(2.0), t14 * T::fused(-t87, t394, t409), t199),
+            );
+            let t411 = t384 - T::fused(-k(0.5), t18 * t410, t384);
+            let t412 = T::fused(-t22, t407, T::fused(-t87, t399, t189 - t411));
+            let t413 = link_5_e0 * link_5_e0;
+            let t414 = T::fused(t87, t391, t177);
+            let t415 = T::fused(t22, t395, -t414);
+            let t416 = t396 + (t395 + (t180 + t415));
+            let t417 = link_5_e0 * link_5_e3;
+            let t418 = link_5_e1 * link_5_e2;
+            let t419 = T::fused(-t87, t407, T::fused(t22, t399, t174));
+            let t420 = link_5_e0 * link_5_e2;
+            let t421 = link_5_e1 * link_5_e3;
+            let t422 = T::fused(
+                k(0.5) - T::fused(link_5_e1, link_5_e1, t413),
+                t412,
+                T::fused(-(t418 - t417), t416, (t421 + t420) * t419),
+            );
+            let t423 = link_5_e0 * link_5_e1;
+            let t424 = link_5_e2 * link_5_e3;
+            let t425 = T::fused(
+                k(0.5) - T::fused(link_5_e2, link_5_e2, t413),
+                t416,
+                (t424 - t423) * t419,
+            );
             let t426 = T::fused(
-                k(2.0) * (t422 - t421),
-                t412,
-                k(2.0) * (t425 + t424) * t416,
+                t424 + t423,
+                t416,
+                (k(0.5) - T::fused(link_5_e3, link_5_e3, t413)) * t419,
             );
-            let t427 = t202 - T::fused(t173, t385, t406);
-            let t428 = t128 - T::fused(-t108, t410, t112 * t427);
-            let t429 = k(0.1) * t428;
-            let t430 = t429 - (t105 - (t411 + t412));
-            let t431 = link_4_e0 * link_4_e0;
-            let t432 = t415 + t416;
-            let t433 = k(0.1) * t409;
-            let t434 = t105 + (t433 + (t400 + t433));
-            let t435 = k(0.1) * t405;
-            let t436 = t435 - (t402 - t435);
-            let t437 = t114 + T::fused(-t108, t436, t112 * t403);
-            let t438 = t118 + T::fused(t112, t436, t108 * t403);
-            let t439 = t128 - T::fused(t108, t409, t112 * t407);
-            let t440 = t132 - T::fused(-t112, t409, t108 * t407);
-            let t441 = T::fused(-t94, t439, t136 * t440)
-                + T::fused(t124, t438, -T::fused(-t100, t434, t115 * t437));
-            let t442 = t85 * (t79 + t441);
-            let t443 = t405 + t442 - t414;
-            let t444 = k(0.1) * t443;
-            let t445 = t444 + (t114 + T::fused(-t108, t432, t112 * t420));
-            let t446 = link_4_e0 * link_4_e3;
-            let t447 = link_4_e1 * link_4_e2;
-            let t448 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t431)),
-                t430,
-                k(2.0) * (t447 - t446) * t445,
+            let t427 = T::fused(-t87, t395, t409);
+            let t428 = T::fused(t6, t411, T::fused(-t13, t427, t194));
+            let t429 = t412 - (t411 - (t192 - t428));
+            let t430 = link_6_e0 * link_6_e0;
+            let t431 = t415 + t416;
+            let t432 = T::fused(-t22, t394, t414);
+            let t433 = T::fused(
+                t6,
+                t394 + (t390 + (t394 + T::fused(-k(2.0), t432, t180))),
+                T::fused(t13, T::fused(-t87, t408, T::fused(t22, t392, t174)), t183),
             );
-            let t449 = t118 + T::fused(t112, t432, t108 * t420);
-            let t450 = link_4_e0 * link_4_e2;
-            let t451 = link_4_e1 * link_4_e3;
-            let t452 = T::fused(
-                k(2.0) * (t447 + t446),
-                t430,
-                k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t431)) * t445,
+            let t434 = t415
+                + T::fused(
+                    -k(0.208955223880597),
+                    T::fused(k(3.5714285714285716), t433, t182),
+                    t432,
+                );
+            let t435 = T::fused(t6, t431, T::fused(t13, t419, t183 + t434));
+            let t436 = link_6_e0 * link_6_e3;
+            let t437 = link_6_e1 * link_6_e2;
+            let t438 = T::fused(-t13, t431, T::fused(t6, t419, t181));
+            let t439 = link_6_e0 * link_6_e2;
+            let t440 = link_6_e1 * link_6_e3;
+            let t441 = T::fused(
+                k(0.5) - T::fused(link_6_e1, link_6_e1, t430),
+                t429,
+                T::fused(-(t437 - t436), t435, (t440 + t439) * t438),
             );
-            let t453 = link_4_e0 * link_4_e1;
-            let t454 = link_4_e2 * link_4_e3;
-            let t455 = T::fused(
-                -(k(2.0) * (t451 - t450)),
-                t430,
-                k(2.0) * (t454 + t453) * t445,
+            let t442 = link_6_e0 * link_6_e1;
+            let t443 = link_6_e2 * link_6_e3;
+            let t444 = T::fused(
+                k(0.5) - T::fused(link_6_e2, link_6_e2, t430),
+                t435,
+                (t443 - t442) * t438,
             );
-            let t456 = t132 - T::fused(t112, t410, t108 * t427);
-            let t457 = t429 + t430;
-            let t458 = k(0.1) * t439;
-            let t459 = t458 - (t434 - t458);
-            let t460 = T::fused(
-                t24,
-                t34 - T::fused(t27, t459, t31 * t438),
-                t40 * (t38 - T::fused(t31, t442, t27 * t440)),
-            );
-            let t461 = T::fused(-t22, t17 + t460, t439) - t428;
-            let t462 = k(0.1) * t461;
-            let t463 = t462 + (t34 - T::fused(t27, t457, t31 * t449));
-            let t464 = link_5_e0 * link_5_e0;
-            let t465 = t58 + T::fused(-t27, t443, t31 * t456);
-            let t466 = k(0.1) * t465;
-            let t467 = t466 - (t55 + (t444 + t445));
-            let t468 = link_5_e0 * link_5_e3;
-            let t469 = link_5_e1 * link_5_e2;
-            let t470 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t464)),
-                t463,
-                k(2.0) * (t469 - t468) * t467,
-            );
-            let t471 = t56 + T::fused(-t31, t457, t27 * t449);
-            let t472 = link_5_e0 * link_5_e2;
-            let t473 = link_5_e1 * link_5_e3;
-            let t474 = T::fused(
-                k(2.0) * (t469 + t468),
-                t463,
-                k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t464)) * t467,
-            );
-            let t475 = link_5_e0 * link_5_e1;
-            let t476 = link_5_e2 * link_5_e3;
-            let t477 = T::fused(
-                -(k(2.0) * (t473 - t472)),
-                t463,
-                k(2.0) * (t476 + t475) * t467,
-            );
-            let t478 = t38 - T::fused(t31, t443, t27 * t456);
-            let t479 = t1 - T::fused(t9, t461, t13 * t478);
-            let t480 = T::fused(k(0.1), t479, -(t5 + (t462 + t463)));
-            let t481 = link_6_e0 * link_6_e0;
-            let t482 = t466 + t467;
-            let t483 = k(0.1) * t442;
-            let t484 = t58 + T::fused(-t27, t442, t31 * t440);
-            let t485 = k(0.1) * t484;
-            let t486 = T::fused(
-                -t9,
-                t485 + (t485 - (t55 + (t483 + (t437 + t483)))),
-                t13 * (t56 + T::fused(-t31, t459, t27 * t438)),
-            );
-            let t487 = T::fused(
-                -k(149.2537313432836),
-                T::fused(k(0.05), t47 + t486, k(0.0014) * t48),
-                t484,
-            ) - t465;
-            let t488 = T::fused(k(0.1), t487, t47 + T::fused(-t9, t482, t13 * t471));
-            let t489 = link_6_e0 * link_6_e3;
-            let t490 = link_6_e1 * link_6_e2;
-            let t491 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t481)),
-                t480,
-                k(2.0) * (t490 - t489) * t488,
-            );
-            let t492 = t50 + T::fused(t13, t482, t9 * t471);
-            let t493 = link_6_e0 * link_6_e2;
-            let t494 = link_6_e1 * link_6_e3;
-            let t495 = T::fused(
-                k(2.0) * (t490 + t489),
-                t480,
-                k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t481)) * t488,
-            );
-            let t496 = link_6_e0 * link_6_e1;
-            let t497 = link_6_e2 * link_6_e3;
-            let t498 = T::fused(
-                -(k(2.0) * (t494 - t493)),
-                t480,
-                k(2.0) * (t497 + t496) * t488,
+            let t445 = T::fused(
+                t443 + t442,
+                t435,
+                (k(0.5) - T::fused(link_6_e3, link_6_e3, t430)) * t438,
             );
             (
-                t410,
-                t413,
-                t414,
-                t419,
+                t400,
+                t401,
+                t402,
+                t405,
+                t406,
+                t411,
+                t412,
+                t415,
+                t417,
+                t418,
                 t420,
                 t421,
                 t422,
-                t423,
-                t424,
                 t425,
                 t426,
                 t427,
                 t428,
-                t431,
-                t443,
-                t448,
-                t449,
-                t450,
-                t451,
-                t452,
-                t453,
-                t454,
-                t455,
-                t456,
-                t461,
-                t464,
-                t465,
-                t470,
-                t471,
-                t472,
-                t473,
-                t474,
-                t475,
-                t476,
-                t477,
-                t478,
-                t479,
-                t481,
-                t487,
-                t491,
-                t492,
-                t493,
-                t494,
-                t495,
-                t496,
-                t497,
-                t498,
+                t429,
+                t434,
+                t436,
+                t437,
+                t439,
+                t440,
+                t441,
+                t444,
+                t445,
             )
         };
         *out = [
-            T::fused(k(2.0) * (t367 + t366), t293, -t365),
-            T::fused(k(2.0) * (t370 - t369), t293, t368),
-            -T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t360)),
-                t293,
-                t371,
-            ),
+            k(0.2) * t333,
+            k(0.2) * T::fused(-(t331 + t330), t328, t336),
+            -(k(0.2) * T::fused(t332 - t322, t328, t337)),
+            -t278,
+            t327,
+            t315,
+            -(k(0.2) * t356),
+            -(k(0.2) * T::fused(t352 + t351, t339, t359)),
+            k(0.2) * T::fused(-(t355 - t354), t339, t360),
             -t349,
-            t357,
-            t353,
-            T::fused(k(2.0) * (t393 + t392), t391, -t390),
-            T::fused(k(2.0) * (t396 - t395), t391, t394),
-            -T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t375)),
-                t391,
-                t397,
-            ),
-            -t385,
-            -t372,
-            t382,
-            T::fused(k(2.0) * (t422 + t421), t420, t419),
-            T::fused(k(2.0) * (t425 - t424), t420, -t423),
-            T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t413))),
-                t420,
-                t426,
-            ),
-            t414,
-            -t410,
+            t338,
+            t343,
+            -(k(0.2) * t379),
+            -(k(0.2) * T::fused(t375 + t374, t371, t382)),
+            k(0.2) * T::fused(-(t378 - t377), t371, t383),
+            -t364,
+            -t370,
+            -t365,
+            k(0.2) * t402,
+            k(0.2) * T::fused(-(t398 + t397), t385, t405),
+            -(k(0.2) * T::fused(t401 - t400, t385, t406)),
+            -t395,
+            -t384,
+            t391,
+            k(0.2) * t422,
+            k(0.2) * T::fused(-(t418 + t417), t412, t425),
+            -(k(0.2) * T::fused(t421 - t420, t412, t426)),
+            -t415,
+            -t411,
             -t427,
-            T::fused(k(2.0) * (t451 + t450), t449, -t448),
-            T::fused(k(2.0) * (t454 - t453), t449, t452),
-            -T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t431)),
-                t449,
-                t455,
-            ),
-            -t443,
+            k(0.2) * t441,
+            k(0.2) * T::fused(-(t437 + t436), t429, t444),
+            -(k(0.2) * T::fused(t440 - t439, t429, t445)),
+            -t434,
             -t428,
-            t456,
-            T::fused(k(2.0) * (t473 + t472), t471, t470),
-            T::fused(k(2.0) * (t476 - t475), t471, -t474),
-            T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t464))),
-                t471,
-                t477,
-            ),
-            t465,
-            t461,
-            -t478,
-            T::fused(k(2.0) * (t494 + t493), t492, -t491),
-            T::fused(k(2.0) * (t497 - t496), t492, t495),
-            -T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t481)),
-                t492,
-                t498,
-            ),
-            -t487,
-            -t479,
-            t10 - T::fused(-t13, t461, t9 * t478),
+            T::fused(-t13, t411, T::fused(-t6, t427, t196)),
         ];
     }
-    /// Writes λ: 499 operations (204 ±, 295 ×, 0 ÷).
+    /// Writes λ: 484 operations (210 ±, 274 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -12434,96 +12318,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t1 = link_4_dsx + t0;
         let t2 = link_3_dsx + t1;
         let t3 = link_2_dsx + t2;
-        let t4 = k(0.5) * (link_1_dsx + t3);
+        let t4 = link_1_dsx + t3;
         let t5 = link_5_dsy + link_6_dsy;
         let t6 = link_4_dsy + t5;
         let t7 = link_3_dsy + t6;
         let t8 = link_2_dsy + t7;
-        let t9 = k(0.5) * (link_1_dsy + t8);
-        let t10 = T::fused(k(0.5), link_6_dsz, k(4.905));
-        let t11 = T::fused(k(0.5), link_5_dsz, k(4.905)) + t10;
-        let t12 = T::fused(k(0.5), link_4_dsz, k(4.905)) + t11;
-        let t13 = T::fused(k(0.5), link_3_dsz, k(4.905)) + t12;
-        let t14 = T::fused(k(0.5), link_2_dsz, k(4.905)) + t13;
-        let t15 = T::fused(k(0.5), link_1_dsz, k(4.905)) + t14;
-        let t16 = k(0.2) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
-        let t17 = k(0.2)
-            * (k(0.5) - T::fused(link_1_e2, link_1_e2, link_1_e0 * link_1_e0));
-        let t18 = k(0.2) * T::fused(link_1_e0, link_1_e1, link_1_e2 * link_1_e3);
-        let t19 = k(0.5) * t3;
-        let t20 = k(0.5) * t8;
-        let t21 = link_2_e0 * link_2_e3;
-        let t22 = link_2_e1 * link_2_e2;
-        let t23 = k(0.2) * (t22 - t21);
-        let t24 = link_2_e0 * link_2_e0;
-        let t25 = k(0.2) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t24));
-        let t26 = k(0.2) * T::fused(link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
-        let t27 = k(0.5) * t2;
-        let t28 = k(0.5) * t7;
-        let t29 = link_3_e0 * link_3_e3;
-        let t30 = link_3_e1 * link_3_e2;
-        let t31 = k(0.2) * (t30 - t29);
-        let t32 = link_3_e0 * link_3_e0;
-        let t33 = k(0.2) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t32));
-        let t34 = k(0.2) * T::fused(link_3_e0, link_3_e1, link_3_e2 * link_3_e3);
-        let t35 = k(0.5) * t1;
-        let t36 = k(0.5) * t6;
-        let t37 = link_4_e0 * link_4_e3;
-        let t38 = link_4_e1 * link_4_e2;
-        let t39 = k(0.2) * (t38 - t37);
-        let t40 = link_4_e0 * link_4_e0;
-        let t41 = k(0.2) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t40));
-        let t42 = k(0.2) * T::fused(link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
-        let t43 = k(0.5) * t0;
-        let t44 = k(0.5) * t5;
-        let t45 = link_5_e0 * link_5_e3;
-        let t46 = link_5_e1 * link_5_e2;
-        let t47 = k(0.2) * (t46 - t45);
-        let t48 = link_5_e0 * link_5_e0;
-        let t49 = k(0.2) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t48));
-        let t50 = k(0.2) * T::fused(link_5_e0, link_5_e1, link_5_e2 * link_5_e3);
-        let t51 = link_6_e0 * link_6_e3;
-        let t52 = link_6_e1 * link_6_e2;
-        let t53 = k(0.5) * link_6_dsx;
-        let t54 = link_6_e0 * link_6_e0;
-        let t55 = k(0.5) * link_6_dsy;
-        let t56 = T::fused(
-            -t53,
-            k(0.2) * (t52 - t51),
-            t55 * (k(0.2) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t54))),
-        );
-        let t57 = T::fused(-k(0.0017), link_6_dwx, k(0.0014) * (link_6_wy * link_6_wz))
-            - T::fused(
-                t10,
-                k(0.2) * T::fused(link_6_e0, link_6_e1, link_6_e2 * link_6_e3),
-                -t56,
-            );
-        let t58 = T::fused(-k(0.0017), link_5_dwx, k(0.0014) * (link_5_wy * link_5_wz))
-            - (T::fused(t10, t50, -T::fused(-t53, t47, t55 * t49)) - t57);
-        let t59 = t58 - T::fused(t11, t50, -T::fused(-t43, t47, t44 * t49));
-        let t60 = T::fused(
-            -link_4_e1,
-            link_5_e3,
-            T::fused(
-                -link_4_e0,
-                link_5_e2,
-                T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
-            ),
-        );
-        let t61 = k(2.0) * t60;
-        let t62 = T::fused(-t60, t61, k(1.0));
-        let t63 = T::fused(
-            -t53,
-            k(0.2) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t54)),
-            t55 * (k(0.2) * (t52 + t51)),
-        );
-        let t64 = T::fused(k(0.0016), link_6_dwy, k(0.0015) * (link_6_wx * link_6_wz))
-            - T::fused(
-                t10,
-                k(0.2) * T::fused(-link_6_e0, link_6_e2, link_6_e1 * link_6_e3),
-                t63,
-            );
-        let t65 = T::fused(
+        let t9 = link_1_dsy + t8;
+        let t10 = link_6_dsz + k(9.81);
+        let t11 = k(9.81) + (link_5_dsz + t10);
+        let t12 = k(9.81) + (link_4_dsz + t11);
+        let t13 = k(9.81) + (link_3_dsz + t12);
+        let t14 = k(9.81) + (link_2_dsz + t13);
+        let t15 = k(9.81) + (link_1_dsz + t14);
+        let t16 = T::fused(-k(0.5), link_6_wx * link_6_wy, link_6_dwz);
+        let t17 = T::fused(
             link_5_e2,
             link_6_e3,
             T::fused(
@@ -12532,8 +12340,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
             ),
         );
-        let t66 = k(2.0) * t65;
-        let t67 = T::fused(
+        let t18 = T::fused(
             link_5_e3,
             link_6_e3,
             T::fused(
@@ -12542,13 +12349,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
             ),
         );
-        let t68 = t67 * t66;
-        let t69 = T::fused(-t65, t66, k(1.0));
-        let t70 = T::fused(-k(0.0002), link_6_dwz, k(0.0001) * (link_6_wx * link_6_wy));
-        let t71 = T::fused(t68, t64, t70 * t69);
-        let t72 = T::fused(-k(0.0002), link_5_dwz, k(0.0001) * (link_5_wx * link_5_wy))
-            + t71;
-        let t73 = T::fused(
+        let t19 = (t18 + t17) * (t18 - t17);
+        let t20 = T::fused(
+            T::fused(-link_6_e0, link_6_e2, link_6_e1 * link_6_e3),
+            t10,
+            -T::fused(k(0.016), link_6_dwy, k(0.015) * (link_6_wx * link_6_wz)),
+        );
+        let t21 = link_6_e0 * link_6_e3;
+        let t22 = link_6_e1 * link_6_e2;
+        let t23 = link_6_e0 * link_6_e0;
+        let t24 = T::fused(
+            k(0.5) - T::fused(link_6_e1, link_6_e1, t23),
+            link_6_dsx,
+            -T::fused(t22 + t21, link_6_dsy, t20),
+        );
+        let t25 = t18 * t17;
+        let t26 = T::fused(-k(0.001), t19 * t16, t25 * t24);
+        let t27 = t26
+            + T::fused(-k(0.001), link_5_dwz, k(0.0005) * (link_5_wx * link_5_wy));
+        let t28 = T::fused(
+            -link_4_e1,
+            link_5_e3,
+            T::fused(
+                -link_4_e0,
+                link_5_e2,
+                T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+            ),
+        );
+        let t29 = T::fused(
             link_4_e3,
             link_5_e3,
             T::fused(
@@ -12557,39 +12385,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
             ),
         );
-        let t74 = t73 * t61;
-        let t75 = T::fused(-t62, t59, t74 * t72);
-        let t76 = T::fused(-k(0.0017), link_4_dwx, k(0.0014) * (link_4_wy * link_4_wz))
-            - (t75 + T::fused(t11, t42, -T::fused(-t43, t39, t44 * t41)));
-        let t77 = t76 - T::fused(t12, t42, -T::fused(-t35, t39, t36 * t41))
-            - T::fused(t12, t34, -T::fused(-t35, t31, t36 * t33));
-        let t78 = T::fused(-k(0.0017), link_3_dwx, k(0.0014) * (link_3_wy * link_3_wz))
-            + t77 - T::fused(t13, t34, -T::fused(-t27, t31, t28 * t33));
-        let t79 = T::fused(
-            -link_2_e1,
-            link_3_e3,
-            T::fused(
-                -link_2_e0,
-                link_3_e2,
-                T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
+        let t30 = (t29 + t28) * (t29 - t28);
+        let t31 = T::fused(link_5_e0, link_5_e1, link_5_e2 * link_5_e3);
+        let t32 = link_5_e0 * link_5_e0;
+        let t33 = k(0.5) - T::fused(link_5_e2, link_5_e2, t32);
+        let t34 = T::fused(
+            t33,
+            link_6_dsy,
+            -T::fused(
+                t31,
+                t10,
+                -T::fused(-k(0.017), link_5_dwx, k(0.014) * (link_5_wy * link_5_wz)),
             ),
         );
-        let t80 = k(2.0) * t79;
-        let t81 = T::fused(-t79, t80, k(1.0));
-        let t82 = k(0.2) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t40));
-        let t83 = k(0.2) * (t38 + t37);
-        let t84 = k(0.2) * T::fused(-link_4_e0, link_4_e2, link_4_e1 * link_4_e3);
-        let t85 = k(0.2) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t48));
-        let t86 = k(0.2) * (t46 + t45);
-        let t87 = k(0.2) * T::fused(-link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
-        let t88 = T::fused(-t69, t64, t70 * t68);
-        let t89 = T::fused(k(0.0016), link_5_dwy, k(0.0015) * (link_5_wx * link_5_wz))
-            - (t88 + T::fused(t10, t87, T::fused(-t53, t85, t55 * t86)));
-        let t90 = t89 - T::fused(t11, t87, T::fused(-t43, t85, t44 * t86))
-            - T::fused(t11, t84, T::fused(-t43, t82, t44 * t83));
-        let t91 = T::fused(k(0.0016), link_4_dwy, k(0.0015) * (link_4_wx * link_4_wz))
-            + t90 - T::fused(t12, t84, T::fused(-t35, t82, t36 * t83));
-        let t92 = T::fused(
+        let t35 = link_5_e0 * link_5_e3;
+        let t36 = link_5_e1 * link_5_e2;
+        let t37 = t36 - t35;
+        let t38 = T::fused(
+            k(0.017),
+            link_6_dwx,
+            -T::fused(k(0.014), link_6_wy * link_6_wz, -T::fused(t37, link_6_dsx, -t34)),
+        );
+        let t39 = T::fused(
+            k(0.5) - T::fused(link_6_e2, link_6_e2, t23),
+            link_6_dsy,
+            -T::fused(T::fused(link_6_e0, link_6_e1, link_6_e2 * link_6_e3), t10, t38),
+        );
+        let t40 = T::fused(
+            t33,
+            t5,
+            -T::fused(t31, t11, T::fused(t22 - t21, link_6_dsx, -t39)),
+        );
+        let t41 = T::fused(t37, t0, -t40);
+        let t42 = t29 * t28;
+        let t43 = T::fused(-t30, t27, t42 * t41);
+        let t44 = t43
+            - T::fused(-k(0.001), link_4_dwz, k(0.0005) * (link_4_wx * link_4_wy));
+        let t45 = T::fused(
             link_3_e2,
             link_4_e3,
             T::fused(
@@ -12598,8 +12430,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
             ),
         );
-        let t93 = k(2.0) * t92;
-        let t94 = T::fused(
+        let t46 = T::fused(
             link_3_e3,
             link_4_e3,
             T::fused(
@@ -12608,15 +12439,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
             ),
         );
-        let t95 = t94 * t93;
-        let t96 = T::fused(t74, t59, t62 * t72);
-        let t97 = T::fused(-k(0.0002), link_4_dwz, k(0.0001) * (link_4_wx * link_4_wy))
-            + t96;
-        let t98 = T::fused(-t92, t93, k(1.0));
-        let t99 = T::fused(t95, t91, t98 * t97);
-        let t100 = T::fused(-k(0.0002), link_3_dwz, k(0.0001) * (link_3_wx * link_3_wy))
-            + t99;
-        let t101 = T::fused(
+        let t47 = (t46 + t45) * (t46 - t45);
+        let t48 = T::fused(k(0.004), t25 * t16, t19 * t24);
+        let t49 = T::fused(
+            k(0.015),
+            link_5_wx * link_5_wz,
+            T::fused(k(0.016), link_4_dwy, k(0.015) * (link_4_wx * link_4_wz)),
+        );
+        let t50 = T::fused(-link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
+        let t51 = t36 + t35;
+        let t52 = T::fused(
+            t51,
+            link_6_dsy,
+            T::fused(t50, t10, -(T::fused(k(0.016), link_5_dwy, t49) + t48)),
+        );
+        let t53 = k(0.5) - T::fused(link_5_e1, link_5_e1, t32);
+        let t54 = T::fused(
+            t53,
+            t0,
+            -T::fused(t51, t5, T::fused(t50, t11, -T::fused(t53, link_6_dsx, -t52))),
+        );
+        let t55 = T::fused(-link_4_e0, link_4_e2, link_4_e1 * link_4_e3);
+        let t56 = link_4_e0 * link_4_e3;
+        let t57 = link_4_e1 * link_4_e2;
+        let t58 = t57 + t56;
+        let t59 = link_4_e0 * link_4_e0;
+        let t60 = k(0.5) - T::fused(link_4_e1, link_4_e1, t59);
+        let t61 = T::fused(
+            t55,
+            t12,
+            -T::fused(t60, t0, -T::fused(t58, t5, T::fused(t55, t11, -t54))),
+        );
+        let t62 = T::fused(t60, t1, -T::fused(t58, t6, t61));
+        let t63 = t46 * t45;
+        let t64 = T::fused(-t47, t44, t63 * t62);
+        let t65 = t64
+            + T::fused(-k(0.001), link_3_dwz, k(0.0005) * (link_3_wx * link_3_wy));
+        let t66 = T::fused(
+            -link_2_e1,
+            link_3_e3,
+            T::fused(
+                -link_2_e0,
+                link_3_e2,
+                T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
+            ),
+        );
+        let t67 = T::fused(
             link_2_e3,
             link_3_e3,
             T::fused(
@@ -12625,30 +12493,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
             ),
         );
-        let t102 = t101 * t80;
-        let t103 = T::fused(-t81, t78, t102 * t100);
-        let t104 = T::fused(-k(0.0017), link_2_dwx, k(0.0014) * (link_2_wy * link_2_wz))
-            - (t103 + T::fused(t13, t26, -T::fused(-t27, t23, t28 * t25)));
-        let t105 = t104 - T::fused(t14, t26, -T::fused(-t19, t23, t20 * t25))
-            - T::fused(t14, t18, -T::fused(-t19, t16, t20 * t17));
-        let t106 = T::fused(-k(0.0017), link_1_dwx, k(0.0014) * (link_1_wy * link_1_wz))
-            + t105 - T::fused(t15, t18, -T::fused(-t4, t16, t9 * t17));
-        let t107 = k(2.0) * link_1_e2;
-        let t108 = T::fused(-link_1_e2, t107, k(1.0));
-        let t109 = k(0.2) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t24));
-        let t110 = k(0.2) * (t22 + t21);
-        let t111 = k(0.2) * T::fused(-link_2_e0, link_2_e2, link_2_e1 * link_2_e3);
-        let t112 = k(0.2) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t32));
-        let t113 = k(0.2) * (t30 + t29);
-        let t114 = k(0.2) * T::fused(-link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
-        let t115 = T::fused(-t98, t91, t95 * t97);
-        let t116 = T::fused(k(0.0016), link_3_dwy, k(0.0015) * (link_3_wx * link_3_wz))
-            - (t115 + T::fused(t12, t114, T::fused(-t35, t112, t36 * t113)));
-        let t117 = t116 - T::fused(t13, t114, T::fused(-t27, t112, t28 * t113))
-            - T::fused(t13, t111, T::fused(-t27, t109, t28 * t110));
-        let t118 = T::fused(k(0.0016), link_2_dwy, k(0.0015) * (link_2_wx * link_2_wz))
-            + t117 - T::fused(t14, t111, T::fused(-t19, t109, t20 * t110));
-        let t119 = T::fused(
+        let t68 = (t67 + t66) * (t67 - t66);
+        let t69 = T::fused(k(4.0), t42 * t27, t30 * t41);
+        let t70 = T::fused(
+            k(0.014),
+            link_4_wy * link_4_wz,
+            T::fused(-k(0.017), link_3_dwx, k(0.014) * (link_3_wy * link_3_wz)),
+        );
+        let t71 = T::fused(link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
+        let t72 = k(0.5) - T::fused(link_4_e2, link_4_e2, t59);
+        let t73 = T::fused(
+            t72,
+            t5,
+            -T::fused(t71, t11, T::fused(k(0.017), link_4_dwx, -t70) + t69),
+        );
+        let t74 = t57 - t56;
+        let t75 = T::fused(
+            t74,
+            t1,
+            -T::fused(t72, t6, -T::fused(t71, t12, T::fused(t74, t0, -t73))),
+        );
+        let t76 = T::fused(link_3_e0, link_3_e1, link_3_e2 * link_3_e3);
+        let t77 = link_3_e0 * link_3_e0;
+        let t78 = k(0.5) - T::fused(link_3_e2, link_3_e2, t77);
+        let t79 = link_3_e0 * link_3_e3;
+        let t80 = link_3_e1 * link_3_e2;
+        let t81 = t80 - t79;
+        let t82 = T::fused(
+            t76,
+            t13,
+            T::fused(t81, t1, -T::fused(t78, t6, -T::fused(t76, t12, t75))),
+        );
+        let t83 = T::fused(t81, t2, -T::fused(t78, t7, -t82));
+        let t84 = t67 * t66;
+        let t85 = T::fused(-t68, t65, t84 * t83);
+        let t86 = t85
+            - T::fused(-k(0.001), link_2_dwz, k(0.0005) * (link_2_wx * link_2_wy));
+        let t87 = T::fused(
             link_1_e2,
             link_2_e3,
             T::fused(
@@ -12657,8 +12538,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
             ),
         );
-        let t120 = k(2.0) * t119;
-        let t121 = T::fused(
+        let t88 = T::fused(
             link_1_e3,
             link_2_e3,
             T::fused(
@@ -12667,49 +12547,106 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
             ),
         );
-        let t122 = t121 * t120;
-        let t123 = T::fused(t102, t78, t81 * t100);
-        let t124 = T::fused(-k(0.0002), link_2_dwz, k(0.0001) * (link_2_wx * link_2_wy))
-            + t123;
-        let t125 = T::fused(-t119, t120, k(1.0));
-        let t126 = T::fused(t122, t118, t125 * t124);
-        let t127 = T::fused(-k(0.0002), link_1_dwz, k(0.0001) * (link_1_wx * link_1_wy))
-            + t126;
-        let t128 = link_1_e0 * t107;
+        let t89 = (t88 + t87) * (t88 - t87);
+        let t90 = T::fused(k(4.0), t63 * t44, t47 * t62);
+        let t91 = T::fused(
+            k(0.015),
+            link_3_wx * link_3_wz,
+            T::fused(k(0.016), link_2_dwy, k(0.015) * (link_2_wx * link_2_wz)),
+        );
+        let t92 = T::fused(-link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
+        let t93 = t80 + t79;
+        let t94 = T::fused(
+            t93,
+            t6,
+            T::fused(t92, t12, -(T::fused(k(0.016), link_3_dwy, t91) + t90)),
+        );
+        let t95 = k(0.5) - T::fused(link_3_e1, link_3_e1, t77);
+        let t96 = T::fused(
+            t95,
+            t2,
+            -T::fused(t93, t7, T::fused(t92, t13, -T::fused(t95, t1, -t94))),
+        );
+        let t97 = T::fused(-link_2_e0, link_2_e2, link_2_e1 * link_2_e3);
+        let t98 = link_2_e0 * link_2_e3;
+        let t99 = link_2_e1 * link_2_e2;
+        let t100 = t99 + t98;
+        let t101 = link_2_e0 * link_2_e0;
+        let t102 = k(0.5) - T::fused(link_2_e1, link_2_e1, t101);
+        let t103 = T::fused(
+            t97,
+            t14,
+            -T::fused(t102, t2, -T::fused(t100, t7, T::fused(t97, t13, -t96))),
+        );
+        let t104 = T::fused(t102, t3, -T::fused(t100, t8, t103));
+        let t105 = t88 * t87;
+        let t106 = T::fused(-t89, t86, t105 * t104);
+        let t107 = t106
+            + T::fused(-k(0.001), link_1_dwz, k(0.0005) * (link_1_wx * link_1_wy));
+        let t108 = link_1_e0 * link_1_e2;
+        let t109 = T::fused(k(4.0), t84 * t65, t68 * t83);
+        let t110 = T::fused(
+            k(0.014),
+            link_2_wy * link_2_wz,
+            T::fused(-k(0.017), link_1_dwx, k(0.014) * (link_1_wy * link_1_wz)),
+        );
+        let t111 = T::fused(link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
+        let t112 = k(0.5) - T::fused(link_2_e2, link_2_e2, t101);
+        let t113 = T::fused(
+            t112,
+            t7,
+            -T::fused(t111, t13, T::fused(k(0.017), link_2_dwx, -t110) + t109),
+        );
+        let t114 = t99 - t98;
+        let t115 = T::fused(
+            t114,
+            t3,
+            -T::fused(t112, t8, -T::fused(t111, t14, T::fused(t114, t2, -t113))),
+        );
+        let t116 = T::fused(link_1_e0, link_1_e1, link_1_e2 * link_1_e3);
+        let t117 = k(0.5) - T::fused(link_1_e2, link_1_e2, link_1_e0 * link_1_e0);
+        let t118 = T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
+        let t119 = T::fused(
+            t116,
+            t15,
+            T::fused(t118, t3, -T::fused(t117, t8, -T::fused(t116, t14, t115))),
+        );
+        let t120 = T::fused(t118, t4, -T::fused(t117, t9, -t119));
+        let t121 = (link_1_e0 - link_1_e2) * (link_1_e0 + link_1_e2);
         *lambda = [
-            -t4,
-            -t9,
-            -t15,
-            T::fused(t108, t106, t128 * t127),
-            T::fused(-t108, t127, t128 * t106),
-            -t19,
-            -t20,
-            -t14,
-            T::fused(-t122, t124, t125 * t118),
-            -t126,
-            -t27,
-            -t28,
-            -t13,
-            -t103,
-            -t123,
-            -t35,
-            -t36,
-            -t12,
-            -t115,
-            -t99,
-            -t43,
-            -t44,
-            -t11,
-            -t75,
-            -t96,
-            -t53,
-            -t55,
-            -t10,
-            -t88,
-            -t71,
+            -(k(0.5) * t4),
+            -(k(0.5) * t9),
+            -(k(0.5) * t15),
+            -(k(0.1) * T::fused(-k(4.0), t108 * t107, t121 * t120)),
+            -(k(0.2) * T::fused(t121, t107, t108 * t120)),
+            -(k(0.5) * t3),
+            -(k(0.5) * t8),
+            -(k(0.5) * t14),
+            k(0.1) * T::fused(k(4.0), t105 * t86, t89 * t104),
+            -(k(0.2) * t106),
+            -(k(0.5) * t2),
+            -(k(0.5) * t7),
+            -(k(0.5) * t13),
+            -(k(0.1) * t109),
+            k(0.2) * t85,
+            -(k(0.5) * t1),
+            -(k(0.5) * t6),
+            -(k(0.5) * t12),
+            k(0.1) * t90,
+            -(k(0.2) * t64),
+            -(k(0.5) * t0),
+            -(k(0.5) * t5),
+            -(k(0.5) * t11),
+            -(k(0.1) * t69),
+            k(0.2) * t43,
+            -(k(0.5) * link_6_dsx),
+            -(k(0.5) * link_6_dsy),
+            -(k(0.5) * t10),
+            k(0.1) * t48,
+            -(k(0.2) * t26),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1899 operations (853 ±, 1041 ×, 5 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1791 operations (811 ±, 975 ×, 5 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -12755,82 +12692,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let (
-            t1,
-            t5,
+            t2,
+            t3,
             t6,
-            t10,
+            t7,
+            t8,
             t11,
-            t12,
+            t13,
+            t14,
             t15,
+            t16,
             t18,
             t19,
-            t24,
+            t21,
+            t22,
             t26,
-            t29,
+            t27,
+            t30,
             t33,
-            t36,
             t38,
-            t40,
+            t41,
             t42,
             t44,
             t49,
             t50,
             t52,
-            t57,
+            t54,
             t58,
             t59,
-            t60,
-            t62,
-            t65,
-            t68,
+            t61,
+            t63,
+            t66,
+            t67,
             t69,
-            t77,
+            t72,
+            t73,
+            t76,
+            t78,
+            t79,
             t80,
-            t82,
             t83,
+            t85,
+            t87,
+            t88,
             t89,
-            t90,
-            t98,
-            t104,
-            t106,
-            t109,
+            t92,
+            t93,
+            t96,
+            t97,
+            t100,
+            t101,
+            t102,
+            t103,
+            t107,
             t112,
+            t113,
+            t115,
             t116,
             t118,
-            t119,
-            t120,
             t121,
             t122,
-            t126,
+            t124,
             t128,
-            t129,
-            t130,
-            t132,
-            t135,
-            t136,
+            t131,
+            t133,
+            t134,
+            t137,
+            t138,
+            t139,
             t140,
+            t141,
             t143,
             t144,
             t145,
             t146,
             t147,
-            t148,
             t150,
-            t152,
             t153,
+            t154,
             t155,
             t157,
             t158,
             t159,
-            t160,
             t161,
             t162,
+            t163,
+            t164,
+            t165,
+            t166,
             t168,
             t169,
             t170,
-            t173,
+            t171,
+            t172,
+            t174,
             t175,
             t177,
+            t178,
             t179,
             t180,
             t181,
@@ -12838,178 +12796,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             t183,
             t184,
             t185,
-            t186,
+            t187,
             t188,
             t189,
             t190,
             t191,
             t192,
-            t193,
             t194,
             t195,
+            t196,
+            t197,
             t198,
             t199,
         ) = {
-            let t0 = link_5_wx - link_6_wx;
-            let t1 = link_6_wz * t0;
-            let t2 = k(0.1) * link_6_wx;
-            let t3 = k(0.1) * link_5_wx;
-            let t4 = link_5_wz * t3;
-            let t5 = T::fused(link_6_wz, t2, t4);
-            let t6 = k(0.0015) * (link_6_wx * link_6_wz);
-            let t7 = t6 + T::fused(-k(0.0066), t1, k(0.05) * t5);
-            let t8 = T::fused(
-                link_5_e2,
-                link_6_e3,
-                T::fused(
-                    -link_5_e3,
-                    link_6_e2,
-                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
-                ),
-            );
-            let t9 = k(2.0) * t8;
-            let t10 = T::fused(-t8, t9, k(1.0));
-            let t11 = link_6_wy * t0;
-            let t12 = k(0.0001) * (link_6_wx * link_6_wy);
-            let t13 = T::fused(-k(0.0002), t11, t12);
-            let t14 = T::fused(
-                link_5_e3,
-                link_6_e3,
-                T::fused(
-                    link_5_e2,
-                    link_6_e2,
-                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
-                ),
-            );
-            let t15 = t14 * t9;
-            let t16 = T::fused(-k(0.05), t1, k(0.5) * t5);
-            let t17 = k(0.1) * t16;
-            let t18 = k(0.0015) * (link_5_wx * link_5_wz);
-            let t19 = t17 + (t18 + (t17 - T::fused(-t10, t7, t15 * t13)));
-            let t20 = T::fused(k(0.05), t10, k(0.05));
-            let t21 = k(0.0066) * t10;
-            let t22 = k(0.0002) * t15;
-            let t23 = k(0.0016)
-                + T::fused(k(0.01), t10, k(0.005) + T::fused(t10, t21, t15 * t22));
-            let t24 = k(1.0) / T::fused(k(0.2), t20, k(0.01) + t23);
-            let t25 = t24 * t19;
-            let t26 = k(0.1) + t20;
-            let t27 = T::fused(
-                -link_4_e1,
-                link_5_e3,
-                T::fused(
-                    -link_4_e0,
-                    link_5_e2,
-                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
-                ),
-            );
-            let t28 = k(2.0) * t27;
-            let t29 = T::fused(-t27, t28, k(1.0));
-            let t30 = k(0.1) * link_4_wx;
-            let t31 = link_4_wz * t30;
-            let t32 = T::fused(
-                link_4_e3,
-                link_5_e3,
-                T::fused(
-                    link_4_e2,
-                    link_5_e2,
-                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
-                ),
-            );
-            let t33 = t32 * t28;
-            let t34 = k(0.1) * link_4_wy;
-            let t35 = T::fused(link_4_wy, t34, link_4_wx * t30);
-            let t36 = t4 - T::fused(-t31, t29, t35 * t33);
-            let t37 = t24 * t26;
-            let t38 = t26 * t37;
-            let t39 = link_4_wy - link_5_wy;
-            let t40 = link_5_wx * t39;
-            let t41 = k(0.005) * t15;
-            let t42 = t41 + (t41 - T::fused(-t15, t21, t10 * t22));
-            let t43 = T::fused(-k(0.05), t15, t42 * t37);
-            let t44 = T::fused(t43, t40, -T::fused(-t38, t36, t36))
-                - T::fused(-t26, t25, t16);
-            let t45 = k(0.1) * link_5_wy;
-            let t46 = link_5_wz * t45;
-            let t47 = T::fused(link_5_wy, t45, link_5_wx * t3);
-            let t48 = k(0.1) * link_6_wy;
-            let t49 = T::fused(link_6_wz, t48, T::fused(t46, t10, t47 * t15));
-            let t50 = link_6_wy * link_6_wz;
-            let t51 = T::fused(
-                -k(0.12686567164179105),
-                t49,
-                k(0.010447761194029851) * t50,
-            );
-            let t52 = T::fused(link_6_wy, t48, link_6_wx * t2)
-                + T::fused(-t46, t15, t47 * t10);
-            let t53 = k(0.5) * t52;
-            let t54 = k(0.373134328358209) * t10;
-            let t55 = t15 * t54;
-            let t56 = link_4_wz * t34;
-            let t57 = t56 + t46;
-            let t58 = t47 + T::fused(t31, t33, t35 * t29);
-            let t59 = t15 * (k(0.373134328358209) * t15);
-            let t60 = link_5_wz * t39;
-            let t61 = k(0.2) * t55;
-            let t62 = T::fused(t61, t60, t58 - T::fused(t57, t55, t59 * t58))
-                + T::fused(-t15, t51, t10 * t53);
-            let t63 = T::fused(-t29, t44, t33 * t62);
-            let t64 = k(0.1) * t63;
-            let t65 = k(0.0015) * (link_4_wx * link_4_wz);
-            let t66 = T::fused(t10, t51, t15 * t53);
-            let t67 = k(0.1) * t66;
-            let t68 = k(0.0014) * (link_5_wy * link_5_wz);
-            let t69 = t10 * t54;
-            let t70 = k(0.1) * t69;
-            let t71 = k(0.05) - t70;
-            let t72 = k(0.1) - t70;
-            let t73 = t72 + t71;
-            let t74 = k(0.01) * t69;
-            let t75 = T::fused(-k(0.2), t71, t74)
-                - (k(0.01) + (k(0.0017) + (k(0.005) - t74)));
-            let t76 = T::fused(t75, t60, -T::fused(-t57, t73, t61 * t58))
-                - (t67 - (t68 - t67));
-            let t77 = k(0.0001) * (link_5_wx * link_5_wy);
-            let t78 = T::fused(
-                t42,
-                t24 * t42,
-                -(k(0.0002) + T::fused(t15, k(0.0066) * t15, t10 * (k(0.0002) * t10))),
-            );
-            let t79 = T::fused(t43, t36, t78 * t40)
-                + T::fused(t42, t25, -(t77 + T::fused(t15, t7, t10 * t13)));
-            let t80 = T::fused(t73, t60, -(t57 - T::fused(t57, t69, t55 * t58))) + t66;
-            let t81 = k(0.1) * t80;
-            let t82 = k(0.0014) * (link_4_wy * link_4_wz);
-            let t83 = t81 - (t82 - (t81 - T::fused(t29, t76, t33 * t79)));
-            let t84 = t29 * t75;
-            let t85 = t33 * t78;
-            let t86 = t29 * t73;
-            let t87 = T::fused(-k(0.2), t86, t74)
-                - (k(0.01) - T::fused(t29, t84, t33 * t85));
-            let t88 = t72 + t86;
-            let t89 = k(1.0)
-                / (T::fused(k(0.2), t88, -t74) + (k(0.015) + (k(0.0017) - t87)));
-            let t90 = t89 * t83;
-            let t91 = t33 * t61;
-            let t92 = t29 * t43;
-            let t93 = T::fused(-t29, t91, t33 * t92);
-            let t94 = t33 * t55;
-            let t95 = k(0.01) * t94;
-            let t96 = k(0.1) * t94;
-            let t97 = t96 - t93;
-            let t98 = t95 + T::fused(k(0.1), t97, t95) + T::fused(-k(0.1), t93, t95);
-            let t99 = t29 * t38;
-            let t100 = t33 * t59;
-            let t101 = T::fused(t29, t99, t33 * t100);
-            let t102 = k(0.1) * t101;
-            let t103 = k(0.1) - t102;
-            let t104 = t96 + t97;
-            let t105 = t89 * t104;
-            let t106 = T::fused(t105, t98, -(k(0.15) - t102 + t103));
-            let t107 = k(0.1) * link_3_wx;
-            let t108 = link_3_wz * t107;
-            let t109 = t108 + t31;
-            let t110 = T::fused(
+            let t0 = T::fused(
                 link_3_e2,
                 link_4_e3,
                 T::fused(
@@ -13018,11 +12818,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(-link_3_e0, link_4_e1, link_3_e1 * link_4_e0),
                 ),
             );
-            let t111 = k(2.0) * t110;
-            let t112 = T::fused(-t110, t111, k(1.0));
-            let t113 = k(0.1) * link_3_wy;
-            let t114 = link_3_wz * t113;
-            let t115 = T::fused(
+            let t1 = T::fused(
                 link_3_e3,
                 link_4_e3,
                 T::fused(
@@ -13031,80 +12827,125 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_3_e1, link_4_e1, link_3_e0 * link_4_e0),
                 ),
             );
-            let t116 = t115 * t111;
-            let t117 = T::fused(link_3_wy, t113, link_3_wx * t107);
-            let t118 = t56 + T::fused(t114, t112, t117 * t116);
-            let t119 = t88 + (k(0.15) - t70);
-            let t120 = t89 * t119;
-            let t121 = T::fused(-k(0.2), t94, t98 * t120);
-            let t122 = t35 + T::fused(-t114, t116, t117 * t112);
-            let t123 = T::fused(-t33, t99, t29 * t100);
-            let t124 = t29 * t61;
-            let t125 = t33 * t43;
-            let t126 = t29 * t55;
-            let t127 = k(0.1) * t126;
-            let t128 = t127 + (t127 + T::fused(t29, t124, t33 * t125));
-            let t129 = t89 * t128;
-            let t130 = T::fused(k(0.2), t123, t98 * t129);
-            let t131 = link_3_wx - link_4_wx;
-            let t132 = link_4_wz * t131;
-            let t133 = k(0.01) * t101;
-            let t134 = t89 * t98;
-            let t135 = T::fused(
-                t98,
-                t134,
-                -(T::fused(k(0.2), t103, -t133)
-                    + (k(0.015) + (k(0.0016) + (k(0.01) - t133)))),
+            let t2 = t1 * t0;
+            let t3 = k(4.0) * t2;
+            let t4 = T::fused(
+                link_5_e2,
+                link_6_e3,
+                T::fused(
+                    -link_5_e3,
+                    link_6_e2,
+                    T::fused(-link_5_e0, link_6_e1, link_5_e1 * link_6_e0),
+                ),
             );
-            let t136 = link_4_wy * t131;
-            let t137 = T::fused(t33, t91, t29 * t92);
-            let t138 = t33 * t73;
-            let t139 = k(0.1) * t138;
-            let t140 = t139 + (t139 + T::fused(-t33, t84, t29 * t85));
-            let t141 = T::fused(-k(0.2), t137, t140 * t134);
-            let t142 = T::fused(-t135, t132, t141 * t136)
-                + T::fused(t130, t122, -T::fused(-t109, t106, t121 * t118));
-            let t143 = t142 + T::fused(t98, t90, -(t64 + (t65 + t64)));
-            let t144 = k(0.0001) * (link_4_wx * link_4_wy);
-            let t145 = T::fused(t105, t140, -t137);
-            let t146 = T::fused(-t140, t120, t138);
-            let t147 = T::fused(t140, t129, T::fused(-t33, t124, t29 * t125));
-            let t148 = T::fused(
-                t140,
-                t89 * t140,
-                -(k(0.0002) - T::fused(t33, t33 * t75, t29 * (t29 * t78))),
+            let t5 = T::fused(
+                link_5_e3,
+                link_6_e3,
+                T::fused(
+                    link_5_e2,
+                    link_6_e2,
+                    T::fused(link_5_e1, link_6_e1, link_5_e0 * link_6_e0),
+                ),
             );
-            let t149 = T::fused(-t141, t132, t148 * t136)
-                + T::fused(t147, t122, T::fused(t109, t145, t146 * t118));
-            let t150 = t149 + T::fused(t140, t90, t144 - T::fused(-t33, t76, t29 * t79));
-            let t151 = T::fused(t104, t105, t101);
-            let t152 = T::fused(-t105, t119, t94);
-            let t153 = T::fused(t105, t128, t123);
-            let t154 = T::fused(
-                k(1.5),
-                t109,
-                -T::fused(t153, t122, T::fused(t109, t151, t152 * t118)),
+            let t6 = (t5 + t4) * (t5 - t4);
+            let t7 = t5 * t4;
+            let t8 = t7 * t6;
+            let t9 = T::fused(
+                -link_4_e1,
+                link_5_e3,
+                T::fused(
+                    -link_4_e0,
+                    link_5_e2,
+                    T::fused(link_4_e3, link_5_e1, link_4_e2 * link_5_e0),
+                ),
             );
-            let t155 = T::fused(-t106, t132, t145 * t136) - t154
-                + T::fused(t104, t90, -t63);
-            let t156 = k(0.1) * t155;
-            let t157 = k(0.0015) * (link_3_wx * link_3_wz);
-            let t158 = t156 - (t157 - (t156 + T::fused(t112, t143, t116 * t150)));
-            let t159 = t116 * t141;
-            let t160 = T::fused(t112, t135, t159);
-            let t161 = t112 * t141;
-            let t162 = T::fused(t116, t148, t161);
-            let t163 = T::fused(t112, t106, t116 * t145);
-            let t164 = k(0.01) * t151;
-            let t165 = T::fused(k(0.2), t163, t164)
-                - (k(0.015) - T::fused(t112, t160, t116 * t162));
-            let t166 = k(0.1) * t151;
-            let t167 = k(0.15) - t166 - t163;
-            let t168 = k(1.0)
-                / (T::fused(k(0.2), t167, -t164) + (k(0.02) + (k(0.0016) - t165)));
-            let t169 = t168 * t158;
-            let t170 = t167 + (k(0.2) - t166);
-            let t171 = T::fused(
+            let t10 = T::fused(
+                link_4_e3,
+                link_5_e3,
+                T::fused(
+                    link_4_e2,
+                    link_5_e2,
+                    T::fused(link_4_e1, link_5_e1, link_4_e0 * link_5_e0),
+                ),
+            );
+            let t11 = t10 * t9;
+            let t12 = t11 * t8;
+            let t13 = k(2.0) * t7;
+            let t14 = T::fused(k(1.32), t8, -T::fused(k(0.04), t8, -t13));
+            let t15 = t6 * t6;
+            let t16 = t7 * t7;
+            let t17 = k(1.0) + t6;
+            let t18 = k(1.0)
+                / (k(1.66) + (t17 + (t6 + T::fused(k(0.66), t15, k(0.08) * t16))));
+            let t19 = k(2.0) + t17;
+            let t20 = t19 * t18;
+            let t21 = T::fused(-t20, t14, t13);
+            let t22 = (t10 + t9) * (t10 - t9);
+            let t23 = t22 * t21;
+            let t24 = T::fused(-k(11.940298507462687), t11 * t12, t22 * t23);
+            let t25 = k(0.67) * T::fused(k(2.985074626865672), t22 * t12, t11 * t23);
+            let t26 = t12 + (t12 + t25);
+            let t27 = t25 + (t12 + (t12 + t26));
+            let t28 = k(2.68) - t15;
+            let t29 = k(1.34) - t15;
+            let t30 = t29 + t28;
+            let t31 = t22 * t30;
+            let t32 = t28 + t31;
+            let t33 = k(0.02)
+                - T::fused(-k(2.64), t16, T::fused(-k(0.02), t15, t14 * (t18 * t14)));
+            let t34 = t11 * t33;
+            let t35 = T::fused(
+                k(10.72),
+                t11 * t34,
+                T::fused(k(2.0), t31, -(t15 + T::fused(-k(2.0), t32, t15))),
+            );
+            let t36 = k(4.4756) - (t15 + T::fused(-k(2.0), t29, t15));
+            let t37 = t22 * t36;
+            let t38 = k(1.0) / (k(7.1556) + T::fused(t22, t37, t35));
+            let t39 = t38 * t27;
+            let t40 = t11 * t30;
+            let t41 = T::fused(t11, t37, -T::fused(-k(2.0), t40, k(2.68) * (t22 * t34)));
+            let t42 = T::fused(k(0.335), t24, t41 * t39);
+            let t43 = t2 * t42;
+            let t44 = t19 * t20;
+            let t45 = t22 * t44;
+            let t46 = t11 * t16;
+            let t47 = T::fused(k(0.041875), t22 * t45, t11 * t46);
+            let t48 = k(0.1675) - t47;
+            let t49 = k(0.44555) - (t47 + (t47 - T::fused(-t27, t39, k(2.0) * t48)));
+            let t50 = (t1 + t0) * (t1 - t0);
+            let t51 = T::fused(t50, t49, -t43);
+            let t52 = k(0.67) * t22;
+            let t53 = T::fused(
+                t11,
+                t11 * t36,
+                -T::fused(-(t22 * t33), t52, t41 * (t38 * t41)),
+            );
+            let t54 = k(0.0134) + t53;
+            let t55 = t50 * t42;
+            let t56 = T::fused(-t2, t54, t55);
+            let t57 = t26 * t38;
+            let t58 = k(0.25125) + (t48 - T::fused(t57, t27, t47));
+            let t59 = T::fused(k(0.1675), t24, t57 * t41);
+            let t60 = T::fused(t58, t3, t50 * t59);
+            let t61 = T::fused(t51, t3, T::fused(t50, t56, k(2.0) * t60));
+            let t62 = T::fused(-t2, t59, t50 * t58);
+            let t63 = T::fused(t26, t57, t47);
+            let t64 = k(0.25125) - (t63 - t62);
+            let t65 = T::fused(
+                -t2,
+                t56,
+                T::fused(k(2.0), t62, -(t63 + T::fused(-k(2.0), t64, t63))),
+            );
+            let t66 = k(1.0) / (k(0.61305) + T::fused(t50, t51, t65));
+            let t67 = k(0.25) * t50;
+            let t68 = T::fused(
+                -k(0.25),
+                t61 * (t66 * t61),
+                t50 * T::fused(t67, t54, t43),
+            );
+            let t69 = k(0.00335) + T::fused(t2, T::fused(t49, t3, t55), t68);
+            let t70 = T::fused(
                 -link_2_e1,
                 link_3_e3,
                 T::fused(
@@ -13113,11 +12954,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_2_e3, link_3_e1, link_2_e2 * link_3_e0),
                 ),
             );
-            let t172 = k(2.0) * t171;
-            let t173 = T::fused(-t171, t172, k(1.0));
-            let t174 = k(0.1) * link_2_wx;
-            let t175 = link_2_wz * t174;
-            let t176 = T::fused(
+            let t71 = T::fused(
                 link_2_e3,
                 link_3_e3,
                 T::fused(
@@ -13126,305 +12963,96 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_2_e1, link_3_e1, link_2_e0 * link_3_e0),
                 ),
             );
-            let t177 = t176 * t172;
-            let t178 = k(0.1) * link_2_wy;
-            let t179 = T::fused(link_2_wy, t178, link_2_wx * t174);
-            let t180 = t108 - T::fused(-t175, t173, t179 * t177);
-            let t181 = t168 * t170;
-            let t182 = T::fused(t170, t181, t151);
-            let t183 = T::fused(t112, t121, t116 * t130);
-            let t184 = T::fused(-t112, t146, t116 * t147);
-            let t185 = T::fused(t112, t183, t116 * t184);
-            let t186 = T::fused(-t112, t152, t116 * t153);
-            let t187 = k(0.1) * t186;
-            let t188 = t187 + t185;
-            let t189 = t187 + t188;
-            let t190 = T::fused(-t189, t181, t186);
-            let t191 = link_2_wz * t178;
-            let t192 = t191 + t114;
-            let t193 = t117 + T::fused(t175, t177, t179 * t173);
-            let t194 = T::fused(-t116, t121, t112 * t130);
-            let t195 = T::fused(t116, t146, t112 * t147);
-            let t196 = T::fused(t116, t152, t112 * t153);
-            let t197 = k(0.1) * t196;
-            let t198 = t197 + (t197 + T::fused(t112, t194, t116 * t195));
-            let t199 = T::fused(-t198, t181, t196);
-            (
-                t1,
-                t5,
-                t6,
-                t10,
-                t11,
-                t12,
-                t15,
-                t18,
-                t19,
-                t24,
-                t26,
-                t29,
-                t33,
-                t36,
-                t38,
-                t40,
-                t42,
-                t44,
-                t49,
-                t50,
-                t52,
-                t57,
-                t58,
-                t59,
-                t60,
-                t62,
-                t65,
-                t68,
-                t69,
-                t77,
-                t80,
-                t82,
-                t83,
-                t89,
-                t90,
-                t98,
-                t104,
-                t106,
-                t109,
-                t112,
-                t116,
-                t118,
-                t119,
-                t120,
-                t121,
-                t122,
-                t126,
-                t128,
-                t129,
-                t130,
-                t132,
-                t135,
-                t136,
-                t140,
-                t143,
-                t144,
-                t145,
-                t146,
-                t147,
-                t148,
-                t150,
-                t152,
-                t153,
-                t155,
-                t157,
-                t158,
-                t159,
-                t160,
-                t161,
-                t162,
-                t168,
-                t169,
-                t170,
-                t173,
-                t175,
-                t177,
-                t179,
-                t180,
-                t181,
-                t182,
-                t183,
-                t184,
-                t185,
-                t186,
-                t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t193,
-                t194,
-                t195,
-                t198,
-                t199,
-            )
-        };
-        let (
-            t202,
-            t204,
-            t206,
-            t209,
-            t235,
-            t238,
-            t250,
-            t260,
-            t294,
-            t298,
-            t300,
-            t301,
-            t305,
-            t306,
-            t326,
-            t342,
-            t351,
-            t357,
-            t361,
-            t366,
-            t374,
-            t378,
-            t379,
-            t382,
-            t383,
-            t384,
-            t385,
-            t386,
-            t387,
-            t388,
-            t389,
-            t390,
-            t392,
-            t393,
-            t394,
-            t395,
-            t396,
-            t398,
-            t399,
-        ) = {
-            let t200 = T::fused(
-                -k(2.0),
-                t180,
-                T::fused(t199, t193, -T::fused(-t182, t180, t192 * t190)),
+            let t72 = t71 * t70;
+            let t73 = k(2.68) * t11;
+            let t74 = t11 * t21;
+            let t75 = t22 * t8;
+            let t76 = T::fused(k(2.0), t22 * t75, T::fused(-t74, t73, k(2.0) * t75));
+            let t77 = T::fused(-k(0.1675), t11 * t45, t22 * t46);
+            let t78 = T::fused(t57, t76, t77);
+            let t79 = k(4.02) - (t15 - t32);
+            let t80 = T::fused(-t57, t79, t12);
+            let t81 = T::fused(-t2, t78, t80 * t67);
+            let t82 = t38 * t76;
+            let t83 = T::fused(t27, t82, k(2.0) * t77);
+            let t84 = t38 * t79;
+            let t85 = T::fused(-k(2.0), t12, t27 * t84);
+            let t86 = T::fused(t2, t83, t85 * t67);
+            let t87 = k(2.0) * t11;
+            let t88 = T::fused(t75, t87, T::fused(-t41, t82, t74 * t52));
+            let t89 = T::fused(-t41, t84, t40);
+            let t90 = T::fused(t2, t88, t89 * t67);
+            let t91 = T::fused(-t50, t86, t2 * t90);
+            let t92 = t81 + (t91 + t81);
+            let t93 = t91 + (t81 + (t81 + t92));
+            let t94 = t66 * t93;
+            let t95 = T::fused(t50, t90, t86 * t3);
+            let t96 = T::fused(t61, t94, k(2.0) * t95);
+            let t97 = (t71 + t70) * (t71 - t70);
+            let t98 = t97 * t96;
+            let t99 = T::fused(-t72, t69, k(0.25) * t98);
+            let t100 = k(4.0) * t72;
+            let t101 = k(0.67) * t11;
+            let t102 = T::fused(t11 * t44, t101, T::fused(t76, t82, t22 * (t22 * t16)));
+            let t103 = T::fused(-t84, t76, t75);
+            let t104 = t50 * t103;
+            let t105 = T::fused(-t2, t102, k(0.25) * t104);
+            let t106 = t2 * t103;
+            let t107 = T::fused(t79, t84, t15);
+            let t108 = T::fused(t107, t67, -t106);
+            let t109 = T::fused(-t2, t105, t67 * t108);
+            let t110 = k(0.25125) - t109;
+            let t111 = t92 * t66;
+            let t112 = k(0.335) - (T::fused(t111, t93, t109) - t110);
+            let t113 = T::fused(t111, t61, t95);
+            let t114 = T::fused(-t97, t112, t72 * t113);
+            let t115 = T::fused(t92, t111, t109);
+            let t116 = k(0.335) - (t115 + t114);
+            let t117 = T::fused(
+                t100,
+                t99,
+                T::fused(k(2.0), t114, t115 + T::fused(-k(2.0), t116, t115)),
             );
-            let t201 = link_2_wy - link_3_wy;
-            let t202 = link_3_wz * t201;
-            let t203 = k(0.01) * t186;
-            let t204 = t203 + T::fused(k(0.1), t188, t203)
-                + T::fused(k(0.1), t185, t203);
-            let t205 = T::fused(-k(0.2), t186, t204 * t181);
-            let t206 = link_3_wx * t201;
-            let t207 = T::fused(-t116, t106, t112 * t145);
-            let t208 = k(0.1) * t207;
-            let t209 = t208 + (t208 + T::fused(-t116, t160, t112 * t162));
-            let t210 = T::fused(-t209, t181, t207);
-            let t211 = T::fused(t205, t202, t210 * t206) - t200
-                - T::fused(-t170, t169, t155);
-            let t212 = T::fused(t119, t120, t69);
-            let t213 = T::fused(-t128, t120, t126);
-            let t214 = T::fused(
-                -k(1.5),
-                t118,
-                T::fused(t213, t122, T::fused(t109, t152, t212 * t118)),
+            let t118 = k(0.614725)
+                - (t109 + (t109 + T::fused(-k(2.0), t110, t93 * t94)));
+            let t119 = t72 * t96;
+            let t120 = T::fused(-t97, t118, t119);
+            let t121 = k(1.0) / (k(0.782225) - T::fused(t97, t120, t117));
+            let t122 = k(0.335) - (t63 - t64);
+            let t123 = t122 * t66;
+            let t124 = T::fused(-t93, t123, k(2.0) * t81);
+            let t125 = T::fused(-t50, t83, t2 * t85);
+            let t126 = T::fused(-t50, t88, t2 * t89);
+            let t127 = T::fused(t50, t78, t2 * t80);
+            let t128 = T::fused(-t50, t125, T::fused(t2, t126, k(2.0) * t127));
+            let t129 = t66 * t128;
+            let t130 = T::fused(t2, t108, t50 * t105);
+            let t131 = T::fused(t93, t129, k(2.0) * t130);
+            let t132 = T::fused(t97, t124, t72 * t131);
+            let t133 = T::fused(-t61, t123, t60);
+            let t134 = T::fused(t3, t125, T::fused(t50, t126, t61 * t129));
+            let t135 = T::fused(t97, t133, t72 * t134);
+            let t136 = T::fused(t97, t132, t72 * t135);
+            let t137 = T::fused(-t92, t123, t81);
+            let t138 = T::fused(t111, t128, t130);
+            let t139 = T::fused(t97, t137, t72 * t138);
+            let t140 = t139 + (t139 + t136);
+            let t141 = t136 + (t139 + (t139 + t140));
+            let t142 = t141 * t121;
+            let t143 = T::fused(t122, t123, t63);
+            let t144 = T::fused(-t128, t123, t127);
+            let t145 = T::fused(t97, t143, t72 * t144);
+            let t146 = T::fused(
+                t2,
+                T::fused(t2, t107, t104),
+                T::fused(t50, T::fused(t50, t102, t106), t128 * t129),
             );
-            let t215 = T::fused(t121, t132, t146 * t136) + t214
-                + T::fused(-t119, t90, t80);
-            let t216 = T::fused(t128, t129, T::fused(t33, t33 * t38, t29 * (t29 * t59)));
-            let t217 = T::fused(
-                -k(1.5),
-                t122,
-                T::fused(t216, t122, T::fused(t109, t153, t213 * t118)),
-            );
-            let t218 = T::fused(-t130, t132, t147 * t136) + t217
-                + T::fused(t128, t90, -T::fused(t33, t44, t29 * t62));
-            let t219 = t116 * t213;
-            let t220 = T::fused(-t112, t212, t219);
-            let t221 = t112 * t213;
-            let t222 = T::fused(t116, t216, -t221);
-            let t223 = T::fused(t116, t220, t112 * t222);
-            let t224 = t168 * t189;
-            let t225 = T::fused(t224, t198, t223);
-            let t226 = T::fused(
-                t116,
-                T::fused(t116, t212, t221),
-                t112 * T::fused(t112, t216, t219),
-            );
-            let t227 = t168 * t198;
-            let t228 = T::fused(t198, t227, t226);
-            let t229 = T::fused(
-                -k(2.0),
-                t193,
-                T::fused(t228, t193, -T::fused(-t199, t180, t192 * t225)),
-            );
-            let t230 = T::fused(k(0.2), t223, t204 * t227);
-            let t231 = T::fused(t209, t227, T::fused(-t116, t194, t112 * t195));
-            let t232 = T::fused(-t230, t202, t231 * t206) - t229
-                - T::fused(t198, t169, T::fused(t116, t215, t112 * t218));
-            let t233 = T::fused(t173, t211, t177 * t232);
-            let t234 = k(0.1) * t233;
-            let t235 = k(0.0015) * (link_2_wx * link_2_wz);
-            let t236 = T::fused(-t112, t215, t116 * t218);
-            let t237 = k(0.1) * t236;
-            let t238 = k(0.0014) * (link_3_wy * link_3_wz);
-            let t239 = T::fused(-t112, t220, t116 * t222);
-            let t240 = k(0.1) * t239;
-            let t241 = k(0.15) - t240;
-            let t242 = T::fused(t224, t204, -(k(0.2) - t240 + t241));
-            let t243 = k(0.01) * t239;
-            let t244 = t168 * t204;
-            let t245 = T::fused(
-                t204,
-                t244,
-                -(T::fused(k(0.2), t241, -t243)
-                    + (k(0.02) + (k(0.0017) + (k(0.015) - t243)))),
-            );
-            let t246 = T::fused(-t116, t183, t112 * t184);
-            let t247 = T::fused(k(0.2), t246, t209 * t244);
-            let t248 = T::fused(-t245, t202, t247 * t206)
-                - T::fused(t230, t193, -T::fused(t205, t180, t192 * t242));
-            let t249 = t248 - T::fused(t204, t169, t237 + (t238 + t237));
-            let t250 = k(0.0001) * (link_3_wx * link_3_wy);
-            let t251 = T::fused(t224, t209, t246);
-            let t252 = T::fused(
-                t116,
-                T::fused(-t116, t135, t161),
-                t112 * T::fused(-t112, t148, t159),
-            );
-            let t253 = T::fused(t209, t168 * t209, -(k(0.0002) + t252));
-            let t254 = T::fused(-t247, t202, t253 * t206)
-                - T::fused(t231, t193, -T::fused(-t210, t180, t192 * t251));
-            let t255 = t254
-                - T::fused(t209, t169, t250 + T::fused(-t116, t143, t112 * t150));
-            let t256 = T::fused(t189, t224, t239);
-            let t257 = T::fused(
-                k(2.0),
-                t192,
-                T::fused(t225, t193, -T::fused(-t190, t180, t192 * t256)),
-            );
-            let t258 = T::fused(-t242, t202, t251 * t206) - t257
-                - T::fused(t189, t169, t236);
-            let t259 = k(0.1) * t258;
-            let t260 = k(0.0014) * (link_2_wy * link_2_wz);
-            let t261 = t259 - (t260 - (t259 - T::fused(-t173, t249, t177 * t255)));
-            let t262 = t177 * t247;
-            let t263 = T::fused(-t173, t245, t262);
-            let t264 = t173 * t247;
-            let t265 = T::fused(t177, t253, -t264);
-            let t266 = T::fused(-t173, t242, t177 * t251);
-            let t267 = k(0.01) * t256;
-            let t268 = T::fused(-k(0.2), t266, t267)
-                - (k(0.02) - T::fused(-t173, t263, t177 * t265));
-            let t269 = k(0.1) * t256;
-            let t270 = k(0.2) - t269 + t266;
-            let t271 = k(1.0)
-                / (T::fused(k(0.2), t270, -t267) + (k(0.025) + (k(0.0017) - t268)));
-            let t272 = t271 * t261;
-            let t273 = T::fused(-t173, t205, t177 * t230);
-            let t274 = T::fused(t173, t210, t177 * t231);
-            let t275 = T::fused(-t173, t273, t177 * t274);
-            let t276 = T::fused(t173, t190, t177 * t225);
-            let t277 = k(0.01) * t276;
-            let t278 = k(0.1) * t276;
-            let t279 = t278 - t275;
-            let t280 = t277 + T::fused(k(0.1), t279, t277)
-                + T::fused(-k(0.1), t275, t277);
-            let t281 = T::fused(t173, t182, t177 * t199);
-            let t282 = T::fused(t173, t199, t177 * t228);
-            let t283 = T::fused(t173, t281, t177 * t282);
-            let t284 = k(0.1) * t283;
-            let t285 = k(0.2) - t284;
-            let t286 = t278 + t279;
-            let t287 = t271 * t286;
-            let t288 = T::fused(t287, t280, -(k(0.25) - t284 + t285));
-            let t289 = k(0.1) * link_1_wx;
-            let t290 = link_1_wz * t289;
-            let t291 = t290 + t175;
-            let t292 = T::fused(
+            let t147 = T::fused(t97, t144, t72 * t146);
+            let t148 = T::fused(t97, t145, t72 * t147);
+            let t149 = k(0.335) - t148;
+            let t150 = k(0.78055)
+                - (t148 + (t148 - T::fused(-t141, t142, k(2.0) * t149)));
+            let t151 = T::fused(
                 link_1_e2,
                 link_2_e3,
                 T::fused(
@@ -13433,11 +13061,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(-link_1_e0, link_2_e1, link_1_e1 * link_2_e0),
                 ),
             );
-            let t293 = k(2.0) * t292;
-            let t294 = T::fused(-t292, t293, k(1.0));
-            let t295 = k(0.1) * link_1_wy;
-            let t296 = link_1_wz * t295;
-            let t297 = T::fused(
+            let t152 = T::fused(
                 link_1_e3,
                 link_2_e3,
                 T::fused(
@@ -13446,185 +13070,723 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                     T::fused(link_1_e1, link_2_e1, link_1_e0 * link_2_e0),
                 ),
             );
-            let t298 = t297 * t293;
-            let t299 = T::fused(link_1_wy, t295, link_1_wx * t289);
-            let t300 = t299 * t298;
-            let t301 = t191 + T::fused(t296, t294, t300);
-            let t302 = t270 + (k(0.25) - t269);
-            let t303 = t271 * t302;
-            let t304 = T::fused(-k(0.2), t276, t303 * t280);
-            let t305 = t299 * t294;
-            let t306 = t179 + T::fused(-t296, t298, t305);
-            let t307 = T::fused(-t177, t281, t173 * t282);
-            let t308 = T::fused(t177, t205, t173 * t230);
-            let t309 = T::fused(-t177, t210, t173 * t231);
-            let t310 = k(0.1) * T::fused(-t177, t190, t173 * t225);
-            let t311 = t310 + (t310 - T::fused(-t173, t308, t177 * t309));
-            let t312 = t271 * t311;
-            let t313 = T::fused(k(0.2), t307, t312 * t280);
-            let t314 = link_1_wx - link_2_wx;
-            let t315 = link_2_wz * t314;
-            let t316 = k(0.01) * t283;
-            let t317 = t271 * t280;
-            let t318 = T::fused(
-                t280,
-                t317,
-                -(T::fused(k(0.2), t285, -t316)
-                    + (k(0.025) + (k(0.0016) + (k(0.02) - t316)))),
+            let t153 = (t152 + t151) * (t152 - t151);
+            let t154 = T::fused(t97, t113, t112 * t100);
+            let t155 = T::fused(t100, t120, -T::fused(k(4.0), t97 * t99, k(2.0) * t154));
+            let t156 = T::fused(-t97, t135, t100 * t132);
+            let t157 = T::fused(t155, t142, k(2.0) * t156);
+            let t158 = t152 * t151;
+            let t159 = T::fused(t153, t150, t158 * t157);
+            let t160 = T::fused(
+                -t97,
+                T::fused(t97, t69, t119),
+                k(0.25) * (t155 * (t121 * t155)),
             );
-            let t319 = link_2_wy * t314;
-            let t320 = T::fused(t177, t273, t173 * t274);
-            let t321 = T::fused(t177, t242, t173 * t251);
-            let t322 = k(0.1) * t321;
-            let t323 = t322 + (t322 - T::fused(t177, t263, t173 * t265));
-            let t324 = T::fused(k(0.2), t320, t323 * t317);
-            let t325 = T::fused(-t318, t315, t324 * t319)
-                + T::fused(t313, t306, T::fused(t291, t288, t304 * t301));
-            let t326 = k(0.0001) * (link_2_wx * link_2_wy);
-            let t327 = T::fused(t287, t323, t320);
-            let t328 = T::fused(-t323, t303, t321);
-            let t329 = T::fused(t312, t323, T::fused(t177, t308, t173 * t309));
-            let t330 = T::fused(
-                t177,
-                T::fused(t177, t245, t264),
-                t173 * T::fused(t173, t253, t262),
+            let t161 = k(0.00335) + T::fused(t72, T::fused(t100, t118, t98), -t160);
+            let t162 = T::fused(t158, t161, k(0.25) * (t153 * t157));
+            let t163 = k(4.0) * t158;
+            let t164 = t140 * t121;
+            let t165 = k(0.41875) + (t149 - T::fused(t141, t164, t148));
+            let t166 = T::fused(t164, t155, t156);
+            let t167 = T::fused(t153, t165, t158 * t166);
+            let t168 = T::fused(t140, t164, t148);
+            let t169 = k(0.41875) - (t168 - t167);
+            let t170 = T::fused(
+                -t163,
+                t162,
+                T::fused(-k(2.0), t167, t168 + T::fused(-k(2.0), t169, t168)),
             );
-            let t331 = T::fused(t323, t271 * t323, -(k(0.0002) - t330));
-            let t332 = T::fused(-t324, t315, t331 * t319)
-                + T::fused(t329, t306, -T::fused(-t291, t327, t328 * t301));
-            let t333 = t332
-                - T::fused(t323, t272, -(t326 - T::fused(t177, t249, t173 * t255)));
-            let t334 = T::fused(
-                t294,
-                t325 - T::fused(t280, t272, t234 + (t235 + t234)),
-                t298 * t333,
+            let t171 = link_4_wx * link_4_wz;
+            let t172 = T::fused(link_4_wx, link_4_wx, link_4_wy * link_4_wy);
+            let t173 = T::fused(link_5_wx, link_5_wx, link_5_wy * link_5_wy);
+            let t174 = T::fused(t171, t87, T::fused(t172, t22, t173));
+            let t175 = t8 * t174;
+            let t176 = link_4_wy - link_5_wy;
+            let t177 = link_5_wz * t176;
+            let t178 = link_5_wy * link_5_wz;
+            let t179 = link_4_wy * link_4_wz;
+            let t180 = t179 + t178;
+            let t181 = T::fused(
+                -t178,
+                t13,
+                T::fused(t173, t6, T::fused(link_6_wx, link_6_wx, link_6_wy * link_6_wy)),
             );
-            let t335 = T::fused(t286, t287, t283);
-            let t336 = T::fused(-t287, t302, t276);
-            let t337 = T::fused(t287, t311, t307);
-            let t338 = T::fused(
-                k(2.5),
-                t291,
-                -T::fused(t337, t306, -T::fused(-t291, t335, t336 * t301)),
+            let t182 = link_6_wy * link_6_wz;
+            let t183 = T::fused(t178, t6, T::fused(t173, t13, t182));
+            let t184 = T::fused(-k(1.2142857142857142), t183, t182);
+            let t185 = k(2.68) * T::fused(t7, t181, k(0.1044776119402985) * (t6 * t184));
+            let t186 = T::fused(
+                k(0.3752),
+                t178,
+                -(t185 - T::fused(t30, t180, -T::fused(k(4.0), t175, t177 * t36))),
             );
-            let t339 = T::fused(-t288, t315, t327 * t319) - t338
-                - T::fused(t286, t272, t233);
-            let t340 = k(0.1) * t339;
-            let t341 = k(2.0) * link_1_e2;
-            let t342 = link_1_e0 * t341;
-            let t343 = T::fused(k(9.81), t342, t290);
-            let t344 = T::fused(t294, t288, t298 * t327);
-            let t345 = k(0.1) * t335;
-            let t346 = k(0.25) - t345 - t344;
-            let t347 = T::fused(
-                t294,
-                T::fused(-t294, t304, t298 * t313),
-                t298 * T::fused(t294, t328, t298 * t329),
+            let t187 = t185 - t186;
+            let t188 = link_5_wx * link_5_wz;
+            let t189 = T::fused(t171, t22, T::fused(-t172, t87, t188));
+            let t190 = link_5_wx * t176;
+            let t191 = link_6_wx * link_6_wz;
+            let t192 = t188 + t191;
+            let t193 = link_5_wx - link_6_wx;
+            let t194 = link_6_wz * t193;
+            let t195 = t194 - t192;
+            let t196 = link_6_wy * t193;
+            let t197 = link_6_wx * link_6_wy;
+            let t198 = T::fused(-k(2.0), t196, t197);
+            let t199 = T::fused(
+                -k(4.4),
+                t194,
+                T::fused(k(3.3333333333333335), t192, t191),
             );
-            let t348 = T::fused(t294, t336, t298 * t337);
-            let t349 = k(0.1) * t348;
-            let t350 = t349 + t347;
-            let t351 = T::fused(-link_1_e2, t341, k(1.0));
-            let t352 = T::fused(k(9.81), t351, t299);
-            let t353 = T::fused(
-                t294,
-                T::fused(t298, t304, t294 * t313),
-                t298 * T::fused(-t298, t328, t294 * t329),
-            );
-            let t354 = k(0.1) * T::fused(-t298, t336, t294 * t337);
-            let t355 = T::fused(
-                t354 + (t354 + t353),
-                t352,
-                -T::fused(k(0.3) - t345 + t346, t343, t296 * (t349 + t350)),
-            );
-            let t356 = k(0.01) * t348;
-            let t357 = link_1_wy * link_1_wz;
-            let t358 = T::fused(t294, t318, t298 * t324);
-            let t359 = T::fused(t294, t324, t298 * t331);
-            let t360 = k(0.1) * T::fused(-t298, t288, t294 * t327);
-            let t361 = link_1_wx * link_1_wy;
-            let t362 = T::fused(
-                -t357,
-                t356 + T::fused(k(0.1), t350, t356) + T::fused(k(0.1), t347, t356),
-                t361 * (t360 + (t360 + T::fused(-t298, t358, t294 * t359))),
-            );
-            let t363 = t362 + t355
-                + (t340 - T::fused(k(0.0015), link_1_wx * link_1_wz, -(t340 + t334)));
-            let t364 = k(0.01) * t335;
-            let t365 = T::fused(k(0.2), t344, t364)
-                - (k(0.025) - T::fused(t294, t358, t298 * t359));
-            let t366 = t363
-                / (T::fused(k(0.2), t346, -t364) + (k(0.03) + (k(0.0016) - t365)));
-            let t367 = k(0.1) * t366;
-            let t368 = t290 + t367;
-            let t369 = link_1_e0 * link_1_e0;
-            let t370 = k(0.1) * t357;
-            let t371 = t296 + t370;
-            let t372 = link_1_e0 * link_1_e3;
-            let t373 = link_1_e1 * link_1_e2;
-            let t374 = t373 - t372;
-            let t375 = T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t369))),
-                t368,
-                k(2.0) * t374 * t371,
-            );
-            let t376 = link_1_e0 * link_1_e2;
-            let t377 = link_1_e1 * link_1_e3;
-            let t378 = T::fused(k(2.0) * (t377 + t376), t299, -t375);
-            let t379 = k(0.5) - T::fused(link_1_e2, link_1_e2, t369);
-            let t380 = link_1_e0 * link_1_e1;
-            let t381 = link_1_e2 * link_1_e3;
-            let t382 = T::fused(
-                k(2.0) * (t381 - t380),
-                t299,
-                T::fused(-(k(2.0) * (t373 + t372)), t368, k(2.0) * t379 * t371),
-            );
-            let t383 = t381 + t380;
-            let t384 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t369)),
-                t299,
-                T::fused(k(2.0) * (t377 - t376), t368, k(2.0) * t383 * t371),
-            );
-            let t385 = t315 + T::fused(-t294, t366, t361 * t298);
-            let t386 = k(0.1) * t385;
-            let t387 = t386 - (t291 + (t367 + t368));
-            let t388 = link_2_e0 * link_2_e0;
-            let t389 = k(0.5) - T::fused(link_2_e1, link_2_e1, t388);
-            let t390 = t291 + (t367 + (t343 + t367));
-            let t391 = t370 + t371;
-            let t392 = t294 * t391;
-            let t393 = t301 + T::fused(t298, t352, t392);
-            let t394 = t298 * t391;
-            let t395 = t306 + T::fused(t294, t352, -t394);
-            let t396 = t319 + T::fused(t298, t366, t361 * t294);
-            let t397 = T::fused(-t280, t385, t323 * t396)
-                + T::fused(t311, t395, T::fused(t286, t390, t302 * t393));
-            let t398 = t271 * (t261 - t397);
-            let t399 = t357 - (t357 - t398);
             (
+                t2,
+                t3,
+                t6,
+                t7,
+                t8,
+                t11,
+                t13,
+                t14,
+                t15,
+                t16,
+                t18,
+                t19,
+                t21,
+                t22,
+                t26,
+                t27,
+                t30,
+                t33,
+                t38,
+                t41,
+                t42,
+                t44,
+                t49,
+                t50,
+                t52,
+                t54,
+                t58,
+                t59,
+                t61,
+                t63,
+                t66,
+                t67,
+                t69,
+                t72,
+                t73,
+                t76,
+                t78,
+                t79,
+                t80,
+                t83,
+                t85,
+                t87,
+                t88,
+                t89,
+                t92,
+                t93,
+                t96,
+                t97,
+                t100,
+                t101,
+                t102,
+                t103,
+                t107,
+                t112,
+                t113,
+                t115,
+                t116,
+                t118,
+                t121,
+                t122,
+                t124,
+                t128,
+                t131,
+                t133,
+                t134,
+                t137,
+                t138,
+                t139,
+                t140,
+                t141,
+                t143,
+                t144,
+                t145,
+                t146,
+                t147,
+                t150,
+                t153,
+                t154,
+                t155,
+                t157,
+                t158,
+                t159,
+                t161,
+                t162,
+                t163,
+                t164,
+                t165,
+                t166,
+                t168,
+                t169,
+                t170,
+                t171,
+                t172,
+                t174,
+                t175,
+                t177,
+                t178,
+                t179,
+                t180,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t200,
+            t202,
+            t207,
+            t210,
+            t211,
+            t213,
+            t215,
+            t216,
+            t218,
+            t220,
+            t222,
+            t237,
+            t245,
+            t252,
+            t268,
+            t282,
+            t311,
+            t317,
+            t320,
+            t327,
+            t332,
+            t337,
+            t339,
+            t340,
+            t343,
+            t344,
+            t345,
+            t346,
+            t349,
+            t352,
+            t357,
+            t358,
+            t362,
+            t366,
+            t367,
+            t368,
+            t371,
+            t372,
+            t373,
+            t374,
+            t377,
+            t378,
+            t379,
+            t381,
+            t382,
+            t383,
+            t384,
+            t385,
+            t386,
+            t387,
+            t388,
+            t391,
+            t392,
+            t393,
+            t394,
+            t395,
+            t396,
+            t397,
+            t398,
+            t399,
+        ) = {
+            let t200 = T::fused(
+                k(0.3),
+                t6 * t199,
+                -T::fused(k(0.04), t7 * t198, t195 + T::fused(-k(0.3), t188, t195)),
+            );
+            let t201 = t18 * t200;
+            let t202 = link_5_wx * link_5_wy;
+            let t203 = T::fused(
+                k(0.02),
                 t202,
+                -T::fused(t14, t201, -T::fused(t21, t189, k(2.0) * (t190 * t33))),
+            );
+            let t204 = T::fused(k(0.6), t7 * t199, T::fused(k(0.02), t6 * t198, t203));
+            let t205 = T::fused(
+                t15,
+                t180,
+                T::fused(k(2.0), t175, T::fused(-k(2.68), t180, t177 * t30)),
+            );
+            let t206 = t205 + t185;
+            let t207 = T::fused(
+                t22,
+                t187,
+                T::fused(t73, t204, t206 - T::fused(k(0.3752), t179, -t206)),
+            );
+            let t208 = t38 * t207;
+            let t209 = k(0.5) * t208;
+            let t210 = link_3_wx * link_3_wz;
+            let t211 = t210 + t171;
+            let t212 = k(2.0) * t211;
+            let t213 = k(2.0) * t2;
+            let t214 = T::fused(link_3_wx, link_3_wx, link_3_wy * link_3_wy);
+            let t215 = link_3_wy * link_3_wz;
+            let t216 = T::fused(t215, t50, T::fused(t214, t213, t179));
+            let t217 = k(0.5) * t216;
+            let t218 = T::fused(-t215, t213, T::fused(t214, t50, t172));
+            let t219 = link_3_wx - link_4_wx;
+            let t220 = link_4_wz * t219;
+            let t221 = k(2.0) * t220;
+            let t222 = link_4_wy * t219;
+            let t223 = T::fused(
+                -t85,
+                t217,
+                T::fused(t83, t218, T::fused(t49, t221, t222 * t42)),
+            );
+            let t224 = T::fused(
+                k(0.5),
+                t8 * t180,
+                -T::fused(-t16, t174, T::fused(k(0.67), t174, t177 * t8)),
+            );
+            let t225 = T::fused(
+                k(0.14),
+                t7 * t184,
+                -T::fused(k(0.335), t6 * t181, -t224),
+            );
+            let t226 = t195
+                + T::fused(k(0.5), t44 * t189, -T::fused(k(2.0), t189, t190 * t21));
+            let t227 = T::fused(k(0.5), t19 * t201, t226);
+            let t228 = T::fused(t11, t225, k(0.1675) * (t22 * t227));
+            let t229 = T::fused(
+                k(0.05025),
+                t171,
+                -(t228 + T::fused(t27, t209, T::fused(-t58, t212, t223))),
+            );
+            let t230 = t228 - t229;
+            let t231 = k(0.5) * t2;
+            let t232 = k(4.0) * t211;
+            let t233 = k(2.0) * t222;
+            let t234 = k(4.0) * t220;
+            let t235 = k(2.0) * t218;
+            let t236 = T::fused(
+                -t89,
+                t216,
+                T::fused(t88, t235, T::fused(t54, t233, t42 * t234)),
+            );
+            let t237 = link_4_wx * link_4_wy;
+            let t238 = T::fused(
+                t52,
                 t204,
-                t206,
+                T::fused(
+                    k(0.0134),
+                    t237,
+                    -T::fused(-t41, t208, T::fused(-t59, t232, t236)),
+                ),
+            );
+            let t239 = T::fused(-t11, t187, t238);
+            let t240 = T::fused(
+                -t78,
+                t218,
+                T::fused(k(0.5025), t211, -T::fused(t58, t221, t222 * t59)),
+            );
+            let t241 = T::fused(
+                t26,
                 t209,
-                t235,
-                t238,
-                t250,
+                -T::fused(-t63, t212, T::fused(-t80, t217, t240)),
+            ) + t228;
+            let t242 = T::fused(
+                t50,
+                t230,
+                T::fused(t239, t231, t241 - T::fused(k(0.05025), t210, -t241)),
+            );
+            let t243 = t66 * t242;
+            let t244 = k(2.0) * t72;
+            let t245 = link_2_wx * link_2_wz;
+            let t246 = T::fused(link_2_wx, link_2_wx, link_2_wy * link_2_wy);
+            let t247 = T::fused(t245, t244, T::fused(t246, t97, t214));
+            let t248 = link_2_wy - link_3_wy;
+            let t249 = link_3_wx * t248;
+            let t250 = link_3_wz * t248;
+            let t251 = k(2.0) * t250;
+            let t252 = link_2_wy * link_2_wz;
+            let t253 = t252 + t215;
+            let t254 = k(2.0) * t253;
+            let t255 = T::fused(
+                t112,
+                t254,
+                -T::fused(t131, t247, T::fused(-t249, t96, t118 * t251)),
+            );
+            let t256 = T::fused(t245, t97, T::fused(-t246, t244, t210));
+            let t257 = k(2.0) * t256;
+            let t258 = T::fused(
+                -t103,
+                t217,
+                T::fused(-t102, t218, T::fused(t222, t88, t83 * t221)),
+            );
+            let t259 = T::fused(
+                t22,
+                t225,
+                T::fused(
+                    t76,
+                    t209,
+                    -T::fused(k(1.005), t218, T::fused(-t78, t212, t258)),
+                ),
+            );
+            let t260 = T::fused(-t101, t227, t259);
+            let t261 = T::fused(
+                t107,
+                t216,
+                T::fused(t103, t235, T::fused(t89, t233, t85 * t234)),
+            );
+            let t262 = T::fused(
+                -t79,
+                t208,
+                t206 - T::fused(k(4.02), t216, -T::fused(t80, t232, t261)),
+            );
+            let t263 = T::fused(-t2, t260, k(0.125) * (t50 * t262));
+            let t264 = T::fused(
+                k(0.0469),
+                t215,
+                -(t263 + T::fused(t93, t243, T::fused(t124, t257, -t255))),
+            );
+            let t265 = t263 - t264;
+            let t266 = T::fused(
+                k(0.5),
+                t134 * t247,
+                T::fused(-t250, t96, k(2.0) * (t249 * t69)),
+            );
+            let t267 = T::fused(
+                k(0.5),
+                t61 * t243,
+                T::fused(t133, t256, T::fused(t253, t113, t266)),
+            );
+            let t268 = link_3_wx * link_3_wy;
+            let t269 = T::fused(
+                t213,
+                t230,
+                -T::fused(t67, t239, T::fused(k(0.00335), t268, t267)),
+            );
+            let t270 = T::fused(
+                -t138,
+                t247,
+                T::fused(k(0.67), t253, -T::fused(-t249, t113, t112 * t251)),
+            );
+            let t271 = T::fused(
+                t92,
+                t243,
+                T::fused(t137, t257, T::fused(t115, t254, -t270)),
+            ) + t263;
+            let t272 = T::fused(
+                t97,
+                t265,
+                T::fused(-t244, t269, t271 - T::fused(k(0.0469), t252, -t271)),
+            );
+            let t273 = t121 * t272;
+            let t274 = T::fused(-t97, t131, t100 * t124);
+            let t275 = T::fused(-t97, t134, t100 * t133);
+            let t276 = T::fused(
+                t97,
+                t274,
+                T::fused(t72, t275, k(2.0) * T::fused(-t97, t138, t100 * t137)),
+            );
+            let t277 = t276 * t121;
+            let t278 = T::fused(-t97, t147, t100 * t145);
+            let t279 = T::fused(t141, t277, k(2.0) * t278);
+            let t280 = T::fused(link_1_wx, link_1_wx, link_1_wy * link_1_wy);
+            let t281 = t280 * t153;
+            let t282 = link_1_wy * link_1_wz;
+            let t283 = t282 * t158;
+            let t284 = T::fused(k(2.0), t283, -(t246 + t281));
+            let t285 = link_1_wx - link_2_wx;
+            let t286 = link_2_wy * t285;
+            let t287 = link_2_wz * t285;
+            let t288 = k(2.0) * t287;
+            let t289 = k(2.0) * t158;
+            let t290 = t280 * t289;
+            let t291 = t282 * t153;
+            let t292 = t291 + (t252 + t290);
+            let t293 = k(2.0) * t292;
+            let t294 = k(0.41875) - (t115 - t116);
+            let t295 = t294 * t121;
+            let t296 = T::fused(-t141, t295, k(2.0) * t139);
+            let t297 = T::fused(
+                t296,
+                t293,
+                T::fused(t284, t279, T::fused(-t286, t157, t150 * t288)),
+            );
+            let t298 = link_1_wx * link_1_wz;
+            let t299 = t298 + t245;
+            let t300 = k(2.0) * t299;
+            let t301 = T::fused(
+                t137,
+                t254,
+                -T::fused(-t144, t247, T::fused(t249, t133, t124 * t251)),
+            );
+            let t302 = T::fused(
+                -t122,
+                t243,
+                t241 - T::fused(k(0.67), t256, -T::fused(t143, t257, t301)),
+            );
+            let t303 = T::fused(
+                t138,
+                t254,
+                -T::fused(-t146, t247, T::fused(t249, t134, t131 * t251)),
+            );
+            let t304 = T::fused(
+                -t50,
                 t260,
-                t294,
-                t298,
-                t300,
-                t301,
-                t305,
-                t306,
-                t326,
-                t342,
+                T::fused(
+                    -t128,
+                    t243,
+                    T::fused(k(1.34), t247, -T::fused(t144, t257, t303)),
+                ),
+            );
+            let t305 = T::fused(-t97, t302, t72 * T::fused(-t231, t262, t304));
+            let t306 = T::fused(
+                k(0.05025),
+                t245,
+                t305 + T::fused(-t141, t273, T::fused(t165, t300, -t297)),
+            );
+            let t307 = T::fused(t155, t295, t154);
+            let t308 = T::fused(t100, t274, -T::fused(-t155, t277, t97 * t275));
+            let t309 = T::fused(
+                k(0.5),
+                t284 * t308,
+                T::fused(-t287, t157, k(2.0) * (t286 * t161)),
+            );
+            let t310 = T::fused(
+                k(0.5),
+                t155 * t273,
+                T::fused(t299, t166, T::fused(-t307, t292, t309)),
+            );
+            let t311 = link_2_wx * link_2_wy;
+            let t312 = T::fused(t276, t164, t278);
+            let t313 = T::fused(
+                -t284,
+                t312,
+                T::fused(k(0.8375), t299, -T::fused(-t286, t166, t165 * t288)),
+            );
+            let t314 = T::fused(-t294, t164, t139);
+            let t315 = T::fused(
+                t140,
+                t273,
+                T::fused(t168, t300, T::fused(t314, t293, -t313)),
+            ) - t305;
+            let t316 = T::fused(
+                t158,
+                T::fused(t153, t308, t163 * t307),
+                k(2.0) * T::fused(-t153, t312, t163 * t314),
+            );
+            let t317 = (link_1_e0 - link_1_e2) * (link_1_e0 + link_1_e2);
+            let t318 = T::fused(k(98.1), t317, t280);
+            let t319 = T::fused(
+                -k(2.0),
+                T::fused(-t153, t166, t163 * t165),
+                k(4.0) * (t153 * t162),
+            );
+            let t320 = link_1_wx * link_1_wy;
+            let t321 = T::fused(
+                -t153,
+                T::fused(t153, t296, t158 * t279),
+                t158 * T::fused(-t153, t307, t158 * t308),
+            );
+            let t322 = T::fused(t153, t314, t158 * t312);
+            let t323 = t322 + (t322 - t321);
+            let t324 = k(2.0) * t282;
+            let t325 = T::fused(
+                -t320,
+                T::fused(t163, t159, -t319),
+                t324 * (t321 - (t322 + (t322 + t323))),
+            );
+            let t326 = T::fused(
+                -t318,
+                T::fused(t153, T::fused(-t153, t279, t163 * t296), t316),
+                t325,
+            );
+            let t327 = link_1_e0 * link_1_e2;
+            let t328 = T::fused(k(196.2), t327, t298);
+            let t329 = T::fused(
+                k(2.0),
+                t328 * (k(0.5025) - (t168 - t169)),
+                -T::fused(t324, t323, -t326),
+            );
+            let t330 = T::fused(
+                t289,
+                T::fused(
+                    -t244,
+                    t265,
+                    T::fused(-t97, t269, T::fused(k(0.00335), t311, -t310)),
+                ),
+                t315 - T::fused(k(0.05025), t298, t329 - t315),
+            );
+            let t331 = T::fused(-t153, t305 + t306, t330)
+                / (k(0.94805) - T::fused(-t153, t159, t170));
+            let t332 = k(0.5) * t331;
+            let t333 = t298 + t332;
+            let t334 = link_1_e0 * link_1_e0;
+            let t335 = link_1_e0 * link_1_e3;
+            let t336 = link_1_e1 * link_1_e2;
+            let t337 = t336 - t335;
+            let t338 = link_1_e1 * link_1_e3;
+            let t339 = T::fused(
+                k(0.5) - T::fused(link_1_e1, link_1_e1, t334),
+                t333,
+                T::fused(-t337, t324, (t338 + t327) * t280),
+            );
+            let t340 = k(0.5) - T::fused(link_1_e2, link_1_e2, t334);
+            let t341 = link_1_e0 * link_1_e1;
+            let t342 = link_1_e2 * link_1_e3;
+            let t343 = T::fused(
+                -(t336 + t335),
+                t333,
+                T::fused(t340, t324, (t342 - t341) * t280),
+            );
+            let t344 = t342 + t341;
+            let t345 = T::fused(
+                t338 - t327,
+                t333,
+                T::fused(
+                    t344,
+                    t324,
+                    (k(0.5) - T::fused(link_1_e3, link_1_e3, t334)) * t280,
+                ),
+            );
+            let t346 = T::fused(k(0.5), t153 * t331, -T::fused(t320, t289, t287));
+            let t347 = t333 + (t332 + (t299 + t346));
+            let t348 = link_2_e0 * link_2_e0;
+            let t349 = k(0.5) - T::fused(link_2_e1, link_2_e1, t348);
+            let t350 = k(6.0) * t283;
+            let t351 = t350 + T::fused(-t153, t318, t284);
+            let t352 = T::fused(t158, t331, T::fused(t320, t153, t286));
+            let t353 = T::fused(
                 t351,
+                t276,
+                T::fused(k(2.0), t141 * t346, T::fused(-t155, t352, t272)),
+            );
+            let t354 = k(3.0) * t291;
+            let t355 = t354 + T::fused(t318, t289, t292);
+            let t356 = t332 + (t328 + (t299 + t332));
+            let t357 = t121
+                * T::fused(k(2.0), t140 * t356, -T::fused(k(2.0), t294 * t355, -t353));
+            let t358 = k(0.5) * t357;
+            let t359 = t354 + (t290 + t292) + t358;
+            let t360 = link_2_e0 * link_2_e3;
+            let t361 = link_2_e1 * link_2_e2;
+            let t362 = t361 - t360;
+            let t363 = t350 - (t281 - t284);
+            let t364 = link_2_e0 * link_2_e2;
+            let t365 = link_2_e1 * link_2_e3;
+            let t366 = T::fused(-t349, t347, T::fused(t362, t359, (t365 + t364) * t363));
+            let t367 = t361 + t360;
+            let t368 = k(0.5) - T::fused(link_2_e2, link_2_e2, t348);
+            let t369 = link_2_e0 * link_2_e1;
+            let t370 = link_2_e2 * link_2_e3;
+            let t371 = T::fused(t367, t347, T::fused(-t368, t359, (t370 - t369) * t363));
+            let t372 = t365 - t364;
+            let t373 = t370 + t369;
+            let t374 = T::fused(
+                -t372,
+                t347,
+                T::fused(
+                    -t373,
+                    t359,
+                    (k(0.5) - T::fused(link_2_e3, link_2_e3, t348)) * t363,
+                ),
+            );
+            let t375 = t346 + t347;
+            let t376 = t346 + (t356 + t346);
+            let t377 = T::fused(-t244, t376, T::fused(t97, t351, -t247));
+            let t378 = T::fused(k(0.5), t97 * t357, -T::fused(t244, t352, t250));
+            let t379 = T::fused(-t72, t357, T::fused(-t97, t352, t249));
+            let t380 = T::fused(
+                -t128,
+                t377,
+                T::fused(k(2.0), t93 * t378, T::fused(-t61, t379, t242)),
+            );
+            let t381 = t358 + (t355 + (t253 + t358));
+            let t382 = T::fused(t97, t376, T::fused(t351, t244, t256));
+            let t383 = t66
+                * T::fused(k(2.0), t122 * t382, -T::fused(k(2.0), t92 * t381, t380));
+            let t384 = k(0.5) * t383;
+            let t385 = T::fused(t97, t375, T::fused(t363, t244, t256 - t384));
+            let t386 = link_3_e0 * link_3_e0;
+            let t387 = k(0.5) - T::fused(link_3_e1, link_3_e1, t386);
+            let t388 = t359 + (t358 + (t253 + t378));
+            let t389 = link_3_e0 * link_3_e3;
+            let t390 = link_3_e1 * link_3_e2;
+            let t391 = t390 - t389;
+            let t392 = T::fused(-t244, t375, T::fused(t97, t363, -t247));
+            let t393 = link_3_e0 * link_3_e2;
+            let t394 = link_3_e1 * link_3_e3;
+            let t395 = T::fused(-t387, t385, T::fused(t391, t388, (t394 + t393) * t392));
+            let t396 = t390 + t389;
+            let t397 = k(0.5) - T::fused(link_3_e2, link_3_e2, t386);
+            let t398 = link_3_e0 * link_3_e1;
+            let t399 = link_3_e2 * link_3_e3;
+            (
+                t200,
+                t202,
+                t207,
+                t210,
+                t211,
+                t213,
+                t215,
+                t216,
+                t218,
+                t220,
+                t222,
+                t237,
+                t245,
+                t252,
+                t268,
+                t282,
+                t311,
+                t317,
+                t320,
+                t327,
+                t332,
+                t337,
+                t339,
+                t340,
+                t343,
+                t344,
+                t345,
+                t346,
+                t349,
+                t352,
                 t357,
-                t361,
+                t358,
+                t362,
                 t366,
+                t367,
+                t368,
+                t371,
+                t372,
+                t373,
                 t374,
+                t377,
                 t378,
                 t379,
+                t381,
                 t382,
                 t383,
                 t384,
@@ -13632,547 +13794,461 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
                 t386,
                 t387,
                 t388,
-                t389,
-                t390,
+                t391,
                 t392,
                 t393,
                 t394,
                 t395,
                 t396,
+                t397,
                 t398,
                 t399,
             )
         };
         let (
+            t400,
+            t403,
             t404,
-            t408,
-            t409,
-            t410,
-            t413,
-            t414,
-            t415,
+            t412,
             t416,
+            t424,
             t429,
-            t433,
-            t434,
-            t443,
-            t444,
-            t448,
-            t449,
-            t451,
-            t452,
-            t453,
-            t469,
-            t478,
+            t432,
+            t437,
+            t442,
+            t450,
+            t455,
+            t458,
+            t459,
+            t460,
+            t467,
+            t475,
+            t480,
             t483,
+            t484,
+            t485,
             t486,
             t487,
+            t488,
+            t489,
+            t490,
+            t491,
             t492,
+            t493,
+            t494,
+            t495,
+            t496,
             t497,
-            t506,
-            t511,
-            t514,
-            t515,
+            t498,
+            t499,
+            t500,
+            t508,
+            t510,
             t516,
+            t518,
+            t524,
             t526,
-            t534,
+            t530,
+            t531,
+            t532,
+            t533,
+            t538,
             t539,
-            t542,
-            t543,
-            t546,
-            t547,
-            t548,
-            t551,
-            t552,
-            t553,
-            t554,
-            t555,
-            t556,
-            t557,
-            t558,
-            t559,
-            t561,
-            t562,
-            t565,
-            t572,
-            t573,
-            t575,
-            t576,
-            t577,
-            t586,
-            t587,
-            t588,
-            t589,
-            t590,
-            t591,
-            t596,
-            t597,
-            t598,
-            t599,
+            t540,
         ) = {
-            let t400 = k(0.1) * t399;
-            let t401 = t301 + (t300 + t392) + t400;
-            let t402 = link_2_e0 * link_2_e3;
-            let t403 = link_2_e1 * link_2_e2;
-            let t404 = t403 - t402;
-            let t405 = t306 + (t305 - t394);
-            let t406 = link_2_e0 * link_2_e2;
-            let t407 = link_2_e1 * link_2_e3;
-            let t408 = T::fused(
-                k(2.0) * (t407 + t406),
+            let t400 = T::fused(t396, t385, T::fused(-t397, t388, (t399 - t398) * t392));
+            let t401 = t394 - t393;
+            let t402 = t399 + t398;
+            let t403 = T::fused(
+                -t401,
+                t385,
+                T::fused(
+                    -t402,
+                    t388,
+                    (k(0.5) - T::fused(link_3_e3, link_3_e3, t386)) * t392,
+                ),
+            );
+            let t404 = T::fused(k(0.5), t50 * t383, T::fused(-t213, t379, t220));
+            let t405 = t385 - (t384 - (t211 - t404));
+            let t406 = link_4_e0 * link_4_e0;
+            let t407 = k(0.5) - T::fused(link_4_e1, link_4_e1, t406);
+            let t408 = t378 + t388;
+            let t409 = t384 - (t382 + (t211 - t384));
+            let t410 = t378 + (t378 + t381);
+            let t411 = T::fused(t50, t410, T::fused(-t213, t377, t216));
+            let t412 = T::fused(-t2, t383, T::fused(-t50, t379, t222));
+            let t413 = T::fused(-t213, t410, T::fused(-t50, t377, t218));
+            let t414 = T::fused(
+                k(2.0),
+                t76 * t413,
+                -T::fused(k(4.0), t27 * t404, -T::fused(k(2.0), t41 * t412, t207)),
+            );
+            let t415 = t38 * T::fused(-k(4.0), t26 * t409, T::fused(-t79, t411, t414));
+            let t416 = t378 - (t378 - t415);
+            let t417 = T::fused(t50, t408, T::fused(-t213, t392, t216 + t416));
+            let t418 = link_4_e0 * link_4_e3;
+            let t419 = link_4_e1 * link_4_e2;
+            let t420 = t419 - t418;
+            let t421 = T::fused(-t213, t408, T::fused(-t50, t392, t218));
+            let t422 = link_4_e0 * link_4_e2;
+            let t423 = link_4_e1 * link_4_e3;
+            let t424 = T::fused(t407, t405, T::fused(-t420, t417, (t423 + t422) * t421));
+            let t425 = t419 + t418;
+            let t426 = k(0.5) - T::fused(link_4_e2, link_4_e2, t406);
+            let t427 = link_4_e0 * link_4_e1;
+            let t428 = link_4_e2 * link_4_e3;
+            let t429 = T::fused(-t425, t405, T::fused(t426, t417, (t428 - t427) * t421));
+            let t430 = t423 - t422;
+            let t431 = t428 + t427;
+            let t432 = T::fused(
+                t430,
                 t405,
-                -T::fused(k(2.0) * t389, t387, k(2.0) * t404 * t401),
+                T::fused(
+                    t431,
+                    t417,
+                    (k(0.5) - T::fused(link_4_e3, link_4_e3, t406)) * t421,
+                ),
             );
-            let t409 = t403 + t402;
-            let t410 = k(0.5) - T::fused(link_2_e2, link_2_e2, t388);
-            let t411 = link_2_e0 * link_2_e1;
-            let t412 = link_2_e2 * link_2_e3;
-            let t413 = T::fused(
-                k(2.0) * (t412 - t411),
-                t405,
-                T::fused(k(2.0) * t409, t387, k(2.0) * t410 * t401),
+            let t433 = t404 - t405;
+            let t434 = t404 + (t404 + t409);
+            let t435 = T::fused(-t22, t412, t190);
+            let t436 = T::fused(
+                t19,
+                T::fused(-t22, t434, T::fused(-t87, t413, t189)),
+                T::fused(k(2.0), t14 * T::fused(-t87, t415, t435), t200),
             );
-            let t414 = t407 - t406;
-            let t415 = t412 + t411;
-            let t416 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t388)),
-                t405,
-                T::fused(-(k(2.0) * t414), t387, k(2.0) * t415 * t401),
+            let t437 = t404 - T::fused(-k(0.5), t18 * t436, t404);
+            let t438 = T::fused(-t22, t433, T::fused(-t87, t421, t189 - t437));
+            let t439 = link_5_e0 * link_5_e0;
+            let t440 = k(0.5) - T::fused(link_5_e1, link_5_e1, t439);
+            let t441 = T::fused(t87, t412, t177);
+            let t442 = T::fused(t22, t416, -t441);
+            let t443 = t417 + (t416 + (t180 + t442));
+            let t444 = link_5_e0 * link_5_e3;
+            let t445 = link_5_e1 * link_5_e2;
+            let t446 = t445 - t444;
+            let t447 = T::fused(-t87, t433, T::fused(t22, t421, t174));
+            let t448 = link_5_e0 * link_5_e2;
+            let t449 = link_5_e1 * link_5_e3;
+            let t450 = T::fused(t440, t438, T::fused(-t446, t443, (t449 + t448) * t447));
+            let t451 = t445 + t444;
+            let t452 = k(0.5) - T::fused(link_5_e2, link_5_e2, t439);
+            let t453 = link_5_e0 * link_5_e1;
+            let t454 = link_5_e2 * link_5_e3;
+            let t455 = T::fused(-t451, t438, T::fused(t452, t443, (t454 - t453) * t447));
+            let t456 = t449 - t448;
+            let t457 = t454 + t453;
+            let t458 = T::fused(
+                t456,
+                t438,
+                T::fused(
+                    t457,
+                    t443,
+                    (k(0.5) - T::fused(link_5_e3, link_5_e3, t439)) * t447,
+                ),
             );
-            let t417 = t386 + t387;
-            let t418 = t386 - (t390 - t386);
-            let t419 = t180 - T::fused(t173, t418, t177 * t395);
-            let t420 = k(0.1) * t398;
-            let t421 = t192 + (t420 + (t393 + t420));
-            let t422 = t193 + T::fused(-t177, t418, t173 * t395);
-            let t423 = t177 * t396;
-            let t424 = t202 + T::fused(-t173, t398, t423);
-            let t425 = t173 * t396;
-            let t426 = t206 - T::fused(t177, t398, t425);
-            let t427 = T::fused(-t204, t424, t209 * t426)
-                - T::fused(t198, t422, -T::fused(t170, t419, t189 * t421));
-            let t428 = t168 * (t158 - t427);
-            let t429 = t385 - (t385 + t428);
-            let t430 = k(0.1) * t429;
-            let t431 = t430 - (t180 - T::fused(t173, t417, t177 * t405));
-            let t432 = link_3_e0 * link_3_e0;
-            let t433 = k(0.5) - T::fused(link_3_e1, link_3_e1, t432);
-            let t434 = t202 + T::fused(-t173, t399, t423);
-            let t435 = k(0.1) * t434;
-            let t436 = t435 - (t192 + (t400 + t401));
-            let t437 = link_3_e0 * link_3_e3;
-            let t438 = link_3_e1 * link_3_e2;
-            let t439 = t438 - t437;
-            let t440 = t193 + T::fused(-t177, t417, t173 * t405);
-            let t441 = link_3_e0 * link_3_e2;
-            let t442 = link_3_e1 * link_3_e3;
-            let t443 = T::fused(
-                k(2.0) * (t442 + t441),
-                t440,
-                T::fused(-(k(2.0) * t433), t431, k(2.0) * t439 * t436),
+            let t459 = T::fused(-t87, t416, t435);
+            let t460 = T::fused(t6, t437, T::fused(-t13, t459, t194));
+            let t461 = t438 - (t437 - (t192 - t460));
+            let t462 = link_6_e0 * link_6_e0;
+            let t463 = k(0.5) - T::fused(link_6_e1, link_6_e1, t462);
+            let t464 = t442 + t443;
+            let t465 = T::fused(-t22, t415, t441);
+            let t466 = T::fused(
+                t6,
+                t415 + (t411 + (t415 + T::fused(-k(2.0), t465, t180))),
+                T::fused(t13, T::fused(-t87, t434, T::fused(t22, t413, t174)), t183),
             );
-            let t444 = t438 + t437;
-            let t445 = k(0.5) - T::fused(link_3_e2, link_3_e2, t432);
-            let t446 = link_3_e0 * link_3_e1;
-            let t447 = link_3_e2 * link_3_e3;
-            let t448 = T::fused(
-                k(2.0) * (t447 - t446),
-                t440,
-                -T::fused(-(k(2.0) * t444), t431, k(2.0) * t445 * t436),
-            );
-            let t449 = t442 - t441;
-            let t450 = t447 + t446;
-            let t451 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t432)),
-                t440,
-                -T::fused(k(2.0) * t449, t431, k(2.0) * t450 * t436),
-            );
-            let t452 = t206 - T::fused(t177, t399, t425);
-            let t453 = t132 - T::fused(-t112, t429, t116 * t452);
-            let t454 = k(0.1) * t453;
-            let t455 = t454 - (t109 - (t430 + t431));
-            let t456 = link_4_e0 * link_4_e0;
-            let t457 = k(0.5) - T::fused(link_4_e1, link_4_e1, t456);
-            let t458 = t435 + t436;
-            let t459 = k(0.1) * t428;
-            let t460 = t109 + (t459 + (t419 + t459));
-            let t461 = k(0.1) * t424;
-            let t462 = t461 - (t421 - t461);
-            let t463 = t118 + T::fused(-t112, t462, t116 * t422);
-            let t464 = t122 + T::fused(t116, t462, t112 * t422);
-            let t465 = t132 - T::fused(t112, t428, t116 * t426);
-            let t466 = t136 - T::fused(-t116, t428, t112 * t426);
-            let t467 = T::fused(-t98, t465, t140 * t466)
-                + T::fused(t128, t464, -T::fused(-t104, t460, t119 * t463));
-            let t468 = t89 * (t83 + t467);
-            let t469 = t424 + t468 - t434;
-            let t470 = k(0.1) * t469;
-            let t471 = t470 + (t118 + T::fused(-t112, t458, t116 * t440));
-            let t472 = link_4_e0 * link_4_e3;
-            let t473 = link_4_e1 * link_4_e2;
-            let t474 = t473 - t472;
-            let t475 = t122 + T::fused(t116, t458, t112 * t440);
-            let t476 = link_4_e0 * link_4_e2;
-            let t477 = link_4_e1 * link_4_e3;
-            let t478 = T::fused(
-                k(2.0) * (t477 + t476),
-                t475,
-                -T::fused(k(2.0) * t457, t455, k(2.0) * t474 * t471),
-            );
-            let t479 = t473 + t472;
-            let t480 = k(0.5) - T::fused(link_4_e2, link_4_e2, t456);
-            let t481 = link_4_e0 * link_4_e1;
-            let t482 = link_4_e2 * link_4_e3;
+            let t467 = t442
+                + T::fused(
+                    -k(0.208955223880597),
+                    T::fused(k(3.5714285714285716), t466, t182),
+                    t465,
+                );
+            let t468 = T::fused(t6, t464, T::fused(t13, t447, t183 + t467));
+            let t469 = link_6_e0 * link_6_e3;
+            let t470 = link_6_e1 * link_6_e2;
+            let t471 = t470 - t469;
+            let t472 = T::fused(-t13, t464, T::fused(t6, t447, t181));
+            let t473 = link_6_e0 * link_6_e2;
+            let t474 = link_6_e1 * link_6_e3;
+            let t475 = T::fused(t463, t461, T::fused(-t471, t468, (t474 + t473) * t472));
+            let t476 = t470 + t469;
+            let t477 = k(0.5) - T::fused(link_6_e2, link_6_e2, t462);
+            let t478 = link_6_e0 * link_6_e1;
+            let t479 = link_6_e2 * link_6_e3;
+            let t480 = T::fused(-t476, t461, T::fused(t477, t468, (t479 - t478) * t472));
+            let t481 = t474 - t473;
+            let t482 = t479 + t478;
             let t483 = T::fused(
-                k(2.0) * (t482 - t481),
+                t481,
+                t461,
+                T::fused(
+                    t482,
+                    t468,
+                    (k(0.5) - T::fused(link_6_e3, link_6_e3, t462)) * t472,
+                ),
+            );
+            let t484 = T::fused(-t13, t437, T::fused(-t6, t459, t196));
+            let t485 = t450 + t475;
+            let t486 = t424 + t485;
+            let t487 = t395 - t486;
+            let t488 = t366 + t487;
+            let t489 = t339 - t488;
+            let t490 = t455 + t480;
+            let t491 = t429 + t490;
+            let t492 = t400 - t491;
+            let t493 = t371 + t492;
+            let t494 = t343 - t493;
+            let t495 = k(49.05) - t483;
+            let t496 = k(49.05) - (t458 - t495);
+            let t497 = k(49.05) - (t432 - t496);
+            let t498 = k(49.05) + (t403 + t497);
+            let t499 = k(49.05) + (t374 + t498);
+            let t500 = k(49.05) - (t345 - t499);
+            let t501 = T::fused(
+                t471,
                 t475,
-                T::fused(k(2.0) * t479, t455, k(2.0) * t480 * t471),
+                T::fused(t457, t496, T::fused(-t452, t490, t446 * t485)),
             );
-            let t484 = t477 - t476;
-            let t485 = t482 + t481;
-            let t486 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t456)),
-                t475,
-                T::fused(-(k(2.0) * t484), t455, k(2.0) * t485 * t471),
+            let t502 = T::fused(
+                k(0.085),
+                t467,
+                T::fused(
+                    k(0.07),
+                    t182,
+                    -T::fused(t482, t495, T::fused(-t477, t480, t501)),
+                ),
             );
-            let t487 = t136 - T::fused(t116, t429, t112 * t452);
-            let t488 = t454 + t455;
-            let t489 = k(0.1) * t465;
-            let t490 = t489 - (t460 - t489);
-            let t491 = T::fused(
-                t26,
-                t36 - T::fused(t29, t490, t33 * t464),
-                t42 * (t40 - T::fused(t33, t468, t29 * t466)),
+            let t503 = T::fused(
+                k(0.07),
+                t178,
+                T::fused(-t457, t495, T::fused(t452, t480, T::fused(-t446, t475, t502))),
             );
-            let t492 = T::fused(-t24, t19 + t491, t465) - t453;
-            let t493 = k(0.1) * t492;
-            let t494 = t493 + (t36 - T::fused(t29, t488, t33 * t475));
-            let t495 = link_5_e0 * link_5_e0;
-            let t496 = k(0.5) - T::fused(link_5_e1, link_5_e1, t495);
-            let t497 = t60 + T::fused(-t29, t469, t33 * t487);
-            let t498 = k(0.1) * t497;
-            let t499 = t498 - (t57 + (t470 + t471));
-            let t500 = link_5_e0 * link_5_e3;
-            let t501 = link_5_e1 * link_5_e2;
-            let t502 = t501 - t500;
-            let t503 = t58 + T::fused(-t33, t488, t29 * t475);
-            let t504 = link_5_e0 * link_5_e2;
-            let t505 = link_5_e1 * link_5_e3;
-            let t506 = T::fused(
-                k(2.0) * (t505 + t504),
-                t503,
-                T::fused(k(2.0) * t496, t494, k(2.0) * t502 * t499),
+            let t504 = T::fused(k(0.085), t442, t503);
+            let t505 = T::fused(
+                k(0.075),
+                t191,
+                T::fused(-t481, t495, T::fused(-t476, t480, t463 * t475)),
             );
-            let t507 = t501 + t500;
-            let t508 = k(0.5) - T::fused(link_5_e2, link_5_e2, t495);
-            let t509 = link_5_e0 * link_5_e1;
-            let t510 = link_5_e2 * link_5_e3;
+            let t506 = T::fused(k(0.08), t460, -t505);
+            let t507 = T::fused(-k(2.0), t484, t197);
+            let t508 = T::fused(-t7, t506, k(0.0025) * (t6 * t507));
+            let t509 = T::fused(k(0.005), t459, T::fused(k(0.0025), t202, t508));
+            let t510 = T::fused(-t22, t504, k(4.0) * (t11 * t509));
             let t511 = T::fused(
-                k(2.0) * (t510 - t509),
-                t503,
-                -T::fused(k(2.0) * t507, t494, k(2.0) * t508 * t499),
+                -t391,
+                t486,
+                T::fused(-t402, t498, T::fused(-t397, t492, t391 * t487)),
             );
-            let t512 = t505 - t504;
-            let t513 = t510 + t509;
+            let t512 = T::fused(
+                t426,
+                t491,
+                T::fused(-t420, t486, T::fused(-t402, t497, T::fused(t397, t491, t511))),
+            );
+            let t513 = T::fused(
+                -t431,
+                t496,
+                T::fused(t426, t490, T::fused(-t420, t485, T::fused(-t431, t497, t512))),
+            );
             let t514 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t495)),
-                t503,
-                -T::fused(-(k(2.0) * t512), t494, k(2.0) * t513 * t499),
+                k(0.07),
+                t215,
+                T::fused(k(0.085), t416, T::fused(k(0.07), t179, t513 - t510)),
             );
-            let t515 = t40 - T::fused(t33, t469, t29 * t487);
-            let t516 = t1 - T::fused(t10, t492, t15 * t515);
-            let t517 = T::fused(k(0.1), t516, -(t5 + (t493 + t494)));
-            let t518 = link_6_e0 * link_6_e0;
-            let t519 = k(0.5) - T::fused(link_6_e1, link_6_e1, t518);
-            let t520 = t498 + t499;
-            let t521 = k(0.1) * t468;
-            let t522 = t60 + T::fused(-t29, t468, t33 * t466);
-            let t523 = k(0.1) * t522;
-            let t524 = T::fused(
-                -t10,
-                t523 + (t523 - (t57 + (t521 + (t463 + t521)))),
-                t15 * (t58 + T::fused(-t33, t490, t29 * t464)),
+            let t515 = T::fused(k(0.085), t378, t514);
+            let t516 = T::fused(t22, t509, t11 * t504);
+            let t517 = T::fused(k(0.005), t412, -T::fused(k(0.0025), t237, t516));
+            let t518 = T::fused(t6, t506, k(0.01) * (t7 * t507));
+            let t519 = T::fused(
+                t407,
+                t485,
+                T::fused(-t430, t497, T::fused(-t425, t491, t407 * t486)),
             );
-            let t525 = k(0.0014) * t50;
-            let t526 = T::fused(
-                -k(149.2537313432836),
-                T::fused(k(0.05), t49 + t524, t525),
-                t522,
-            ) - t497;
-            let t527 = T::fused(k(0.1), t526, t49 + T::fused(-t10, t520, t15 * t503));
-            let t528 = link_6_e0 * link_6_e3;
-            let t529 = link_6_e1 * link_6_e2;
-            let t530 = t529 - t528;
-            let t531 = t52 + T::fused(t15, t520, t10 * t503);
-            let t532 = link_6_e0 * link_6_e2;
-            let t533 = link_6_e1 * link_6_e3;
+            let t520 = T::fused(
+                -t451,
+                t490,
+                T::fused(t440, t485, T::fused(-t430, t496, T::fused(-t425, t490, t519))),
+            );
+            let t521 = T::fused(
+                -t456,
+                t495,
+                T::fused(-t451, t480, T::fused(t440, t475, T::fused(-t456, t496, t520))),
+            );
+            let t522 = T::fused(
+                k(0.075),
+                t171,
+                T::fused(-k(0.08), t437, T::fused(k(0.075), t188, t521 - t518)),
+            );
+            let t523 = T::fused(-k(0.08), t404, t522);
+            let t524 = T::fused(-t50, t517, t2 * t523);
+            let t525 = T::fused(k(0.005), t379, T::fused(k(0.0025), t268, t524));
+            let t526 = T::fused(-t97, t515, t100 * t525);
+            let t527 = T::fused(
+                -t337,
+                t488,
+                T::fused(t344, t500, T::fused(-t340, t494, t337 * t489)),
+            );
+            let t528 = T::fused(
+                t368,
+                t493,
+                T::fused(-t362, t488, T::fused(t344, t499, T::fused(t340, t493, t527))),
+            );
+            let t529 = T::fused(
+                t373,
+                t498,
+                T::fused(t368, t492, T::fused(-t362, t487, T::fused(t373, t499, t528))),
+            );
+            let t530 = T::fused(
+                k(0.155),
+                t282,
+                T::fused(k(0.0425), t357, T::fused(k(0.07), t252, -(t529 + t526))),
+            );
+            let t531 = T::fused(t97, t525, t72 * t515);
+            let t532 = T::fused(k(0.005), t352, -T::fused(k(0.0025), t311, t531));
+            let t533 = T::fused(t50, t523, t3 * t517);
             let t534 = T::fused(
-                k(2.0) * (t533 + t532),
-                t531,
-                -T::fused(k(2.0) * t519, t517, k(2.0) * t530 * t527),
+                t349,
+                t487,
+                T::fused(t372, t499, T::fused(-t367, t493, t349 * t488)),
             );
-            let t535 = t529 + t528;
-            let t536 = k(0.5) - T::fused(link_6_e2, link_6_e2, t518);
-            let t537 = link_6_e0 * link_6_e1;
-            let t538 = link_6_e2 * link_6_e3;
-            let t539 = T::fused(
-                k(2.0) * (t538 - t537),
-                t531,
-                T::fused(k(2.0) * t535, t517, k(2.0) * t536 * t527),
+            let t535 = T::fused(
+                -t396,
+                t492,
+                T::fused(t387, t487, T::fused(t372, t498, T::fused(-t367, t492, t534))),
             );
-            let t540 = t533 - t532;
-            let t541 = t538 + t537;
-            let t542 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t518)),
-                t531,
-                T::fused(-(k(2.0) * t540), t517, k(2.0) * t541 * t527),
+            let t536 = T::fused(
+                t401,
+                t497,
+                T::fused(t396, t491, T::fused(-t387, t486, T::fused(t401, t498, t535))),
             );
-            let t543 = t11 - T::fused(-t15, t492, t10 * t515);
-            let t544 = t506 + t534;
-            let t545 = t478 + t544;
-            let t546 = t443 + t545;
-            let t547 = t408 + t546;
-            let t548 = k(0.5) * (t378 + t547);
-            let t549 = t511 + t539;
-            let t550 = t483 + t549;
-            let t551 = t448 + t550;
-            let t552 = t413 + t551;
-            let t553 = k(0.5) * (t382 + t552);
-            let t554 = T::fused(-k(0.5), t542, k(4.905));
-            let t555 = t554 + T::fused(-k(0.5), t514, k(4.905));
-            let t556 = t555 + T::fused(-k(0.5), t486, k(4.905));
-            let t557 = t556 + T::fused(-k(0.5), t451, k(4.905));
-            let t558 = t557 + T::fused(-k(0.5), t416, k(4.905));
-            let t559 = t558 + T::fused(-k(0.5), t384, k(4.905));
-            let t560 = T::fused(-k(0.0002), t543, t12);
-            let t561 = k(0.5) * t539;
-            let t562 = k(0.5) * t534;
-            let t563 = T::fused(
-                -(k(0.2) * t540),
-                t554,
-                T::fused(-(k(0.2) * t535), t561, k(0.2) * t519 * t562),
+            let t537 = T::fused(
+                k(0.075),
+                t245,
+                T::fused(-k(0.04), t383, T::fused(k(0.075), t210, -(t536 - t533))),
             );
-            let t564 = t563 + T::fused(-k(0.0016), t516, t6);
-            let t565 = T::fused(t10, t560, t15 * t564);
-            let t566 = t565 + T::fused(k(0.0002), t515, t77);
-            let t567 = k(0.2) * t513;
-            let t568 = k(0.2) * t508;
-            let t569 = k(0.2) * t502;
-            let t570 = T::fused(
-                k(0.2) * t541,
-                t554,
-                T::fused(-(k(0.2) * t536), t561, k(0.2) * t530 * t562),
-            );
-            let t571 = t570 - T::fused(k(0.0017), t526, t525)
-                + T::fused(t567, t554, T::fused(-t568, t561, t569 * t562));
-            let t572 = k(0.5) * t549;
-            let t573 = k(0.5) * t544;
-            let t574 = T::fused(t567, t555, T::fused(-t568, t572, t569 * t573))
-                + (t571 - T::fused(-k(0.0017), t497, t68));
-            let t575 = T::fused(-t29, t566, t33 * t574);
-            let t576 = t575 - T::fused(-k(0.0002), t487, t144);
-            let t577 = T::fused(-t15, t560, t10 * t564);
-            let t578 = k(0.2) * t512;
-            let t579 = k(0.2) * t507;
-            let t580 = k(0.2) * t496;
-            let t581 = T::fused(-t578, t554, T::fused(-t579, t561, t580 * t562)) + t577
-                + T::fused(k(0.0016), t492, t18);
-            let t582 = k(0.2) * t484;
-            let t583 = k(0.2) * t479;
-            let t584 = k(0.2) * t457;
-            let t585 = T::fused(-t582, t555, T::fused(-t583, t572, t584 * t573))
-                + (T::fused(-t578, t555, T::fused(-t579, t572, t580 * t573)) + t581);
-            let t586 = k(0.5) * t550;
-            let t587 = k(0.5) * t545;
-            let t588 = T::fused(-t582, t556, T::fused(-t583, t586, t584 * t587))
-                + (t585 + T::fused(-k(0.0016), t453, t65));
-            let t589 = T::fused(-t112, t576, t116 * t588);
-            let t590 = t589 + T::fused(k(0.0002), t452, t250);
-            let t591 = T::fused(t33, t566, t29 * t574);
-            let t592 = k(0.2) * t485;
-            let t593 = k(0.2) * t480;
-            let t594 = k(0.2) * t474;
-            let t595 = T::fused(t592, t555, T::fused(-t593, t572, t594 * t573)) + t591
-                - T::fused(k(0.0017), t469, t82);
-            let t596 = k(0.2) * t450;
-            let t597 = k(0.2) * t445;
-            let t598 = k(0.2) * t439;
-            let t599 = T::fused(t596, t556, T::fused(-t597, t586, t598 * t587))
-                + (T::fused(t592, t556, T::fused(-t593, t586, t594 * t587)) + t595);
+            let t538 = T::fused(k(0.08), t346, t537);
+            let t539 = T::fused(-t153, t532, t158 * t538);
+            let t540 = T::fused(-k(400.0), t539, t320);
             (
+                t400,
+                t403,
                 t404,
-                t408,
-                t409,
-                t410,
-                t413,
-                t414,
-                t415,
+                t412,
                 t416,
+                t424,
                 t429,
-                t433,
-                t434,
-                t443,
-                t444,
-                t448,
-                t449,
-                t451,
-                t452,
-                t453,
-                t469,
-                t478,
+                t432,
+                t437,
+                t442,
+                t450,
+                t455,
+                t458,
+                t459,
+                t460,
+                t467,
+                t475,
+                t480,
                 t483,
+                t484,
+                t485,
                 t486,
                 t487,
+                t488,
+                t489,
+                t490,
+                t491,
                 t492,
+                t493,
+                t494,
+                t495,
+                t496,
                 t497,
-                t506,
-                t511,
-                t514,
-                t515,
+                t498,
+                t499,
+                t500,
+                t508,
+                t510,
                 t516,
+                t518,
+                t524,
                 t526,
-                t534,
+                t530,
+                t531,
+                t532,
+                t533,
+                t538,
                 t539,
-                t542,
-                t543,
-                t546,
-                t547,
-                t548,
-                t551,
-                t552,
-                t553,
-                t554,
-                t555,
-                t556,
-                t557,
-                t558,
-                t559,
-                t561,
-                t562,
-                t565,
-                t572,
-                t573,
-                t575,
-                t576,
-                t577,
-                t586,
-                t587,
-                t588,
-                t589,
-                t590,
-                t591,
-                t596,
-                t597,
-                t598,
-                t599,
+                t540,
             )
         };
-        let (t600, t601, t603, t604, t605, t614, t615, t616, t617, t618, t619, t628) = {
-            let t600 = k(0.5) * t551;
-            let t601 = k(0.5) * t546;
-            let t602 = T::fused(t596, t557, T::fused(-t597, t600, t598 * t601))
-                + (t599 - T::fused(-k(0.0017), t434, t238));
-            let t603 = T::fused(-t173, t590, t177 * t602);
-            let t604 = t603 - T::fused(-k(0.0002), t396, t326);
-            let t605 = T::fused(t116, t576, t112 * t588);
-            let t606 = k(0.2) * t449;
-            let t607 = k(0.2) * t444;
-            let t608 = k(0.2) * t433;
-            let t609 = T::fused(-t606, t556, T::fused(-t607, t586, t608 * t587)) + t605
-                + T::fused(-k(0.0016), t429, t157);
-            let t610 = k(0.2) * t414;
-            let t611 = k(0.2) * t409;
-            let t612 = k(0.2) * t389;
-            let t613 = T::fused(-t610, t557, T::fused(-t611, t600, t612 * t601))
-                + (T::fused(-t606, t557, T::fused(-t607, t600, t608 * t601)) + t609);
-            let t614 = k(0.5) * t552;
-            let t615 = k(0.5) * t547;
-            let t616 = T::fused(-t610, t558, T::fused(-t611, t614, t612 * t615))
-                + (t613 + T::fused(-k(0.0016), t385, t235));
-            let t617 = T::fused(-t294, t604, t298 * t616);
-            let t618 = T::fused(k(0.0001), t361, -t617);
-            let t619 = T::fused(t177, t590, t173 * t602);
-            let t620 = k(0.2) * t415;
-            let t621 = k(0.2) * t410;
-            let t622 = k(0.2) * t404;
-            let t623 = T::fused(t620, t557, T::fused(-t621, t600, t622 * t601)) + t619
-                - T::fused(k(0.0017), t399, t260);
-            let t624 = k(0.2) * t383;
-            let t625 = k(0.2) * t379;
-            let t626 = k(0.2) * t374;
-            let t627 = T::fused(t624, t558, T::fused(-t625, t614, t626 * t615))
-                + (T::fused(t620, t558, T::fused(-t621, t614, t622 * t615)) + t623);
-            let t628 = T::fused(t624, t559, T::fused(-t625, t553, t626 * t548))
-                + T::fused(-k(0.0031), t357, t627);
-            (t600, t601, t603, t604, t605, t614, t615, t616, t617, t618, t619, t628)
-        };
         *out = [
-            t378,
-            t382,
+            k(0.2) * t339,
+            k(0.2) * t343,
+            -(k(0.2) * t345),
+            -t282,
+            t332,
+            t320,
+            -(k(0.2) * t366),
+            -(k(0.2) * t371),
+            k(0.2) * t374,
+            -t358,
+            t346,
+            t352,
+            -(k(0.2) * t395),
+            -(k(0.2) * t400),
+            k(0.2) * t403,
+            -t378,
             -t384,
-            -t357,
-            t366,
-            t361,
-            t408,
-            t413,
+            -t379,
+            k(0.2) * t424,
+            k(0.2) * t429,
+            -(k(0.2) * t432),
             -t416,
-            -t399,
-            -t385,
-            t396,
-            t443,
-            t448,
-            -t451,
-            t434,
-            -t429,
-            -t452,
-            t478,
-            t483,
-            -t486,
-            -t469,
-            -t453,
-            t487,
-            t506,
-            t511,
-            -t514,
-            t497,
-            t492,
-            -t515,
-            t534,
-            t539,
-            -t542,
-            -t526,
-            -t516,
-            t543,
-            -t548,
-            -t553,
-            -t559,
-            -T::fused(t342, t618, t351 * t628),
-            T::fused(-t342, t628, t351 * t618),
-            -t615,
-            -t614,
-            -t558,
-            T::fused(t298, t604, t294 * t616),
-            -t617,
-            -t601,
-            -t600,
-            -t557,
-            -t619,
-            t603,
-            -t587,
-            -t586,
-            -t556,
-            t605,
-            -t589,
-            -t573,
-            -t572,
-            -t555,
-            -t591,
-            t575,
-            -t562,
-            -t561,
-            -t554,
-            t577,
-            -t565,
+            -t404,
+            t412,
+            k(0.2) * t450,
+            k(0.2) * t455,
+            -(k(0.2) * t458),
+            -t442,
+            -t437,
+            -t459,
+            k(0.2) * t475,
+            k(0.2) * t480,
+            -(k(0.2) * t483),
+            -t467,
+            -t460,
+            t484,
+            -(k(0.1) * t489),
+            -(k(0.1) * t494),
+            -(k(0.1) * t500),
+            -(k(0.02) * T::fused(-t317, t530, k(0.01) * (t327 * t540))),
+            k(0.04) * T::fused(t327, t530, k(0.0025) * (t317 * t540)),
+            k(0.1) * t488,
+            k(0.1) * t493,
+            -(k(0.1) * t499),
+            k(0.02) * T::fused(t153, t538, t163 * t532),
+            -(k(0.04) * t539),
+            k(0.1) * t487,
+            k(0.1) * t492,
+            -(k(0.1) * t498),
+            -(k(0.02) * t526),
+            -(k(0.04) * t531),
+            -(k(0.1) * t486),
+            -(k(0.1) * t491),
+            -(k(0.1) * t497),
+            k(0.02) * t533,
+            -(k(0.04) * t524),
+            -(k(0.1) * t485),
+            -(k(0.1) * t490),
+            -(k(0.1) * t496),
+            -(k(0.02) * t510),
+            -(k(0.04) * t516),
+            -(k(0.1) * t475),
+            -(k(0.1) * t480),
+            -(k(0.1) * t495),
+            -(k(0.02) * t518),
+            -(k(0.04) * t508),
         ];
     }
 }
