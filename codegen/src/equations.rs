@@ -2,7 +2,7 @@
 
 use crate::Elimination;
 use crate::closing::closing_rows;
-use crate::definitions::Expansion;
+use crate::definitions::{Definitions, Expansion};
 use crate::dynamics::Dynamics;
 use crate::finish::Finish;
 use crate::graph::{ExprId, Graph};
@@ -104,16 +104,16 @@ impl<'m> Equations<'m> {
         doubled_relative.extend(doubled.clone());
         let definitions = system.definitions.clone();
         let finish = Finish::of(&system);
-        let mut rotations = Rotations {
-            finish,
-            ways: [
-                ("rotations of the bodies", HashMap::default()),
-                ("rotations of the bodies, doubled", doubled),
-                ("relative Euler parameters", relative),
-                ("relative Euler parameters, doubled", doubled_relative),
-            ]
-            .map(|(name, values)| (name, Expansion::with_values(&definitions, values))),
-        };
+        let mut ways = vec![
+            Way::new(&definitions, "rotations of the bodies", HashMap::default()),
+            Way::new(&definitions, "rotations of the bodies, doubled", doubled),
+            Way::of_unit_parameters(&definitions, "relative Euler parameters", relative),
+            Way::of_unit_parameters(&definitions, "relative Euler parameters, doubled", doubled_relative),
+        ];
+        if system.slots.len() > MAX_UNDOUBLED {
+            ways.retain(|way| way.name.ends_with("doubled"));
+        }
+        let mut rotations = Rotations { finish, ways };
         let solved: Vec<_> = solution.accelerations.iter().chain(&solution.closing).copied().collect();
         let (mut solved, forms) = rotations.of_unit_parameters(&mut system.graph, &solved);
         let closing = solved.split_off(solution.accelerations.len());
@@ -175,16 +175,42 @@ impl<'m> Equations<'m> {
     }
 }
 
+/// With more bodies all entries of rotation matrices are used, and 2p is always the cheaper way to them.
+const MAX_UNDOUBLED: usize = 8;
+
+/// A way of writing rotation matrices.
+struct Way<'d> {
+    name: &'static str,
+    expansion: Expansion<'d>,
+    /// Whether it means the same for any p.
+    holds_for_any: bool,
+}
+
+impl<'d> Way<'d> {
+    fn new(definitions: &'d Definitions, name: &'static str, values: HashMap<Symbol, ExprId>) -> Self {
+        let expansion = Expansion::with_values(definitions, values);
+        Self { name, expansion, holds_for_any: true }
+    }
+
+    fn of_unit_parameters(
+        definitions: &'d Definitions,
+        name: &'static str,
+        values: HashMap<Symbol, ExprId>,
+    ) -> Self {
+        Self { holds_for_any: false, ..Self::new(definitions, name, values) }
+    }
+}
+
 /// The ways of writing rotation matrices: by Euler parameters or their doubles, of bodies or of one body relative to another.
 struct Rotations<'d> {
-    ways: [(&'static str, Expansion<'d>); 4],
+    ways: Vec<Way<'d>>,
     finish: Finish,
 }
 
 impl Rotations<'_> {
-    /// The cheaper of those that mean the same for any p.
+    /// The cheapest of those that mean the same for any p.
     fn all(&mut self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
-        self.cheapest(graph, roots, 2).0
+        self.cheapest(graph, roots, |way| way.holds_for_any).0
     }
 
     fn matrix(&mut self, graph: &mut Graph, matrix: &Matrix) -> Matrix {
@@ -196,13 +222,17 @@ impl Rotations<'_> {
 
     /// The cheapest of all, and what each would have taken.
     fn of_unit_parameters(&mut self, graph: &mut Graph, roots: &[ExprId]) -> (Vec<ExprId>, Vec<Form>) {
-        self.cheapest(graph, roots, 4)
+        self.cheapest(graph, roots, |_| true)
     }
 
-    fn cheapest(&mut self, graph: &mut Graph, roots: &[ExprId], n: usize) -> (Vec<ExprId>, Vec<Form>) {
-        let ways = self.ways[..n].iter_mut();
-        let candidates = ways.map(|(name, way)| ((*name).to_owned(), way.all(graph, roots)));
-        let candidates = candidates.collect();
+    fn cheapest(
+        &mut self,
+        graph: &mut Graph,
+        roots: &[ExprId],
+        is_tried: fn(&Way) -> bool,
+    ) -> (Vec<ExprId>, Vec<Form>) {
+        let ways = self.ways.iter_mut().filter(|way| is_tried(way));
+        let candidates = ways.map(|way| (way.name.to_owned(), way.expansion.all(graph, roots))).collect();
         self.finish.cheapest(graph, candidates)
     }
 }
