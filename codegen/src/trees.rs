@@ -150,7 +150,7 @@ fn cheapest(graph: &Graph, ways: Vec<Way>) -> Way {
     ways.into_iter().min_by_key(|way| cost(graph, way)).expect("at least one")
 }
 
-/// Those of the ways of writing the accelerations of open trees that keep the digits of the last one.
+/// Those ways of writing the accelerations of an open tree that keep the digits that `keeping` is known to keep.
 fn keeping_digits(system: &mut System, ways: Vec<Way>, keeping: &[ExprId]) -> Vec<Way> {
     let mut expansion = Expansion::new(&system.definitions);
     let keeping = expansion.all(&mut system.graph, keeping);
