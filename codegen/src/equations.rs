@@ -175,7 +175,8 @@ impl<'m> Equations<'m> {
     }
 }
 
-/// With more bodies all entries of rotation matrices are used, and 2p is always the cheaper way to them.
+/// With more bodies nearly all entries of rotation matrices are used, and 2p is the cheaper way to them: of ten bodies with parallel axes one function
+/// takes 3 operations of 1369 more, all others the same.
 const MAX_UNDOUBLED: usize = 8;
 
 /// A way of writing rotation matrices.

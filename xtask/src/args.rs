@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use gyro_model::{Method, Rational, parse_decimal};
 use gyro_runner::{Coordinates, Correction, Integrator, When};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// From a page of bodies and joints to Rust code and to plots.
@@ -68,7 +69,7 @@ pub(crate) struct VerifyArgs {
     /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random configurations of ten kinds
     /// are compared with 384 bits, beside the dense twin
     #[arg(long, value_name = "CONFIGURATIONS", num_args = 0..=1, default_missing_value = "1000", conflicts_with_all = ["rounding", "quick", "json"])]
-    pub(crate) stability: Option<usize>,
+    pub(crate) stability: Option<NonZeroUsize>,
     /// One point for each claim instead of two
     #[arg(long)]
     pub(crate) quick: bool,

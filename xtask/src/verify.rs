@@ -24,7 +24,7 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
         return say(&rounding::report(&tables?));
     }
     if let Some(configurations) = args.stability {
-        return say(&stability::report(&args.models, configurations)?);
+        return say(&stability::report(&args.models, configurations.get())?);
     }
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =
