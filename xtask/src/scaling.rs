@@ -208,8 +208,16 @@ impl Place {
     }
 
     fn cargo(&self, options: &[&str]) -> Result<String, Failure> {
+        match self.cargo_with(options, &["--offline"]) {
+            // Cargo says so if something has to be downloaded first.
+            Err(Failure::Run(words)) if words.contains("offline") => self.cargo_with(options, &[]),
+            outcome => outcome,
+        }
+    }
+
+    fn cargo_with(&self, options: &[&str], network: &[&str]) -> Result<String, Failure> {
         let mut command = Command::new(cargo());
-        command.args(options).args(["--offline", "--quiet"]).current_dir(&self.folder);
+        command.args(options).args(network).arg("--quiet").current_dir(&self.folder);
         let flags = std::env::var("RUSTFLAGS").unwrap_or_default();
         command.env("RUSTFLAGS", format!("{flags} {SYMBOLS}"));
         command.env("CARGO_TARGET_DIR", self.folder.join("target")).env_remove("CARGO_BUILD_TARGET");

@@ -138,8 +138,7 @@ impl ModuleWriter<'_> {
     }
 
     fn joint_derivative(&self, n_x: usize, n_u: usize) -> TokenStream {
-        let what =
-            "Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes";
+        let what = "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes";
         self.function(what, &self.functions.joint_derivative, |body, _, _| {
             let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
             let places = (0..n_u).map(index);

@@ -33,7 +33,7 @@ impl ModuleWriter<'_> {
 
     /// The rates of everything but the velocities; the accelerations are those of `Equations`, unrolled there and nowhere else.
     fn derivative(&self) -> TokenStream {
-        let what = "Writes ẏ; beyond what [`Equations::accelerations`] takes";
+        let what = "Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes";
         self.derivative_with(
             &quote! { derivative },
             what,
@@ -50,7 +50,7 @@ impl ModuleWriter<'_> {
         if self.functions.derivative_needs_multipliers(&self.equations.graph) {
             return None;
         }
-        let what = "Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes";
+        let what = "Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes";
         Some(self.derivative_with(
             &quote! { corrected_derivative },
             what,

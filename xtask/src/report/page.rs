@@ -22,7 +22,7 @@ impl Page {
         self.blocks.push(Block::Heading(level, text.into()));
     }
 
-    /// A paragraph; `code` in backquotes and [words](address) are understood.
+    /// A paragraph; `code` in backquotes and `[words](address)` are understood.
     pub(crate) fn text(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Text(text.into()));
     }
