@@ -2,12 +2,13 @@
 
 use crate::constant::Constant;
 use crate::graph::{ExprId, Graph, Node};
+use crate::literals::Literals;
 use crate::schedule::Program;
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use rustc_hash::FxHashMap as HashMap;
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 /// The statements of a function and the values of its roots.
@@ -19,8 +20,6 @@ pub struct Body {
     pub values: Vec<TokenStream>,
     /// Variables that the program reads.
     pub symbols: BTreeSet<Symbol>,
-    /// Literals with the exact constants that they are rounded from.
-    pub constants: BTreeSet<(String, String)>,
 }
 
 /// Where the variables of a module come from.
@@ -46,12 +45,13 @@ enum Binding {
     Unary,
 }
 
-/// Writes the program that computes `roots`.
-pub fn body(graph: &Graph, variables: &impl Variables, roots: &[ExprId]) -> Body {
+/// Writes the program that computes `roots`, with stand-ins for its literals.
+pub fn body(graph: &Graph, variables: &impl Variables, literals: &Literals, roots: &[ExprId]) -> Body {
     let program = Program::new(graph, roots);
     let names =
         program.temporaries.iter().enumerate().map(|(n, &id)| (id, ident(&format!("t{n}")))).collect();
-    let writer = Writer { graph, variables, program: &program, names, constants: RefCell::default() };
+    let writer =
+        Writer { graph, variables, literals, program: &program, names, has_literals: Cell::new(false) };
     let symbols: BTreeSet<_> = program.uses.order.iter().filter_map(|&id| writer.as_symbol(id)).collect();
     let bindings = symbols.iter().filter_map(|&symbol| match variables.variable(symbol) {
         (name, Some(source)) => Some(quote! { let #name = #source; }),
@@ -59,10 +59,9 @@ pub fn body(graph: &Graph, variables: &impl Variables, roots: &[ExprId]) -> Body
     });
     let values: Vec<_> = roots.iter().map(|&root| writer.expression(root, Binding::Sum)).collect();
     let temporaries = writer.temporaries(roots);
-    let constants = writer.constants.into_inner();
-    let literal = (!constants.is_empty()).then(|| quote! { let k = T::constant; });
+    let literal = writer.has_literals.get().then(|| quote! { let k = T::constant; });
     let statements = quote! { #literal #(#bindings)* #temporaries };
-    Body { statements, values, symbols, constants }
+    Body { statements, values, symbols }
 }
 
 /// A literal that reads back as the same number.
@@ -86,10 +85,10 @@ fn fused(x: &TokenStream, y: &TokenStream, added: &TokenStream) -> (TokenStream,
 struct Writer<'a, V> {
     graph: &'a Graph,
     variables: &'a V,
+    literals: &'a Literals,
     program: &'a Program,
     names: HashMap<ExprId, Ident>,
-    /// Literals written so far, each with its exact constant.
-    constants: RefCell<BTreeSet<(String, String)>>,
+    has_literals: Cell<bool>,
 }
 
 impl<V: Variables> Writer<'_, V> {
@@ -258,9 +257,8 @@ impl<V: Variables> Writer<'_, V> {
     }
 
     fn literal(&self, constant: &Constant) -> TokenStream {
-        let value = float(constant.to_f64());
-        self.constants.borrow_mut().insert((value.to_string().replace(' ', ""), constant.to_string()));
-        quote! { k(#value) }
+        self.has_literals.set(true);
+        self.literals.stand_in(constant)
     }
 
     fn function(&self, name: &str, a: ExprId) -> (TokenStream, Binding) {

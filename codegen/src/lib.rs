@@ -57,6 +57,7 @@ mod joint_space;
 mod kinematics;
 mod ldl;
 mod linear;
+mod literals;
 mod mass_matrix;
 mod module;
 mod motion;
@@ -93,7 +94,8 @@ pub struct Module {
     pub type_name: String,
     /// The text of the module's file.
     pub code: String,
-    /// The exact constant behind each literal of the code, one a line: `0.7071067811865476 = 1/2*sqrt(2)`.
+    /// The exact constants behind the literals of the code, one literal a line: `0.7071067811865476 = 1/2*sqrt(2)`. Where
+    /// several round to one literal, they are listed with what its occurrences stand for, in the order of the text: ` as 1*3 2`.
     pub constants: String,
     /// What was generated, as data: the head of the file shows it.
     pub sheet: Sheet,

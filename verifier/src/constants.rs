@@ -1,6 +1,8 @@
 //! The exact constants behind a module's literals: a text that the generator writes and nobody trusts.
 //!
-//! One line a literal: `0.1 = 1/10`, `-0.7071067811865475 = -1/2*sqrt(2)`. Each must round to its literal; whether it is the right
+//! One line a literal: `0.1 = 1/10`, `-0.7071067811865475 = -1/2*sqrt(2)`. Where several numbers round to one literal, the line says
+//! which of its occurrences in the module's text stand for which: by `0.1 = 1/10, 100000000000000001/1000000000000000000 as 1*3 2`
+//! the first three stand for the first number, the fourth for the second. Each must round to its literal; whether it is the right
 //! number is seen when the identities hold.
 
 use crate::field::Constant;
@@ -8,6 +10,7 @@ use crate::refusal::Refusal;
 use gyro_model::Rational;
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
+use proc_macro2::LineColumn;
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
@@ -16,51 +19,137 @@ use std::collections::HashMap;
 pub struct Constants {
     /// In the order of the text.
     pub values: Vec<Constant>,
-    /// Line of each.
-    pub lines: Vec<usize>,
-    places: HashMap<String, usize>,
+    lines: Vec<Line>,
+    by_literal: HashMap<String, usize>,
+}
+
+/// What stands for one literal.
+#[derive(Clone, Debug)]
+struct Line {
+    number: usize,
+    literal: String,
+    /// Place of the first number in [`Constants::values`].
+    first: usize,
+    /// Nothing if all occurrences stand for one number.
+    runs: Vec<Run>,
+}
+
+/// Which of a line's numbers, and how many occurrences in a row stand for it.
+type Run = (usize, usize);
+
+/// A literal in the module's text.
+#[derive(Clone, Debug)]
+pub struct Occurrence {
+    /// As it is written.
+    pub literal: String,
+    /// Where it is written.
+    pub at: LineColumn,
 }
 
 impl Constants {
     /// Reads the text and checks that every number rounds to its literal.
     ///
     /// # Errors
-    /// The first line that is malformed, repeats a literal or does not round to it.
+    /// The first line that is malformed, repeats a literal or a number, or does not round to its literal.
     pub fn read(text: &str) -> Result<Self, Refusal> {
         let mut constants = Self::default();
         for (index, line) in text.lines().enumerate() {
-            let refuse = |message: String| Err(Refusal::new(index + 1, message));
-            let Some((literal, constant)) = line.split_once(" = ").and_then(|(l, c)| Some((l, read(l, c)?)))
-            else {
-                return refuse(format!(
-                    "`{line}` is not `LITERAL = RATIONAL` or `LITERAL = RATIONAL*sqrt(RATIONAL)`"
-                ));
-            };
-            if !rounds(&constant) {
-                return refuse(format!("`{line}`: the number does not round to its literal"));
-            }
-            if constants.places.insert(literal.to_owned(), constants.values.len()).is_some() {
-                return refuse(format!("a second line for the literal {literal}"));
-            }
-            constants.values.push(constant);
-            constants.lines.push(index + 1);
+            constants.line(index + 1, line).map_err(|message| Refusal::new(index + 1, message))?;
         }
         Ok(constants)
     }
 
-    /// The place of a literal's constant in [`Constants::values`].
-    pub fn place(&self, literal: &str) -> Option<usize> {
-        self.places.get(literal).copied()
+    fn line(&mut self, number: usize, line: &str) -> Result<(), String> {
+        let Some((literal, values, runs)) = read(line) else {
+            return Err(format!(
+                "`{line}` is not `LITERAL = RATIONAL` or `LITERAL = RATIONAL*sqrt(RATIONAL)`, nor several such numbers and \
+                 ` as 1*3 2`, say, which is for occurrences in the order of the text"
+            ));
+        };
+        if !values.iter().all(rounds) {
+            return Err(format!("`{line}`: the number does not round to its literal"));
+        }
+        if !are_told_apart(&values, &runs) {
+            return Err(format!(
+                "`{line}`: numbers must differ, each must be used, and each run be another's"
+            ));
+        }
+        if self.by_literal.insert(literal.to_owned(), self.lines.len()).is_some() {
+            return Err(format!("a second line for the literal {literal}"));
+        }
+        self.lines.push(Line { number, literal: literal.to_owned(), first: self.values.len(), runs });
+        self.values.extend(values);
+        Ok(())
     }
 
-    /// The literal at a place.
-    pub fn literal(&self, place: usize) -> &str {
-        let known = self.places.iter().find(|&(_, &at)| at == place);
-        known.map_or("", |(literal, _)| literal)
+    /// The place in [`Constants::values`] of what each occurrence stands for, all occurrences of a module being given.
+    ///
+    /// # Errors
+    /// A literal without a line, a line without a literal, or one that is for more or fewer occurrences than there are.
+    pub fn places(&self, occurrences: &[Occurrence]) -> Result<Vec<usize>, Refusal> {
+        let mut of_lines: Vec<Vec<usize>> = vec![Vec::new(); self.lines.len()];
+        for (index, Occurrence { literal, at }) in occurrences.iter().enumerate() {
+            let missing = || Refusal::new(at.line, format!("no exact constant is given for `{literal}`"));
+            of_lines[*self.by_literal.get(literal).ok_or_else(missing)?].push(index);
+        }
+        let mut places = vec![0; occurrences.len()];
+        for (line, mut own) in self.lines.iter().zip(of_lines) {
+            own.sort_by_key(|&index| occurrences[index].at);
+            let values = line.values(own.len()).map_err(|message| {
+                Refusal::new(line.number, format!("of the constants: the literal {} {message}", line.literal))
+            })?;
+            own.into_iter().zip(values).for_each(|(index, value)| places[index] = line.first + value);
+        }
+        Ok(places)
     }
 }
 
-fn read(literal: &str, exact: &str) -> Option<Constant> {
+impl Line {
+    /// Which of the line's numbers each occurrence stands for.
+    fn values(&self, n_occurrences: usize) -> Result<Vec<usize>, String> {
+        if n_occurrences == 0 {
+            return Err("does not occur".to_owned());
+        }
+        if self.runs.is_empty() {
+            return Ok(vec![0; n_occurrences]);
+        }
+        // Runs may claim any length: they are compared before anything of that length is made.
+        let claimed = self.runs.iter().fold(0_usize, |sum, &(_, length)| sum.saturating_add(length));
+        if claimed != n_occurrences {
+            return Err(format!("occurs {n_occurrences} times, and {claimed} occurrences are listed"));
+        }
+        Ok(self.runs.iter().flat_map(|&(value, length)| std::iter::repeat_n(value, length)).collect())
+    }
+}
+
+/// The literal, its numbers, and the runs of occurrences that stand for them.
+fn read(line: &str) -> Option<(&str, Vec<Constant>, Vec<Run>)> {
+    let (literal, rest) = line.split_once(" = ")?;
+    let (numbers, runs) = match rest.split_once(" as ") {
+        Some((numbers, runs)) => (numbers, runs.split(' ').map(run).collect::<Option<Vec<_>>>()?),
+        None => (rest, Vec::new()),
+    };
+    let values = numbers.split(", ").map(|exact| constant(literal, exact)).collect::<Option<Vec<_>>>()?;
+    let is_whole = runs.is_empty() == (values.len() == 1);
+    is_whole.then_some((literal, values, runs))
+}
+
+/// `2*5`, or `2` for `2*1`: the second number, counted here from zero.
+fn run(text: &str) -> Option<Run> {
+    let (value, length) = text.split_once('*').unwrap_or((text, "1"));
+    let count = |text: &str| text.parse::<usize>().ok().filter(|&n| n > 0 && n.to_string() == text);
+    Some((count(value)? - 1, count(length)?))
+}
+
+/// Whether a line's numbers are different and all stand for something, and runs are as long as they can be.
+fn are_told_apart(values: &[Constant], runs: &[Run]) -> bool {
+    let differ = (1..values.len()).all(|k| !values[..k].contains(&values[k]));
+    let are_used = runs.is_empty() || (0..values.len()).all(|k| runs.iter().any(|&(value, _)| value == k));
+    let exist = runs.iter().all(|&(value, _)| value < values.len());
+    differ && are_used && exist && runs.windows(2).all(|pair| pair[0].0 != pair[1].0)
+}
+
+fn constant(literal: &str, exact: &str) -> Option<Constant> {
     let value: f64 = literal.parse().ok().filter(|x: &f64| x.is_finite())?;
     let (factor, radicand) = match exact.split_once("*sqrt(") {
         Some((factor, rest)) => (factor, Some(rational(rest.strip_suffix(')')?)?)),
@@ -151,8 +240,47 @@ mod tests {
     fn good_lines_are_read() {
         let text = "0.1 = 1/10\n-0.7071067811865476 = -1/2*sqrt(2)\n0.5 = 1/2\n0.0 = 0\n1.0 = 1\n";
         let constants = Constants::read(text).expect("good lines");
-        assert_eq!(constants.place("-0.7071067811865476"), Some(1));
+        let all = ["0.1", "-0.7071067811865476", "0.5", "0.0", "0.1", "1.0"];
+        assert_eq!(constants.places(&one_a_line(&all)), Ok(vec![0, 1, 2, 3, 0, 4]));
         assert_eq!(constants.values[1].radicand, Some(Rational::from_integer(2.into())));
+    }
+
+    fn one_a_line(literals: &[&str]) -> Vec<Occurrence> {
+        let lines = literals.iter().enumerate();
+        let at = |line| LineColumn { line, column: 0 };
+        lines.map(|(line, literal)| Occurrence { literal: (*literal).to_owned(), at: at(line) }).collect()
+    }
+
+    /// Two numbers that round to one tenth.
+    const TENTHS: &str = "0.1 = 1/10, 100000000000000000001/1000000000000000000000";
+
+    #[test]
+    fn occurrences_of_a_literal_stand_for_what_the_order_of_the_text_says() {
+        let constants = Constants::read(&format!("0.5 = 1/2\n{TENTHS} as 2 1*2 2\n")).expect("good lines");
+        let mut text = one_a_line(&["0.1", "0.1", "0.5", "0.1", "0.1"]);
+        assert_eq!(constants.places(&text), Ok(vec![2, 1, 0, 1, 2]));
+        // Functions are not read in the order of the text.
+        text.reverse();
+        assert_eq!(constants.places(&text), Ok(vec![2, 1, 0, 1, 2]));
+        text.swap(0, 1);
+        assert_eq!(constants.places(&text), Ok(vec![1, 2, 0, 1, 2]));
+    }
+
+    #[test]
+    fn occurrences_are_all_there_and_no_more() {
+        let constants = Constants::read(&format!("0.5 = 1/2\n{TENTHS} as 1 2\n")).expect("good lines");
+        for (literals, line, word) in [
+            (&["0.5", "0.1"][..], 2, "occurs 1 times, and 2 "),
+            (&["0.5", "0.1", "0.1", "0.1"], 2, "occurs 3 times, and 2 "),
+            (&["0.1", "0.1"], 1, "does not occur"),
+            (&["0.5"], 2, "does not occur"),
+            (&["0.5", "0.1", "0.1", "0.2"], 3, "no exact constant"),
+        ] {
+            let refusal = constants.places(&one_a_line(literals)).expect_err(word);
+            assert!(refusal.message.contains(word) && refusal.line == line, "{refusal}");
+        }
+        let endless = Constants::read(&format!("{TENTHS} as 1 2*{} 1*{}\n", usize::MAX, usize::MAX));
+        assert!(endless.expect("good lines").places(&one_a_line(&["0.1"])).is_err());
     }
 
     #[test]
@@ -168,6 +296,17 @@ mod tests {
             ("0.1 = +1/10\n", "not"),
             ("1.0 = 1*sqrt(-1)\n", "not"),
             ("0.1: 1/10\n", "not"),
+            ("0.1 = 1/10 as 1\n", "not"),
+            (TENTHS, "not"),
+            (&format!("{TENTHS} as 1 0\n"), "not"),
+            (&format!("{TENTHS} as 1 02\n"), "not"),
+            (&format!("{TENTHS} as 1 2*0\n"), "not"),
+            (&format!("{TENTHS} as 1,2\n"), "not"),
+            (&format!("{TENTHS} as 1 1 2\n"), "must"),
+            (&format!("{TENTHS} as 1 2 3\n"), "must"),
+            (&format!("{TENTHS} as 2*2\n"), "must"),
+            (&format!("{TENTHS}, 1/11 as 1 2 3\n"), "round"),
+            ("0.1 = 1/10, 1/10 as 1 2\n", "must"),
         ] {
             let refusal = Constants::read(text).expect_err(text);
             assert!(refusal.message.contains(word), "{refusal}");

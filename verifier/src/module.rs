@@ -198,7 +198,7 @@ impl Module {
             tables: tables.len(),
             derived: number("derived").unwrap_or(0),
         };
-        let mut used = vec![false; constants.values.len()];
+        let mut occurrences = Vec::new();
         let mut read = |name: &str, form| {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
             let accelerations = match name {
@@ -209,7 +209,7 @@ impl Module {
             // What is set up does not read what is set up.
             let derived = if name == SET_UP { 0 } else { sizes.derived };
             let (sizes, before) = (Sizes { accelerations, derived, ..sizes }, of_function(&BEFORE, name));
-            let mut reader = Reader::new(model, &constants, &mut used, sizes, before);
+            let mut reader = Reader::new(model, &mut occurrences, sizes, before);
             if hole.arguments.is_empty() {
                 before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
             }
@@ -225,6 +225,8 @@ impl Module {
         for (name, form) in FUNCTIONS {
             written.extend(read(name, form)?);
         }
+        let places = constants.places(&occurrences)?;
+        written.values_mut().for_each(|program| program.name_constants(&places));
         let recurring = written.iter().filter(|(name, _)| *name != SET_UP);
         let programs = match written.get(SET_UP) {
             Some(set_up) => recurring.map(|(name, p)| (name.clone(), p.after(set_up))).collect(),
@@ -256,8 +258,7 @@ impl Module {
         if n_accelerations < 6 * model.coordinate_bodies().len() {
             return Err(Refusal::new(1, format!("{n_accelerations} accelerations are too few")));
         }
-        module.sizes_agree(model, matched)?;
-        module.uses_all_constants(&used).map(|()| module)
+        module.sizes_agree(model, matched).map(|()| module)
     }
 
     /// Each function gives as many numbers as its type says.
@@ -316,19 +317,6 @@ impl Module {
             }
         }
         Ok(())
-    }
-
-    fn uses_all_constants(&self, used: &[bool]) -> Result<(), Refusal> {
-        match used.iter().position(|used| !used) {
-            Some(place) => {
-                let literal = self.constants.literal(place);
-                Err(Refusal::new(
-                    self.constants.lines[place],
-                    format!("of the constants: the literal {literal} does not occur"),
-                ))
-            }
-            None => Ok(()),
-        }
     }
 }
 

@@ -131,6 +131,15 @@ impl Program {
         self.nodes.len() - 1
     }
 
+    /// Gives constants, known by their occurrences in the text until then, the places of what these stand for.
+    pub fn name_constants(&mut self, places: &[usize]) {
+        for node in &mut self.nodes {
+            if let Node::Constant(place) = node {
+                *place = places[*place];
+            }
+        }
+    }
+
     /// The program with another one before it, in place of what it reads of that one's results.
     #[must_use]
     pub fn after(&self, set_up: &Program) -> Self {

@@ -1,7 +1,7 @@
 //! Joint coordinates.
 
 use super::ModuleWriter;
-use crate::emit::{float, ident, index};
+use crate::emit::{Body, float, ident, index};
 use crate::graph::ExprId;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -125,15 +125,8 @@ impl ModuleWriter<'_> {
         roots: &[ExprId],
         write: impl Fn(&[TokenStream]) -> TokenStream,
     ) -> TokenStream {
-        let name = ident(name);
         self.function(what, roots, |body, t, x| {
-            let (statements, written) = (&body.statements, write(&body.values));
-            quote! {
-                fn #name(&self, #t: T, #x: &Self::Joints, #out) {
-                    #statements
-                    #written
-                }
-            }
+            of_joints(name, [t, &quote! { #x }, out], body, write(&body.values))
         })
     }
 
@@ -159,9 +152,14 @@ impl ModuleWriter<'_> {
         let work = work.map(|at| quote! { x[#at], });
         let out = quote! { y: &mut Self::State };
         let what = "Writes the maximal state of a joint state";
-        self.of_joints("to_maximal", what, &out, &self.functions.to_maximal, |values| {
-            let (state, turns) = values.split_at(n_state);
-            quote! { *y = [#(#state,)* #work #(#turns),*]; }
+        self.function(what, &self.functions.to_maximal, |body, t, x| {
+            let (state, turns) = body.values.split_at(n_state);
+            let x = if work.is_some() {
+                quote! { x }
+            } else {
+                quote! { #x }
+            };
+            of_joints("to_maximal", [t, &x, &out], body, quote! { *y = [#(#state,)* #work #(#turns),*]; })
         })
     }
 
@@ -173,6 +171,11 @@ impl ModuleWriter<'_> {
         let what = "Writes the joint state of a maximal state";
         self.function(what, &self.functions.to_joints, |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
+            let y = if work.is_some() {
+                quote! { y }
+            } else {
+                quote! { #y }
+            };
             quote! {
                 fn to_joints(&self, #t: T, #y: &Self::State, x: &mut Self::Joints) {
                     #statements
@@ -181,5 +184,16 @@ impl ModuleWriter<'_> {
                 }
             }
         })
+    }
+}
+
+/// A function of time and joint state, with its arguments t and x as they are called where nothing reads them.
+fn of_joints(name: &str, [t, x, out]: [&TokenStream; 3], body: &Body, written: TokenStream) -> TokenStream {
+    let (name, statements) = (ident(name), &body.statements);
+    quote! {
+        fn #name(&self, #t: T, #x: &Self::Joints, #out) {
+            #statements
+            #written
+        }
     }
 }

@@ -14,6 +14,7 @@ use crate::emit::{self, Body};
 use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::ExprId;
+use crate::literals::Literals;
 use crate::schedule::Operations;
 use crate::set_up;
 use crate::sheet::Sheet;
@@ -21,7 +22,6 @@ use crate::symbol::Symbol;
 use gyro_model::Start;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 /// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
@@ -49,15 +49,14 @@ pub fn write(file_name: &str, type_name: &str, mut equations: Equations, start: 
     let mut functions = Functions::of(&equations);
     equations.finish.all(&mut equations.graph, &mut functions);
     set_up::separate(&mut equations.graph, &mut functions);
-    let (equations, constants) = (&equations, RefCell::default());
-    let module = ModuleWriter { equations, type_name, functions, constants };
+    let (equations, literals) = (&equations, Literals::default());
+    let module = ModuleWriter { equations, type_name, functions, literals };
     let tokens = module.tokens(start);
-    let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let sheet = Sheet::of(equations, &module.functions);
+    let (tokens, constants) = module.literals.write(tokens);
+    let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let code = format!("{}\n{}", sheet.head(file_name), prettyplease::unparse(&file));
-    let constants = module.constants.into_inner();
-    let lines = constants.into_iter().map(|(literal, exact)| format!("{literal} = {exact}\n"));
-    Text { code, constants: lines.collect(), sheet }
+    Text { code, constants, sheet }
 }
 
 fn table_of(symbol: &Symbol) -> Option<usize> {
@@ -79,8 +78,8 @@ struct ModuleWriter<'a> {
     equations: &'a Equations<'a>,
     type_name: &'a str,
     functions: Functions,
-    /// Literals of all functions with their exact constants.
-    constants: RefCell<BTreeSet<(String, String)>>,
+    /// Exact constants of all functions.
+    literals: Literals,
 }
 
 impl ModuleWriter<'_> {
@@ -89,11 +88,10 @@ impl ModuleWriter<'_> {
     }
 
     fn body(&self, roots: &[ExprId]) -> Body {
-        let mut body = emit::body(&self.equations.graph, self, roots);
+        let mut body = emit::body(&self.equations.graph, self, &self.literals, roots);
         let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
         let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
         body.statements = quote! { #(#tables)* #statements };
-        self.constants.borrow_mut().extend(body.constants.iter().cloned());
         body
     }
 

@@ -1,7 +1,7 @@
 //! Function bodies of the emitted subset.
 
 use super::expression::{decimal, integer, is_name, refused};
-use crate::constants::Constants;
+use crate::constants::Occurrence;
 use crate::program::{Id, Node, Program, Source};
 use crate::refusal::Refusal;
 use gyro_model::Model;
@@ -75,8 +75,8 @@ pub struct Before {
 /// Reads one function body.
 pub struct Reader<'a> {
     pub model: &'a Model,
-    pub constants: &'a Constants,
-    pub used_constants: &'a mut [bool],
+    /// Literals of the module: until all are known, [`Node::Constant`] names a place here.
+    pub occurrences: &'a mut Vec<Occurrence>,
     pub sizes: Sizes,
     pub before: Option<Before>,
     pub program: Program,
@@ -93,13 +93,12 @@ struct Name {
 impl<'a> Reader<'a> {
     pub fn new(
         model: &'a Model,
-        constants: &'a Constants,
-        used_constants: &'a mut [bool],
+        occurrences: &'a mut Vec<Occurrence>,
         sizes: Sizes,
         before: Option<Before>,
     ) -> Self {
         let (program, names) = (Program::default(), HashMap::new());
-        Self { model, constants, used_constants, sizes, before, program, names }
+        Self { model, occurrences, sizes, before, program, names }
     }
 
     /// Makes an argument known; one with an underscore is not to be used.
@@ -229,6 +228,10 @@ impl<'a> Reader<'a> {
             let exists = chart < self.sizes.charts && k < 4;
             return if exists { Ok(Some(Source::Chart(chart, k))) } else { Err(refused(index)) };
         }
+        // What is set up belongs to the mechanism, not to an argument.
+        if !matches!(array, Expr::Path(_)) {
+            return Ok(None);
+        }
         let (size, source): (usize, fn(usize) -> Source) = match self.known(array)? {
             Known::State => (self.sizes.state, Source::State),
             Known::Changes => (self.sizes.rows, Source::Change),
@@ -282,7 +285,14 @@ impl<'a> Reader<'a> {
             let entry = self.names.get_mut(argument).filter(|_| is_call);
             entry.ok_or_else(|| refused(statement))?.is_used = true;
         }
-        self.bind(before.buffer.to_owned(), Known::Accelerations, statement.span())
+        self.bind(before.buffer.to_owned(), Known::Accelerations, statement.span())?;
+        // Of an empty buffer there is nothing to read.
+        if self.sizes.accelerations == 0
+            && let Some(entry) = self.names.get_mut(before.buffer)
+        {
+            entry.is_used = true;
+        }
+        Ok(())
     }
 
     fn results(&mut self, statements: &[Stmt], block: &Block, form: Form) -> Result<(), Refusal> {

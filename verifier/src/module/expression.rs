@@ -1,6 +1,7 @@
 //! Expressions of the emitted subset.
 
 use super::block::{Known, Reader};
+use crate::constants::Occurrence;
 use crate::program::{Function, Id, Node, Source};
 use crate::refusal::Refusal;
 use quote::ToTokens;
@@ -61,11 +62,9 @@ impl Reader<'_> {
             return Err(refused(call));
         }
         let literal = decimal(&call.args[0])?;
-        let Some(place) = self.constants.place(&literal) else {
-            return Err(Refusal::at(call.span(), format!("no exact constant is given for `{literal}`")));
-        };
-        self.used_constants[place] = true;
-        Ok(self.push(Node::Constant(place), call.span()))
+        let occurrence = self.occurrences.len();
+        self.occurrences.push(Occurrence { literal, at: call.span().start() });
+        Ok(self.push(Node::Constant(occurrence), call.span()))
     }
 
     fn call(&mut self, call: &ExprMethodCall) -> Result<Id, Refusal> {
@@ -85,7 +84,10 @@ impl Reader<'_> {
     /// `table0[1]`, `accelerations[2]`, `self.derived[3]`.
     fn element(&mut self, index: &ExprIndex) -> Result<Id, Refusal> {
         let place = integer(&index.index)?;
-        if text(&index.expr) == "self . derived" && place < self.sizes.derived {
+        if matches!(&*index.expr, Expr::Field(_)) {
+            if text(&index.expr) != "self . derived" || place >= self.sizes.derived {
+                return Err(refused(index));
+            }
             return Ok(self.push(Node::Read(Source::SetUp(place)), index.span()));
         }
         let node = match self.known(&index.expr)? {

@@ -3,10 +3,12 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod combinations;
 mod compiled;
 mod dependencies;
 mod faults;
 mod mutants;
+mod near_numbers;
 mod needless;
 mod proofs;
 mod rounding;

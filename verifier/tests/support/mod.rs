@@ -36,6 +36,16 @@ pub fn generate(path: &Path) -> Page {
     let folder = path.parent().expect("a folder").to_owned();
     let mut load = |file: &str| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string());
     let model = gyro_model::read_with(&name, &text, &mut load).expect("a good page");
+    generate_model(name, model)
+}
+
+/// The same of a page that is no file and reads none.
+pub fn generate_text(name: &str, text: &str) -> Page {
+    let model = gyro_model::read(name, text).unwrap_or_else(|problems| panic!("{text}\n{problems}"));
+    generate_model(name.to_owned(), model)
+}
+
+fn generate_model(name: String, model: Model) -> Page {
     let module = gyro_codegen::generate_model(&name, &model).expect("a module");
     Page { name, model, code: module.code, constants: module.constants }
 }
