@@ -22,6 +22,8 @@ pub struct Dynamics {
     pub potential: ExprId,
     /// Power of the non-conservative forces.
     pub power: ExprId,
+    /// The part of it that links and loads have.
+    pub power_at_points: ExprId,
     /// Power fed in where forces (not constraints) act on bodies whose motion is prescribed.
     pub power_of_driven_bodies: ExprId,
 }
@@ -37,6 +39,7 @@ impl Dynamics {
             kinetic: Graph::ZERO,
             potential: forces.potential,
             power: forces.power,
+            power_at_points: forces.power_at_points,
             power_of_driven_bodies: forces.power_of_driven_bodies(system),
         };
         for slot in 0..n_slots {

@@ -118,8 +118,8 @@ impl<'m> Equations<'m> {
         let (mut solved, forms) = rotations.of_unit_parameters(&mut system.graph, &solved);
         let closing = solved.split_off(solution.accelerations.len());
         let joint_space = JointSpace::covers(&system).then(|| {
-            let power = model.has_work().then_some(power);
-            JointSpace::derive(&mut system, &kinematics, &dynamics, &solved, power, start)
+            let others = system.graph.add(dynamics.power_at_points, drivers_power);
+            JointSpace::derive(&mut system, &kinematics, &dynamics, &solved, others, start)
         });
         let euler = euler_parameters(&mut system.graph, system.slots.len());
         let graph = &mut system.graph;

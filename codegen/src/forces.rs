@@ -17,6 +17,8 @@ pub struct Forces {
     pub potential: ExprId,
     /// Power of the forces that store none.
     pub power: ExprId,
+    /// The part of it that links and loads have: those that act between points of bodies, not along a joint's coordinates.
+    pub power_at_points: ExprId,
 }
 
 /// A force along a joint coordinate.
@@ -24,7 +26,7 @@ pub struct Along {
     pub on: JointCoordinate,
     pub force: ExprId,
     /// Stored energy; a force that stores none has power.
-    potential: Option<ExprId>,
+    pub potential: Option<ExprId>,
 }
 
 /// What forces along joint coordinates read.
@@ -100,15 +102,23 @@ impl Forces {
     pub fn of(system: &mut System) -> Self {
         let none = Load { force: ZERO3, torque: ZERO3 };
         let loads = vec![none; system.model.bodies.len()];
-        let mut forces =
-            Self { other_loads: loads.clone(), loads, potential: Graph::ZERO, power: Graph::ZERO };
+        let mut forces = Self {
+            other_loads: loads.clone(),
+            loads,
+            potential: Graph::ZERO,
+            power: Graph::ZERO,
+            power_at_points: Graph::ZERO,
+        };
         for joint in 0..system.joints.len() {
             forces.add_friction(system, joint);
         }
+        let power_of_friction = std::mem::replace(&mut forces.power, Graph::ZERO);
         for force in &system.model.forces {
             forces.add_link(system, &force.kind);
             forces.add_load(system, &force.kind);
         }
+        forces.power_at_points = forces.power;
+        forces.power = system.graph.add(power_of_friction, forces.power);
         forces.other_loads = forces.loads.clone();
         for along in along_coordinates(system, &OfBodies) {
             forces.add_along(system, &along);

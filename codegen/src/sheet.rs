@@ -256,7 +256,8 @@ fn left_out(equations: &Equations) -> Vec<String> {
         left_out.push("gravity".into());
     }
     if !model.has_work() {
-        left_out.push("the work of non-conservative forces (there are none)".into());
+        let why = if model.is_worked_on() { "count_work = false" } else { "there are none" };
+        left_out.push(format!("the work of non-conservative forces ({why})"));
     }
     if model.parameters.is_empty() {
         left_out.push("parameters (all numbers are folded)".into());

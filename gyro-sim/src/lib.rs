@@ -13,8 +13,8 @@
 //! * Velocities are `s = ṙ` in the global frame and the angular velocity `w'` in the *body* frame; `ṗ = ½ G(p)ᵀ w'`
 //!   (eq. (14)).
 //! * The state is one flat buffer: seven positions `(r, p)` for each body, then six velocities `(s, w')` for each body;
-//!   then, in mechanisms with non-conservative forces or drivers only, the work that these have done; then one *turn
-//!   reference* for each joint angle on whose continuous value something acts (a spring, a stop, a coupler, a driver). Solvers
+//!   then, in mechanisms with non-conservative forces or drivers only, the work that these have done (pages leave it out by
+//!   `count_work = false`); then one *turn reference* for each joint angle on whose continuous value something acts (a spring, a stop, a coupler, a driver). Solvers
 //!   integrate what follows the velocities with the rest and do not correct it.
 //! * Only bodies that move freely have coordinates: those held fixed or moved by prescription are folded into the formulas, the
 //!   latter as functions of time.

@@ -81,7 +81,8 @@ pub trait Mechanism: Ode {
     fn row(&self, row: usize) -> RowInfo;
     /// A length typical of the mechanism, m, by which violations of length rows are divided.
     fn size(&self) -> Self::Scalar;
-    /// The work done so far by non-conservative forces and drivers, J; zero where there are none.
+    /// The work done so far by non-conservative forces and drivers, J; zero where there are none, or where the page leaves it
+    /// out (`count_work = false`).
     fn work(&self, y: &Self::State) -> Self::Scalar;
 }
 

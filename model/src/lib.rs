@@ -64,6 +64,8 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// Constraint rows that depend on others and were dropped: found by rank when the page was read.
     pub redundant: Vec<RedundantRow>,
+    /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].
+    pub counts_work: bool,
     /// How the page asks to be simulated.
     pub simulation: Simulation,
 }
@@ -430,8 +432,14 @@ impl Model {
 
     /// Whether something does work that the energy does not account for: friction, dampers, stops, motors, loads, drivers.
     ///
-    /// Such a model carries the work done so far as one more element of its state, after positions and velocities.
+    /// Such a model carries the work done so far as one more element of its state, after positions and velocities, unless the
+    /// page asks to leave it out (`count_work = false`).
     pub fn has_work(&self) -> bool {
+        self.counts_work && self.is_worked_on()
+    }
+
+    /// Whether something does work that the energy does not account for, counted or not.
+    pub fn is_worked_on(&self) -> bool {
         let does_work = |force: &Force| match &force.kind {
             ForceKind::Spring { .. } => false,
             ForceKind::Link { damping, .. } => !damping.is_zero(),

@@ -62,7 +62,7 @@ pub trait Kit<M: Partition + Ports> {
     }
 }
 
-/// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates (and the work done), u the inputs.
+/// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Linear {
     /// Time, s.
@@ -75,6 +75,23 @@ pub struct Linear {
     pub by_state: Vec<f64>,
     /// B = ∂f/∂u, row by row.
     pub by_inputs: Vec<f64>,
+}
+
+impl Linear {
+    /// The same without the last element of the state: the work done, on which nothing depends.
+    pub(crate) fn without_last(self) -> Self {
+        let n = self.state.len();
+        let n_inputs = self.by_inputs.len().checked_div(n).unwrap_or(0);
+        let Some(kept) = n.checked_sub(1) else { return self };
+        let rows = self.by_state.chunks_exact(n).take(kept);
+        Self {
+            t: self.t,
+            by_state: rows.flat_map(|row| &row[..kept]).copied().collect(),
+            by_inputs: self.by_inputs[..kept * n_inputs].to_vec(),
+            state: self.state[..kept].to_vec(),
+            slope: self.slope[..kept].to_vec(),
+        }
+    }
 }
 
 fn in_f64<T: Real>(numbers: &[T]) -> Vec<f64> {

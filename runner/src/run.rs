@@ -114,6 +114,7 @@ pub fn run_by<M: Partition + Ports + 'static>(
         .then(|| kit.linearise(run.mechanism, settings.t_end, &run.y, &run.angles()))
         .flatten()
     {
+        let linear = if counts_work(run.mechanism, start) { linear.without_last() } else { linear };
         tell(Event::Linear(&linear))?;
     }
     tracker.finish(&mut run.summary);
@@ -297,6 +298,11 @@ pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::Sta
         *element = Scalar::constant(*value);
     }
     Ok(state)
+}
+
+/// Whether the state holds more than positions, velocities and turn references.
+fn counts_work<M: Partition>(mechanism: &M, start: &Start) -> bool {
+    mechanism.start().as_ref().len() > 13 * mechanism.n_bodies() + start.turn_references.len()
 }
 
 /// At most the work is left of the state when positions, velocities and turn references are taken away.

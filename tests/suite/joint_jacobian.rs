@@ -2,9 +2,11 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::joint_space::random_state;
-use gyro_sim::{JointJacobian, Mechanism, Ode, Ports, generated as shipped};
+use gyro_runner::motion::{Linear, TreeWithJacobian};
+use gyro_runner::{Approach, Event, Settings, run_by};
+use gyro_sim::{Dual, JointJacobian, Mechanism, Ode, Ports, generated as shipped};
 use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Engine, Random, dense, model};
+use gyro_sim_suite::{Engine, Random, dense, model, start_of};
 use nalgebra::{DMatrix, DVector};
 
 const STATES: usize = 20;
@@ -153,4 +155,29 @@ fn jacobians_are_limits_of_the_twin_s_differences() {
     check("screw", &own::screw::Screw::default());
     check("universal", &own::universal::Universal::default());
     check("carried", &own::carried::Carried::default());
+}
+
+/// The disc's speed loses friction/inertia = 1.5 a second and gains 50 rad/s^2 for a newton metre. The work that motor and friction do
+/// is bookkeeping: it would be a third state and an eigenvalue 0 that the mechanism does not have.
+#[test]
+fn a_linearisation_has_the_mechanism_s_own_states_alone() {
+    let model = model("motor");
+    let kit = TreeWithJacobian(own::motor::Motor::<Dual<f64, 4>>::default());
+    let approach = Approach { examine: true, ..Approach::default() };
+    let settings = Settings { t_end: 0.01, step: 1e-3, correct_every: None, sample_every: 0.01 };
+    let mut linear = Linear::default();
+    let mut motor = own::motor::Motor::<f64>::default();
+    run_by(&mut motor, &kit, (&settings, &approach), &start_of(&model), |event| {
+        if let Event::Linear(found) = event {
+            linear = found.clone();
+        }
+        Ok(())
+    })
+    .expect("a run");
+    assert_eq!((linear.state.len(), linear.slope.len()), (2, 2));
+    let close = |found: &[f64], expected: &[f64]| {
+        found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
+    };
+    assert!(close(&linear.by_state, &[0.0, 1.0, 0.0, -1.5]), "{linear:?}");
+    assert!(close(&linear.by_inputs, &[0.0, 50.0]), "{linear:?}");
 }

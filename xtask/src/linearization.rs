@@ -7,7 +7,7 @@ use gyro_model::Model;
 use gyro_runner::motion::Linear;
 use serde_json::{Value, json};
 
-/// Names of the joint state's elements, as far as joints and free bodies name them: coordinates, then rates, then the work done.
+/// Names of the joint state's elements, as far as joints and free bodies name them: coordinates, then rates.
 fn names(model: &Model, n: usize) -> Vec<String> {
     let (mut positions, mut rates) = (Vec::new(), Vec::new());
     let numbered = |name: &str, n: usize| (0..n).map(|k| format!("{name}.{k}")).collect::<Vec<_>>();
@@ -26,9 +26,6 @@ fn names(model: &Model, n: usize) -> Vec<String> {
     }
     let mut names = positions;
     names.extend(rates);
-    if names.len() < n {
-        names.push("work".to_owned());
-    }
     if names.len() == n { names } else { numbered("x", n) }
 }
 

@@ -157,7 +157,8 @@ fn main() -> std::process::ExitCode {
     let folder = Path::new(page).parent().unwrap_or(Path::new(""));
     let text = fs::read_to_string(page).expect("the page can be read");
     let mut load = |table: &str| fs::read_to_string(folder.join(table)).map_err(|e| e.to_string());
-    let model = gyro_model::read_with(page, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
+    let mut model = gyro_model::read_with(page, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
+    model.counts_work = true;
     let form = match form.as_str() {
         "recursive" => Form::Recursive,
         "careful" => Form::Careful,

@@ -29,7 +29,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Reads the page, sets parameters, assembles the start and reads what is fed in.
     pub(crate) fn new(args: &SimulateArgs) -> Result<Self, Failure> {
-        let page = read(&args.model)?;
+        let page = read_counting_work(&args.model)?;
         remarks::report_redundant(&page, &args.model.display().to_string(), args.strict)?;
         let model = with_parameters(&page, &args.set)?;
         let settings = settings(&model, args);
@@ -77,6 +77,11 @@ pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
         fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
     };
     gyro_model::read_with(&path.display().to_string(), &text, &mut load).map_err(Failure::Page)
+}
+
+/// The same for a run, whose balance of energy needs the work even where the page leaves it out of the module.
+pub(crate) fn read_counting_work(path: &Path) -> Result<Model, Failure> {
+    read(path).map(|model| Model { counts_work: true, ..model })
 }
 
 fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Failure> {

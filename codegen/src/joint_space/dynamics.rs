@@ -21,7 +21,7 @@ use crate::schedule::Operations;
 use crate::sheet::Reduction;
 use crate::symbol::Symbol;
 use crate::system::System;
-use gyro_model::JointCoordinate;
+use gyro_model::{Attachment, JointCoordinate};
 use std::collections::BTreeMap;
 
 /// Joint coordinates and rates as they are.
@@ -47,6 +47,37 @@ pub fn forces_along(system: &mut System, layout: &Layout) -> Vec<ExprId> {
         along[at] = system.graph.add(along[at], part.force);
     }
     along
+}
+
+/// The power of what acts along joint coordinates and stores no energy: force times rate, with nothing of where the bodies are.
+pub fn power_along(system: &mut System, layout: &Layout) -> ExprId {
+    let mut along = vec![Graph::ZERO; layout.n_rates];
+    let parts = forces::along_coordinates(system, &OfJoints(layout));
+    for part in parts.into_iter().filter(|part| part.potential.is_none()) {
+        let at = layout.scalar(part.on).expect("joints of a tree have their coordinates").place.u;
+        along[at] = system.graph.add(along[at], part.force);
+    }
+    add_spherical_friction(system, layout, &mut along);
+    let rates: Vec<_> = (0..layout.n_rates).map(|rate| system.graph.symbol(Symbol::Rate(rate))).collect();
+    rates.iter().zip(along).fold(Graph::ZERO, |sum, (&rate, force)| {
+        let power = system.graph.mul(force, rate);
+        system.graph.add(sum, power)
+    })
+}
+
+/// The rates of a spherical joint are the relative spin that its friction resists.
+fn add_spherical_friction(system: &mut System, layout: &Layout, along: &mut [ExprId]) {
+    for link in &layout.links {
+        let (Attachment::Joint { joint, .. }, Some(place)) = (link.link.attachment, link.orientation) else {
+            continue;
+        };
+        let friction = system.number(&system.model.joints[joint].friction);
+        for (k, along) in along[place.u..place.u + 3].iter_mut().enumerate() {
+            let rate = system.graph.symbol(Symbol::Rate(place.u + k));
+            let drag = system.graph.mul(friction, rate);
+            *along = system.graph.sub(*along, drag);
+        }
+    }
 }
 
 /// A tree in joint coordinates, ready to be solved.

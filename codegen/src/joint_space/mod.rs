@@ -97,13 +97,13 @@ impl JointSpace {
         }
     }
 
-    /// `exact` are the accelerations at any state, `power` that of the maximal form.
+    /// `exact` are the accelerations at any state, `other_power` that of the maximal form of all but what acts along joint coordinates.
     pub fn derive(
         system: &mut System,
         kinematics: &Kinematics,
         dynamics: &Dynamics,
         exact: &[ExprId],
-        power: Option<ExprId>,
+        other_power: ExprId,
         start: &Start,
     ) -> Self {
         let (layout, finish) = (Layout::of(system), Finish::of(system));
@@ -176,8 +176,12 @@ impl JointSpace {
 
         let coordinates = coordinate_rates(system, &layout);
         let mut derivative = coordinates.clone();
+        let power_along = dynamics::power_along(system, &layout);
         let power_at = |system: &mut System, accelerations: &[ExprId]| {
-            power.map(|power| power_in_joints(system, &carriages, &in_joints, accelerations, power))
+            system.model.has_work().then(|| {
+                let others = power_in_joints(system, &carriages, &in_joints, accelerations, other_power);
+                system.graph.add(power_along, others)
+            })
         };
         derivative.extend(power_at(system, &accelerations));
         let reduced = maps::reduced(system, &layout);
@@ -324,7 +328,7 @@ fn in_joints(system: &mut System, layout: &Layout, maximal: &Values) -> Values {
     values
 }
 
-/// The power of the maximal form, for which some accelerations may have to be known.
+/// A power of the maximal form, for which some accelerations may have to be known.
 fn power_in_joints(
     system: &mut System,
     carriages: &[Carriage],
@@ -502,6 +506,51 @@ mod tests {
             Operations::count(&equations.graph, roots).total()
         };
         names.iter().map(of).sum()
+    }
+
+    /// A chain with an element on each joint's coordinate.
+    fn chain(joints: &[(&str, &str)]) -> String {
+        let mut page =
+            "format = 1\nname = \"chain\"\n[inputs]\nu = 0\n[[body]]\nname = \"b0\"\nfixed = true\n"
+                .to_owned();
+        for (index, (kind, element)) in joints.iter().enumerate() {
+            let (carrier, body) = (format!("b{index}"), format!("b{}", index + 1));
+            let axis = if *kind == "spherical" {
+                String::new()
+            } else {
+                format!("axis = [{index}, 2, 1]\nzero = [0, 1, -2]\n")
+            };
+            page += &format!(
+                "[[body]]\nname = \"{body}\"\nmass = 1.5\ninertia = [0.2, 0.3, 0.25]\n\
+                 [[joint]]\nname = \"j{index}\"\nkind = \"{kind}\"\n{axis}\
+                 first = {{ body = \"{carrier}\", point = [0.1, 0, 0.3] }}\n\
+                 second = {{ body = \"{body}\", point = [0, 0.2, 0] }}\n"
+            );
+            page += &match *element {
+                "" => String::new(),
+                "friction" => "friction = 0.1\n".to_owned(),
+                element => format!("[[force]]\nname = \"f{index}\"\njoint = \"j{index}\"\n{element}\n"),
+            };
+        }
+        page
+    }
+
+    /// Torque times rate: a product and a sum for each motor, and one product more where the force is yet to be computed.
+    #[test]
+    fn power_is_read_from_joint_coordinates() {
+        const MOTOR: &str = "kind = \"motor\"\nvalue = \"u\"";
+        const DAMPER: &str = "kind = \"damper\"\ndamping = 0.3";
+        let cost =
+            |joints: &[(&str, &str)]| cost(&chain(joints), Elimination::NullSpace, &["joint_derivative"]);
+        let check = |joints: &[(&str, &str)], allowed: usize| {
+            let cost = cost(joints);
+            assert!(cost <= allowed, "{joints:?}: {cost} operations, more than {allowed}");
+        };
+        check(&[("revolute", MOTOR); 5], 9);
+        check(&[("revolute", DAMPER), ("prismatic", "friction"), ("revolute", MOTOR)], 7);
+        // ẋ of a spherical joint takes operations of its own.
+        let alone = cost(&[("revolute", "friction"), ("spherical", "")]) - 2;
+        check(&[("revolute", "friction"), ("spherical", "friction")], alone + 9);
     }
 
     /// The paper's scene costs about what an analyst's pencil reaches: 17 operations for the joint accelerations, in benches/.

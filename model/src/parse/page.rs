@@ -15,10 +15,11 @@ use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
 use crate::{Method, Model, Rational, Simulation, to_f64};
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "format",
     "name",
     "gravity",
+    "count_work",
     "simulation",
     "parameters",
     "inputs",
@@ -40,6 +41,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let name = name(reader, &page);
     let (parameters, inputs) = parameters::read(reader, &page);
     let gravity = page.vector_or(reader, "gravity", [0; 3]);
+    let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
     let simulation = simulation(reader, &page);
     let bodies = bodies::read(reader, &page);
     let joints = joints::read(reader, &page);
@@ -60,6 +62,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         forces,
         outputs,
         redundant,
+        counts_work,
         simulation,
     }
 }

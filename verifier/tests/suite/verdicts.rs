@@ -51,6 +51,33 @@ fn many_roots_hide_neither_proof_nor_fault() {
     assert!(matches!(decide(&module), Verdict::Refuted { .. }));
 }
 
+/// Without the work the state is shorter, and nothing else is missing.
+#[test]
+fn a_module_without_the_work_is_proved() {
+    let counted = gyro_model::read("chain.toml", &page_with_work("")).expect("a good page");
+    let left_out =
+        gyro_model::read("chain.toml", &page_with_work("count_work = false\n")).expect("a good page");
+    assert!(counted.has_work() && !left_out.has_work());
+    for (model, joint_state) in [(&counted, "[T; 3]"), (&left_out, "[T; 2]")] {
+        let module = gyro_codegen::generate_model("chain.toml", model).expect("a module");
+        assert!(module.code.contains(&format!("type Joints = {joint_state}")), "{}", module.code);
+        let report = verify(model, &module.code, &module.constants, Depth::Quick);
+        assert!(report.is_proved(), "{report}");
+    }
+}
+
+/// A crank with a motor, friction and an output of the power.
+fn page_with_work(key: &str) -> String {
+    format!(
+        "format = 1\nname = \"crank\"\n{key}[inputs]\nu = 0\n[[body]]\nname = \"wall\"\nfixed = true\n\
+         [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+         [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfriction = 0.1\n\
+         first = {{ body = \"wall\" }}\nsecond = {{ body = \"arm\", point = [0.5, 0, 0] }}\n\
+         [[force]]\nname = \"winding\"\nkind = \"motor\"\njoint = \"hinge\"\nvalue = \"u\"\n\
+         [[output]]\nname = \"spent\"\nkind = \"power\"\n"
+    )
+}
+
 /// A chain of revolute joints, each number of whose frames is a parameter.
 fn free_frames(joints: usize) -> Model {
     let (mut parameters, mut parts) = (String::new(), "[[body]]\nname = \"b0\"\nfixed = true\n".to_owned());

@@ -48,7 +48,7 @@ pub(crate) struct Plan {
 impl Lab {
     /// Reads a page and compiles what computes it.
     pub(crate) fn new(path: &Path, twin: &Path) -> Result<Self, Failure> {
-        let model = scene::read(path)?;
+        let model = scene::read_counting_work(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let module = gyro_codegen::generate_model(&files::shown(path), &model)
             .map_err(|e| Failure::Usage(e.to_string()))?;
