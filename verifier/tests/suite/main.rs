@@ -6,6 +6,7 @@ mod support;
 mod compiled;
 mod dependencies;
 mod faults;
+mod holes;
 mod mutants;
 mod needless;
 mod proofs;
