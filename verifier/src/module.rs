@@ -3,6 +3,7 @@
 mod block;
 mod expression;
 mod matching;
+mod plain;
 mod skeleton;
 mod tables;
 
@@ -163,6 +164,7 @@ impl Module {
             message: format!("of the constants: {}", refusal.message),
             ..refusal
         })?;
+        no_comments(text)?;
         let tokens: TokenStream =
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let tables = tables::read(model, tokens.clone())?;
@@ -321,5 +323,18 @@ impl Module {
 }
 
 fn block(hole: &Hole) -> Result<Block, Refusal> {
-    Ok(syn::parse2(TokenTree::Group(hole.body.clone()).into())?)
+    let block = syn::parse2(TokenTree::Group(hole.body.clone()).into())?;
+    plain::check(&block)?;
+    Ok(block)
+}
+
+/// There is one comment, the first line: what is said of the code elsewhere is documentation, which is read.
+fn no_comments(text: &str) -> Result<(), Refusal> {
+    let is_documentation = |line: &str| line.starts_with("//!") || line.starts_with("///");
+    let has_comment = |line: &str| line.contains("//") || line.contains("/*");
+    let comment = text.lines().skip(1).position(|line| {
+        let line = line.trim_start();
+        has_comment(line) && !is_documentation(line)
+    });
+    comment.map_or(Ok(()), |line| Err(Refusal::new(line + 2, "a comment that no module has")))
 }

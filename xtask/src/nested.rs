@@ -113,7 +113,8 @@ impl Package {
     }
 }
 
-/// The program's own lines. What the module implements decides with what motions can be begun.
+/// The program's own lines. What the module implements decides with what motions can be begun. Nothing is imported: a mechanism may have
+/// the name of anything.
 fn main(module: &Module, precision: Precision) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let has = |name: &str| module.code.contains(&format!("gyro_sim::{name} for {type_name}"));
@@ -126,21 +127,19 @@ fn main(module: &Module, precision: Precision) -> String {
         "#[allow(warnings, clippy::all)]
 mod mechanism;
 
-use gyro_runner::motion::{{COLUMNS, {kit}}};
-use gyro_sim::{{Dual, Scalar}};
-use mechanism::{type_name};
-
-fn build<T: Scalar>(parameters: &[f64]) -> {type_name}<T> {{
-    let mut mechanism = {type_name}::<T>::default();
+fn build<T: ::gyro_sim::Scalar>(parameters: &[f64]) -> mechanism::{type_name}<T> {{
+    let mut built = mechanism::{type_name}::<T>::default();
     for (index, value) in parameters.iter().enumerate() {{
-        mechanism.set_parameter(index, Scalar::constant(*value));
+        built.set_parameter(index, <T as ::gyro_sim::Scalar>::constant(*value));
     }}
-    mechanism
+    built
 }}
 
-fn main() -> std::process::ExitCode {{
-    gyro_runner::child::main(|parameters| {{
-        (build::<{precision}>(parameters), {kit}(build::<Dual<{precision}, COLUMNS>>(parameters)))
+type Dual = ::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>;
+
+fn main() -> ::std::process::ExitCode {{
+    ::gyro_runner::child::main(|parameters| {{
+        (build::<{precision}>(parameters), ::gyro_runner::motion::{kit}(build::<Dual>(parameters)))
     }})
 }}
 "

@@ -145,7 +145,7 @@ impl ModuleWriter<'_> {
             pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
                 let mut parameters = self.parameters;
                 match index {
-                    #(#places => parameters.#names = value,)*
+                    #(#places => { parameters.#names = value; })*
                     _ => return false,
                 }
                 self.set_parameters(parameters);

@@ -17,7 +17,7 @@ use crate::graph::ExprId;
 use crate::literals::Literals;
 use crate::schedule::Operations;
 use crate::set_up;
-use crate::sheet::Sheet;
+use crate::sheet::{Sheet, printable};
 use crate::symbol::Symbol;
 use gyro_model::Start;
 use proc_macro2::{Ident, TokenStream};
@@ -127,7 +127,7 @@ impl ModuleWriter<'_> {
             let times = spline.knots.iter().map(|&t| emit::float(t));
             let coefficients = spline.pieces.iter().map(|piece| piece.map(emit::float));
             let coefficients = coefficients.map(|c| quote! { [#(#c),*] });
-            let doc = format!(" Times of the points of `{}`, s.", spline.source);
+            let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
             quote! {
                 #[doc = #doc]
                 const #knots: [f64; #n_knots] = [#(#times),*];

@@ -30,7 +30,7 @@ impl ModuleWriter<'_> {
             quote! {
                 fn set_input(&mut self, index: usize, value: T) -> bool {
                     match index {
-                        #(#places => self.#fields = value,)*
+                        #(#places => { self.#fields = value; })*
                         _ => return false,
                     }
                     true

@@ -9,6 +9,9 @@ const KEYWORDS: [&str; 51] = [
     "where", "while", "yield",
 ];
 
+/// Files and types are named by names, and a file's name must not be longer than some 255 characters, of which tools want some.
+pub(super) const MOST_CHARACTERS: usize = 100;
+
 /// Whether a name is in `snake_case`: a lowercase letter, then lowercase letters, digits and underscores.
 pub(super) fn is_snake_case(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase())

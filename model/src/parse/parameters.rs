@@ -9,7 +9,7 @@ use toml::de::{DeString, DeValue};
 use super::names;
 use super::numbers::plain_number;
 use super::reader::Reader;
-use super::section::{Item, Section, keyword, not_a_name};
+use super::section::{Item, Section, keyword, unfit};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
 use crate::{Parameter, Rational};
@@ -84,8 +84,8 @@ fn parameter(
 ) -> Parameter {
     let name = key.get_ref().as_ref();
     reader.mark(place, value.span());
-    if !names::is_snake_case(name) {
-        reader.wrong(place, key.span(), not_a_name(name));
+    if let Some(words) = unfit(name) {
+        reader.wrong(place, key.span(), words);
     } else if names::is_keyword(name) {
         reader.wrong(place, key.span(), keyword(name));
     }

@@ -187,15 +187,29 @@ impl<'t> Item<'t> {
     /// A name in `snake_case`.
     pub(super) fn name(&self, reader: &mut Reader<'_>) -> Option<&'t str> {
         let name = self.text(reader, &format!("{} = \"some_name\"", self.key()))?;
-        if !names::is_snake_case(name) {
-            reader.wrong(self.place, self.span(), not_a_name(name));
+        if let Some(words) = unfit(name) {
+            reader.wrong(self.place, self.span(), words);
         }
         Some(name)
     }
 }
 
-/// The words for a text that cannot be a name.
-pub(super) fn not_a_name(name: &str) -> [String; 3] {
+/// Why a text cannot be a name, if it cannot.
+pub(super) fn unfit(name: &str) -> Option<[String; 3]> {
+    if !names::is_snake_case(name) {
+        return Some(not_a_name(name));
+    }
+    (name.len() > names::MOST_CHARACTERS).then(|| {
+        let (length, most) = (name.len(), names::MOST_CHARACTERS);
+        [
+            format!("a name of {length} characters is too long"),
+            format!("a name has at most {most} characters: files are named by it"),
+            format!("write `{}`, or what is clearer", name[..most / 4].trim_end_matches('_')),
+        ]
+    })
+}
+
+fn not_a_name(name: &str) -> [String; 3] {
     [
         format!("`{name}` is not a name"),
         "a name is a lowercase letter, then lowercase letters, digits and `_`".to_owned(),

@@ -424,6 +424,9 @@ pub fn pattern(block: &Block) -> Result<Vec<(usize, usize)>, Refusal> {
     let [Stmt::Expr(Expr::Reference(reference), None)] = block.stmts.as_slice() else {
         return Err(Refusal::at(block.span(), "a pattern must be a list of places"));
     };
+    if reference.mutability.is_some() {
+        return Err(refused(reference));
+    }
     let Expr::Array(array) = &*reference.expr else { return Err(refused(reference)) };
     let place = |element: &Expr| match element {
         Expr::Tuple(pair) if pair.elems.len() == 2 => {

@@ -34,6 +34,10 @@ impl Matched {
         let mut last = end;
         for token in expected {
             self.skip_docs(&mut found);
+            // Long names are written in a list of lines, with a comma at the end.
+            if token.to_string() == ">" {
+                found.next_if(|token| token.to_string() == ",");
+            }
             let Some(next) = found.next() else {
                 return Err(Refusal::new(last, format!("`{token}` is missing")));
             };

@@ -90,12 +90,12 @@ fn setter(signature: &str, fields: &[Parameter], (of, before, after): (&str, &st
     if fields.is_empty() {
         return format!("{signature}(&mut self, _index: usize, _value: T) -> bool {{ false }}");
     }
-    let arms =
-        list(fields.iter().enumerate().map(|(k, field)| format!("{k} => {of}.{} = value", field.name)));
+    let arm = |(k, field): (usize, &Parameter)| format!("{k} => {{ {of}.{} = value; }}", field.name);
+    let arms = lines(fields.iter().enumerate().map(arm));
     format!(
         "{signature}(&mut self, index: usize, value: T) -> bool {{
             {before}
-            match index {{ {arms}, _ => return false, }}
+            match index {{ {arms} _ => return false, }}
             {after}
             true
         }}"

@@ -209,7 +209,7 @@ impl Claim {
             Some(differences(&case.run(function, point), &values?))
         };
         match self {
-            Self::Phi => equal("phi", textbook.phi()),
+            Self::Phi => Some([equal("phi", textbook.phi())?, normalisations(case)?].concat()),
             Self::Nu => equal("nu", textbook.nu()),
             Self::Gamma => equal("gamma", textbook.gamma()),
             Self::VelocityResidual => equal("velocity_residual", textbook.velocity_residual()),
@@ -218,7 +218,8 @@ impl Claim {
             Self::PhiQ => {
                 let matrix = textbook.phi_q()?;
                 let (values, pattern) = (case.run("phi_q", point), &case.module.phi_q_pattern);
-                Some(sparse_differences(&values, pattern, matrix).concat())
+                let on_sphere = sparse_differences(&values, pattern, matrix).concat();
+                Some([on_sphere, normalisations_of_phi_q(case)?].concat())
             }
             Self::PhiPi => {
                 let matrix = textbook.phi_pi()?;
@@ -298,6 +299,29 @@ fn projection<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
+/// `pᵀp − 1` for p of any length: where it is one, zero would do.
+fn normalisations<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let (longer, rows) = (stretched(&case.point, &case.factors), case.model.rows().len());
+    let (found, expected) = (case.run("phi", &longer), case.textbook(&longer)?.phi()?);
+    Some(differences(found.get(rows..)?, &expected[rows..]))
+}
+
+/// `2 p` for p of any length.
+fn normalisations_of_phi_q<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let (longer, rows) = (stretched(&case.point, &case.factors), case.model.rows().len());
+    let (values, pattern) = (case.run("phi_q", &longer), &case.module.phi_q_pattern);
+    let matrix = case.textbook(&longer)?.phi_q()?;
+    Some(sparse_differences(&values, pattern, matrix)[rows..].concat())
+}
+
+/// Eqs. (14) and (16) for p of any length: an integrator's stages leave the sphere.
+pub(super) fn position_rates<'a>(case: &Case<'a>, function: &str) -> Option<Vec<Term<'a>>> {
+    let (longer, n) = (stretched(&case.point, &case.factors), case.n_bodies());
+    let accelerations = vec![Term::zero(case.point.context); case.module.n_accelerations];
+    let found = case.run_with(function, &longer, &accelerations);
+    Some(differences(found.get(..7 * n)?, &case.textbook(&longer)?.position_rates()))
+}
+
 fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let textbook = case.textbook(&case.point)?;
     let (accelerations, multipliers) = case.motion();
@@ -308,7 +332,9 @@ fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         expected.push(forces.add(&drivers));
     }
     expected.extend(textbook.turn_rates());
-    Some(differences(&case.run_with("derivative", &case.point, &accelerations), &expected))
+    let mut residuals = differences(&case.run_with("derivative", &case.point, &accelerations), &expected);
+    residuals.extend(position_rates(case, "derivative")?);
+    Some(residuals)
 }
 
 fn readings<'a>(case: &Case<'a>, point: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {

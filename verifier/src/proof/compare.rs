@@ -5,6 +5,7 @@ use super::point::{self, Draw};
 use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision};
 use crate::interpreter::{self, DivisionByZero, Given};
+use crate::joints::JointLayout;
 use crate::module::{Module, is_on_constraints, source_of_accelerations};
 use crate::program::Node;
 use rand::SeedableRng;
@@ -25,11 +26,28 @@ impl<const L: usize> Decider<'_, L> {
     /// no point. Functions that read accelerations are given those of the first module.
     pub fn agree(&self, modules: [&Module; 2], function: &str, seed: u64) -> Option<bool> {
         let same_places = modules[0].programs[function].places == modules[1].programs[function].places;
+        let of_any_length = self.of_any_length(modules[0], function);
         let agree = self.at_point(modules[0], seed, |draw, atoms| {
             let [a, b] = both(modules, function, draw, atoms)?;
-            Ok(a == b)
+            let [longer_a, longer_b] = both(modules, function, &longer(modules[0], draw), atoms)?;
+            Ok(a == b && of_any_length.iter().all(|&k| longer_a.get(k) == longer_b.get(k)))
         });
         agree.map(|agree| same_places && (agree || self.agree_in_floats(modules, function, seed)))
+    }
+
+    /// Which results of a function are claimed for Euler parameters of any length.
+    fn of_any_length(&self, module: &Module, function: &str) -> Vec<usize> {
+        let (rows, n) = (self.model.rows().len(), self.model.coordinate_bodies().len());
+        let n_coordinates = module.joints.as_ref().map_or(0, |layout| layout.n_coordinates);
+        match function {
+            "phi" => (rows..rows + n).collect(),
+            "phi_q" => {
+                (0..module.phi_q_pattern.len()).filter(|&k| module.phi_q_pattern[k].0 >= rows).collect()
+            }
+            "derivative" | "corrected_derivative" => (0..7 * n).collect(),
+            "joint_derivative" => (0..n_coordinates).collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// The same in 384 bits, where the angle of a point is known to be that of any positive multiple of it.
@@ -91,6 +109,17 @@ impl<const L: usize> Decider<'_, L> {
         }
         Ok(problems)
     }
+}
+
+/// A point with longer Euler parameters, of the joint state too.
+fn longer<F: Field>(module: &Module, draw: &Draw<F>) -> Draw<F> {
+    let mut longer = draw.clone();
+    longer.point = point::stretched(&draw.point, &draw.factors);
+    let starts = module.joints.iter().flat_map(JointLayout::euler);
+    for (start, factor) in starts.zip(&draw.factors) {
+        longer.joints[0][start..start + 4].iter_mut().for_each(|e| *e = e.mul(factor));
+    }
+    longer
 }
 
 /// The results of the same function of two modules, with the accelerations of the first.

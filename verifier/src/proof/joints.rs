@@ -7,7 +7,8 @@
 //! derivatives of `to_maximal` by dual numbers.
 
 use super::case::{Arguments, Case};
-use super::claim::differences;
+use super::claim::{differences, position_rates};
+use super::partition::turning;
 use crate::atoms::Atoms;
 use crate::field::Field;
 use crate::joints::{Freedom, JointLayout};
@@ -128,8 +129,10 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     // The buffer changes by its own next elements: as good as any other numbers.
     let next = |k: usize| case.before[(k + 1) % case.before.len()];
     let buffer = Arguments { joints: &case.before, ..case.given(&case.point) };
+    // Velocities change as they like: no angle depends on them.
+    let any = |k: usize| case.motion.get(k - rates.len()).copied();
     let [found, found_rates] = case.run_along("to_joints", buffer, &|source| match source {
-        Source::State(k) => rates.get(k).copied(),
+        Source::State(k) => rates.get(k).copied().or_else(|| any(k)),
         Source::Joint(k) => Some(next(k)),
         Source::Time => Some(one),
         _ => None,
@@ -190,7 +193,35 @@ pub fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (found, rest) = motion.derivative[layout.n_coordinates..].split_at(layout.n_rates);
     residuals.extend(differences(found, &motion.rates_of_rates));
     residuals.extend(differences(rest, &motion.power()?));
+    residuals.extend(coordinate_rates(case, layout));
     Some(residuals)
+}
+
+/// `ẋ` of Euler parameters of any length, `½ G(p)ᵀ u`, and what else moves with a free body.
+fn coordinate_rates<'a>(case: &Case<'a>, layout: &JointLayout) -> Vec<Term<'a>> {
+    let mut joints = case.joints.clone();
+    for (start, factor) in layout.euler().zip(&case.factors) {
+        joints[start..start + 4].iter_mut().for_each(|e| *e = e.mul(factor));
+    }
+    let accelerations = vec![Term::zero(case.point.context); layout.n_rates];
+    let given = Arguments { joints: &joints, accelerations: &accelerations, ..case.given(&case.point) };
+    let found = case.results("joint_derivative", given);
+    let mut residuals = Vec::new();
+    for place in &layout.places {
+        let (coordinates, rates) = place.of.sizes();
+        let u = &joints[layout.n_coordinates + place.u..][..rates];
+        let found = &found[place.x..place.x + coordinates];
+        let Some(euler) = place.of.euler() else {
+            residuals.extend(differences(found, u));
+            continue;
+        };
+        let (shift, spin) = u.split_at(rates - 3);
+        let [x, y, z] = [0, 1, 2].map(|k| spin[k]);
+        residuals.extend(differences(&found[..euler], shift));
+        let twice: Vec<_> = found[euler..].iter().map(|e| e.add(e)).collect();
+        residuals.extend(differences(&twice, &turning(&joints[place.x + euler..][..4], &[x, y, z])));
+    }
+    residuals
 }
 
 /// u̇ at the state of (x, u).
@@ -221,6 +252,7 @@ pub fn corrected_derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         residuals.extend(power.iter().flat_map(|power| differences(work, power)));
         residuals.extend(differences(turns, &textbook.turn_rates()));
     }
+    residuals.extend(position_rates(case, "corrected_derivative")?);
     Some(residuals)
 }
 

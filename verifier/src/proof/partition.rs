@@ -103,7 +103,7 @@ pub fn chart_vectors<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
 }
 
 /// `G(p)ᵀ a` with G of eq. (15).
-fn turning<F: Field>(p: &[F], [x, y, z]: &[F; 3]) -> [F; 4] {
+pub(super) fn turning<F: Field>(p: &[F], [x, y, z]: &[F; 3]) -> [F; 4] {
     let sum = |terms: [(&F, &F); 3]| {
         let [a, b, c] = terms.map(|(e, a)| e.mul(a));
         a.add(&b).add(&c)

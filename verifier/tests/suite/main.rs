@@ -7,6 +7,7 @@ mod combinations;
 mod compiled;
 mod dependencies;
 mod faults;
+mod holes;
 mod mutants;
 mod near_numbers;
 mod needless;
