@@ -112,7 +112,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CompoundPendulum<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -161,7 +161,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -874,7 +874,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
         let x0 = x[0];
         *out = [-(k(14.715) * x0.sin())];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

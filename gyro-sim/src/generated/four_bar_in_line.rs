@@ -115,7 +115,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FourBarInLine<T> {
             k(12.000000000000002),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);

@@ -105,7 +105,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FreeBody<T> {
             k(10.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -170,7 +170,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 0]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -511,7 +511,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
         let t0 = k(0.3333333333333333) * u5;
         *out = [k(0.0), k(0.0), k(0.0), -(u4 * t0), u3 * t0, k(0.0)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -138,7 +138,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCombinedOffsets<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -305,7 +305,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -3569,7 +3569,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
             T::fused(-t29, t36, T::fused(-k(99950.02498750624), t25, t27 * t35)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCoulomb<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 76 operations (25 ±, 51 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 76 operations (25 ±, 51 ×, 0 ÷) and 1 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -308,7 +308,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCoulomb<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 76 operations (25 ±, 51 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 76 operations (25 ±, 51 ×, 0 ÷) and 1 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -2942,7 +2942,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
             T::fused(-u0, t1, k(1.6663195167673401) * (t2 * t4)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 3 operations (0 ±, 3 ×, 0 ÷) and 1 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 3 operations (0 ±, 3 ×, 0 ÷) and 1 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -147,13 +147,27 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
         let mut parameters = self.parameters;
         match index {
-            0 => parameters.offset_x = value,
-            1 => parameters.offset_y = value,
-            2 => parameters.offset_z = value,
-            3 => parameters.imbalance_y = value,
-            4 => parameters.imbalance_z = value,
-            5 => parameters.product_xy = value,
-            6 => parameters.product_xz = value,
+            0 => {
+                parameters.offset_x = value;
+            }
+            1 => {
+                parameters.offset_y = value;
+            }
+            2 => {
+                parameters.offset_z = value;
+            }
+            3 => {
+                parameters.imbalance_y = value;
+            }
+            4 => {
+                parameters.imbalance_z = value;
+            }
+            5 => {
+                parameters.product_xy = value;
+            }
+            6 => {
+                parameters.product_xz = value;
+            }
             _ => return false,
         }
         self.set_parameters(parameters);
@@ -292,7 +306,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMisalignments<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -459,7 +473,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -3944,7 +3958,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             -T::fused(t17, t46, T::fused(t27, t45, self.derived[45] * t36)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -140,11 +140,21 @@ impl<T: gyro_sim::Scalar> GyroscopeParameters<T> {
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
         let mut parameters = self.parameters;
         match index {
-            0 => parameters.gravity = value,
-            1 => parameters.rotor_mass = value,
-            2 => parameters.rotor_offset = value,
-            3 => parameters.ring_axial_inertia = value,
-            4 => parameters.ring_diametral_inertia = value,
+            0 => {
+                parameters.gravity = value;
+            }
+            1 => {
+                parameters.rotor_mass = value;
+            }
+            2 => {
+                parameters.rotor_offset = value;
+            }
+            3 => {
+                parameters.ring_axial_inertia = value;
+            }
+            4 => {
+                parameters.ring_diametral_inertia = value;
+            }
             _ => return false,
         }
         self.set_parameters(parameters);
@@ -243,7 +253,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeParameters<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -410,7 +420,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -2998,7 +3008,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             T::fused(-k(100000.0), u0 * t3, t0 * t4),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRollingBase<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -428,7 +428,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRollingBase<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -3249,7 +3249,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
             k(1315.6731549046426) * T::fused(k(0.047756430111511844), t21, t10 * t18),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 427 operations (162 ±, 263 ×, 2 ÷) and 18 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 427 operations (162 ±, 263 ×, 2 ÷) and 18 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -16,7 +16,7 @@
 //! * joint_accelerations: 27 operations by normal form; 39 operations by recursion; 1 more compared
 //! * joint_accelerations_at: 48 operations by normal form; 65 operations by recursion; 3 more compared
 //! * corrected_accelerations: 149 operations by normal form in the global frame; 151 operations by normal form in the bodies' frames; 9 more compared
-//! * joint_jacobian: 79 operations by derivatives of u̇, from its leaves; 79 operations by normal form of that; 7 more compared
+//! * joint_jacobian: 73 operations by derivatives of u̇, from its leaves; 73 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -39,14 +39,14 @@
 //! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 6 of 21 | 9.5e8 | 493 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 | 8661 | 230 |
 //! | joint_accelerations | u̇ in joint coordinates | 9 | 17 | 1 | 27 | 0 of 3 | 43 | 28 |
-//! | joint_derivative | ẋ but for u̇ | 4 | 9 | 0 | 13 | 0 of 4 | 29 | 13 |
+//! | joint_derivative | ẋ but for u̇ | 2 | 4 | 0 | 6 | 0 of 4 | 6 | 6 |
 //! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 | 298 | 75 |
 //! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 19 | 28 | 1 | 48 | 0 of 3 | 393 | 49 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 62 | 86 | 1 | 149 | 6 of 18 | 2453 | 150 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 63 | 81 | 0 | 144 | 0 of 15 | 911 | 144 |
 //! | corrected_solution | both | 91 | 132 | 1 | 224 | 6 of 33 | 19130 | 225 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 20 | 58 | 1 | 79 | 38 of 56 | 192 | 79 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 18 | 54 | 1 | 73 | 38 of 56 | 181 | 73 |
 //!
 //! # Proof
 //!
@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeViscous<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 80 operations (28 ±, 52 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 80 operations (28 ±, 52 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -310,7 +310,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 80 operations (28 ±, 52 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 80 operations (28 ±, 52 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -2947,20 +2947,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             T::fused(k(0.166631951676734), t0 * t5, -T::fused(u0, t3, k(0.1) * u2)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 13 operations (4 ±, 9 ×, 0 ÷) and 2 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 6 operations (2 ±, 4 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
         let k = T::constant;
-        let x1 = x[1];
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = k(0.5) * x1;
-        let t1 = u0 * (t0.sin() * t0.cos());
-        let t2 = t1 - T::fused(-k(0.5), u2, t1);
-        let t3 = k(1e-6) * T::fused(u0, u0, T::fused(k(4.0), t2 * t2, u1 * u1));
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -t3];
+        *dx = [
+            u0,
+            u1,
+            u2,
+            rates[0],
+            rates[1],
+            rates[2],
+            -(k(1e-6) * T::fused(u2, u2, T::fused(u1, u1, u0 * u0))),
+        ];
     }
     /// Writes the maximal state of a joint state: 75 operations (26 ±, 49 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -3708,7 +3711,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeViscous<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 79 operations (20 ±, 58 ×, 1 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 73 operations (18 ±, 54 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3748,8 +3751,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeViscous<T> {
             t0 * t10,
             T::fused(t9 * t8, t17, u0 * t1),
         );
-        let t19 = k(0.5) * x1;
-        let t20 = u0 * (t19.sin() * t19.cos());
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3798,7 +3799,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeViscous<T> {
             k(0.0),
             -(k(2e-6) * u0),
             -(k(2e-6) * u1),
-            -(k(4e-6) * (t20 - T::fused(-k(0.5), u2, t20))),
+            -(k(2e-6) * u2),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];

@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingGyroscope<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 326 operations (126 ±, 199 ×, 1 ÷) and 8 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 326 operations (126 ±, 199 ×, 1 ÷) and 8 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -445,7 +445,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingGyroscope<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 326 operations (126 ±, 199 ×, 1 ÷) and 8 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 326 operations (126 ±, 199 ×, 1 ÷) and 8 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -3437,7 +3437,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
             t32 - T::fused(t22, t34, t12 * t21),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 519 operations (191 ±, 326 ×, 2 ÷) and 24 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 519 operations (191 ±, 326 ×, 2 ÷) and 24 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -115,7 +115,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Torsion<T> {
             k(20.420352248333657),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -182,7 +182,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -842,7 +842,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let u0 = x[1];
         *out = [-(k(25.0) * T::fused(k(0.02), u0, x0))];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -114,10 +114,18 @@ impl<T: gyro_sim::Scalar> AllJoints<T> {
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
         let mut parameters = self.parameters;
         match index {
-            0 => parameters.gravity = value,
-            1 => parameters.puck_mass = value,
-            2 => parameters.rod_length = value,
-            3 => parameters.gear_ratio = value,
+            0 => {
+                parameters.gravity = value;
+            }
+            1 => {
+                parameters.puck_mass = value;
+            }
+            2 => {
+                parameters.rod_length = value;
+            }
+            3 => {
+                parameters.gear_ratio = value;
+            }
             _ => return false,
         }
         self.set_parameters(parameters);
@@ -264,7 +272,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
             k(-2.035408878479454e-16),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 647 operations (265 ±, 380 ×, 2 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 647 operations (265 ±, 380 ×, 2 ÷) and 4 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -30207,7 +30215,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
     }
     fn set_input(&mut self, index: usize, value: T) -> bool {
         match index {
-            0 => self.motor = value,
+            0 => {
+                self.motor = value;
+            }
             _ => return false,
         }
         true

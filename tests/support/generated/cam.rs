@@ -110,7 +110,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Cam<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 61 operations (20 ±, 41 ×, 0 ÷) and 2 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 61 operations (20 ±, 41 ×, 0 ÷) and 2 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);

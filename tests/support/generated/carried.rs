@@ -15,7 +15,7 @@
 //! * joint_accelerations: 466 operations by orthogonal motions; 492 operations by normal form; 1 more compared
 //! * joint_accelerations_at: 770 operations by orthogonal motions on the bodies' spins; 774 operations by orthogonal motions; 3 more compared
 //! * corrected_accelerations: 1900 operations by elimination in maximal coordinates; 912 operations by orthogonal motions on the bodies' spins in the bodies' frames; 9 more compared
-//! * joint_jacobian: 4818 operations by derivatives of u̇, from its leaves; 4818 operations by normal form of that; 7 more compared
+//! * joint_jacobian: 4809 operations by derivatives of u̇, from its leaves; 4809 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -36,14 +36,14 @@
 //! | read_joints | joint coordinates and rates | 145 | 156 | 0 | 301 | 0 of 5 | 1647 | 301 |
 //! | outputs | outputs, the accelerations being known | 575 | 748 | 2 | 1325 | 0 of 20 | 4.7e6 | 1325 |
 //! | joint_accelerations | u̇ in joint coordinates | 205 | 260 | 1 | 466 | 0 of 2 | 70057 | 467 |
-//! | joint_derivative | ẋ but for u̇ | 771 | 952 | 2 | 1725 | 0 of 3 | 4.4e7 | 1726 |
+//! | joint_derivative | ẋ but for u̇ | 771 | 951 | 2 | 1724 | 0 of 3 | 4.4e7 | 1725 |
 //! | to_maximal | (q, v) of a joint state | 131 | 178 | 0 | 309 | 0 of 27 | 20073 | 309 |
 //! | to_joints | (x, u) of a maximal state | 148 | 160 | 0 | 308 | 0 of 4 | 2741 | 308 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 342 | 427 | 1 | 770 | 0 of 2 | 477920 | 771 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 842 | 1054 | 4 | 1900 | 0 of 12 | 2.4e8 | 1902 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 337 | 403 | 0 | 740 | 0 of 10 | 233223 | 740 |
 //! | corrected_solution | both | 956 | 1211 | 4 | 2171 | 0 of 22 | 1.2e10 | 2173 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2102 | 2649 | 2 | 4753 | 13 of 30 | 2.8e11 | 4753 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2093 | 2649 | 2 | 4744 | 13 of 30 | 2.8e11 | 4744 |
 //!
 //! # Proof
 //!
@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Carried<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 927 operations (411 ±, 515 ×, 1 ÷) and 13 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 927 operations (411 ±, 515 ×, 1 ÷) and 13 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -875,7 +875,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 927 operations (411 ±, 515 ×, 1 ÷) and 13 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 927 operations (411 ±, 515 ×, 1 ÷) and 13 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -8330,7 +8330,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             / (k(0.31277777777777777) + (t135 + k(0.025333333333333333)));
         *out = [-t136, T::fused(-k(1.6666666666666667), t121, t101 * t136)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 1725 operations (771 ±, 952 ×, 2 ÷) and 20 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 1724 operations (771 ±, 951 ×, 2 ÷) and 20 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -8340,96 +8340,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
         let u0 = x[2];
         let u1 = x[3];
         let (
+            t0,
+            t1,
+            t9,
             t11,
-            t13,
-            t14,
+            t12,
             t19,
             t20,
             t22,
             t23,
-            t24,
             t25,
-            t51,
-            t52,
-            t55,
-            t56,
-            t58,
-            t59,
-            t61,
+            t26,
+            t30,
+            t31,
+            t32,
+            t34,
+            t35,
+            t36,
+            t37,
+            t63,
             t64,
-            t65,
-            t68,
-            t69,
-            t70,
+            t66,
+            t67,
+            t71,
             t72,
-            t73,
-            t74,
             t75,
+            t76,
             t77,
-            t78,
             t79,
+            t80,
             t81,
-            t83,
+            t82,
             t84,
             t85,
             t86,
-            t87,
-            t89,
+            t88,
             t90,
             t91,
+            t92,
             t93,
             t94,
-            t95,
+            t96,
             t97,
             t98,
-            t99,
+            t100,
+            t101,
+            t102,
             t104,
             t105,
-            t107,
-            t108,
+            t106,
             t111,
-            t116,
-            t117,
+            t112,
+            t114,
+            t115,
             t118,
-            t119,
-            t121,
-            t122,
+            t123,
+            t124,
             t125,
             t126,
-            t127,
+            t128,
             t129,
+            t132,
+            t133,
             t134,
-            t135,
-            t137,
-            t139,
+            t136,
+            t141,
             t142,
-            t145,
+            t144,
             t146,
-            t147,
-            t148,
-            t150,
-            t151,
+            t149,
+            t152,
+            t153,
+            t154,
             t155,
-            t160,
-            t161,
-            t163,
-            t165,
+            t157,
+            t158,
+            t162,
+            t167,
             t168,
-            t171,
+            t170,
             t172,
-            t173,
-            t174,
             t175,
-            t176,
-            t177,
             t178,
             t179,
             t180,
             t181,
             t182,
-            t183,
+            t184,
             t185,
-            t186,
+            t187,
             t188,
             t189,
             t190,
@@ -8443,391 +8442,390 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             t198,
             t199,
         ) = {
-            let t0 = k(0.5) * x0;
-            let t1 = t0.sin();
-            let t2 = t0.cos();
-            let t3 = t2 * (k(2.0) * t1);
-            let t4 = k(0.6666666666666666) * t3;
-            let t5 = (t1 - t2) * (t1 + t2);
-            let t6 = T::fused(k(0.2222222222222222), t5, k(0.2222222222222222));
-            let t7 = t6 + t4;
-            let t8 = k(6.0) * t;
-            let t9 = t8.sin();
-            let t10 = k(0.5) * t9;
-            let t11 = t10.cos();
-            let t12 = T::fused(k(4.0), t, k(0.2));
-            let t13 = k(2.8) * t12.cos();
-            let t14 = t13 * t11;
-            let t15 = k(0.3333333333333333) * t3;
-            let t16 = T::fused(k(0.4444444444444444), t5, k(0.4444444444444444));
-            let t17 = t8.cos();
-            let t18 = t10.sin();
+            let t0 = k(0.3) - x0;
+            let t1 = k(0.6666666666666666) * t0;
+            let t2 = k(0.5) * x0;
+            let t3 = t2.cos();
+            let t4 = t2.sin();
+            let t5 = (t4 - t3) * (t4 + t3);
+            let t6 = k(6.0) * t;
+            let t7 = t6.sin();
+            let t8 = k(0.5) * t7;
+            let t9 = t8.cos();
+            let t10 = T::fused(k(4.0), t, k(0.2));
+            let t11 = k(2.8) * t10.cos();
+            let t12 = t11 * t9;
+            let t13 = t3 * (k(2.0) * t4);
+            let t14 = k(0.6666666666666666) * t13;
+            let t15 = T::fused(k(0.2222222222222222), t5, k(0.2222222222222222));
+            let t16 = t15 + t14;
+            let t17 = t6.cos();
+            let t18 = t8.sin();
             let t19 = k(0.8944271909999159) * t18;
-            let t20 = T::fused(-k(1.3416407864998738), t17, t13 * t19);
-            let t21 = T::fused(-k(0.5555555555555556), t5, k(0.4444444444444444));
+            let t20 = T::fused(-k(1.3416407864998738), t17, t11 * t19);
+            let t21 = t15 - t14;
             let t22 = k(0.4472135954999579) * t18;
-            let t23 = T::fused(k(2.6832815729997477), t17, t13 * t22);
-            let t24 = k(0.6666666666666666) * u0;
-            let t25 = t24 + T::fused(t23, t21, -T::fused(-t14, t7, t20 * (t16 - t15)));
-            let t26 = k(0.6666666666666666) * t1;
-            let t27 = k(0.25) * t9;
-            let t28 = t27.cos();
-            let t29 = t12.sin();
-            let t30 = k(0.35) * t29;
-            let t31 = t30.sin();
-            let t32 = t31 * t28;
-            let t33 = t32 * t26;
-            let t34 = t30.cos();
-            let t35 = t34 * t28;
-            let t36 = t35 * t26;
-            let t37 = k(0.3333333333333333) * t1;
-            let t38 = t27.sin();
-            let t39 = k(0.8944271909999159) * t38;
-            let t40 = k(0.4472135954999579) * t38;
-            let t41 = T::fused(t34, t39, t31 * t40);
-            let t42 = T::fused(-t31, t39, t34 * t40);
-            let t43 = T::fused(t42, t2, T::fused(t41, t37, t36) - t33);
-            let t44 = t41 * t26;
-            let t45 = t42 * t26;
-            let t46 = T::fused(t35, t2, -(T::fused(t32, t37, t45) + t44));
-            let t47 = t46 * t43;
-            let t48 = T::fused(t41, t2, t36 + T::fused(-t42, t37, t33));
-            let t49 = T::fused(t32, t2, t45 - T::fused(-t35, t37, t44));
-            let t50 = t49 * t48;
-            let t51 = t50 - t47;
-            let t52 = k(2.0) * t51;
-            let t53 = t6 - t4;
-            let t54 = T::fused(
+            let t23 = T::fused(k(2.6832815729997477), t17, t11 * t22);
+            let t24 = T::fused(
                 t23,
-                t53,
+                t21,
                 -T::fused(
-                    -t14,
+                    -t12,
                     T::fused(-k(0.8888888888888888), t5, k(0.1111111111111111)),
-                    t20 * t7,
+                    t20 * t16,
                 ),
             );
-            let t55 = k(0.3333333333333333) * u0;
-            let t56 = t55 + t54;
-            let t57 = t46 * t46;
-            let t58 = k(0.5) - T::fused(t48, t48, t57);
-            let t59 = k(2.0) * t58;
-            let t60 = T::fused(t52, t25, t59 * t56);
-            let t61 = t24 + T::fused(t23, t16 + t15, -T::fused(-t14, t53, t20 * t21));
-            let t62 = t46 * t49;
-            let t63 = t43 * t48;
-            let t64 = t63 + t62;
-            let t65 = k(2.0) * t64;
-            let t66 = T::fused(-t52, t61, t65 * t56);
-            let t67 = k(0.1) * t66;
-            let t68 = T::fused(k(0.1), t61, k(0.05) * t25);
-            let t69 = k(0.1) * t56;
-            let t70 = k(0.05) * t56;
-            let t71 = k(0.6666666666666666) * x1;
-            let t72 = k(0.1) + t71;
-            let t73 = T::fused(-k(0.3333333333333333), x1, k(0.1));
-            let t74 = T::fused(-t72, t61, t73 * t25);
-            let t75 = k(0.6666666666666666) * u1;
-            let t76 = t75 - t74;
-            let t77 = k(0.2) + t71;
-            let t78 = T::fused(-t77, t25, t72 * t56);
-            let t79 = k(0.3333333333333333) * u1;
-            let t80 = t79 + t78;
-            let t81 = T::fused(-t73, t56, t77 * t61);
-            let t82 = t75 - t81;
-            let t83 = k(0.1) * t25;
-            let t84 = k(0.2) * t25;
-            let t85 = T::fused(k(0.2), t61, t69);
-            let t86 = k(0.1) * t20;
-            let t87 = T::fused(k(0.2), t11, k(0.8));
-            let t88 = k(0.7) * t29;
-            let t89 = t88.cos();
-            let t90 = T::fused(-k(0.4), t11, k(0.4));
-            let t91 = t88.sin();
-            let t92 = t91 * t90;
-            let t93 = T::fused(t89, t87, t92);
-            let t94 = T::fused(-k(0.2), t14, k(0.1) * t23);
-            let t95 = T::fused(k(0.8), t11, k(0.2));
-            let t96 = t89 * t90;
-            let t97 = T::fused(t91, t95, t96);
-            let t98 = k(0.2) * t20;
-            let t99 = T::fused(-t89, t22, t91 * t19);
-            let t100 = T::fused(-t93, t86, T::fused(-t97, t94, t99 * t98))
-                - T::fused(t59, t85, T::fused(t52, t83, t65 * t84));
-            let t101 = t100 + T::fused(t59, t82, T::fused(-t52, t76, t65 * t80))
-                - T::fused(t59, t70, -T::fused(-t52, t68, t65 * t69));
-            let t102 = T::fused(t65, t25, t59 * t61);
-            let t103 = t100 - (T::fused(-k(0.1), t60, k(0.2) * t102) - t67)
-                - (t101 - T::fused(-k(0.05), t60, t67));
-            let t104 = T::fused(
-                k(1.3333333333333333),
-                t58,
-                T::fused(-k(1.3333333333333333), t51, k(0.6666666666666666) * t64),
-            );
-            let t105 = k(0.2) * t64;
-            let t106 = k(0.4) * t51;
-            let t107 = k(0.2) * t58;
-            let t108 = T::fused(k(0.2), t93, k(0.1) * t99) + (t106 - t105);
-            let t109 = T::fused(k(0.1), t64, t107);
-            let t110 = t109
-                - (t108 + T::fused(-t72, t59, T::fused(t73, t65, t77 * t52)));
-            let t111 = t109 - t110;
-            let t112 = t111 - (t108 - (t107 - (t106 + t105)));
-            let t113 = T::fused(
-                -t104,
-                t103,
-                t112
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t66,
-                        T::fused(
-                            k(0.3333333333333333),
-                            t60,
-                            k(0.6666666666666666) * t102,
-                        ),
-                    ),
-            );
-            let t114 = t46 * t48;
-            let t115 = t49 * t43;
-            let t116 = t115 + t114;
-            let t117 = k(2.0) * t116;
-            let t118 = t63 - t62;
-            let t119 = k(2.0) * t118;
-            let t120 = T::fused(-t117, t25, t119 * t56);
-            let t121 = k(0.5) - T::fused(t43, t43, t57);
-            let t122 = k(2.0) * t121;
-            let t123 = T::fused(t117, t61, t122 * t56);
-            let t124 = k(0.1) * t123;
-            let t125 = T::fused(-t91, t87, t96);
-            let t126 = T::fused(t89, t95, -t92);
-            let t127 = T::fused(t91, t22, t89 * t19);
-            let t128 = k(5.0) * t;
-            let t129 = t128.cos();
-            let t130 = t129 - T::fused(-t125, t86, T::fused(-t126, t94, t127 * t98))
-                - T::fused(t119, t85, T::fused(-t117, t83, t122 * t84));
-            let t131 = t130 + T::fused(t119, t82, T::fused(t117, t76, t122 * t80))
-                - T::fused(t119, t70, -T::fused(t117, t68, t122 * t69));
-            let t132 = T::fused(t122, t25, t119 * t61);
-            let t133 = t130 - (T::fused(-k(0.1), t120, k(0.2) * t132) - t124)
-                - (t131 - T::fused(-k(0.05), t120, t124));
-            let t134 = T::fused(
-                k(1.3333333333333333),
-                t118,
-                T::fused(k(1.3333333333333333), t116, k(0.6666666666666666) * t121),
-            );
-            let t135 = k(0.2) * t121;
-            let t136 = k(0.4) * t116;
-            let t137 = k(0.2) * t118;
-            let t138 = t128.sin();
-            let t139 = T::fused(k(0.2), t138, T::fused(k(0.2), t125, k(0.1) * t127))
-                + (t136 + t135);
-            let t140 = T::fused(k(0.1), t121, t137);
-            let t141 = t140
-                + (t139 + T::fused(t72, t119, T::fused(-t73, t122, t77 * t117)));
-            let t142 = t140 - t141;
-            let t143 = t142 + (t139 + (t137 + (t136 - t135)));
-            let t144 = T::fused(
-                -t134,
-                t133,
-                t143
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t123,
-                        T::fused(
-                            k(0.3333333333333333),
-                            t120,
-                            k(0.6666666666666666) * t132,
-                        ),
-                    ),
-            );
-            let t145 = k(0.5) - T::fused(t49, t49, t57);
-            let t146 = k(2.0) * t145;
-            let t147 = t50 + t47;
-            let t148 = k(2.0) * t147;
-            let t149 = T::fused(t146, t25, t148 * t56);
-            let t150 = t115 - t114;
-            let t151 = k(2.0) * t150;
-            let t152 = T::fused(t146, t61, t151 * t56);
-            let t153 = k(0.1) * t152;
-            let t154 = T::fused(k(3.0), t, k(0.4));
-            let t155 = k(0.3) * t154.cos();
-            let t156 = t155 - T::fused(-t22, t86, T::fused(t19, t94, t11 * t98))
-                - T::fused(t148, t85, -T::fused(-t146, t83, t151 * t84));
-            let t157 = t156 + T::fused(t148, t82, -T::fused(t146, t76, t151 * t80))
-                - T::fused(t148, t70, T::fused(t146, t68, t151 * t69));
-            let t158 = T::fused(-t151, t25, t148 * t61);
-            let t159 = t156 - (T::fused(-k(0.1), t149, k(0.2) * t158) + t153)
-                - (t157 + T::fused(k(0.05), t149, t153));
-            let t160 = T::fused(
-                k(1.3333333333333333),
-                t147,
-                -T::fused(k(1.3333333333333333), t145, k(0.6666666666666666) * t150),
-            );
-            let t161 = k(0.2) * t150;
-            let t162 = k(0.4) * t145;
-            let t163 = k(0.2) * t147;
-            let t164 = t154.sin();
-            let t165 = T::fused(
-                k(0.1),
-                t164,
-                T::fused(k(0.08944271909999159), t18, k(0.1) * t11),
-            ) - (t162 + t161);
-            let t166 = T::fused(k(0.1), t150, -t163);
-            let t167 = t166
-                - (t165 - T::fused(-t72, t148, T::fused(-t73, t151, t77 * t146)));
-            let t168 = t166 - t167;
-            let t169 = t168 - (t165 + (t163 - (t162 - t161)));
-            let t170 = T::fused(
-                t160,
-                t159,
-                t169
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t152,
-                        T::fused(
-                            k(0.3333333333333333),
-                            t149,
-                            k(0.6666666666666666) * t158,
-                        ),
-                    ),
-            );
-            let t171 = t170 - t144 - t113;
-            let t172 = k(0.5) * t171;
-            let t173 = T::fused(
+            let t25 = k(0.3333333333333333) * u0;
+            let t26 = t25 + t24;
+            let t27 = T::fused(-k(0.5555555555555556), t5, k(0.4444444444444444));
+            let t28 = k(0.3333333333333333) * t13;
+            let t29 = T::fused(k(0.4444444444444444), t5, k(0.4444444444444444));
+            let t30 = k(0.6666666666666666) * u0;
+            let t31 = t30 + T::fused(t23, t29 + t28, -T::fused(-t12, t21, t20 * t27));
+            let t32 = t30 + T::fused(t23, t27, -T::fused(-t12, t16, t20 * (t29 - t28)));
+            let t33 = T::fused(
                 k(0.6666666666666666),
                 t23,
-                T::fused(-k(0.6666666666666666), t20, k(0.3333333333333333) * t14),
+                T::fused(-k(0.6666666666666666), t20, k(0.3333333333333333) * t12),
             )
                 - T::fused(
                     k(0.6666666666666666),
-                    t25,
-                    T::fused(k(0.3333333333333333), t56, k(0.6666666666666666) * t61),
+                    t32,
+                    T::fused(k(0.3333333333333333), t26, k(0.6666666666666666) * t31),
                 );
-            let t174 = k(0.3) - x0;
-            let t175 = k(0.6666666666666666) * t174;
-            let t176 = k(0.03333333333333333) * t173;
-            let t177 = k(1.3333333333333333) * t174;
-            let t178 = k(0.06666666666666667) * t173;
-            let t179 = t178 + t177;
-            let t180 = k(30.0)
-                * (k(0.1) + T::fused(t104, t112, T::fused(-t160, t169, t134 * t143)));
-            let t181 = T::fused(t160, t172, t160 * t180);
-            let t182 = k(5.0) * t138;
-            let t183 = k(0.9) * t164;
-            let t184 = k(3.0) * t17;
-            let t185 = t184 * t11;
-            let t186 = k(0.8944271909999159) * t185;
-            let t187 = k(11.2) * t29;
-            let t188 = T::fused(
+            let t34 = k(0.03333333333333333) * t33;
+            let t35 = k(1.3333333333333333) * t0;
+            let t36 = k(0.06666666666666667) * t33;
+            let t37 = t36 + t35;
+            let t38 = k(0.6666666666666666) * t4;
+            let t39 = k(0.25) * t7;
+            let t40 = t39.cos();
+            let t41 = t10.sin();
+            let t42 = k(0.35) * t41;
+            let t43 = t42.sin();
+            let t44 = t43 * t40;
+            let t45 = t44 * t38;
+            let t46 = t42.cos();
+            let t47 = t46 * t40;
+            let t48 = t47 * t38;
+            let t49 = k(0.3333333333333333) * t4;
+            let t50 = t39.sin();
+            let t51 = k(0.8944271909999159) * t50;
+            let t52 = k(0.4472135954999579) * t50;
+            let t53 = T::fused(t46, t51, t43 * t52);
+            let t54 = T::fused(-t43, t51, t46 * t52);
+            let t55 = T::fused(t54, t3, T::fused(t53, t49, t48) - t45);
+            let t56 = t53 * t38;
+            let t57 = t54 * t38;
+            let t58 = T::fused(t47, t3, -(T::fused(t44, t49, t57) + t56));
+            let t59 = t58 * t55;
+            let t60 = T::fused(t53, t3, t48 + T::fused(-t54, t49, t45));
+            let t61 = T::fused(t44, t3, t57 - T::fused(-t47, t49, t56));
+            let t62 = t61 * t60;
+            let t63 = t62 - t59;
+            let t64 = k(2.0) * t63;
+            let t65 = t58 * t58;
+            let t66 = k(0.5) - T::fused(t60, t60, t65);
+            let t67 = k(2.0) * t66;
+            let t68 = T::fused(t64, t32, t67 * t26);
+            let t69 = t58 * t61;
+            let t70 = t55 * t60;
+            let t71 = t70 + t69;
+            let t72 = k(2.0) * t71;
+            let t73 = T::fused(-t64, t31, t72 * t26);
+            let t74 = k(0.1) * t73;
+            let t75 = T::fused(k(0.1), t31, k(0.05) * t32);
+            let t76 = k(0.1) * t26;
+            let t77 = k(0.05) * t26;
+            let t78 = k(0.6666666666666666) * x1;
+            let t79 = k(0.1) + t78;
+            let t80 = T::fused(-k(0.3333333333333333), x1, k(0.1));
+            let t81 = T::fused(-t79, t31, t80 * t32);
+            let t82 = k(0.6666666666666666) * u1;
+            let t83 = t82 - t81;
+            let t84 = k(0.2) + t78;
+            let t85 = T::fused(-t84, t32, t79 * t26);
+            let t86 = k(0.3333333333333333) * u1;
+            let t87 = t86 + t85;
+            let t88 = T::fused(-t80, t26, t84 * t31);
+            let t89 = t82 - t88;
+            let t90 = k(0.1) * t32;
+            let t91 = k(0.2) * t32;
+            let t92 = T::fused(k(0.2), t31, t76);
+            let t93 = k(0.1) * t20;
+            let t94 = T::fused(k(0.2), t9, k(0.8));
+            let t95 = k(0.7) * t41;
+            let t96 = t95.cos();
+            let t97 = T::fused(-k(0.4), t9, k(0.4));
+            let t98 = t95.sin();
+            let t99 = t98 * t97;
+            let t100 = T::fused(t96, t94, t99);
+            let t101 = T::fused(-k(0.2), t12, k(0.1) * t23);
+            let t102 = T::fused(k(0.8), t9, k(0.2));
+            let t103 = t96 * t97;
+            let t104 = T::fused(t98, t102, t103);
+            let t105 = k(0.2) * t20;
+            let t106 = T::fused(-t96, t22, t98 * t19);
+            let t107 = T::fused(-t100, t93, T::fused(-t104, t101, t106 * t105))
+                - T::fused(t67, t92, T::fused(t64, t90, t72 * t91));
+            let t108 = t107 + T::fused(t67, t89, T::fused(-t64, t83, t72 * t87))
+                - T::fused(t67, t77, -T::fused(-t64, t75, t72 * t76));
+            let t109 = T::fused(t72, t32, t67 * t31);
+            let t110 = t107 - (T::fused(-k(0.1), t68, k(0.2) * t109) - t74)
+                - (t108 - T::fused(-k(0.05), t68, t74));
+            let t111 = T::fused(
+                k(1.3333333333333333),
+                t66,
+                T::fused(-k(1.3333333333333333), t63, k(0.6666666666666666) * t71),
+            );
+            let t112 = k(0.2) * t71;
+            let t113 = k(0.4) * t63;
+            let t114 = k(0.2) * t66;
+            let t115 = T::fused(k(0.2), t100, k(0.1) * t106) + (t113 - t112);
+            let t116 = T::fused(k(0.1), t71, t114);
+            let t117 = t116
+                - (t115 + T::fused(-t79, t67, T::fused(t80, t72, t84 * t64)));
+            let t118 = t116 - t117;
+            let t119 = t118 - (t115 - (t114 - (t113 + t112)));
+            let t120 = T::fused(
+                -t111,
+                t110,
+                t119
+                    * T::fused(
+                        -k(0.6666666666666666),
+                        t73,
+                        T::fused(
+                            k(0.3333333333333333),
+                            t68,
+                            k(0.6666666666666666) * t109,
+                        ),
+                    ),
+            );
+            let t121 = t58 * t60;
+            let t122 = t61 * t55;
+            let t123 = t122 + t121;
+            let t124 = k(2.0) * t123;
+            let t125 = t70 - t69;
+            let t126 = k(2.0) * t125;
+            let t127 = T::fused(-t124, t32, t126 * t26);
+            let t128 = k(0.5) - T::fused(t55, t55, t65);
+            let t129 = k(2.0) * t128;
+            let t130 = T::fused(t124, t31, t129 * t26);
+            let t131 = k(0.1) * t130;
+            let t132 = T::fused(-t98, t94, t103);
+            let t133 = T::fused(t96, t102, -t99);
+            let t134 = T::fused(t98, t22, t96 * t19);
+            let t135 = k(5.0) * t;
+            let t136 = t135.cos();
+            let t137 = t136 - T::fused(-t132, t93, T::fused(-t133, t101, t134 * t105))
+                - T::fused(t126, t92, T::fused(-t124, t90, t129 * t91));
+            let t138 = t137 + T::fused(t126, t89, T::fused(t124, t83, t129 * t87))
+                - T::fused(t126, t77, -T::fused(t124, t75, t129 * t76));
+            let t139 = T::fused(t129, t32, t126 * t31);
+            let t140 = t137 - (T::fused(-k(0.1), t127, k(0.2) * t139) - t131)
+                - (t138 - T::fused(-k(0.05), t127, t131));
+            let t141 = T::fused(
+                k(1.3333333333333333),
+                t125,
+                T::fused(k(1.3333333333333333), t123, k(0.6666666666666666) * t128),
+            );
+            let t142 = k(0.2) * t128;
+            let t143 = k(0.4) * t123;
+            let t144 = k(0.2) * t125;
+            let t145 = t135.sin();
+            let t146 = T::fused(k(0.2), t145, T::fused(k(0.2), t132, k(0.1) * t134))
+                + (t143 + t142);
+            let t147 = T::fused(k(0.1), t128, t144);
+            let t148 = t147
+                + (t146 + T::fused(t79, t126, T::fused(-t80, t129, t84 * t124)));
+            let t149 = t147 - t148;
+            let t150 = t149 + (t146 + (t144 + (t143 - t142)));
+            let t151 = T::fused(
+                -t141,
+                t140,
+                t150
+                    * T::fused(
+                        -k(0.6666666666666666),
+                        t130,
+                        T::fused(
+                            k(0.3333333333333333),
+                            t127,
+                            k(0.6666666666666666) * t139,
+                        ),
+                    ),
+            );
+            let t152 = k(0.5) - T::fused(t61, t61, t65);
+            let t153 = k(2.0) * t152;
+            let t154 = t62 + t59;
+            let t155 = k(2.0) * t154;
+            let t156 = T::fused(t153, t32, t155 * t26);
+            let t157 = t122 - t121;
+            let t158 = k(2.0) * t157;
+            let t159 = T::fused(t153, t31, t158 * t26);
+            let t160 = k(0.1) * t159;
+            let t161 = T::fused(k(3.0), t, k(0.4));
+            let t162 = k(0.3) * t161.cos();
+            let t163 = t162 - T::fused(-t22, t93, T::fused(t19, t101, t9 * t105))
+                - T::fused(t155, t92, -T::fused(-t153, t90, t158 * t91));
+            let t164 = t163 + T::fused(t155, t89, -T::fused(t153, t83, t158 * t87))
+                - T::fused(t155, t77, T::fused(t153, t75, t158 * t76));
+            let t165 = T::fused(-t158, t32, t155 * t31);
+            let t166 = t163 - (T::fused(-k(0.1), t156, k(0.2) * t165) + t160)
+                - (t164 + T::fused(k(0.05), t156, t160));
+            let t167 = T::fused(
+                k(1.3333333333333333),
+                t154,
+                -T::fused(k(1.3333333333333333), t152, k(0.6666666666666666) * t157),
+            );
+            let t168 = k(0.2) * t157;
+            let t169 = k(0.4) * t152;
+            let t170 = k(0.2) * t154;
+            let t171 = t161.sin();
+            let t172 = T::fused(
+                k(0.1),
+                t171,
+                T::fused(k(0.08944271909999159), t18, k(0.1) * t9),
+            ) - (t169 + t168);
+            let t173 = T::fused(k(0.1), t157, -t170);
+            let t174 = t173
+                - (t172 - T::fused(-t79, t155, T::fused(-t80, t158, t84 * t153)));
+            let t175 = t173 - t174;
+            let t176 = t175 - (t172 + (t170 - (t169 - t168)));
+            let t177 = T::fused(
+                t167,
+                t166,
+                t176
+                    * T::fused(
+                        k(0.6666666666666666),
+                        t159,
+                        T::fused(
+                            k(0.3333333333333333),
+                            t156,
+                            k(0.6666666666666666) * t165,
+                        ),
+                    ),
+            );
+            let t178 = k(0.5) * (t177 - t151 - t120);
+            let t179 = k(30.0)
+                * (k(0.1) + T::fused(t111, t119, T::fused(-t167, t176, t141 * t150)));
+            let t180 = T::fused(t167, t178, t167 * t179);
+            let t181 = k(5.0) * t145;
+            let t182 = k(0.9) * t171;
+            let t183 = k(3.0) * t17;
+            let t184 = t183 * t9;
+            let t185 = k(0.8944271909999159) * t184;
+            let t186 = k(11.2) * t41;
+            let t187 = T::fused(
                 k(8.049844718999243),
-                t9,
-                -T::fused(-t13, t186, t19 * t187),
+                t7,
+                -T::fused(-t11, t185, t19 * t186),
             );
-            let t189 = k(0.2) * t188;
-            let t190 = t189 + T::fused(t127, t182, t11 * t183);
-            let t191 = x0.cos();
-            let t192 = T::fused(k(0.8888888888888888), t191, k(0.1111111111111111));
-            let t193 = t184 * t18;
-            let t194 = T::fused(t13, t193, t11 * t187);
-            let t195 = k(0.4472135954999579) * t185;
-            let t196 = T::fused(
+            let t188 = k(0.2) * t187;
+            let t189 = t188 + T::fused(t134, t181, t9 * t182);
+            let t190 = x0.cos();
+            let t191 = T::fused(k(0.8888888888888888), t190, k(0.1111111111111111));
+            let t192 = t183 * t18;
+            let t193 = T::fused(t11, t192, t9 * t186);
+            let t194 = k(0.4472135954999579) * t184;
+            let t195 = T::fused(
                 k(16.099689437998485),
-                t9,
-                T::fused(-t13, t195, t22 * t187),
+                t7,
+                T::fused(-t11, t194, t22 * t186),
             );
-            let t197 = T::fused(-k(0.2), t194, k(0.1) * t196);
-            let t198 = t197 - T::fused(-t126, t182, t19 * t183);
-            let t199 = x0.sin();
+            let t196 = T::fused(-k(0.2), t193, k(0.1) * t195);
+            let t197 = t196 - T::fused(-t133, t181, t19 * t182);
+            let t198 = x0.sin();
+            let t199 = k(0.6666666666666666) * t198;
             (
+                t0,
+                t1,
+                t9,
                 t11,
-                t13,
-                t14,
+                t12,
                 t19,
                 t20,
                 t22,
                 t23,
-                t24,
                 t25,
-                t51,
-                t52,
-                t55,
-                t56,
-                t58,
-                t59,
-                t61,
+                t26,
+                t30,
+                t31,
+                t32,
+                t34,
+                t35,
+                t36,
+                t37,
+                t63,
                 t64,
-                t65,
-                t68,
-                t69,
-                t70,
+                t66,
+                t67,
+                t71,
                 t72,
-                t73,
-                t74,
                 t75,
+                t76,
                 t77,
-                t78,
                 t79,
+                t80,
                 t81,
-                t83,
+                t82,
                 t84,
                 t85,
                 t86,
-                t87,
-                t89,
+                t88,
                 t90,
                 t91,
+                t92,
                 t93,
                 t94,
-                t95,
+                t96,
                 t97,
                 t98,
-                t99,
+                t100,
+                t101,
+                t102,
                 t104,
                 t105,
-                t107,
-                t108,
+                t106,
                 t111,
-                t116,
-                t117,
+                t112,
+                t114,
+                t115,
                 t118,
-                t119,
-                t121,
-                t122,
+                t123,
+                t124,
                 t125,
                 t126,
-                t127,
+                t128,
                 t129,
+                t132,
+                t133,
                 t134,
-                t135,
-                t137,
-                t139,
+                t136,
+                t141,
                 t142,
-                t145,
+                t144,
                 t146,
-                t147,
-                t148,
-                t150,
-                t151,
+                t149,
+                t152,
+                t153,
+                t154,
                 t155,
-                t160,
-                t161,
-                t163,
-                t165,
+                t157,
+                t158,
+                t162,
+                t167,
                 t168,
-                t171,
+                t170,
                 t172,
-                t173,
-                t174,
                 t175,
-                t176,
-                t177,
                 t178,
                 t179,
                 t180,
                 t181,
                 t182,
-                t183,
+                t184,
                 t185,
-                t186,
+                t187,
                 t188,
                 t189,
                 t190,
@@ -8843,6 +8841,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             )
         };
         let (
+            t270,
+            t272,
             t304,
             t305,
             t308,
@@ -8885,342 +8885,342 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             t398,
             t399,
         ) = {
-            let t200 = k(0.6666666666666666) * t199;
-            let t201 = T::fused(-k(0.2222222222222222), t191, k(0.2222222222222222));
-            let t202 = t201 + t200;
-            let t203 = k(0.1) * t188;
-            let t204 = t203 - T::fused(t125, t182, t22 * t183);
-            let t205 = t201 - t200;
-            let t206 = T::fused(t205, t204, -T::fused(t192, t190, t202 * t198));
-            let t207 = T::fused(k(0.5555555555555556), t191, k(0.4444444444444444));
-            let t208 = k(0.3333333333333333) * t199;
-            let t209 = T::fused(-k(0.4444444444444444), t191, k(0.4444444444444444));
-            let t210 = t209 + t208;
-            let t211 = T::fused(t210, t204, -T::fused(t205, t190, t207 * t198));
-            let t212 = t209 - t208;
-            let t213 = T::fused(t207, t204, -T::fused(t202, t190, t212 * t198));
-            let t214 = T::fused(t61, t85, t25 * t84);
-            let t215 = T::fused(t25, t83, t56 * t85);
-            let t216 = T::fused(-t56, t84, t61 * t83);
-            let t217 = T::fused(-t20, t98, t14 * t94);
-            let t218 = T::fused(t14, t86, t23 * t98);
-            let t219 = T::fused(t23, t94, t20 * t86);
-            let t220 = T::fused(-t22, t217, T::fused(-t19, t218, t11 * t219))
-                + T::fused(t148, t216, -T::fused(t146, t214, t151 * t215));
-            let t221 = T::fused(t196, t205, T::fused(t194, t192, t188 * t202));
-            let t222 = t55 + T::fused(t23, t205, -T::fused(-t14, t192, t20 * t202));
-            let t223 = t24 * t222;
-            let t224 = t24 + T::fused(t23, t210, -T::fused(-t14, t205, t20 * t207));
-            let t225 = T::fused(t196, t207, T::fused(t194, t202, t188 * t212));
-            let t226 = t225 + T::fused(t55, t224, -t223);
-            let t227 = k(0.1) * t222;
-            let t228 = T::fused(k(0.2), t224, t227);
-            let t229 = t24 + T::fused(t23, t207, -T::fused(-t14, t202, t20 * t212));
-            let t230 = k(0.2) * t229;
-            let t231 = T::fused(t217, t205, -T::fused(t219, t192, t218 * t202))
-                - T::fused(t224, t228, t229 * t230);
-            let t232 = k(9.0) - t182;
-            let t233 = k(1.0) + t183;
-            let t234 = T::fused(k(3.0), t99, T::fused(-t127, t232, t11 * t233)) + t189;
-            let t235 = T::fused(-k(3.0), t97, T::fused(t126, t232, t19 * t233)) - t197;
-            let t236 = T::fused(k(3.0), t93, T::fused(-t125, t232, t22 * t233)) - t203;
-            let t237 = T::fused(
+            let t200 = T::fused(-k(0.2222222222222222), t190, k(0.2222222222222222));
+            let t201 = t200 + t199;
+            let t202 = k(0.1) * t187;
+            let t203 = t202 - T::fused(t132, t181, t22 * t182);
+            let t204 = t200 - t199;
+            let t205 = T::fused(t204, t203, -T::fused(t191, t189, t201 * t197));
+            let t206 = T::fused(k(0.5555555555555556), t190, k(0.4444444444444444));
+            let t207 = k(0.3333333333333333) * t198;
+            let t208 = T::fused(-k(0.4444444444444444), t190, k(0.4444444444444444));
+            let t209 = t208 + t207;
+            let t210 = T::fused(t209, t203, -T::fused(t204, t189, t206 * t197));
+            let t211 = t208 - t207;
+            let t212 = T::fused(t206, t203, -T::fused(t201, t189, t211 * t197));
+            let t213 = T::fused(t31, t92, t32 * t91);
+            let t214 = T::fused(t32, t90, t26 * t92);
+            let t215 = T::fused(-t26, t91, t31 * t90);
+            let t216 = T::fused(-t20, t105, t12 * t101);
+            let t217 = T::fused(t12, t93, t23 * t105);
+            let t218 = T::fused(t23, t101, t20 * t93);
+            let t219 = T::fused(-t22, t216, T::fused(-t19, t217, t9 * t218))
+                + T::fused(t155, t215, -T::fused(t153, t213, t158 * t214));
+            let t220 = T::fused(t195, t204, T::fused(t193, t191, t187 * t201));
+            let t221 = t25 + T::fused(t23, t204, -T::fused(-t12, t191, t20 * t201));
+            let t222 = t30 * t221;
+            let t223 = t30 + T::fused(t23, t209, -T::fused(-t12, t204, t20 * t206));
+            let t224 = T::fused(t195, t206, T::fused(t193, t201, t187 * t211));
+            let t225 = t224 + T::fused(t25, t223, -t222);
+            let t226 = k(0.1) * t221;
+            let t227 = T::fused(k(0.2), t223, t226);
+            let t228 = t30 + T::fused(t23, t206, -T::fused(-t12, t201, t20 * t211));
+            let t229 = k(0.2) * t228;
+            let t230 = T::fused(t216, t204, -T::fused(t218, t191, t217 * t201))
+                - T::fused(t223, t227, t228 * t229);
+            let t231 = k(9.0) - t181;
+            let t232 = k(1.0) + t182;
+            let t233 = T::fused(k(3.0), t106, T::fused(-t134, t231, t9 * t232)) + t188;
+            let t234 = T::fused(-k(3.0), t104, T::fused(t133, t231, t19 * t232)) - t196;
+            let t235 = T::fused(k(3.0), t100, T::fused(-t132, t231, t22 * t232)) - t202;
+            let t236 = T::fused(
                 k(0.1),
-                t226,
-                T::fused(t236, t205, -T::fused(-t234, t192, t235 * t202)) - t231,
+                t225,
+                T::fused(t235, t204, -T::fused(-t233, t191, t234 * t201)) - t230,
             );
-            let t238 = k(0.2) * t226;
-            let t239 = k(0.1) * t229;
-            let t240 = T::fused(t217, t210, -T::fused(t219, t205, t218 * t207))
-                + T::fused(t229, t239, t222 * t228);
-            let t241 = T::fused(t236, t210, -T::fused(-t234, t205, t235 * t207)) - t240
-                + t238;
-            let t242 = t221 + T::fused(-t24, t224, t24 * t229);
-            let t243 = k(0.1) * t242;
-            let t244 = T::fused(t196, t210, T::fused(t194, t205, t188 * t207));
-            let t245 = t244 + T::fused(-t55, t229, t223);
-            let t246 = T::fused(t217, t207, -T::fused(t219, t202, t218 * t212))
-                - T::fused(-t222, t230, t224 * t239);
-            let t247 = T::fused(t236, t207, -T::fused(-t234, t202, t235 * t212)) - t246
-                - T::fused(k(0.2), t245, t243);
-            let t248 = k(0.02) * t229;
-            let t249 = k(0.03) * t224;
-            let t250 = t224 * t229;
-            let t251 = t229 * t229;
-            let t252 = t224 * t224;
-            let t253 = t252 - t251;
-            let t254 = T::fused(
-                -t222,
-                t249 + t248,
-                T::fused(-k(0.05), t250, k(0.01) * t253),
-            ) + T::fused(k(0.03), t226, -T::fused(k(0.3), t242, k(0.02) * t245));
-            let t255 = k(0.02) * t242;
-            let t256 = k(0.01) * t222;
-            let t257 = t222 * t229;
-            let t258 = t222 * t222;
-            let t259 = t258 - t251;
-            let t260 = T::fused(
-                -t224,
-                t256 - t248,
-                T::fused(k(0.1), t257, k(0.03) * t259),
-            ) - T::fused(k(0.01), t226, T::fused(k(0.25), t245, t255));
-            let t261 = t224 * t222;
-            let t262 = t258 - t252;
+            let t237 = k(0.2) * t225;
+            let t238 = k(0.1) * t228;
+            let t239 = T::fused(t216, t209, -T::fused(t218, t204, t217 * t206))
+                + T::fused(t228, t238, t221 * t227);
+            let t240 = T::fused(t235, t209, -T::fused(-t233, t204, t234 * t206)) - t239
+                + t237;
+            let t241 = t220 + T::fused(-t30, t223, t30 * t228);
+            let t242 = k(0.1) * t241;
+            let t243 = T::fused(t195, t209, T::fused(t193, t204, t187 * t206));
+            let t244 = t243 + T::fused(-t25, t228, t222);
+            let t245 = T::fused(t216, t206, -T::fused(t218, t201, t217 * t211))
+                - T::fused(-t221, t229, t223 * t238);
+            let t246 = T::fused(t235, t206, -T::fused(-t233, t201, t234 * t211)) - t245
+                - T::fused(k(0.2), t244, t242);
+            let t247 = k(0.02) * t228;
+            let t248 = k(0.03) * t223;
+            let t249 = t223 * t228;
+            let t250 = t228 * t228;
+            let t251 = t223 * t223;
+            let t252 = t251 - t250;
+            let t253 = T::fused(
+                -t221,
+                t248 + t247,
+                T::fused(-k(0.05), t249, k(0.01) * t252),
+            ) + T::fused(k(0.03), t225, -T::fused(k(0.3), t241, k(0.02) * t244));
+            let t254 = k(0.02) * t241;
+            let t255 = k(0.01) * t221;
+            let t256 = t221 * t228;
+            let t257 = t221 * t221;
+            let t258 = t257 - t250;
+            let t259 = T::fused(
+                -t223,
+                t255 - t247,
+                T::fused(k(0.1), t256, k(0.03) * t258),
+            ) - T::fused(k(0.01), t225, T::fused(k(0.25), t244, t254));
+            let t260 = t223 * t221;
+            let t261 = t257 - t251;
+            let t262 = T::fused(
+                t228,
+                t255 + t248,
+                T::fused(-k(0.05), t260, k(0.02) * t261),
+            ) - (t237 + T::fused(-k(0.03), t241, k(0.01) * t244));
             let t263 = T::fused(
-                t229,
-                t256 + t249,
-                T::fused(-k(0.05), t261, k(0.02) * t262),
-            ) - (t238 + T::fused(-k(0.03), t242, k(0.01) * t245));
-            let t264 = T::fused(
                 k(0.6666666666666666),
-                t263,
-                T::fused(k(0.3333333333333333), t254, k(0.6666666666666666) * t260),
-            ) + T::fused(k(0.25), t247, -T::fused(k(0.1), t237, k(0.2) * t241));
-            let t265 = k(0.6666666666666666) * t77;
-            let t266 = k(0.016666666666666666)
-                + (k(0.16666666666666666) + T::fused(-k(0.3333333333333333), t73, t265));
-            let t267 = k(0.03333333333333333)
-                - (k(0.13333333333333333) - T::fused(k(0.3333333333333333), t72, -t265));
-            let t268 = k(0.1)
-                + T::fused(-k(0.6666666666666666), t73 - t72, k(0.06666666666666667));
-            let t269 = T::fused(-k(0.4), t266, T::fused(k(0.2), t267, k(0.4) * t268));
-            let t270 = k(1.6666666666666667) * t269;
-            let t271 = T::fused(-k(30.0), k(0.1) - x1, k(0.5) * u1);
-            let t272 = k(0.05) * t222;
-            let t273 = t75 * t224;
-            let t274 = T::fused(-t73, t222, t77 * t224);
-            let t275 = T::fused(-t77, t229, t72 * t222);
-            let t276 = T::fused(
+                t262,
+                T::fused(k(0.3333333333333333), t253, k(0.6666666666666666) * t259),
+            ) + T::fused(k(0.25), t246, -T::fused(k(0.1), t236, k(0.2) * t240));
+            let t264 = k(0.6666666666666666) * t84;
+            let t265 = k(0.016666666666666666)
+                + (k(0.16666666666666666) + T::fused(-k(0.3333333333333333), t80, t264));
+            let t266 = k(0.03333333333333333)
+                - (k(0.13333333333333333) - T::fused(k(0.3333333333333333), t79, -t264));
+            let t267 = k(0.1)
+                + T::fused(-k(0.6666666666666666), t80 - t79, k(0.06666666666666667));
+            let t268 = T::fused(-k(0.4), t265, T::fused(k(0.2), t266, k(0.4) * t267));
+            let t269 = k(1.6666666666666667) * t268;
+            let t270 = k(0.5) * u1;
+            let t271 = T::fused(-k(30.0), k(0.1) - x1, t270);
+            let t272 = k(0.1) * u0;
+            let t273 = k(0.05) * t221;
+            let t274 = t82 * t223;
+            let t275 = T::fused(-t80, t221, t84 * t223);
+            let t276 = T::fused(-t84, t228, t79 * t221);
+            let t277 = T::fused(
                 k(2.0),
-                T::fused(t79, t229, t273),
-                T::fused(-t224, t274, t229 * t275),
+                T::fused(t86, t228, t274),
+                T::fused(-t223, t275, t228 * t276),
             );
-            let t277 = t276 + T::fused(-t224, t272, t229 * t227)
-                + (T::fused(-t72, t245, t73 * t226) - t237);
-            let t278 = T::fused(k(0.1), t245, k(0.05) * t226) - t277;
-            let t279 = T::fused(k(0.1), t224, k(0.05) * t229);
-            let t280 = T::fused(-t72, t224, t73 * t229);
-            let t281 = T::fused(
+            let t278 = t277 + T::fused(-t223, t273, t228 * t226)
+                + (T::fused(-t79, t244, t80 * t225) - t236);
+            let t279 = T::fused(k(0.1), t244, k(0.05) * t225) - t278;
+            let t280 = T::fused(k(0.1), t223, k(0.05) * t228);
+            let t281 = T::fused(-t79, t223, t80 * t228);
+            let t282 = T::fused(
                 -k(2.0),
-                T::fused(-t75, t229, t75 * t222),
-                T::fused(-t229, t280, t222 * t274),
+                T::fused(-t82, t228, t82 * t221),
+                T::fused(-t228, t281, t221 * t275),
             );
-            let t282 = t281 + T::fused(t229, t279, t222 * t272)
-                - (T::fused(-t72, t242, t77 * t226) + t241);
-            let t283 = t243 + t282;
-            let t284 = T::fused(
+            let t283 = t282 + T::fused(t228, t280, t221 * t273)
+                - (T::fused(-t79, t241, t84 * t225) + t240);
+            let t284 = t242 + t283;
+            let t285 = T::fused(
                 -k(2.0),
-                T::fused(t79, t222, t273),
-                T::fused(-t222, t275, t224 * t280),
+                T::fused(t86, t221, t274),
+                T::fused(-t221, t276, t223 * t281),
             );
-            let t285 = t284 - T::fused(t222, t227, t224 * t279)
-                + (T::fused(-t73, t242, t77 * t245) - t247);
-            let t286 = T::fused(k(0.05), t242, t285);
-            let t287 = t271
-                + T::fused(k(0.4), t286, -T::fused(k(0.4), t278, k(0.2) * t283));
-            let t288 = k(0.6666666666666666) * t287;
-            let t289 = k(1.1111111111111112) * t269;
-            let t290 = t268 - t289;
-            let t291 = T::fused(-k(0.5555555555555556), t269, t267);
-            let t292 = T::fused(
-                t290,
-                T::fused(k(0.6), t278, t288),
-                t291 * T::fused(k(0.6), t283, k(0.3333333333333333) * t287),
+            let t286 = t285 - T::fused(t221, t226, t223 * t280)
+                + (T::fused(-t80, t241, t84 * t244) - t246);
+            let t287 = T::fused(k(0.05), t241, t286);
+            let t288 = t271
+                + T::fused(k(0.4), t287, -T::fused(k(0.4), t279, k(0.2) * t284));
+            let t289 = k(0.6666666666666666) * t288;
+            let t290 = k(1.1111111111111112) * t268;
+            let t291 = t267 - t290;
+            let t292 = T::fused(-k(0.5555555555555556), t268, t266);
+            let t293 = T::fused(
+                t291,
+                T::fused(k(0.6), t279, t289),
+                t292 * T::fused(k(0.6), t284, k(0.3333333333333333) * t288),
             );
-            let t293 = t266 + t289;
-            let t294 = k(0.001) * t229;
-            let t295 = k(0.002) * t224;
-            let t296 = T::fused(
-                -t222,
-                t295 - t294,
-                T::fused(k(0.005), t250, k(0.003) * t253),
-            ) + T::fused(k(0.002), t226, T::fused(k(0.001), t245, t255));
-            let t297 = k(0.003) * t222;
-            let t298 = T::fused(
-                -t224,
-                t297 + t294,
-                T::fused(k(0.005), t257, k(0.002) * t259),
-            ) - T::fused(k(0.003), t226, -T::fused(k(0.001), t242, k(0.03) * t245));
+            let t294 = t265 + t290;
+            let t295 = k(0.001) * t228;
+            let t296 = k(0.002) * t223;
+            let t297 = T::fused(
+                -t221,
+                t296 - t295,
+                T::fused(k(0.005), t249, k(0.003) * t252),
+            ) + T::fused(k(0.002), t225, T::fused(k(0.001), t244, t254));
+            let t298 = k(0.003) * t221;
             let t299 = T::fused(
-                -t229,
-                t297 + t295,
-                T::fused(k(0.01), t261, k(0.001) * t262),
-            ) - T::fused(k(0.025), t226, -T::fused(-k(0.002), t242, k(0.003) * t245));
+                -t223,
+                t298 + t295,
+                T::fused(k(0.005), t256, k(0.002) * t258),
+            ) - T::fused(k(0.003), t225, -T::fused(k(0.001), t241, k(0.03) * t244));
             let t300 = T::fused(
+                -t228,
+                t298 + t296,
+                T::fused(k(0.01), t260, k(0.001) * t261),
+            ) - T::fused(k(0.025), t225, -T::fused(-k(0.002), t241, k(0.003) * t244));
+            let t301 = T::fused(
                 k(0.6666666666666666),
-                t299,
-                -T::fused(k(0.3333333333333333), t296, k(0.6666666666666666) * t298),
-            ) + T::fused(t293, T::fused(-k(0.6), t286, t288), -t292);
-            let t301 = t300
-                - (T::fused(t271, t270, T::fused(-k(0.1), u0, k(2.0) * t174)) - t264);
+                t300,
+                -T::fused(k(0.3333333333333333), t297, k(0.6666666666666666) * t299),
+            ) + T::fused(t294, T::fused(-k(0.6), t287, t289), -t293);
             let t302 = T::fused(
-                t293,
-                k(0.6) * t293,
-                T::fused(t291, k(0.6) * t291, t290 * (k(0.6) * t290)),
+                t294,
+                k(0.6) * t294,
+                T::fused(t292, k(0.6) * t292, t291 * (k(0.6) * t291)),
             );
-            let t303 = t301
+            let t303 = (t301
+                - (T::fused(t271, t269, T::fused(k(2.0), t0, -t272)) - t263))
                 / (k(0.31277777777777777) + (t302 + k(0.025333333333333333)));
             let t304 = T::fused(
                 k(0.3333333333333333),
                 t303,
-                t221 + T::fused(-t24, t61, t24 * t25),
+                t220 + T::fused(-t30, t31, t30 * t32),
             );
-            let t305 = k(0.4) * t147;
-            let t306 = t24 * t56;
+            let t305 = k(0.4) * t154;
+            let t306 = t30 * t26;
             let t307 = k(0.6666666666666666) * t303;
-            let t308 = t307 + (t244 + T::fused(-t55, t25, t306));
-            let t309 = k(0.2) * t145;
-            let t310 = T::fused(k(0.4), t150, -t309);
-            let t311 = t307 + (t225 + T::fused(t55, t61, -t306));
-            let t312 = T::fused(t311, t310, -T::fused(t163, t304, t308 * t305))
-                + (t220 - T::fused(t148, t213, T::fused(-t146, t206, t151 * t211)));
-            let t313 = t75 * t61;
+            let t308 = t307 + (t243 + T::fused(-t25, t32, t306));
+            let t309 = k(0.2) * t152;
+            let t310 = T::fused(k(0.4), t157, -t309);
+            let t311 = t307 + (t224 + T::fused(t25, t31, -t306));
+            let t312 = T::fused(t311, t310, -T::fused(t170, t304, t308 * t305))
+                + (t219 - T::fused(t155, t212, T::fused(-t153, t205, t158 * t210)));
+            let t313 = t82 * t31;
             let t314 = T::fused(
                 k(2.0),
-                T::fused(t79, t25, t313),
-                T::fused(-t61, t81, t25 * t78),
+                T::fused(t86, t32, t313),
+                T::fused(-t31, t88, t32 * t85),
             );
             let t315 = T::fused(
                 -k(2.0),
-                T::fused(-t75, t25, t75 * t56),
-                T::fused(-t25, t74, t56 * t81),
+                T::fused(-t82, t32, t82 * t26),
+                T::fused(-t32, t81, t26 * t88),
             );
             let t316 = T::fused(
                 -k(2.0),
-                T::fused(t79, t56, t313),
-                T::fused(-t56, t78, t61 * t74),
+                T::fused(t86, t26, t313),
+                T::fused(-t26, t85, t31 * t81),
             );
-            let t317 = T::fused(-t61, t70, t69 * t25);
-            let t318 = T::fused(t25, t68, t56 * t70);
-            let t319 = T::fused(t56, t69, t61 * t68);
-            let t320 = T::fused(t148, t319, -T::fused(-t146, t317, t151 * t318))
-                - T::fused(t148, t316, T::fused(-t146, t314, t151 * t315));
+            let t317 = T::fused(-t31, t77, t76 * t32);
+            let t318 = T::fused(t32, t75, t26 * t77);
+            let t319 = T::fused(t26, t76, t31 * t75);
+            let t320 = T::fused(t155, t319, -T::fused(-t153, t317, t158 * t318))
+                - T::fused(t155, t316, T::fused(-t153, t314, t158 * t315));
             let t321 = T::fused(
                 -t304,
-                T::fused(-t72, t151, t73 * t148),
-                t308 * T::fused(t72, t146, t77 * t148),
+                T::fused(-t79, t158, t80 * t155),
+                t308 * T::fused(t79, t153, t84 * t155),
             );
-            let t322 = t312 + T::fused(t311, T::fused(t73, t146, t77 * t151), -t321)
+            let t322 = t312 + T::fused(t311, T::fused(t80, t153, t84 * t158), -t321)
                 + t320;
-            let t323 = T::fused(-k(1.6666666666666667), t287, t270 * t303);
-            let t324 = T::fused(k(0.1), t147, t161);
-            let t325 = k(0.1) * t145;
+            let t323 = T::fused(-k(1.6666666666666667), t288, t269 * t303);
+            let t324 = T::fused(k(0.1), t154, t168);
+            let t325 = k(0.1) * t152;
             let t326 = T::fused(t311, t325, T::fused(t304, t324, t309 * t308))
-                + T::fused(t323, t160, -t322);
-            let t327 = T::fused(k(0.6), t326, -(k(0.6) + t181));
-            let t328 = t327 - T::fused(k(1.5), t312, k(1.5) - t181);
+                + T::fused(t323, t167, -t322);
+            let t327 = T::fused(k(0.6), t326, -(k(0.6) + t180));
+            let t328 = t327 - T::fused(k(1.5), t312, k(1.5) - t180);
             let t329 = T::fused(
-                t155 + T::fused(-k(0.1), t193, k(0.08944271909999159) * t185),
+                t162 + T::fused(-k(0.1), t192, k(0.08944271909999159) * t184),
                 t328,
-                T::fused(t23, t179, -T::fused(-t14, t176 + t175, t20 * t179)),
+                T::fused(t23, t37, -T::fused(-t12, t34 + t1, t20 * t37)),
             );
-            let t330 = T::fused(t134, t172, t134 * t180);
-            let t331 = T::fused(-t125, t217, T::fused(t126, t218, t127 * t219))
-                + T::fused(t119, t216, T::fused(t117, t214, t122 * t215));
-            let t332 = k(0.4) * t118;
-            let t333 = k(0.2) * t116;
-            let t334 = T::fused(k(0.4), t121, -t333);
-            let t335 = T::fused(t311, t334, T::fused(t137, t304, t308 * t332))
-                - (t331 - T::fused(t119, t213, -T::fused(-t117, t206, t122 * t211)));
-            let t336 = T::fused(t119, t319, T::fused(-t117, t317, t122 * t318))
-                - T::fused(t119, t316, -T::fused(-t117, t314, t122 * t315));
+            let t330 = T::fused(t141, t178, t141 * t179);
+            let t331 = T::fused(-t132, t216, T::fused(t133, t217, t134 * t218))
+                + T::fused(t126, t215, T::fused(t124, t213, t129 * t214));
+            let t332 = k(0.4) * t125;
+            let t333 = k(0.2) * t123;
+            let t334 = T::fused(k(0.4), t128, -t333);
+            let t335 = T::fused(t311, t334, T::fused(t144, t304, t308 * t332))
+                - (t331 - T::fused(t126, t212, -T::fused(-t124, t205, t129 * t210)));
+            let t336 = T::fused(t126, t319, T::fused(-t124, t317, t129 * t318))
+                - T::fused(t126, t316, -T::fused(-t124, t314, t129 * t315));
             let t337 = T::fused(
                 -t304,
-                T::fused(t72, t122, t73 * t119),
-                t308 * T::fused(-t72, t117, t77 * t119),
+                T::fused(t79, t129, t80 * t126),
+                t308 * T::fused(-t79, t124, t84 * t126),
             );
-            let t338 = t335 + T::fused(t311, T::fused(t73, t117, t77 * t122), t337)
+            let t338 = t335 + T::fused(t311, T::fused(t80, t124, t84 * t129), t337)
                 - t336;
-            let t339 = T::fused(-k(0.1), t118, t135);
-            let t340 = k(0.1) * t116;
+            let t339 = T::fused(-k(0.1), t125, t142);
+            let t340 = k(0.1) * t123;
             let t341 = T::fused(t311, t340, T::fused(t304, t339, t308 * t333))
-                - T::fused(t323, t134, t338);
+                - T::fused(t323, t141, t338);
             let t342 = T::fused(k(0.6), t341, -(k(5.4) - t330));
             let t343 = t342 - T::fused(k(1.5), t335, k(13.5) + t330);
-            let t344 = t13 * t91;
-            let t345 = t13 * t89;
-            let t346 = T::fused(t91, t195, t22 * t345)
-                - T::fused(-t89, t186, t19 * t344);
-            let t347 = k(0.4) * t193;
-            let t348 = T::fused(-t89, t347, t90 * t344);
-            let t349 = k(0.2) * t193;
-            let t350 = T::fused(-t91, t349, t87 * t345) + t348;
-            let t351 = T::fused(t104, t172, t104 * t180);
-            let t352 = T::fused(-t93, t217, T::fused(t97, t218, t99 * t219))
-                - T::fused(t59, t216, T::fused(-t52, t214, t65 * t215));
-            let t353 = k(0.4) * t58;
-            let t354 = k(0.2) * t51;
-            let t355 = T::fused(k(0.4), t64, t354);
-            let t356 = T::fused(t311, t355, T::fused(t107, t304, t308 * t353))
-                + (t352 + T::fused(t59, t213, -T::fused(t52, t206, t65 * t211)));
-            let t357 = T::fused(t59, t319, T::fused(t52, t317, t65 * t318))
-                - T::fused(t59, t316, -T::fused(t52, t314, t65 * t315));
+            let t344 = t11 * t98;
+            let t345 = t11 * t96;
+            let t346 = T::fused(t98, t194, t22 * t345)
+                - T::fused(-t96, t185, t19 * t344);
+            let t347 = k(0.4) * t192;
+            let t348 = T::fused(-t96, t347, t97 * t344);
+            let t349 = k(0.2) * t192;
+            let t350 = T::fused(-t98, t349, t94 * t345) + t348;
+            let t351 = T::fused(t111, t178, t111 * t179);
+            let t352 = T::fused(-t100, t216, T::fused(t104, t217, t106 * t218))
+                - T::fused(t67, t215, T::fused(-t64, t213, t72 * t214));
+            let t353 = k(0.4) * t66;
+            let t354 = k(0.2) * t63;
+            let t355 = T::fused(k(0.4), t71, t354);
+            let t356 = T::fused(t311, t355, T::fused(t114, t304, t308 * t353))
+                + (t352 + T::fused(t67, t212, -T::fused(t64, t205, t72 * t210)));
+            let t357 = T::fused(t67, t319, T::fused(t64, t317, t72 * t318))
+                - T::fused(t67, t316, -T::fused(t64, t314, t72 * t315));
             let t358 = T::fused(
                 -t304,
-                T::fused(t72, t65, t73 * t59),
-                t308 * T::fused(t72, t52, t77 * t59),
+                T::fused(t79, t72, t80 * t67),
+                t308 * T::fused(t79, t64, t84 * t67),
             );
-            let t359 = t356 + T::fused(t311, T::fused(-t73, t52, t77 * t65), t358)
+            let t359 = t356 + T::fused(t311, T::fused(-t80, t64, t84 * t72), t358)
                 - t357;
-            let t360 = T::fused(-k(0.1), t58, t105);
-            let t361 = k(0.1) * t51;
+            let t360 = T::fused(-k(0.1), t66, t112);
+            let t361 = k(0.1) * t63;
             let t362 = T::fused(t311, t361, T::fused(-t304, t360, t308 * t354))
-                + T::fused(t323, t104, t359);
+                + T::fused(t323, t111, t359);
             let t363 = T::fused(k(0.6), t362, k(1.8) - t351);
             let t364 = t363 + T::fused(k(1.5), t356, k(4.5) + t351);
-            let t365 = T::fused(-t89, t195, t22 * t344)
-                + T::fused(t91, t186, t19 * t345);
-            let t366 = T::fused(t91, t347, t90 * t345);
-            let t367 = T::fused(t89, t349, t87 * t344) - t366;
+            let t365 = T::fused(-t96, t194, t22 * t344)
+                + T::fused(t98, t185, t19 * t345);
+            let t366 = T::fused(t98, t347, t97 * t345);
+            let t367 = T::fused(t96, t349, t94 * t344) - t366;
             let t368 = T::fused(
                 T::fused(-k(0.1), t365, k(0.2) * t367),
                 t364,
-                -T::fused(t129 - T::fused(-k(0.1), t346, k(0.2) * t350), t343, -t329),
+                -T::fused(t136 - T::fused(-k(0.1), t346, k(0.2) * t350), t343, -t329),
             );
             let t369 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(-t367, t65, T::fused(t350, t122, t195 * t151)),
+                T::fused(-t367, t72, T::fused(t350, t129, t194 * t158)),
                 k(0.3333333333333333)
-                    * T::fused(t367, t52, T::fused(t350, t117, t195 * t146)),
+                    * T::fused(t367, t64, T::fused(t350, t124, t194 * t153)),
             );
             let t370 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t367, t59, T::fused(-t350, t119, t195 * t148)),
+                T::fused(t367, t67, T::fused(-t350, t126, t194 * t155)),
                 -t369,
             );
-            let t371 = k(0.8) * t193;
-            let t372 = t348 - T::fused(-t91, t371, t95 * t345);
-            let t373 = t366 + T::fused(t89, t371, t95 * t344);
+            let t371 = k(0.8) * t192;
+            let t372 = t348 - T::fused(-t98, t371, t102 * t345);
+            let t373 = t366 + T::fused(t96, t371, t102 * t344);
             let t374 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t372, t65, T::fused(-t373, t122, t186 * t151)),
+                T::fused(t372, t72, T::fused(-t373, t129, t185 * t158)),
                 k(0.3333333333333333)
-                    * T::fused(-t372, t52, T::fused(-t373, t117, t186 * t146)),
+                    * T::fused(-t372, t64, T::fused(-t373, t124, t185 * t153)),
             );
             let t375 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t372, t59, T::fused(t373, t119, t186 * t148)),
+                T::fused(-t372, t67, T::fused(t373, t126, t185 * t155)),
                 -t374,
             );
             let t376 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(-t365, t65, T::fused(t346, t122, t193 * t151)),
+                T::fused(-t365, t72, T::fused(t346, t129, t192 * t158)),
                 k(0.3333333333333333)
-                    * T::fused(t365, t52, T::fused(t346, t117, t193 * t146)),
+                    * T::fused(t365, t64, T::fused(t346, t124, t192 * t153)),
             );
             let t377 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t365, t59, T::fused(-t346, t119, t193 * t148)),
+                T::fused(t365, t67, T::fused(-t346, t126, t192 * t155)),
                 -t376,
             );
-            let t378 = T::fused(t93, t65, -T::fused(-t22, t151, t125 * t122));
-            let t379 = T::fused(t93, t59, -T::fused(t22, t148, t125 * t119));
+            let t378 = T::fused(t100, t72, -T::fused(-t22, t158, t132 * t129));
+            let t379 = T::fused(t100, t67, -T::fused(t22, t155, t132 * t126));
             let t380 = t379 + t378;
-            let t381 = T::fused(t97, t65, -T::fused(t19, t151, t126 * t122));
-            let t382 = T::fused(t97, t59, -T::fused(-t19, t148, t126 * t119));
+            let t381 = T::fused(t104, t72, -T::fused(t19, t158, t133 * t129));
+            let t382 = T::fused(t104, t67, -T::fused(-t19, t155, t133 * t126));
             let t383 = t382 + t381;
-            let t384 = T::fused(t99, t65, -T::fused(-t11, t151, t127 * t122));
-            let t385 = T::fused(t99, t59, -T::fused(t11, t148, t127 * t119));
+            let t384 = T::fused(t106, t72, -T::fused(-t9, t158, t134 * t129));
+            let t385 = T::fused(t106, t67, -T::fused(t9, t155, t134 * t126));
             let t386 = t385 + t384;
             let t387 = T::fused(
                 -k(0.4444444444444444),
@@ -9228,13 +9228,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
                 T::fused(k(0.2222222222222222), t383, k(0.4444444444444444) * t386),
             );
             let t388 = k(0.6666666666666666)
-                * T::fused(t93, t52, T::fused(-t22, t146, t125 * t117));
+                * T::fused(t100, t64, T::fused(-t22, t153, t132 * t124));
             let t389 = T::fused(-k(0.3333333333333333), t378, t388);
             let t390 = k(0.6666666666666666)
-                * T::fused(t97, t52, T::fused(t19, t146, t126 * t117));
+                * T::fused(t104, t64, T::fused(t19, t153, t133 * t124));
             let t391 = T::fused(-k(0.3333333333333333), t381, t390);
             let t392 = k(0.6666666666666666)
-                * T::fused(t99, t52, T::fused(-t11, t146, t127 * t117));
+                * T::fused(t106, t64, T::fused(-t9, t153, t134 * t124));
             let t393 = T::fused(-k(0.3333333333333333), t384, t392);
             let t394 = T::fused(
                 k(0.3333333333333333),
@@ -9251,6 +9251,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             );
             let t399 = k(0.6666666666666666) * (t398 + t394);
             (
+                t270,
+                t272,
                 t304,
                 t305,
                 t308,
@@ -9314,123 +9316,123 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             );
             let t404 = T::fused(k(0.3333333333333333), t398, t401);
             let t405 = k(1.0) / T::fused(t404, t403, T::fused(-t399, t387, t402 * t400));
-            let t406 = t165 - t168;
-            let t407 = t139 + t142;
-            let t408 = t108 - t111;
-            let t409 = T::fused(t59, t408, -T::fused(t148, t406, t119 * t407));
-            let t410 = T::fused(t65, t408, -T::fused(-t151, t406, t122 * t407));
+            let t406 = t172 - t175;
+            let t407 = t146 + t149;
+            let t408 = t115 - t118;
+            let t409 = T::fused(t67, t408, -T::fused(t155, t406, t126 * t407));
+            let t410 = T::fused(t72, t408, -T::fused(-t158, t406, t129 * t407));
             let t411 = k(0.6666666666666666) * t410;
             let t412 = T::fused(-k(0.3333333333333333), t409, t411);
-            let t413 = k(0.02) * t25;
-            let t414 = k(0.03) * t61;
-            let t415 = t61 * t25;
-            let t416 = t25 * t25;
-            let t417 = t61 * t61;
+            let t413 = k(0.02) * t32;
+            let t414 = k(0.03) * t31;
+            let t415 = t31 * t32;
+            let t416 = t32 * t32;
+            let t417 = t31 * t31;
             let t418 = t417 - t416;
             let t419 = T::fused(
-                -t56,
+                -t26,
                 t414 + t413,
                 T::fused(-k(0.05), t415, k(0.01) * t418),
-            ) - T::fused(t180, t412, t176 + T::fused(t172, t412, t175));
+            ) - T::fused(t179, t412, t34 + T::fused(t178, t412, t1));
             let t420 = T::fused(
                 -k(0.05),
-                T::fused(t59, t104, T::fused(t148, t160, t119 * t134)),
-                k(0.1) * T::fused(t65, t104, T::fused(-t151, t160, t122 * t134)),
+                T::fused(t67, t111, T::fused(t155, t167, t126 * t141)),
+                k(0.1) * T::fused(t72, t111, T::fused(-t158, t167, t129 * t141)),
             );
-            let t421 = k(0.001) * t25;
-            let t422 = k(0.002) * t61;
+            let t421 = k(0.001) * t32;
+            let t422 = k(0.002) * t31;
             let t423 = T::fused(
-                -t56,
+                -t26,
                 t422 - t421,
                 T::fused(k(0.005), t415, k(0.003) * t418),
-            ) - T::fused(t172, t420, t180 * t420);
+            ) - T::fused(t178, t420, t179 * t420);
             let t424 = k(0.02) * t304;
             let t425 = T::fused(t360, t363, -T::fused(t324, t327, t339 * t342))
                 - (T::fused(k(0.002), t311, T::fused(k(0.001), t308, t424)) + t423);
-            let t426 = T::fused(t52, t65, -T::fused(t146, t151, t117 * t122));
-            let t427 = T::fused(t52, t104, -T::fused(-t146, t160, t117 * t134));
+            let t426 = T::fused(t64, t72, -T::fused(t153, t158, t124 * t129));
+            let t427 = T::fused(t64, t111, -T::fused(-t153, t167, t124 * t141));
             let t428 = k(0.1) * t427;
-            let t429 = k(0.003) * t56;
-            let t430 = t56 * t25;
-            let t431 = t56 * t56;
+            let t429 = k(0.003) * t26;
+            let t430 = t26 * t32;
+            let t431 = t26 * t26;
             let t432 = t431 - t416;
             let t433 = T::fused(
-                -t61,
+                -t31,
                 t429 + t421,
                 T::fused(k(0.005), t430, k(0.002) * t432),
-            ) + T::fused(t172, t428, t180 * t428);
+            ) + T::fused(t178, t428, t179 * t428);
             let t434 = T::fused(t354, t363, T::fused(t309, t327, t333 * t342))
                 - (T::fused(k(0.003), t311, -T::fused(k(0.001), t304, k(0.03) * t308))
                     - t433);
             let t435 = T::fused(
                 -t425,
-                T::fused(t52, t52, T::fused(t146, t146, t117 * t117)),
+                T::fused(t64, t64, T::fused(t153, t153, t124 * t124)),
                 t434 * t426,
             );
-            let t436 = T::fused(t52, t59, -T::fused(-t146, t148, t117 * t119));
+            let t436 = T::fused(t64, t67, -T::fused(-t153, t155, t124 * t126));
             let t437 = k(0.05) * t427;
-            let t438 = t61 * t56;
+            let t438 = t31 * t26;
             let t439 = t431 - t417;
             let t440 = T::fused(
-                -t25,
+                -t32,
                 t429 + t422,
                 T::fused(k(0.01), t438, k(0.001) * t439),
-            ) - T::fused(t172, t437, t180 * t437);
+            ) - T::fused(t178, t437, t179 * t437);
             let t441 = T::fused(t361, t363, T::fused(t325, t327, t340 * t342))
                 + (T::fused(k(0.025), t311, -T::fused(-k(0.002), t304, k(0.003) * t308))
                     - t440);
             let t442 = T::fused(
                 -t327,
-                T::fused(t151, t409, t148 * t410),
-                t342 * T::fused(-t122, t409, t119 * t410),
+                T::fused(t158, t409, t155 * t410),
+                t342 * T::fused(-t129, t409, t126 * t410),
             );
-            let t443 = T::fused(t363, T::fused(-t65, t409, t59 * t410), -t442)
+            let t443 = T::fused(t363, T::fused(-t72, t409, t67 * t410), -t442)
                 - T::fused(t441, t436, -t435);
             let t444 = t443
                 - (T::fused(k(0.03), t311, -T::fused(k(0.3), t304, k(0.02) * t308))
                     + t419);
-            let t445 = T::fused(t107, t364, -T::fused(-t163, t328, t137 * t343)) + t444;
-            let t446 = T::fused(t52, t408, T::fused(-t146, t406, t117 * t407));
+            let t445 = T::fused(t114, t364, -T::fused(-t170, t328, t144 * t343)) + t444;
+            let t446 = T::fused(t64, t408, T::fused(-t153, t406, t124 * t407));
             let t447 = k(0.6666666666666666) * (t446 + t409);
-            let t448 = k(0.01) * t56;
+            let t448 = k(0.01) * t26;
             let t449 = T::fused(
-                -t61,
+                -t31,
                 t448 - t413,
                 T::fused(k(0.1), t430, k(0.03) * t432),
-            ) + T::fused(t180, t447, -(t178 + T::fused(-t172, t447, t177)));
+            ) + T::fused(t179, t447, -(t36 + T::fused(-t178, t447, t35)));
             let t450 = T::fused(
                 -t425,
                 t426,
-                t434 * T::fused(t65, t65, T::fused(t151, t151, t122 * t122)),
+                t434 * T::fused(t72, t72, T::fused(t158, t158, t129 * t129)),
             );
-            let t451 = T::fused(t65, t59, T::fused(-t151, t148, t122 * t119));
+            let t451 = T::fused(t72, t67, T::fused(-t158, t155, t129 * t126));
             let t452 = T::fused(
                 -t327,
-                T::fused(-t146, t409, t148 * t446),
-                t342 * T::fused(t117, t409, t119 * t446),
+                T::fused(-t153, t409, t155 * t446),
+                t342 * T::fused(t124, t409, t126 * t446),
             );
-            let t453 = T::fused(t363, T::fused(-t52, t409, t59 * t446), -t452)
+            let t453 = T::fused(t363, T::fused(-t64, t409, t67 * t446), -t452)
                 + T::fused(t441, t451, -t450);
             let t454 = T::fused(t353, t364, -T::fused(-t305, t328, t332 * t343))
                 - (t453
                     - (T::fused(k(0.01), t311, T::fused(k(0.25), t308, t424)) - t449));
             let t455 = T::fused(k(0.3333333333333333), t446, t411);
             let t456 = T::fused(
-                t25,
+                t32,
                 t448 + t414,
                 T::fused(-k(0.05), t438, k(0.02) * t439),
-            ) + T::fused(t180, t455, -(t178 + T::fused(-t172, t455, t177)));
+            ) + T::fused(t179, t455, -(t36 + T::fused(-t178, t455, t35)));
             let t457 = T::fused(
                 t441,
-                T::fused(t59, t59, T::fused(t148, t148, t119 * t119)),
+                T::fused(t67, t67, T::fused(t155, t155, t126 * t126)),
                 -T::fused(-t425, t436, t434 * t451),
             );
             let t458 = T::fused(
                 t327,
-                T::fused(t146, t410, t151 * t446),
-                t342 * T::fused(t117, t410, t122 * t446),
+                T::fused(t153, t410, t158 * t446),
+                t342 * T::fused(t124, t410, t129 * t446),
             );
-            let t459 = T::fused(t363, T::fused(-t52, t410, t65 * t446), -t458) - t457
+            let t459 = T::fused(t363, T::fused(-t64, t410, t72 * t446), -t458) - t457
                 - (T::fused(k(0.2), t311, T::fused(-k(0.03), t304, k(0.01) * t308))
                     - t456);
             let t460 = T::fused(t355, t364, -T::fused(t310, t328, t334 * t343)) - t459;
@@ -9469,13 +9471,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             );
             (t465,)
         };
-        *dx = [
-            u0,
-            u1,
-            rates[0],
-            rates[1],
-            -(t465 + T::fused(t171, t172, t173 * (k(0.1) * t173))),
-        ];
+        *dx = [u0, u1, rates[0], rates[1], -(T::fused(u1, t270, u0 * t272) + t465)];
     }
     /// Writes the maximal state of a joint state: 309 operations (131 ±, 178 ×, 0 ÷) and 18 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -14599,7 +14595,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 4753 operations (2102 ±, 2649 ×, 2 ÷) and 20 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 4744 operations (2093 ±, 2649 ×, 2 ÷) and 20 functions.
     fn joint_jacobian(
         &self,
         t: T,
@@ -16352,10 +16348,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t595 = t409 - (t406 + (t373 - (t405 - t393)));
             let t596 = T::fused(t436, t593, t595 * t594)
                 - T::fused(-t450, t584, t586 * t585);
-            let t597 = t596 - T::fused(-t463, t575, t577 * t576);
-            let t598 = k(0.5) * t597;
-            let t599 = k(30.0)
+            let t597 = k(0.5) * (t596 - T::fused(-t463, t575, t577 * t576));
+            let t598 = k(30.0)
                 * (k(0.1) + T::fused(t463, t577, T::fused(-t436, t595, t450 * t586)));
+            let t599 = T::fused(t436, t597, t436 * t598);
             (
                 t400,
                 t402,
@@ -16495,80 +16491,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             )
         };
         let (
+            t601,
             t602,
             t603,
             t604,
             t605,
             t606,
-            t607,
-            t610,
+            t609,
+            t611,
             t612,
-            t613,
-            t616,
-            t618,
-            t635,
+            t614,
+            t615,
+            t627,
+            t628,
+            t629,
+            t630,
             t637,
             t638,
-            t639,
+            t645,
             t646,
             t647,
+            t648,
+            t649,
+            t653,
             t654,
             t655,
             t656,
-            t657,
-            t658,
+            t659,
+            t661,
             t662,
             t663,
             t664,
             t665,
             t668,
-            t670,
-            t671,
-            t672,
-            t673,
-            t674,
             t677,
-            t686,
+            t683,
+            t685,
+            t687,
+            t690,
             t692,
-            t694,
-            t695,
             t696,
             t699,
-            t701,
-            t705,
-            t708,
-            t709,
-            t712,
-            t713,
-            t715,
-            t720,
-            t738,
+            t700,
+            t703,
+            t704,
+            t706,
+            t711,
+            t729,
+            t735,
+            t737,
+            t739,
+            t740,
+            t742,
+            t743,
             t744,
-            t746,
-            t748,
             t749,
             t751,
-            t752,
             t753,
-            t757,
+            t754,
             t758,
-            t759,
             t760,
-            t761,
             t762,
             t763,
+            t765,
             t767,
+            t768,
             t769,
             t771,
             t772,
             t774,
+            t775,
             t776,
             t777,
             t778,
+            t779,
             t780,
-            t781,
-            t783,
-            t784,
+            t782,
             t785,
             t786,
             t787,
@@ -16576,176 +16574,173 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             t789,
             t790,
             t791,
-            t794,
-            t795,
-            t796,
-            t797,
+            t792,
+            t793,
             t798,
             t799,
         ) = {
-            let t600 = T::fused(t436, t598, t436 * t599);
-            let t601 = t565 * t507;
-            let t602 = T::fused(
+            let t600 = t565 * t507;
+            let t601 = T::fused(
                 k(2.0),
-                T::fused(t568, t510, t601),
+                T::fused(t568, t510, t600),
                 T::fused(-t507, t570, t510 * t567),
             );
-            let t603 = T::fused(
+            let t602 = T::fused(
                 -k(2.0),
                 T::fused(-t565, t510, t565 * t525),
                 T::fused(-t510, t564, t525 * t570),
             );
-            let t604 = T::fused(
+            let t603 = T::fused(
                 -k(2.0),
-                T::fused(t568, t525, t601),
+                T::fused(t568, t525, t600),
                 T::fused(-t525, t567, t507 * t564),
             );
-            let t605 = T::fused(-t507, t563, t544 * t510);
-            let t606 = T::fused(t510, t562, t525 * t563);
-            let t607 = T::fused(t525, t544, t507 * t562);
-            let t608 = T::fused(t317, t607, -T::fused(-t310, t605, t300 * t606))
-                - T::fused(t317, t604, T::fused(-t310, t602, t300 * t603));
-            let t609 = t608
+            let t604 = T::fused(-t507, t563, t544 * t510);
+            let t605 = T::fused(t510, t562, t525 * t563);
+            let t606 = T::fused(t525, t544, t507 * t562);
+            let t607 = T::fused(t317, t606, -T::fused(-t310, t604, t300 * t605))
+                - T::fused(t317, t603, T::fused(-t310, t601, t300 * t602));
+            let t608 = t607
                 + (T::fused(t482, t535, -T::fused(-t466, t521, t475 * t532)) + t558);
-            let t610 = T::fused(
+            let t609 = T::fused(
                 k(0.14444444444444443),
                 t490,
                 k(1.6666666666666667) * t198,
             );
-            let t611 = T::fused(t400, t535, T::fused(t394, t521, t384 * t532))
-                + T::fused(t436, t610, -t609);
-            let t612 = T::fused(-k(0.6), t611, k(0.6) + t600);
-            let t613 = t612 + T::fused(k(1.5), t558, k(1.5) - t600);
-            let t614 = t388 + t434;
-            let t615 = t436 * t614;
-            let t616 = t441 - t448;
-            let t617 = t450 * t616;
-            let t618 = t454 - t461;
-            let t619 = t463 * t618;
-            let t620 = k(0.6666666666666666) * t428;
-            let t621 = T::fused(-k(0.3333333333333333), t427, t620);
-            let t622 = t621 * t372;
-            let t623 = T::fused(
+            let t610 = T::fused(t400, t535, T::fused(t394, t521, t384 * t532))
+                + T::fused(t436, t609, -t608);
+            let t611 = T::fused(-k(0.6), t610, k(0.6) + t599);
+            let t612 = t611 + T::fused(k(1.5), t558, k(1.5) - t599);
+            let t613 = t388 + t434;
+            let t614 = t441 - t448;
+            let t615 = t454 - t461;
+            let t616 = k(0.6666666666666666) * t428;
+            let t617 = T::fused(-k(0.3333333333333333), t427, t616);
+            let t618 = T::fused(
                 -k(0.05),
                 T::fused(t313, t463, T::fused(t317, t436, t315 * t450)),
                 k(0.1) * T::fused(t280, t463, T::fused(-t300, t436, t294 * t450)),
             );
-            let t624 = t623 * t392;
-            let t625 = T::fused(t306, t463, -T::fused(-t310, t436, t308 * t450));
-            let t626 = k(0.1) * t625;
-            let t627 = t626 * t397;
-            let t628 = k(0.05) * t625;
-            let t629 = t628 * t399;
-            let t630 = k(0.6666666666666666) * (t430 + t427);
-            let t631 = t630 * t378;
-            let t632 = T::fused(k(0.3333333333333333), t430, t620);
-            let t633 = t632 * t383;
-            let t634 = t597 - t633 + t631 + t629 - t627 + t624 - t622 - t619;
-            let t635 = k(0.5) * (t597 + (t634 - t617 - t615));
-            let t636 = t633 - t631 - t629 + t627 - t624 + t622 + t619 + t617;
-            let t637 = k(30.0) * (t636 + t615);
-            let t638 = T::fused(t594, t635, t436 * t637);
-            let t639 = t372 * t612;
-            let t640 = T::fused(-t333, t553, T::fused(t339, t555, t344 * t556))
+            let t619 = T::fused(t306, t463, -T::fused(-t310, t436, t308 * t450));
+            let t620 = k(0.1) * t619;
+            let t621 = k(0.05) * t619;
+            let t622 = k(0.6666666666666666) * (t430 + t427);
+            let t623 = T::fused(k(0.3333333333333333), t430, t616);
+            let t624 = T::fused(
+                t620,
+                t397,
+                T::fused(-t621, t399, T::fused(-t622, t378, t623 * t383)),
+            );
+            let t625 = T::fused(
+                t450,
+                t614,
+                T::fused(t463, t615, T::fused(t617, t372, T::fused(-t618, t392, t624))),
+            );
+            let t626 = T::fused(t436, t613, t625);
+            let t627 = k(0.5) * t626;
+            let t628 = k(30.0) * t626;
+            let t629 = T::fused(-t594, t627, t436 * t628);
+            let t630 = t372 * t611;
+            let t631 = T::fused(-t333, t553, T::fused(t339, t555, t344 * t556))
                 + T::fused(t315, t550, T::fused(t308, t547, t294 * t549));
-            let t641 = t640 - T::fused(t315, t543, -T::fused(-t308, t541, t294 * t542))
+            let t632 = t631 - T::fused(t315, t543, -T::fused(-t308, t541, t294 * t542))
                 - T::fused(t439, t535, T::fused(t414, t521, t437 * t532));
-            let t642 = T::fused(t315, t607, T::fused(-t308, t605, t294 * t606))
-                - T::fused(t315, t604, -T::fused(-t308, t602, t294 * t603));
-            let t643 = t642
-                + (t641 - T::fused(t483, t535, T::fused(-t468, t521, t476 * t532)));
-            let t644 = T::fused(t443, t535, T::fused(t442, t521, t438 * t532))
-                - T::fused(t450, t610, -t643);
-            let t645 = T::fused(t450, t598, t450 * t599);
-            let t646 = T::fused(-k(0.6), t644, k(5.4) - t645);
-            let t647 = t372 * t646;
-            let t648 = T::fused(-t335, t553, T::fused(t340, t555, t345 * t556))
+            let t633 = T::fused(t315, t606, T::fused(-t308, t604, t294 * t605))
+                - T::fused(t315, t603, -T::fused(-t308, t601, t294 * t602));
+            let t634 = t633
+                + (t632 - T::fused(t483, t535, T::fused(-t468, t521, t476 * t532)));
+            let t635 = T::fused(t443, t535, T::fused(t442, t521, t438 * t532))
+                - T::fused(t450, t609, -t634);
+            let t636 = T::fused(t450, t597, t450 * t598);
+            let t637 = T::fused(-k(0.6), t635, k(5.4) - t636);
+            let t638 = t372 * t637;
+            let t639 = T::fused(-t335, t553, T::fused(t340, t555, t345 * t556))
                 - T::fused(t313, t550, T::fused(-t306, t547, t280 * t549));
-            let t649 = t648 + T::fused(t313, t543, -T::fused(t306, t541, t280 * t542))
+            let t640 = t639 + T::fused(t313, t543, -T::fused(t306, t541, t280 * t542))
                 + T::fused(t453, t535, T::fused(t422, t521, t451 * t532));
-            let t650 = T::fused(t313, t607, T::fused(t306, t605, t280 * t606))
-                - T::fused(t313, t604, -T::fused(t306, t602, t280 * t603));
-            let t651 = t650
-                - (t649 + T::fused(t484, t535, T::fused(-t470, t521, t477 * t532)));
-            let t652 = T::fused(t456, t535, T::fused(-t455, t521, t452 * t532))
-                + T::fused(t463, t610, -t651);
-            let t653 = T::fused(t463, t598, t463 * t599);
-            let t654 = T::fused(k(0.6), t652, k(1.8) - t653);
-            let t655 = t372 * t654;
-            let t656 = t378 * t612;
-            let t657 = t378 * t646;
-            let t658 = t378 * t654;
-            let t659 = k(0.6666666666666666) * T::fused(t598, t378, t599 * t378);
-            let t660 = T::fused(
+            let t641 = T::fused(t313, t606, T::fused(t306, t604, t280 * t605))
+                - T::fused(t313, t603, -T::fused(t306, t601, t280 * t602));
+            let t642 = t641
+                - (t640 + T::fused(t484, t535, T::fused(-t470, t521, t477 * t532)));
+            let t643 = T::fused(t456, t535, T::fused(-t455, t521, t452 * t532))
+                + T::fused(t463, t609, -t642);
+            let t644 = T::fused(t463, t597, t463 * t598);
+            let t645 = T::fused(k(0.6), t643, k(1.8) - t644);
+            let t646 = t372 * t645;
+            let t647 = t378 * t611;
+            let t648 = t378 * t637;
+            let t649 = t378 * t645;
+            let t650 = k(0.6666666666666666) * T::fused(t597, t378, t598 * t378);
+            let t651 = T::fused(
                 t280,
-                t655,
-                t659 - T::fused(-t310, t656, T::fused(-t308, t657, t306 * t658)),
+                t646,
+                t650 - T::fused(-t310, t647, T::fused(-t308, t648, t306 * t649)),
             );
-            let t661 = T::fused(t598, t372, t599 * t372);
-            let t662 = T::fused(
+            let t652 = T::fused(t597, t372, t598 * t372);
+            let t653 = T::fused(
                 k(0.3333333333333333),
-                t661,
-                T::fused(t300, t639, T::fused(t294, t647, t660)),
+                t652,
+                T::fused(t300, t630, T::fused(t294, t638, t651)),
             );
-            let t663 = t383 * t612;
-            let t664 = t383 * t646;
-            let t665 = t383 * t654;
-            let t666 = T::fused(
+            let t654 = t383 * t611;
+            let t655 = t383 * t637;
+            let t656 = t383 * t645;
+            let t657 = T::fused(
                 -t313,
-                t655,
-                T::fused(-t310, t663, T::fused(-t308, t664, t306 * t665)),
+                t646,
+                T::fused(-t310, t654, T::fused(-t308, t655, t306 * t656)),
             );
-            let t667 = T::fused(t598, t383, t599 * t383);
-            let t668 = T::fused(
+            let t658 = T::fused(t597, t383, t598 * t383);
+            let t659 = T::fused(
                 k(0.6666666666666666),
-                t667 + t661,
-                -T::fused(t317, t639, T::fused(-t315, t647, t666)),
+                t658 + t652,
+                -T::fused(t317, t630, T::fused(-t315, t638, t657)),
             );
-            let t669 = T::fused(
+            let t660 = T::fused(
                 k(0.3333333333333333),
-                t667,
-                T::fused(t300, t663, T::fused(t294, t664, t280 * t665)),
+                t658,
+                T::fused(t300, t654, T::fused(t294, t655, t280 * t656)),
             );
-            let t670 = t659
+            let t661 = t650
                 - T::fused(
                     t317,
-                    t656,
-                    T::fused(-t315, t657, T::fused(-t313, t658, t669)),
+                    t647,
+                    T::fused(-t315, t648, T::fused(-t313, t649, t660)),
                 );
-            let t671 = T::fused(t317, t662, T::fused(t300, t668, t310 * t670));
-            let t672 = t638 + t671;
-            let t673 = t435 * t521;
-            let t674 = t435 * t532;
-            let t675 = k(0.002) * t507;
-            let t676 = k(0.003) * t525;
-            let t677 = t676 + t675;
-            let t678 = t507 * t525;
-            let t679 = t507 * t507;
-            let t680 = t525 * t525;
-            let t681 = t680 - t679;
-            let t682 = T::fused(-t510, t677, T::fused(k(0.01), t678, k(0.001) * t681))
-                - T::fused(t598, t628, t599 * t628);
-            let t683 = T::fused(t456, t654, -T::fused(t400, t612, t443 * t646))
-                - (t682
+            let t662 = T::fused(t317, t653, T::fused(t300, t659, t310 * t661));
+            let t663 = t629 + t662;
+            let t664 = t435 * t521;
+            let t665 = t435 * t532;
+            let t666 = k(0.002) * t507;
+            let t667 = k(0.003) * t525;
+            let t668 = t667 + t666;
+            let t669 = t507 * t525;
+            let t670 = t507 * t507;
+            let t671 = t525 * t525;
+            let t672 = t671 - t670;
+            let t673 = T::fused(-t510, t668, T::fused(k(0.01), t669, k(0.001) * t672))
+                - T::fused(t597, t621, t598 * t621);
+            let t674 = T::fused(t456, t645, -T::fused(t400, t611, t443 * t637))
+                - (t673
                     - T::fused(
                         k(0.025),
                         t535,
                         -T::fused(-k(0.002), t521, k(0.003) * t532),
                     ));
-            let t684 = k(0.02) * t521;
-            let t685 = k(0.001) * t510;
-            let t686 = t675 - t685;
-            let t687 = t507 * t510;
-            let t688 = t510 * t510;
-            let t689 = t679 - t688;
-            let t690 = T::fused(-t525, t686, T::fused(k(0.005), t687, k(0.003) * t689))
-                - T::fused(t598, t623, t599 * t623);
-            let t691 = T::fused(t455, t654, T::fused(t394, t612, t442 * t646))
-                - (t690 + T::fused(k(0.002), t535, T::fused(k(0.001), t532, t684)));
-            let t692 = T::fused(t372, t683, t383 * t691);
-            let t693 = k(0.3) - x0;
-            let t694 = k(0.6666666666666666) * t693;
-            let t695 = T::fused(
+            let t675 = k(0.02) * t521;
+            let t676 = k(0.001) * t510;
+            let t677 = t666 - t676;
+            let t678 = t507 * t510;
+            let t679 = t510 * t510;
+            let t680 = t670 - t679;
+            let t681 = T::fused(-t525, t677, T::fused(k(0.005), t678, k(0.003) * t680))
+                - T::fused(t597, t618, t598 * t618);
+            let t682 = T::fused(t455, t645, T::fused(t394, t611, t442 * t637))
+                - (t681 + T::fused(k(0.002), t535, T::fused(k(0.001), t532, t675)));
+            let t683 = T::fused(t372, t674, t383 * t682);
+            let t684 = k(0.3) - x0;
+            let t685 = k(0.6666666666666666) * t684;
+            let t686 = T::fused(
                 k(0.6666666666666666),
                 t505,
                 T::fused(-k(0.6666666666666666), t501, k(0.3333333333333333) * t499),
@@ -16755,293 +16750,320 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                     t510,
                     T::fused(k(0.3333333333333333), t525, k(0.6666666666666666) * t507),
                 );
-            let t696 = k(0.03333333333333333) * t695;
-            let t697 = k(0.02) * t510;
-            let t698 = k(0.03) * t507;
-            let t699 = t698 + t697;
-            let t700 = T::fused(-t525, t699, T::fused(-k(0.05), t687, k(0.01) * t689))
-                - T::fused(t599, t621, t696 + T::fused(t598, t621, t694));
-            let t701 = t676 + t685;
-            let t702 = t525 * t510;
-            let t703 = t680 - t688;
-            let t704 = T::fused(-t507, t701, T::fused(k(0.005), t702, k(0.002) * t703))
-                + T::fused(t598, t626, t599 * t626);
-            let t705 = T::fused(t452, t654, -T::fused(t384, t612, t438 * t646))
-                + (t704
+            let t687 = k(0.03333333333333333) * t686;
+            let t688 = k(0.02) * t510;
+            let t689 = k(0.03) * t507;
+            let t690 = t689 + t688;
+            let t691 = T::fused(-t525, t690, T::fused(-k(0.05), t678, k(0.01) * t680))
+                - T::fused(t598, t617, t687 + T::fused(t597, t617, t685));
+            let t692 = t667 + t676;
+            let t693 = t525 * t510;
+            let t694 = t671 - t679;
+            let t695 = T::fused(-t507, t692, T::fused(k(0.005), t693, k(0.002) * t694))
+                + T::fused(t597, t620, t598 * t620);
+            let t696 = T::fused(t452, t645, -T::fused(t384, t611, t438 * t637))
+                + (t695
                     - T::fused(
                         k(0.003),
                         t535,
                         -T::fused(k(0.001), t521, k(0.03) * t532),
                     ));
-            let t706 = T::fused(t457, t654, T::fused(-t429, t612, t444 * t646))
-                - T::fused(t391, t683, -T::fused(-t389, t691, t390 * t705));
-            let t707 = t706
-                - (t700
+            let t697 = T::fused(t457, t645, T::fused(-t429, t611, t444 * t637))
+                - T::fused(t391, t674, -T::fused(-t389, t682, t390 * t696));
+            let t698 = t697
+                - (t691
                     + T::fused(k(0.03), t535, -T::fused(k(0.3), t521, k(0.02) * t532)));
-            let t708 = t646 + T::fused(-k(1.5), t641, k(13.5) + t645);
-            let t709 = T::fused(k(1.5), t649, k(4.5) + t653) + t654;
-            let t710 = T::fused(t422, t709, T::fused(-t373, t613, t414 * t708)) + t707;
-            let t711 = t331 * t710;
-            let t712 = k(1.3333333333333333) * t693;
-            let t713 = k(0.06666666666666667) * t695;
-            let t714 = k(0.01) * t525;
-            let t715 = t714 - t697;
-            let t716 = T::fused(-t507, t715, T::fused(k(0.1), t702, k(0.03) * t703))
-                + T::fused(t599, t630, -(t713 + T::fused(-t598, t630, t712)));
-            let t717 = T::fused(t458, t654, T::fused(-t431, t612, t445 * t646))
-                + T::fused(t396, t683, -T::fused(-t390, t691, t395 * t705));
-            let t718 = T::fused(t451, t709, T::fused(-t379, t613, t437 * t708))
-                - (t717
-                    + (t716 - T::fused(k(0.01), t535, T::fused(k(0.25), t532, t684))));
-            let t719 = t331 * t718;
-            let t720 = t714 + t698;
-            let t721 = T::fused(t510, t720, T::fused(-k(0.05), t678, k(0.02) * t681))
-                + T::fused(t599, t632, -(t713 + T::fused(-t598, t632, t712)));
-            let t722 = T::fused(t459, t654, T::fused(t432, t612, t446 * t646))
-                - T::fused(t398, t683, -T::fused(-t391, t691, t396 * t705));
-            let t723 = t722
-                + (t721
+            let t699 = t637 + T::fused(-k(1.5), t632, k(13.5) + t636);
+            let t700 = T::fused(k(1.5), t640, k(4.5) + t644) + t645;
+            let t701 = T::fused(t422, t700, T::fused(-t373, t612, t414 * t699)) + t698;
+            let t702 = t331 * t701;
+            let t703 = k(1.3333333333333333) * t684;
+            let t704 = k(0.06666666666666667) * t686;
+            let t705 = k(0.01) * t525;
+            let t706 = t705 - t688;
+            let t707 = T::fused(-t507, t706, T::fused(k(0.1), t693, k(0.03) * t694))
+                + T::fused(t598, t622, -(t704 + T::fused(-t597, t622, t703)));
+            let t708 = T::fused(t458, t645, T::fused(-t431, t611, t445 * t637))
+                + T::fused(t396, t674, -T::fused(-t390, t682, t395 * t696));
+            let t709 = T::fused(t451, t700, T::fused(-t379, t612, t437 * t699))
+                - (t708
+                    + (t707 - T::fused(k(0.01), t535, T::fused(k(0.25), t532, t675))));
+            let t710 = t331 * t709;
+            let t711 = t705 + t689;
+            let t712 = T::fused(t510, t711, T::fused(-k(0.05), t669, k(0.02) * t672))
+                + T::fused(t598, t623, -(t704 + T::fused(-t597, t623, t703)));
+            let t713 = T::fused(t459, t645, T::fused(t432, t611, t446 * t637))
+                - T::fused(t398, t674, -T::fused(-t391, t682, t396 * t696));
+            let t714 = t713
+                + (t712
                     - T::fused(k(0.2), t535, T::fused(-k(0.03), t521, k(0.01) * t532)));
-            let t724 = T::fused(t453, t709, T::fused(t385, t613, t439 * t708)) - t723;
-            let t725 = t331 * t724;
-            let t726 = t369 * t710;
-            let t727 = t369 * t718;
-            let t728 = t369 * t724;
-            let t729 = T::fused(
+            let t715 = T::fused(t453, t700, T::fused(t385, t612, t439 * t699)) - t714;
+            let t716 = t331 * t715;
+            let t717 = t369 * t701;
+            let t718 = t369 * t709;
+            let t719 = t369 * t715;
+            let t720 = T::fused(
                 -t366,
-                t725,
-                T::fused(-t370, t726, T::fused(-t376, t727, t381 * t728)),
+                t716,
+                T::fused(-t370, t717, T::fused(-t376, t718, t381 * t719)),
             );
-            let t730 = t367 * t367 * T::fused(t361, t711, T::fused(t364, t719, t729));
-            let t731 = T::fused(-t362, t730, t367 * t719);
-            let t732 = T::fused(t365, t730, t367 * t725);
-            let t733 = t732 - t731;
-            let t734 = t367 * t727;
-            let t735 = t367 * t728;
-            let t736 = T::fused(t361, t730, k(0.6666666666666666) * (t735 - t734));
-            let t737 = k(0.4444444444444444) * t736;
-            let t738 = T::fused(k(0.14814814814814814), t733, t737);
-            let t739 = k(0.6666666666666666) * T::fused(t349, t730, t367 * t711);
-            let t740 = T::fused(k(0.3333333333333333), t732, -t739);
-            let t741 = k(0.6666666666666666) * (t367 * t726);
-            let t742 = T::fused(
+            let t721 = t367 * t367 * T::fused(t361, t702, T::fused(t364, t710, t720));
+            let t722 = T::fused(-t362, t721, t367 * t710);
+            let t723 = T::fused(t365, t721, t367 * t716);
+            let t724 = t723 - t722;
+            let t725 = t367 * t718;
+            let t726 = t367 * t719;
+            let t727 = T::fused(t361, t721, k(0.6666666666666666) * (t726 - t725));
+            let t728 = k(0.4444444444444444) * t727;
+            let t729 = T::fused(k(0.14814814814814814), t724, t728);
+            let t730 = k(0.6666666666666666) * T::fused(t349, t721, t367 * t702);
+            let t731 = T::fused(k(0.3333333333333333), t723, -t730);
+            let t732 = k(0.6666666666666666) * (t367 * t717);
+            let t733 = T::fused(
                 -t364,
-                t730,
-                T::fused(k(0.3333333333333333), t735, -t741),
+                t721,
+                T::fused(k(0.3333333333333333), t726, -t732),
             );
-            let t743 = T::fused(
+            let t734 = T::fused(
                 k(0.3333333333333333),
-                t740,
-                k(0.6666666666666666) * t742,
+                t731,
+                k(0.6666666666666666) * t733,
             );
-            let t744 = T::fused(k(0.3333333333333333), t743, t738);
-            let t745 = k(0.2962962962962963) * t733;
-            let t746 = T::fused(k(0.2222222222222222), t736, t745);
-            let t747 = T::fused(
+            let t735 = T::fused(k(0.3333333333333333), t734, t729);
+            let t736 = k(0.2962962962962963) * t724;
+            let t737 = T::fused(k(0.2222222222222222), t727, t736);
+            let t738 = T::fused(
                 k(0.6666666666666666),
-                t740,
-                k(0.3333333333333333) * t742,
+                t731,
+                k(0.3333333333333333) * t733,
             );
-            let t748 = T::fused(k(0.3333333333333333), t747, t746);
-            let t749 = t745 - t737;
-            let t750 = t742 - t740;
-            let t751 = T::fused(k(0.2222222222222222), t750, -t749);
-            let t752 = T::fused(-t378, t683, t383 * t705);
-            let t753 = t383 * t683;
-            let t754 = t317 * t753;
-            let t755 = T::fused(t380, t724, -T::fused(t368, t710, t374 * t718));
-            let t756 = T::fused(t382, t724, -T::fused(t371, t710, t377 * t718));
-            let t757 = T::fused(
+            let t739 = T::fused(k(0.3333333333333333), t738, t737);
+            let t740 = t736 - t728;
+            let t741 = t733 - t731;
+            let t742 = T::fused(k(0.2222222222222222), t741, -t740);
+            let t743 = T::fused(-t378, t674, t383 * t696);
+            let t744 = t383 * t674;
+            let t745 = t317 * t744;
+            let t746 = T::fused(t380, t715, -T::fused(t368, t701, t374 * t709));
+            let t747 = T::fused(t382, t715, -T::fused(t371, t701, t377 * t709));
+            let t748 = T::fused(
                 k(0.6666666666666666),
-                t755,
-                k(0.3333333333333333) * t756,
+                t746,
+                k(0.3333333333333333) * t747,
             );
-            let t758 = k(0.6666666666666666) * t757;
-            let t759 = T::fused(
+            let t749 = k(0.6666666666666666) * t748;
+            let t750 = T::fused(
                 k(0.3333333333333333),
-                t755,
-                k(0.6666666666666666) * t756,
+                t746,
+                k(0.6666666666666666) * t747,
             );
-            let t760 = k(0.6666666666666666) * t759;
-            let t761 = t756 - t755;
-            let t762 = k(0.4444444444444444) * t761;
-            let t763 = T::fused(-t302, t758, T::fused(-t323, t760, t282 * t762));
-            let t764 = T::fused(
+            let t751 = k(0.6666666666666666) * t750;
+            let t752 = t747 - t746;
+            let t753 = k(0.4444444444444444) * t752;
+            let t754 = T::fused(-t302, t749, T::fused(-t323, t751, t282 * t753));
+            let t755 = T::fused(
                 -t12,
-                t751,
-                T::fused(t300, t752, T::fused(-t430, t656, t754 + (t763 + t754))),
+                t742,
+                T::fused(t300, t743, T::fused(-t430, t647, t745 + (t754 + t745))),
             );
-            let t765 = T::fused(
+            let t756 = T::fused(
                 t310,
-                t692,
-                T::fused(t428, t639, T::fused(t326, t744, T::fused(t54, t748, t764))),
+                t683,
+                T::fused(t428, t630, T::fused(t326, t735, T::fused(t54, t739, t755))),
             );
-            let t766 = T::fused(t598, t392, t599 * t392);
-            let t767 = k(0.05) * t766;
-            let t768 = T::fused(
-                t604,
+            let t757 = T::fused(t597, t392, t598 * t392);
+            let t758 = k(0.05) * t757;
+            let t759 = T::fused(
+                t603,
                 t435,
-                -T::fused(t607, t435, T::fused(t410, t662, T::fused(t436, t767, -t765))),
+                -T::fused(t606, t435, T::fused(t410, t653, T::fused(t436, t758, -t756))),
             );
-            let t769 = t436 * t635;
-            let t770 = t595 * t635;
-            let t771 = T::fused(-k(0.2), t769, k(0.6666666666666666) * t770);
-            let t772 = t507 * t771;
-            let t773 = t772
-                + T::fused(
+            let t760 = t436 * t627;
+            let t761 = t595 * t627;
+            let t762 = T::fused(-k(0.2), t760, k(0.6666666666666666) * t761);
+            let t763 = t507 * t762;
+            let t764 = t763
+                - T::fused(
                     t402,
-                    t672,
-                    T::fused(-t403, t673, T::fused(t404, t674, t768)),
+                    t663,
+                    T::fused(-t403, t664, T::fused(t404, t665, t759)),
                 );
-            let t774 = T::fused(
+            let t765 = T::fused(
                 -k(0.05),
-                t769,
-                T::fused(k(0.1), t769, k(0.3333333333333333) * t770),
+                t760,
+                T::fused(k(0.1), t760, k(0.3333333333333333) * t761),
             );
-            let t775 = T::fused(
+            let t766 = T::fused(
                 t550,
                 t465,
-                -T::fused(t525, t774, T::fused(t563, t769, -T::fused(t571, t769, -t773))),
+                T::fused(t525, t765, T::fused(t563, t760, -T::fused(t571, t760, -t764))),
             );
-            let t776 = T::fused(t392, t612, t673);
-            let t777 = k(0.1) * t766;
-            let t778 = T::fused(
+            let t767 = T::fused(t392, t611, t664);
+            let t768 = k(0.1) * t757;
+            let t769 = T::fused(
                 -k(0.1),
-                T::fused(t598, t397, t599 * t397),
-                k(0.05) * T::fused(t598, t399, t599 * t399),
+                T::fused(t597, t397, t598 * t397),
+                k(0.05) * T::fused(t597, t399, t598 * t399),
             );
-            let t779 = T::fused(
+            let t770 = T::fused(
                 t435,
-                t610,
-                T::fused(-t317, t767, T::fused(-t300, t777, t310 * t778)),
+                t609,
+                T::fused(-t317, t758, T::fused(-t300, t768, t310 * t769)),
             );
-            let t780 = T::fused(
+            let t771 = T::fused(
                 t593,
-                t635,
-                -T::fused(
-                    t598,
-                    t614,
-                    -T::fused(t595, t637, -T::fused(t599, t614, -t779)),
-                ),
+                t627,
+                T::fused(t597, t613, -T::fused(t595, t628, -T::fused(t598, t613, -t770))),
             );
-            let t781 = k(1.3333333333333333) * t780;
-            let t782 = T::fused(
-                k(0.4),
-                T::fused(t465, t532, t378 * t613),
+            let t772 = k(1.3333333333333333) * t771;
+            let t773 = T::fused(
+                -k(0.4),
+                T::fused(t465, t532, t378 * t612),
                 T::fused(
-                    k(2.0),
-                    T::fused(t543, t465, -t775),
-                    T::fused(k(0.1), t776, t781),
+                    -k(2.0),
+                    T::fused(t543, t465, -t766),
+                    T::fused(-k(0.1), t767, t772),
                 ),
             );
-            let t783 = T::fused(
-                -k(0.2),
-                T::fused(-t465, t521, T::fused(-t372, t613, t638)),
-                t782,
+            let t774 = T::fused(
+                k(0.2),
+                T::fused(-t465, t521, T::fused(-t372, t612, t629)),
+                t773,
             );
-            let t784 = T::fused(t313, t662, T::fused(-t280, t668, t306 * t670));
-            let t785 = T::fused(t576, t635, t463 * t637);
-            let t786 = t785 + t784;
-            let t787 = t462 * t532;
-            let t788 = t462 * t535;
-            let t789 = t372 * t691;
-            let t790 = t306 * t789;
-            let t791 = T::fused(-t372, t705, t378 * t691);
-            let t792 = T::fused(-k(0.3333333333333333), t731, t739);
-            let t793 = T::fused(
+            let t775 = T::fused(t313, t653, T::fused(-t280, t659, t306 * t661));
+            let t776 = T::fused(-t576, t627, t463 * t628);
+            let t777 = t776 + t775;
+            let t778 = t462 * t532;
+            let t779 = t462 * t535;
+            let t780 = t372 * t682;
+            let t781 = t306 * t780;
+            let t782 = T::fused(-t372, t696, t378 * t682);
+            let t783 = T::fused(-k(0.3333333333333333), t722, t730);
+            let t784 = T::fused(
                 t366,
-                t730,
-                T::fused(-k(0.3333333333333333), t734, t741),
+                t721,
+                T::fused(-k(0.3333333333333333), t725, t732),
             );
-            let t794 = T::fused(
+            let t785 = T::fused(
                 k(0.3333333333333333),
-                t792,
-                k(0.6666666666666666) * t793,
+                t783,
+                k(0.6666666666666666) * t784,
             );
-            let t795 = k(0.6666666666666666) * (t743 - t794);
-            let t796 = T::fused(
+            let t786 = k(0.6666666666666666) * (t734 - t785);
+            let t787 = T::fused(
                 k(0.6666666666666666),
-                t792,
-                k(0.3333333333333333) * t793,
+                t783,
+                k(0.3333333333333333) * t784,
             );
-            let t797 = k(0.6666666666666666) * (t747 - t796);
-            let t798 = t793 - t792;
-            let t799 = k(0.4444444444444444) * (t750 - t798);
+            let t788 = k(0.6666666666666666) * (t738 - t787);
+            let t789 = t784 - t783;
+            let t790 = k(0.4444444444444444) * (t741 - t789);
+            let t791 = k(0.3333333333333333) * t748;
+            let t792 = k(0.3333333333333333) * t750;
+            let t793 = k(0.2222222222222222) * t752;
+            let t794 = T::fused(
+                -t428,
+                t656,
+                T::fused(-t291, t791, T::fused(t321, t792, t327 * t793)),
+            );
+            let t795 = T::fused(
+                -t340,
+                t788,
+                T::fused(-t345, t790, T::fused(-t426, t661, T::fused(t427, t649, t794))),
+            );
+            let t796 = T::fused(
+                t463,
+                t769,
+                -T::fused(-t280, t782, T::fused(-t313, t683, T::fused(t335, t786, t795))),
+            );
+            let t797 = T::fused(
+                t403,
+                t779,
+                T::fused(t601, t462, T::fused(t604, t462, t781 + (t796 + t781))),
+            );
+            let t798 = T::fused(
+                -t404,
+                t777,
+                T::fused(t541, t469, -T::fused(t547, t469, -T::fused(-t402, t778, t797))),
+            );
+            let t799 = t463 * t627;
             (
+                t601,
                 t602,
                 t603,
                 t604,
                 t605,
                 t606,
-                t607,
-                t610,
+                t609,
+                t611,
                 t612,
-                t613,
-                t616,
-                t618,
-                t635,
+                t614,
+                t615,
+                t627,
+                t628,
+                t629,
+                t630,
                 t637,
                 t638,
-                t639,
+                t645,
                 t646,
                 t647,
+                t648,
+                t649,
+                t653,
                 t654,
                 t655,
                 t656,
-                t657,
-                t658,
+                t659,
+                t661,
                 t662,
                 t663,
                 t664,
                 t665,
                 t668,
-                t670,
-                t671,
-                t672,
-                t673,
-                t674,
                 t677,
-                t686,
+                t683,
+                t685,
+                t687,
+                t690,
                 t692,
-                t694,
-                t695,
                 t696,
                 t699,
-                t701,
-                t705,
-                t708,
-                t709,
-                t712,
-                t713,
-                t715,
-                t720,
-                t738,
+                t700,
+                t703,
+                t704,
+                t706,
+                t711,
+                t729,
+                t735,
+                t737,
+                t739,
+                t740,
+                t742,
+                t743,
                 t744,
-                t746,
-                t748,
                 t749,
                 t751,
-                t752,
                 t753,
-                t757,
+                t754,
                 t758,
-                t759,
                 t760,
-                t761,
                 t762,
                 t763,
+                t765,
                 t767,
+                t768,
                 t769,
                 t771,
                 t772,
                 t774,
+                t775,
                 t776,
                 t777,
                 t778,
+                t779,
                 t780,
-                t781,
-                t783,
-                t784,
+                t782,
                 t785,
                 t786,
                 t787,
@@ -17049,1001 +17071,954 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 t789,
                 t790,
                 t791,
-                t794,
-                t795,
-                t796,
-                t797,
+                t792,
+                t793,
                 t798,
                 t799,
             )
         };
         let (
-            t800,
-            t801,
-            t802,
-            t812,
+            t808,
+            t814,
+            t815,
+            t816,
             t817,
-            t823,
-            t824,
             t825,
-            t826,
-            t834,
-            t839,
-            t840,
-            t841,
-            t852,
-            t854,
-            t862,
-            t873,
-            t893,
-            t905,
-            t906,
-            t907,
+            t830,
+            t831,
+            t832,
+            t845,
+            t853,
+            t864,
+            t884,
+            t896,
+            t897,
+            t898,
+            t910,
+            t912,
+            t913,
+            t914,
+            t915,
+            t916,
+            t918,
             t919,
             t921,
-            t922,
-            t923,
-            t924,
-            t925,
-            t926,
-            t927,
-            t928,
+            t929,
             t930,
             t934,
             t937,
             t938,
             t939,
-            t943,
-            t944,
-            t946,
-            t947,
-            t948,
-            t949,
-            t951,
-            t967,
+            t940,
+            t942,
+            t958,
+            t959,
+            t964,
+            t965,
             t968,
-            t973,
-            t974,
-            t975,
-            t976,
-            t977,
-            t978,
-            t979,
-            t980,
-            t991,
-            t994,
-            t995,
+            t970,
+            t971,
+            t985,
+            t986,
+            t987,
             t996,
+            t997,
+            t998,
             t999,
         ) = {
-            let t800 = k(0.3333333333333333) * t757;
-            let t801 = k(0.3333333333333333) * t759;
-            let t802 = k(0.2222222222222222) * t761;
+            let t800 = t577 * t627;
+            let t801 = T::fused(k(0.2), t799, k(0.6666666666666666) * t800);
+            let t802 = t507 * t801;
             let t803 = T::fused(
-                -t428,
-                t665,
-                T::fused(-t291, t800, T::fused(t321, t801, t327 * t802)),
+                k(0.05),
+                t799,
+                T::fused(-k(0.1), t799, k(0.3333333333333333) * t800),
             );
             let t804 = T::fused(
-                -t340,
-                t797,
-                T::fused(-t345, t799, T::fused(-t426, t670, T::fused(t427, t658, t803))),
+                t510,
+                t803,
+                t802 - T::fused(t562, t799, T::fused(t566, t799, -t798)),
             );
             let t805 = T::fused(
-                t463,
-                t778,
-                -T::fused(-t280, t791, T::fused(-t313, t692, T::fused(t335, t795, t804))),
+                -t462,
+                t609,
+                T::fused(-t313, t758, T::fused(t280, t768, t306 * t769)),
             );
             let t806 = T::fused(
-                t403,
-                t788,
-                T::fused(t602, t462, T::fused(t605, t462, t790 + (t805 + t790))),
-            );
-            let t807 = T::fused(
-                -t404,
-                t786,
-                T::fused(t541, t469, -T::fused(t547, t469, -T::fused(-t402, t787, t806))),
-            );
-            let t808 = t463 * t635;
-            let t809 = t577 * t635;
-            let t810 = T::fused(k(0.2), t808, k(0.6666666666666666) * t809);
-            let t811 = t507 * t810;
-            let t812 = T::fused(
-                k(0.05),
-                t808,
-                T::fused(-k(0.1), t808, k(0.3333333333333333) * t809),
-            );
-            let t813 = T::fused(
-                t510,
-                t812,
-                t811 - T::fused(t562, t808, T::fused(t566, t808, t807)),
-            );
-            let t814 = T::fused(
-                -t462,
-                t610,
-                T::fused(-t313, t767, T::fused(t280, t777, t306 * t778)),
-            );
-            let t815 = T::fused(
                 t575,
-                t635,
-                -T::fused(t577, t637, T::fused(t598, t618, T::fused(t599, t618, -t814))),
+                t627,
+                T::fused(t577, t628, T::fused(t597, t615, T::fused(t598, t615, -t805))),
             );
-            let t816 = k(1.3333333333333333) * t815;
-            let t817 = t785 + (t784 - t786);
-            let t818 = T::fused(-t469, t535, t383 * t709);
-            let t819 = T::fused(
+            let t807 = k(1.3333333333333333) * t806;
+            let t808 = t776 + (t775 - t777);
+            let t809 = T::fused(-t469, t535, t383 * t700);
+            let t810 = T::fused(
                 -k(0.2),
-                t818 - T::fused(t397, t654, t787),
-                k(0.1) * T::fused(-t399, t654, t788),
+                t809 - T::fused(t397, t645, t778),
+                k(0.1) * T::fused(-t399, t645, t779),
             );
+            let t811 = T::fused(
+                -k(2.0),
+                t804,
+                T::fused(-k(0.4), t776 + t808, t810) - t807,
+            );
+            let t812 = t811 - t774;
+            let t813 = T::fused(-t465, t535, t383 * t612);
+            let t814 = t435 * t535;
+            let t815 = T::fused(k(0.3333333333333333), t785, t729);
+            let t816 = T::fused(k(0.3333333333333333), t787, t737);
+            let t817 = T::fused(-k(0.2222222222222222), t789, t740);
+            let t818 = t378 * t696;
+            let t819 = t300 * t818;
             let t820 = T::fused(
-                k(2.0),
-                t813,
-                T::fused(-k(0.4), t785 + t817, t819) + t816,
-            );
-            let t821 = t820 + t783;
-            let t822 = T::fused(-t465, t535, t383 * t613);
-            let t823 = t435 * t535;
-            let t824 = T::fused(k(0.3333333333333333), t794, t738);
-            let t825 = T::fused(k(0.3333333333333333), t796, t746);
-            let t826 = T::fused(-k(0.2222222222222222), t798, t749);
-            let t827 = t378 * t705;
-            let t828 = t300 * t827;
-            let t829 = T::fused(
                 t12,
-                t826,
-                t828 + (T::fused(-t317, t752, T::fused(t430, t663, -t763)) + t828),
+                t817,
+                t819 + (T::fused(-t317, t743, T::fused(t430, t654, -t754)) + t819),
             );
-            let t830 = T::fused(
+            let t821 = T::fused(
                 t310,
-                t791,
-                T::fused(-t427, t639, T::fused(t326, t824, T::fused(t54, t825, t829))),
+                t782,
+                T::fused(-t427, t630, T::fused(t326, t815, T::fused(t54, t816, t820))),
             );
-            let t831 = T::fused(
-                t603,
+            let t822 = T::fused(
+                t602,
                 t435,
-                T::fused(t606, t435, -T::fused(t410, t668, T::fused(t436, t777, t830))),
+                T::fused(t605, t435, -T::fused(t410, t659, T::fused(t436, t768, t821))),
             );
-            let t832 = T::fused(
+            let t823 = T::fused(
                 t510,
-                t771,
-                -T::fused(t403, t672, T::fused(t402, t673, T::fused(-t404, t823, t831))),
+                t762,
+                T::fused(t403, t663, T::fused(t402, t664, T::fused(-t404, t814, t822))),
             );
-            let t833 = T::fused(
+            let t824 = T::fused(
                 t549,
                 t465,
-                T::fused(t525, t771, T::fused(t544, t769, T::fused(t569, t769, -t832))),
+                -T::fused(t525, t762, T::fused(t544, t760, T::fused(t569, t760, -t823))),
             );
-            let t834 = t638 + (t671 - t672);
-            let t835 = T::fused(
+            let t825 = t629 + (t662 - t663);
+            let t826 = T::fused(
                 -k(2.0),
-                T::fused(t542, t465, t833),
-                T::fused(k(0.6666666666666666), t780, k(0.2) * (t638 - (t834 + t776))),
+                T::fused(t542, t465, t824),
+                T::fused(-k(0.6666666666666666), t771, k(0.2) * (t629 - (t825 + t767))),
             );
-            let t836 = T::fused(-k(0.4), t822, t835);
-            let t837 = T::fused(-t315, t662, T::fused(t294, t668, t308 * t670));
-            let t838 = T::fused(t585, t635, t450 * t637);
-            let t839 = t838 - t837;
-            let t840 = t449 * t532;
-            let t841 = t449 * t535;
-            let t842 = t308 * t789;
-            let t843 = T::fused(
+            let t827 = T::fused(-k(0.4), t813, t826);
+            let t828 = T::fused(-t315, t653, T::fused(t294, t659, t308 * t661));
+            let t829 = T::fused(-t585, t627, t450 * t628);
+            let t830 = t829 - t828;
+            let t831 = t449 * t532;
+            let t832 = t449 * t535;
+            let t833 = t308 * t780;
+            let t834 = T::fused(
                 t428,
-                t664,
-                T::fused(-t296, t800, T::fused(t322, t801, t328 * t802)),
+                t655,
+                T::fused(-t296, t791, T::fused(t322, t792, t328 * t793)),
+            );
+            let t835 = T::fused(
+                -t339,
+                t788,
+                T::fused(-t344, t790, T::fused(-t418, t661, T::fused(-t427, t648, t834))),
+            );
+            let t836 = T::fused(
+                t450,
+                t769,
+                T::fused(t294, t782, T::fused(t315, t683, T::fused(t333, t786, t835))),
+            );
+            let t837 = T::fused(
+                t403,
+                t832,
+                T::fused(t601, t449, T::fused(t604, t449, -(t833 - (t836 - t833)))),
+            );
+            let t838 = T::fused(
+                -t404,
+                t830,
+                T::fused(t541, t467, -T::fused(t547, t467, -T::fused(-t402, t831, t837))),
+            );
+            let t839 = t450 * t627;
+            let t840 = t586 * t627;
+            let t841 = T::fused(k(0.2), t839, k(0.6666666666666666) * t840);
+            let t842 = t507 * t841;
+            let t843 = T::fused(
+                k(0.05),
+                t839,
+                T::fused(-k(0.1), t839, k(0.3333333333333333) * t840),
             );
             let t844 = T::fused(
-                -t339,
-                t797,
-                T::fused(-t344, t799, T::fused(-t418, t670, T::fused(-t427, t657, t843))),
-            );
-            let t845 = T::fused(
-                t450,
-                t778,
-                T::fused(t294, t791, T::fused(t315, t692, T::fused(t333, t795, t844))),
-            );
-            let t846 = T::fused(
-                t403,
-                t841,
-                T::fused(t602, t449, T::fused(t605, t449, -(t842 - (t845 - t842)))),
-            );
-            let t847 = T::fused(
-                -t404,
-                t839,
-                T::fused(t541, t467, -T::fused(t547, t467, -T::fused(-t402, t840, t846))),
-            );
-            let t848 = t450 * t635;
-            let t849 = t586 * t635;
-            let t850 = T::fused(k(0.2), t848, k(0.6666666666666666) * t849);
-            let t851 = t507 * t850;
-            let t852 = T::fused(
-                k(0.05),
-                t848,
-                T::fused(-k(0.1), t848, k(0.3333333333333333) * t849),
-            );
-            let t853 = T::fused(
                 t510,
-                t852,
-                t851 - T::fused(t562, t848, T::fused(t566, t848, t847)),
+                t843,
+                t842 - T::fused(t562, t839, T::fused(t566, t839, -t838)),
             );
-            let t854 = t838 - (t837 + t839);
-            let t855 = T::fused(-t467, t535, t383 * t708);
-            let t856 = T::fused(
+            let t845 = t829 - (t828 + t830);
+            let t846 = T::fused(-t467, t535, t383 * t699);
+            let t847 = T::fused(
                 -k(0.2),
-                T::fused(t397, t646, t840) - t855,
-                k(0.1) * T::fused(t399, t646, -t841),
+                T::fused(t397, t637, t831) - t846,
+                k(0.1) * T::fused(t399, t637, -t832),
+            );
+            let t848 = T::fused(
+                t449,
+                t609,
+                T::fused(t315, t758, T::fused(-t294, t768, t308 * t769)),
+            );
+            let t849 = T::fused(
+                t584,
+                t627,
+                T::fused(t586, t628, T::fused(t597, t614, T::fused(t598, t614, t848))),
+            );
+            let t850 = k(1.3333333333333333) * t849;
+            let t851 = T::fused(
+                k(2.0),
+                t844,
+                t850 + T::fused(k(0.4), t829 + t845, t847),
+            );
+            let t852 = t851 + t827;
+            let t853 = t462 * t521;
+            let t854 = t280 * t818;
+            let t855 = T::fused(-t291, t749, T::fused(t321, t751, t327 * t753));
+            let t856 = T::fused(
+                t345,
+                t817,
+                t854 + (T::fused(t313, t743, T::fused(t430, t656, t855)) + t854),
             );
             let t857 = T::fused(
-                t449,
-                t610,
-                T::fused(t315, t767, T::fused(-t294, t777, t308 * t778)),
+                -t306,
+                t782,
+                T::fused(-t427, t646, T::fused(t335, t815, T::fused(-t340, t816, t856))),
             );
             let t858 = T::fused(
-                t584,
-                t635,
-                -T::fused(t586, t637, T::fused(t598, t616, T::fused(t599, t616, t857))),
-            );
-            let t859 = k(1.3333333333333333) * t858;
-            let t860 = T::fused(
-                k(2.0),
-                t853,
-                t859 - T::fused(k(0.4), t838 + t854, t856),
-            );
-            let t861 = t860 - t836;
-            let t862 = t462 * t521;
-            let t863 = t280 * t827;
-            let t864 = T::fused(-t291, t758, T::fused(t321, t760, t327 * t762));
-            let t865 = T::fused(
-                t345,
-                t826,
-                t863 + (T::fused(t313, t752, T::fused(t430, t665, t864)) + t863),
-            );
-            let t866 = T::fused(
-                -t306,
-                t791,
-                T::fused(-t427, t655, T::fused(t335, t824, T::fused(-t340, t825, t865))),
-            );
-            let t867 = T::fused(
-                t603,
+                t602,
                 t462,
-                T::fused(t606, t462, T::fused(-t426, t668, T::fused(t463, t777, -t866))),
+                T::fused(t605, t462, T::fused(-t426, t659, T::fused(t463, t768, -t857))),
+            );
+            let t859 = T::fused(
+                t542,
+                t469,
+                T::fused(t549, t469, T::fused(t402, t853, T::fused(-t404, t779, t858))),
+            );
+            let t860 = T::fused(
+                t544,
+                t799,
+                T::fused(t569, t799, T::fused(t510, t801, T::fused(-t403, t777, t859))),
+            );
+            let t861 = T::fused(t392, t645, t853);
+            let t862 = T::fused(
+                -k(0.6666666666666666),
+                t806,
+                T::fused(k(0.2), t776 + (t861 - t808), k(0.4) * t809),
+            );
+            let t863 = T::fused(-k(2.0), T::fused(t525, t801, -t860), t862);
+            let t864 = t449 * t521;
+            let t865 = t315 * t744;
+            let t866 = T::fused(-t296, t749, T::fused(t322, t751, t328 * t753));
+            let t867 = T::fused(
+                -t344,
+                t742,
+                T::fused(-t294, t743, T::fused(t430, t648, t865 - (t866 - t865))),
             );
             let t868 = T::fused(
-                t542,
-                t469,
-                T::fused(t549, t469, T::fused(t402, t862, T::fused(-t404, t788, t867))),
+                -t308,
+                t683,
+                T::fused(-t428, t638, T::fused(t333, t735, T::fused(-t339, t739, t867))),
             );
             let t869 = T::fused(
-                t544,
-                t808,
-                T::fused(t569, t808, T::fused(t510, t810, -T::fused(-t403, t786, t868))),
-            );
-            let t870 = T::fused(t392, t654, t862);
-            let t871 = T::fused(
-                k(0.6666666666666666),
-                t815,
-                T::fused(k(0.2), t785 + (t870 - t817), k(0.4) * t818),
-            );
-            let t872 = T::fused(k(2.0), T::fused(t525, t810, -t869), t871);
-            let t873 = t449 * t521;
-            let t874 = t315 * t753;
-            let t875 = T::fused(-t296, t758, T::fused(t322, t760, t328 * t762));
-            let t876 = T::fused(
-                -t344,
-                t751,
-                T::fused(-t294, t752, T::fused(t430, t657, t874 - (t875 - t874))),
-            );
-            let t877 = T::fused(
-                -t308,
-                t692,
-                T::fused(-t428, t647, T::fused(t333, t744, T::fused(-t339, t748, t876))),
-            );
-            let t878 = T::fused(
-                t604,
-                t449,
-                -T::fused(t607, t449, -T::fused(t418, t662, T::fused(t450, t767, -t877))),
-            );
-            let t879 = T::fused(
-                t543,
-                t467,
-                -T::fused(t550, t467, -T::fused(-t403, t873, T::fused(t404, t840, t878))),
-            );
-            let t880 = T::fused(
-                t563,
-                t848,
-                -T::fused(t571, t848, t851 + T::fused(-t402, t839, t879)),
-            );
-            let t881 = T::fused(t392, t646, t873);
-            let t882 = T::fused(
-                k(0.2),
-                t838 + T::fused(t467, t521, t372 * t708),
-                T::fused(k(0.4), T::fused(t467, t532, t378 * t708), k(0.1) * t881),
-            );
-            let t883 = T::fused(k(2.0), T::fused(t525, t852, -t880), t882 - t859);
-            let t884 = t883 - t872;
-            let t885 = t294 * t827;
-            let t886 = T::fused(
-                -t344,
-                t826,
-                t885 - (T::fused(-t315, t752, T::fused(-t430, t664, t875)) - t885),
-            );
-            let t887 = T::fused(
-                t308,
-                t791,
-                T::fused(-t427, t647, T::fused(-t333, t824, T::fused(t339, t825, t886))),
-            );
-            let t888 = T::fused(
                 t603,
                 t449,
-                T::fused(t606, t449, T::fused(t418, t668, T::fused(t450, t777, -t887))),
+                -T::fused(t606, t449, -T::fused(t418, t653, T::fused(t450, t758, -t868))),
             );
-            let t889 = T::fused(
+            let t870 = T::fused(
+                t543,
+                t467,
+                -T::fused(t550, t467, -T::fused(-t403, t864, T::fused(t404, t831, t869))),
+            );
+            let t871 = T::fused(
+                t563,
+                t839,
+                -T::fused(t571, t839, t842 - T::fused(-t402, t830, t870)),
+            );
+            let t872 = T::fused(t392, t637, t864);
+            let t873 = T::fused(
+                k(0.2),
+                t829 + T::fused(t467, t521, t372 * t699),
+                T::fused(k(0.4), T::fused(t467, t532, t378 * t699), k(0.1) * t872),
+            );
+            let t874 = T::fused(-k(2.0), T::fused(t525, t843, -t871), t873 + t850);
+            let t875 = t874 - t863;
+            let t876 = t294 * t818;
+            let t877 = T::fused(
+                -t344,
+                t817,
+                t876 - (T::fused(-t315, t743, T::fused(-t430, t655, t866)) - t876),
+            );
+            let t878 = T::fused(
+                t308,
+                t782,
+                T::fused(-t427, t638, T::fused(-t333, t815, T::fused(t339, t816, t877))),
+            );
+            let t879 = T::fused(
+                t602,
+                t449,
+                T::fused(t605, t449, T::fused(t418, t659, T::fused(t450, t768, -t878))),
+            );
+            let t880 = T::fused(
                 t542,
                 t467,
-                T::fused(t549, t467, T::fused(t402, t873, T::fused(-t404, t841, t888))),
+                T::fused(t549, t467, T::fused(t402, t864, T::fused(-t404, t832, t879))),
+            );
+            let t881 = T::fused(
+                t544,
+                t839,
+                T::fused(t569, t839, T::fused(t510, t841, T::fused(-t403, t830, t880))),
+            );
+            let t882 = T::fused(
+                -k(0.6666666666666666),
+                t849,
+                T::fused(k(0.2), t829 + (t872 - t845), k(0.4) * t846),
+            );
+            let t883 = T::fused(-k(2.0), T::fused(t525, t841, -t881), t882);
+            let t884 = T::fused(
+                -t272,
+                t812,
+                T::fused(t271, t852, T::fused(t276, t875, k(2.0) * (t277 * t883))),
+            );
+            let t885 = t811 + t774;
+            let t886 = t851 - t827;
+            let t887 = t313 * t744;
+            let t888 = T::fused(
+                t345,
+                t742,
+                T::fused(-t280, t743, T::fused(t430, t649, t887 + (t855 + t887))),
+            );
+            let t889 = T::fused(
+                t306,
+                t683,
+                T::fused(-t428, t646, T::fused(-t335, t735, T::fused(t340, t739, t888))),
             );
             let t890 = T::fused(
-                t544,
-                t848,
-                T::fused(t569, t848, T::fused(t510, t850, -T::fused(-t403, t839, t889))),
-            );
-            let t891 = T::fused(
-                k(0.6666666666666666),
-                t858,
-                T::fused(k(0.2), t838 + (t881 - t854), k(0.4) * t855),
-            );
-            let t892 = T::fused(k(2.0), T::fused(t525, t850, -t890), t891);
-            let t893 = T::fused(
-                -t272,
-                t821,
-                T::fused(-t271, t861, T::fused(t276, t884, k(2.0) * (t277 * t892))),
-            );
-            let t894 = t820 - t783;
-            let t895 = t860 + t836;
-            let t896 = t313 * t753;
-            let t897 = T::fused(
-                t345,
-                t751,
-                T::fused(-t280, t752, T::fused(t430, t658, t896 + (t864 + t896))),
-            );
-            let t898 = T::fused(
-                t306,
-                t692,
-                T::fused(-t428, t655, T::fused(-t335, t744, T::fused(t340, t748, t897))),
-            );
-            let t899 = T::fused(
-                t604,
+                t603,
                 t462,
                 -T::fused(
-                    t607,
+                    t606,
                     t462,
-                    -T::fused(-t426, t662, T::fused(t463, t767, -t898)),
+                    -T::fused(-t426, t653, T::fused(t463, t758, -t889)),
                 ),
             );
-            let t900 = T::fused(
+            let t891 = T::fused(
                 t543,
                 t469,
-                -T::fused(t550, t469, -T::fused(-t403, t862, T::fused(t404, t787, t899))),
+                -T::fused(t550, t469, -T::fused(-t403, t853, T::fused(t404, t778, t890))),
+            );
+            let t892 = T::fused(
+                t563,
+                t799,
+                -T::fused(t571, t799, t802 - T::fused(-t402, t777, t891)),
+            );
+            let t893 = T::fused(
+                k(0.2),
+                t776 + T::fused(t469, t521, t372 * t700),
+                T::fused(k(0.4), T::fused(t469, t532, t378 * t700), k(0.1) * t861),
+            );
+            let t894 = T::fused(-k(2.0), T::fused(t525, t803, -t892), t807 + t893);
+            let t895 = t276 * t894;
+            let t896 = T::fused(
+                -t271,
+                t885,
+                T::fused(-t272, t886, t895 - T::fused(t277, t875, -t895)),
+            );
+            let t897 = t896 + t884;
+            let t898 = t896 - t884;
+            let t899 = t310 * t780;
+            let t900 = T::fused(
+                t428,
+                t654,
+                T::fused(-t302, t791, T::fused(-t323, t792, t282 * t793)),
             );
             let t901 = T::fused(
-                t563,
-                t808,
-                -T::fused(t571, t808, t811 + T::fused(-t402, t786, t900)),
+                -t54,
+                t788,
+                T::fused(t12, t790, T::fused(t410, t661, T::fused(-t427, t647, t900))),
             );
             let t902 = T::fused(
-                k(0.2),
-                t785 + T::fused(t469, t521, t372 * t709),
-                T::fused(k(0.4), T::fused(t469, t532, t378 * t709), k(0.1) * t870),
-            );
-            let t903 = T::fused(-k(2.0), T::fused(t525, t812, -t901), t816 - t902);
-            let t904 = t276 * t903;
-            let t905 = T::fused(
-                t271,
-                t894,
-                T::fused(-t272, t895, t904 + T::fused(t277, t884, t904)),
-            );
-            let t906 = t905 - t893;
-            let t907 = t905 + t893;
-            let t908 = t310 * t789;
-            let t909 = T::fused(
-                t428,
-                t663,
-                T::fused(-t302, t800, T::fused(-t323, t801, t282 * t802)),
-            );
-            let t910 = T::fused(
-                -t54,
-                t797,
-                T::fused(t12, t799, T::fused(t410, t670, T::fused(-t427, t656, t909))),
-            );
-            let t911 = T::fused(
                 t436,
-                t778,
-                -T::fused(t300, t791, T::fused(-t317, t692, T::fused(-t326, t795, t910))),
-            );
-            let t912 = T::fused(
-                t403,
-                t823,
-                T::fused(t602, t435, T::fused(t605, t435, -(t908 + (t911 + t908)))),
-            );
-            let t913 = T::fused(
-                t562,
                 t769,
-                T::fused(t566, t769, -T::fused(t404, t672, T::fused(-t402, t674, t912))),
+                -T::fused(t300, t782, T::fused(-t317, t683, T::fused(-t326, t786, t901))),
             );
-            let t914 = T::fused(
+            let t903 = T::fused(
+                t403,
+                t814,
+                T::fused(t601, t435, T::fused(t604, t435, -(t899 + (t902 + t899)))),
+            );
+            let t904 = T::fused(
+                t562,
+                t760,
+                T::fused(t566, t760, T::fused(t404, t663, T::fused(-t402, t665, t903))),
+            );
+            let t905 = T::fused(
                 t541,
                 t465,
-                -T::fused(t547, t465, T::fused(t510, t774, t772 + t913)),
+                -T::fused(t547, t465, -T::fused(t510, t765, t763 + t904)),
             );
-            let t915 = T::fused(
+            let t906 = T::fused(
                 k(0.4),
-                t638 + t834,
-                k(0.1) * T::fused(-t399, t612, t823),
-            ) - t781;
-            let t916 = T::fused(
+                t629 + t825,
+                k(0.1) * T::fused(-t399, t611, t814),
+            ) + t772;
+            let t907 = T::fused(
                 -k(0.2),
-                t822 - T::fused(t397, t612, t674),
-                T::fused(-k(2.0), t914, t915),
+                t813 - T::fused(t397, t611, t665),
+                T::fused(-k(2.0), t905, t906),
             );
-            let t917 = t272 * (t916 + (t903 + t892));
-            let t918 = t883 + t872;
-            let t919 = T::fused(
+            let t908 = t272 * (t907 - (t894 - t883));
+            let t909 = t874 + t863;
+            let t910 = T::fused(
                 -t277,
-                t821,
-                t917 - (T::fused(t276, t895, t271 * t918) - t917),
+                t812,
+                t908 - (T::fused(-t276, t886, t271 * t909) - t908),
             );
-            let t920 = t271 * t916;
-            let t921 = T::fused(
+            let t911 = t271 * t907;
+            let t912 = T::fused(
                 t276,
-                t894,
-                t920 - (T::fused(t277, t861, t272 * t918) - t920),
+                t885,
+                t911 - (T::fused(-t277, t852, t272 * t909) - t911),
             );
-            let t922 = t921 + t919;
-            let t923 = t921 - t919;
-            let t924 = T::fused(
-                t270,
-                t906,
-                T::fused(t259, t907, T::fused(-t265, t922, t267 * t923)),
+            let t913 = t912 + t910;
+            let t914 = t912 - t910;
+            let t915 = T::fused(
+                -t270,
+                t897,
+                T::fused(-t259, t898, T::fused(-t265, t913, t267 * t914)),
             );
-            let t925 = T::fused(
+            let t916 = T::fused(
                 t265,
-                t893,
-                T::fused(-t270, t919, T::fused(-t267, t905, t259 * t921)),
+                t884,
+                T::fused(-t270, t910, T::fused(t267, t896, t259 * t912)),
             );
-            let t926 = t506 * t474;
-            let t927 = T::fused(-t310, t465, T::fused(-t308, t467, t306 * t469));
-            let t928 = T::fused(t300, t465, T::fused(t294, t467, t280 * t469));
-            let t929 = T::fused(-t507, t927, t525 * t928);
-            let t930 = T::fused(-t317, t465, T::fused(t315, t467, t313 * t469));
-            let t931 = t306 * t808;
-            let t932 = t308 * t848;
-            let t933 = t310 * t769;
-            let t934 = T::fused(t300, t435, T::fused(t294, t449, t280 * t462));
-            let t935 = T::fused(-t317, t435, T::fused(t315, t449, t313 * t462));
-            let t936 = T::fused(t510, t934, t507 * t935);
-            let t937 = t936 + t933 - t932 + t931;
-            let t938 = t933 - t932 + t931;
-            let t939 = t936 + t938;
-            let t940 = t313 * t808;
-            let t941 = t315 * t848;
-            let t942 = t317 * t769;
-            let t943 = t942 + t941 + t940;
-            let t944 = T::fused(-t310, t435, T::fused(-t308, t449, t306 * t462));
-            let t945 = T::fused(-t507, t944, t525 * t934);
-            let t946 = t945 + t943;
-            let t947 = k(2.0) * (t935 + t944);
-            let t948 = t499 + t372;
-            let t949 = t383 - t378 + (t501 - t505);
-            let t950 = T::fused(
+            let t917 = t506 * t474;
+            let t918 = T::fused(-t310, t465, T::fused(-t308, t467, t306 * t469));
+            let t919 = T::fused(t300, t465, T::fused(t294, t467, t280 * t469));
+            let t920 = T::fused(-t507, t918, t525 * t919);
+            let t921 = T::fused(-t317, t465, T::fused(t315, t467, t313 * t469));
+            let t922 = t306 * t799;
+            let t923 = t308 * t839;
+            let t924 = t310 * t760;
+            let t925 = T::fused(t300, t435, T::fused(t294, t449, t280 * t462));
+            let t926 = T::fused(-t317, t435, T::fused(t315, t449, t313 * t462));
+            let t927 = T::fused(t510, t925, t507 * t926);
+            let t928 = t927 - t924 + t923 - t922;
+            let t929 = t924 - t923 + t922;
+            let t930 = t927 - t929;
+            let t931 = t313 * t799;
+            let t932 = t315 * t839;
+            let t933 = t317 * t760;
+            let t934 = t933 + t932 + t931;
+            let t935 = T::fused(-t310, t435, T::fused(-t308, t449, t306 * t462));
+            let t936 = T::fused(-t507, t935, t525 * t925);
+            let t937 = t936 - t934;
+            let t938 = k(2.0) * (t926 + t935);
+            let t939 = t499 + t372;
+            let t940 = t383 - t378 + (t501 - t505);
+            let t941 = T::fused(
                 -k(0.03333333333333333),
-                t948,
-                T::fused(k(0.06666666666666667), t949, k(0.2) * t695),
+                t939,
+                k(0.06666666666666667) * t940,
             );
-            let t951 = k(0.6666666666666666) * t950;
-            let t952 = t525 * t372;
-            let t953 = t510 * t383;
-            let t954 = T::fused(k(0.05), t372, k(0.005) * t392);
-            let t955 = T::fused(-k(0.01), t372, k(0.003) * t392);
-            let t956 = T::fused(k(0.001), t399, k(0.02) * t383);
-            let t957 = t507 * (t956 - t955);
-            let t958 = t525 * t392;
-            let t959 = t510 * t399;
-            let t960 = T::fused(-k(0.01), t399, k(0.05) * t383);
-            let t961 = T::fused(
+            let t942 = k(0.6666666666666666) * t941;
+            let t943 = t525 * t372;
+            let t944 = t510 * t383;
+            let t945 = T::fused(k(0.05), t372, k(0.005) * t392);
+            let t946 = T::fused(-k(0.01), t372, k(0.003) * t392);
+            let t947 = T::fused(k(0.001), t399, k(0.02) * t383);
+            let t948 = t507 * (t947 - t946);
+            let t949 = t525 * t392;
+            let t950 = t510 * t399;
+            let t951 = T::fused(-k(0.01), t399, k(0.05) * t383);
+            let t952 = T::fused(
                 -k(0.002),
-                t959 + t958,
-                T::fused(-t701, t397, T::fused(-t525, t960, t715 * t378)),
+                t950 + t949,
+                T::fused(-t692, t397, T::fused(-t525, t951, t706 * t378)),
             );
-            let t962 = T::fused(
+            let t953 = T::fused(
                 -k(0.03),
-                t953 + t952,
-                T::fused(-t510, t954, t957 - (t961 - t957)),
+                t944 + t943,
+                T::fused(-t510, t945, t948 - (t952 - t948)),
             );
-            let t963 = T::fused(
+            let t954 = T::fused(
                 -t564,
-                t935,
-                T::fused(-t563, t944, T::fused(t562, t935, t962 - t951)),
+                t926,
+                T::fused(-t563, t935, T::fused(t562, t926, t953 - t942)),
             );
-            let t964 = T::fused(
-                t310,
-                t771,
-                T::fused(t317, t771, T::fused(t565, t947, T::fused(-t570, t944, t963))),
+            let t955 = T::fused(
+                -t310,
+                t762,
+                T::fused(-t317, t762, T::fused(t565, t938, T::fused(-t570, t935, t954))),
             );
-            let t965 = T::fused(
+            let t956 = T::fused(
                 t404,
-                t946,
-                T::fused(-t313, t810, T::fused(t308, t850, T::fused(-t315, t850, t964))),
+                t937,
+                T::fused(t313, t801, T::fused(-t308, t841, T::fused(t315, t841, t955))),
             );
-            let t966 = T::fused(
+            let t957 = T::fused(
                 t548,
-                t930,
-                T::fused(-t306, t810, T::fused(k(0.1), t937, T::fused(t402, t939, t965))),
+                t921,
+                T::fused(t306, t801, T::fused(k(0.1), t928, T::fused(t402, t930, t956))),
             );
-            let t967 = T::fused(
+            let t958 = T::fused(
                 t523,
                 t488,
-                T::fused(k(0.2), t929, T::fused(-t545, t927, t966)),
-            ) + t926;
-            let t968 = t488 - t481;
-            let t969 = t280 * t808;
-            let t970 = t294 * t848;
-            let t971 = t300 * t769;
-            let t972 = T::fused(t510, t944, t525 * t935);
-            let t973 = t971 - t970 - t969;
-            let t974 = t972 + t973;
-            let t975 = t294 * t850;
-            let t976 = t300 * t771;
-            let t977 = k(2.0) * t934;
-            let t978 = t565 * t977;
-            let t979 = k(2.0) * t935;
-            let t980 = k(0.3333333333333333) * t950;
-            let t981 = t507 * t397;
-            let t982 = T::fused(-k(0.005), t397, k(0.1) * t378);
-            let t983 = T::fused(-k(0.002), t397, k(0.03) * t378);
-            let t984 = t525 * (t956 - t983);
-            let t985 = t507 * t378;
-            let t986 = T::fused(
+                T::fused(k(0.2), t920, T::fused(-t545, t918, t957)),
+            ) + t917;
+            let t959 = t488 - t481;
+            let t960 = t280 * t799;
+            let t961 = t294 * t839;
+            let t962 = t300 * t760;
+            let t963 = T::fused(t510, t935, t525 * t926);
+            let t964 = t962 - t961 - t960;
+            let t965 = t963 - t964;
+            let t966 = t294 * t841;
+            let t967 = t300 * t762;
+            let t968 = k(2.0) * t925;
+            let t969 = t565 * t968;
+            let t970 = k(2.0) * t926;
+            let t971 = k(0.3333333333333333) * t941;
+            let t972 = t507 * t397;
+            let t973 = T::fused(-k(0.005), t397, k(0.1) * t378);
+            let t974 = T::fused(-k(0.002), t397, k(0.03) * t378);
+            let t975 = t525 * (t947 - t974);
+            let t976 = t507 * t378;
+            let t977 = T::fused(
                 -t510,
-                t982,
-                t984 + (T::fused(-t507, t960, k(0.01) * (t953 + t985)) + t984),
+                t973,
+                t975 + (T::fused(-t507, t951, k(0.01) * (t944 + t976)) + t975),
             );
-            let t987 = T::fused(
-                t699,
+            let t978 = T::fused(
+                t690,
                 t372,
-                T::fused(-t686, t392, T::fused(-k(0.003), t959 + t981, t986)),
+                T::fused(-t677, t392, T::fused(-k(0.003), t950 + t972, t977)),
             );
-            let t988 = T::fused(
+            let t979 = T::fused(
                 -t567,
-                t935,
-                T::fused(-t563, t934, T::fused(-t544, t935, t987 + t980)),
+                t926,
+                T::fused(-t563, t925, T::fused(-t544, t926, t978 + t971)),
             );
+            let t980 = T::fused(
+                t317,
+                t765,
+                T::fused(-t570, t925, T::fused(-t568, t970, t979)) + t969 + t967,
+            );
+            let t981 = T::fused(
+                -t402,
+                t965,
+                T::fused(t403, t937, T::fused(-t315, t843, t980 + t966)),
+            );
+            let t982 = t280 * t801;
+            let t983 = T::fused(
+                -t313,
+                t803,
+                t982 + T::fused(-k(0.05), t936 - t933 - t932 - t931, t981),
+            );
+            let t984 = T::fused(
+                -k(0.1),
+                t963 - t962 + t961 + t960 + t920,
+                T::fused(-t545, t919, T::fused(t546, t921, t983)),
+            );
+            let t985 = T::fused(t506, t959, t984);
+            let t986 = T::fused(-t499, t958, t505 * t985);
+            let t987 = k(2.0) * t935;
+            let t988 = t510 * (t974 - t946);
             let t989 = T::fused(
-                -t317,
-                t774,
-                T::fused(-t570, t934, T::fused(-t568, t979, t988)) + t978 - t976,
+                -k(0.001),
+                t972 - t949,
+                T::fused(-t525, t973, T::fused(-t668, t399, t711 * t383)),
             );
             let t990 = T::fused(
-                -t402,
-                t974,
-                T::fused(t403, t946, T::fused(t315, t852, t989 - t975)),
+                -k(0.02),
+                t976 - t943,
+                T::fused(t507, t945, t988 + (t989 + t988)),
             );
-            let t991 = t280 * t810;
+            let t991 = T::fused(
+                t564,
+                t925,
+                T::fused(-t544, t935, T::fused(-t562, t925, t990 + t942)),
+            );
             let t992 = T::fused(
-                -t313,
-                t812,
-                t991 - T::fused(-k(0.05), t945 + t942 + t941 + t940, t990),
+                t310,
+                t765,
+                T::fused(-t568, t987, T::fused(-t567, t935, t991 - t969)) - t967,
             );
             let t993 = T::fused(
-                k(0.1),
-                t972 + t971 - t970 - t969 + t929,
-                T::fused(t545, t928, T::fused(-t546, t930, t992)),
+                t403,
+                t930,
+                T::fused(t404, t965, T::fused(t308, t843, t992 - t966) - t982),
             );
-            let t994 = T::fused(-t506, t968, t993);
-            let t995 = T::fused(t499, t967, t505 * t994);
-            let t996 = k(2.0) * t944;
-            let t997 = t510 * (t983 - t955);
-            let t998 = T::fused(
-                -k(0.001),
-                t981 - t958,
-                T::fused(-t525, t982, T::fused(-t677, t399, t720 * t383)),
+            let t994 = T::fused(
+                -k(0.1),
+                T::fused(t510, t919, t507 * t921),
+                T::fused(
+                    -t548,
+                    t919,
+                    T::fused(-t306, t803, T::fused(-k(0.05), t928, t993)),
+                ),
             );
-            let t999 = T::fused(
-                -k(0.02),
-                t985 - t952,
-                T::fused(t507, t954, t997 + (t998 + t997)),
+            let t995 = T::fused(
+                k(0.2),
+                T::fused(t510, t918, t525 * t921),
+                T::fused(t546, t918, t994),
             );
+            let t996 = T::fused(t523, t481, t995) + t917;
+            let t997 = T::fused(-t499, t996, t501 * t985);
+            let t998 = t505 * t958;
+            let t999 = t501 * t996;
             (
-                t800,
-                t801,
-                t802,
-                t812,
+                t808,
+                t814,
+                t815,
+                t816,
                 t817,
-                t823,
-                t824,
                 t825,
-                t826,
-                t834,
-                t839,
-                t840,
-                t841,
-                t852,
-                t854,
-                t862,
-                t873,
-                t893,
-                t905,
-                t906,
-                t907,
+                t830,
+                t831,
+                t832,
+                t845,
+                t853,
+                t864,
+                t884,
+                t896,
+                t897,
+                t898,
+                t910,
+                t912,
+                t913,
+                t914,
+                t915,
+                t916,
+                t918,
                 t919,
                 t921,
-                t922,
-                t923,
-                t924,
-                t925,
-                t926,
-                t927,
-                t928,
+                t929,
                 t930,
                 t934,
                 t937,
                 t938,
                 t939,
-                t943,
-                t944,
-                t946,
-                t947,
-                t948,
-                t949,
-                t951,
-                t967,
+                t940,
+                t942,
+                t958,
+                t959,
+                t964,
+                t965,
                 t968,
-                t973,
-                t974,
-                t975,
-                t976,
-                t977,
-                t978,
-                t979,
-                t980,
-                t991,
-                t994,
-                t995,
+                t970,
+                t971,
+                t985,
+                t986,
+                t987,
                 t996,
+                t997,
+                t998,
                 t999,
             )
         };
-        let (t1016, t1024, t1032, t1034, t1036, t1104, t1105, t1191) = {
+        let (t1007, t1015, t1023, t1024, t1025, t1027, t1095, t1096, t1182) = {
             let t1000 = T::fused(
-                t564,
-                t934,
-                T::fused(-t544, t944, T::fused(-t562, t934, t999 + t951)),
-            );
-            let t1001 = T::fused(
-                -t310,
-                t774,
-                T::fused(-t568, t996, T::fused(-t567, t944, t1000 - t978)) + t976,
-            );
-            let t1002 = T::fused(
-                t403,
-                t939,
-                T::fused(t404, t974, T::fused(-t308, t852, t1001 + t975) + t991),
-            );
-            let t1003 = T::fused(
-                -k(0.1),
-                T::fused(t510, t928, t507 * t930),
+                k(0.5555555555555556),
+                T::fused(t501, t958, t505 * t996),
                 T::fused(
-                    -t548,
-                    t928,
-                    T::fused(t306, t812, T::fused(-k(0.05), t937, t1002)),
+                    k(0.4444444444444444),
+                    t999 + t998,
+                    k(0.8888888888888888) * (t499 * t985),
                 ),
             );
+            let t1001 = T::fused(k(0.2222222222222222), t997 - t986, t1000);
+            let t1002 = t494 * t1001;
+            let t1003 = t495 * t1001;
             let t1004 = T::fused(
-                k(0.2),
-                T::fused(t510, t927, t525 * t930),
-                T::fused(t546, t927, t1003),
+                -k(0.6666666666666666),
+                t997 + t986,
+                k(0.3333333333333333) * (t999 - t998),
             );
-            let t1005 = T::fused(t523, t481, t1004) + t926;
-            let t1006 = T::fused(t499, t1005, t501 * t994);
-            let t1007 = t505 * t967;
-            let t1008 = t501 * t1005;
-            let t1009 = T::fused(
-                -k(0.5555555555555556),
-                T::fused(t501, t967, t505 * t1005),
-                T::fused(
-                    -k(0.4444444444444444),
-                    t1008 + t1007,
-                    k(0.8888888888888888) * (t499 * t994),
-                ),
-            );
-            let t1010 = T::fused(k(0.2222222222222222), t1006 - t995, t1009);
-            let t1011 = t494 * t1010;
-            let t1012 = t495 * t1010;
-            let t1013 = T::fused(
-                k(0.6666666666666666),
-                t1006 + t995,
-                k(0.3333333333333333) * (t1008 - t1007),
-            );
-            let t1014 = T::fused(
+            let t1005 = T::fused(
                 k(2.0),
-                t269 * t1013,
-                t1012
-                    + (t1011
-                        + T::fused(
+                t269 * t1004,
+                -(t1003
+                    + (t1002
+                        - T::fused(
                             k(0.6666666666666666),
-                            t924,
-                            k(0.3333333333333333) * t925,
-                        )),
+                            t915,
+                            k(0.3333333333333333) * t916,
+                        ))),
             );
-            let t1015 = T::fused(
+            let t1006 = T::fused(
                 t267,
-                t893,
-                T::fused(t259, t919, T::fused(t265, t905, t270 * t921)),
+                t884,
+                T::fused(t259, t910, T::fused(-t265, t896, t270 * t912)),
             );
-            let t1016 = T::fused(
+            let t1007 = T::fused(
                 -t269,
-                t1014,
-                t253 * T::fused(t491, t1013, t1012 - (t1011 - t1015)),
+                t1005,
+                t253 * T::fused(t491, t1004, -(t1003 - (t1002 + t1006))),
             );
-            let t1017 = T::fused(
+            let t1008 = T::fused(
                 -t517,
                 t474,
-                T::fused(t513, t488, T::fused(-t539, t927, t538 * t930)),
+                T::fused(t513, t488, T::fused(-t539, t918, t538 * t921)),
             );
-            let t1018 = T::fused(
+            let t1009 = T::fused(
                 t519,
                 t474,
-                T::fused(-t513, t481, T::fused(-t540, t927, t538 * t928)),
+                T::fused(-t513, t481, T::fused(-t540, t918, t538 * t919)),
             );
-            let t1019 = T::fused(
+            let t1010 = T::fused(
                 -t517,
                 t481,
-                T::fused(-t519, t488, T::fused(t539, t928, t540 * t930)),
+                T::fused(-t519, t488, T::fused(t539, t919, t540 * t921)),
             );
-            let t1020 = T::fused(t519, t481, t540 * t928);
-            let t1021 = T::fused(t517, t488, t539 * t930);
-            let t1022 = T::fused(
+            let t1011 = T::fused(t519, t481, t540 * t919);
+            let t1012 = T::fused(t517, t488, t539 * t921);
+            let t1013 = T::fused(
                 -k(0.2222222222222222),
-                t1018 - t1017,
+                t1009 - t1008,
                 T::fused(
                     k(0.5555555555555556),
-                    t1019,
-                    k(0.4444444444444444) * (t1021 + t1020),
+                    t1010,
+                    k(0.4444444444444444) * (t1012 + t1011),
                 ),
             );
-            let t1023 = T::fused(
+            let t1014 = T::fused(
                 t17,
                 T::fused(
                     -k(0.6666666666666666),
-                    t1018 + t1017,
-                    k(0.3333333333333333) * (t1021 - t1020),
+                    t1009 + t1008,
+                    k(0.3333333333333333) * (t1012 - t1011),
                 ),
-                T::fused(-k(0.6666666666666666), t948, k(1.3333333333333333) * t949),
+                T::fused(-k(0.6666666666666666), t939, k(1.3333333333333333) * t940),
             );
-            let t1024 = T::fused(
+            let t1015 = T::fused(
                 -t6,
                 T::fused(
                     k(0.8888888888888888),
-                    T::fused(t513, t474, t538 * t927),
-                    t1022,
+                    T::fused(t513, t474, t538 * t918),
+                    t1013,
                 ),
-                t1023,
+                t1014,
             );
-            let t1025 = T::fused(
+            let t1016 = T::fused(
                 -t294,
-                t873,
-                T::fused(-t308, t840, T::fused(-t280, t862, t306 * t787)),
+                t864,
+                T::fused(-t308, t831, T::fused(-t280, t853, t306 * t778)),
             );
-            let t1026 = T::fused(
+            let t1017 = T::fused(
                 -t315,
-                t839,
+                t830,
                 T::fused(
                     -t317,
-                    t672,
-                    T::fused(-t300, t673, T::fused(-t310, t674, t1025)),
+                    t663,
+                    T::fused(-t300, t664, T::fused(-t310, t665, t1016)),
                 ),
             );
-            let t1027 = T::fused(
+            let t1018 = T::fused(
                 t315,
-                t840,
-                T::fused(t294, t841, T::fused(t313, t787, t280 * t788)),
+                t831,
+                T::fused(t294, t832, T::fused(t313, t778, t280 * t779)),
             );
-            let t1028 = T::fused(
+            let t1019 = T::fused(
                 -t308,
-                t839,
-                T::fused(t310, t672, T::fused(-t317, t674, T::fused(t300, t823, t1027))),
+                t830,
+                T::fused(t310, t663, T::fused(-t317, t665, T::fused(t300, t814, t1018))),
             );
-            let t1029 = T::fused(
+            let t1020 = T::fused(
                 t510,
-                t974,
-                -T::fused(t507, t946, -T::fused(t306, t786, t1028)),
+                t965,
+                -T::fused(t507, t937, -T::fused(t306, t777, t1019)),
             )
                 - T::fused(
                     t507,
-                    t939,
-                    T::fused(t525, t974, -T::fused(-t313, t786, t1026)),
+                    t930,
+                    T::fused(t525, t965, -T::fused(-t313, t777, t1017)),
                 );
-            let t1030 = T::fused(
+            let t1021 = T::fused(
                 t315,
-                t873,
-                T::fused(-t308, t841, T::fused(t313, t862, t306 * t788)),
+                t864,
+                T::fused(-t308, t832, T::fused(t313, t853, t306 * t779)),
             );
-            let t1031 = T::fused(
+            let t1022 = T::fused(
                 -t294,
-                t839,
-                T::fused(t300, t672, T::fused(-t317, t673, T::fused(-t310, t823, t1030))),
+                t830,
+                T::fused(t300, t663, T::fused(-t317, t664, T::fused(-t310, t814, t1021))),
             );
-            let t1032 = T::fused(
+            let t1023 = T::fused(
                 -k(0.6666666666666666),
-                t1029,
+                t1020,
                 k(0.3333333333333333)
                     * T::fused(
                         t510,
-                        t939,
-                        T::fused(t525, t946, -T::fused(-t280, t786, t1031)),
+                        t930,
+                        T::fused(t525, t937, -T::fused(-t280, t777, t1022)),
                     ),
             );
-            let t1033 = T::fused(-t507, t474, T::fused(t510, t474, t525 * t968) + t1005)
-                - t967;
-            let t1034 = T::fused(
-                -k(0.6666666666666666),
-                t1033,
-                k(0.3333333333333333) * T::fused(-t510, t481, T::fused(t507, t488, t994)),
+            let t1024 = T::fused(-t507, t474, T::fused(t510, t474, t525 * t959) + t996)
+                - t958;
+            let t1025 = T::fused(
+                k(0.3333333333333333),
+                T::fused(-t510, t481, T::fused(t507, t488, -t985)),
+                k(0.2) * u0,
             );
-            let t1035 = T::fused(-t507, t947, T::fused(-t510, t977, t525 * t977)) + t943
-                - t938;
-            let t1036 = T::fused(
+            let t1026 = T::fused(-t507, t938, T::fused(-t510, t968, t525 * t968)) - t934
+                + t929;
+            let t1027 = T::fused(
                 -k(0.6666666666666666),
-                t1035,
-                k(0.3333333333333333) * (T::fused(t510, t996, t525 * t979) + t973),
+                t1026,
+                T::fused(
+                    k(0.3333333333333333),
+                    T::fused(t510, t987, t525 * t970) - t964,
+                    u1,
+                ),
             );
-            let t1037 = k(6.0) * t9;
-            let t1038 = k(4.0) * t26;
-            let t1039 = T::fused(t3, t1037, t1 * t1038);
-            let t1040 = T::fused(-k(0.8027174905402471), t301, t282);
-            let t1041 = T::fused(
+            let t1028 = k(6.0) * t9;
+            let t1029 = k(4.0) * t26;
+            let t1030 = T::fused(t3, t1028, t1 * t1029);
+            let t1031 = T::fused(-k(0.8027174905402471), t301, t282);
+            let t1032 = T::fused(
                 t7,
-                T::fused(t1040, t8, T::fused(-k(0.72088794948238), t301, t282)),
+                T::fused(t1031, t8, T::fused(-k(0.72088794948238), t301, t282)),
                 -T::fused(-t301, t15, t17 * T::fused(k(1.5505273875327696), t301, t282)),
             );
-            let t1042 = T::fused(
+            let t1033 = T::fused(
                 k(0.017913121361397222),
                 t282 * t224,
-                -T::fused(t6, t1041, k(3.2524625127269666) * (t301 * t225)),
+                -T::fused(t6, t1032, k(3.2524625127269666) * (t301 * t225)),
             );
-            let t1043 = k(4.0) * t3;
-            let t1044 = t26 * t1043;
-            let t1045 = T::fused(-t11, k(12.720271133396137) * t1044, t301 * t28);
-            let t1046 = T::fused(
+            let t1034 = k(4.0) * t3;
+            let t1035 = t26 * t1034;
+            let t1036 = T::fused(-t11, k(12.720271133396137) * t1035, t301 * t28);
+            let t1037 = T::fused(
                 k(1.3909774436090225),
                 t17 * T::fused(-k(1.353727640432305), t301, t282),
                 t206 * T::fused(-k(7.579093565841393), t301, t282),
             );
-            let t1047 = T::fused(
+            let t1038 = T::fused(
                 k(3.7136462289744983),
                 t17 * T::fused(k(0.12901271775065906), t301, t282),
                 T::fused(k(0.6793133264254652), t301, t282),
             );
-            let t1048 = k(6.0) * t1;
-            let t1049 = T::fused(-k(0.711476174659024), t282, t301);
-            let t1050 = t282 + t323;
-            let t1051 = T::fused(
+            let t1039 = k(6.0) * t1;
+            let t1040 = T::fused(-k(0.711476174659024), t282, t301);
+            let t1041 = t282 + t323;
+            let t1042 = T::fused(
                 k(3.2142857142857144),
-                T::fused(-t1048, t218, t9 * (t1048 * t217)),
+                T::fused(-t1039, t218, t9 * (t1039 * t217)),
                 T::fused(
                     t4,
-                    T::fused(-k(4.919349550499537), t1049, t53 * t1050),
-                    t219 * t1039,
+                    T::fused(-k(4.919349550499537), t1040, t53 * t1041),
+                    t219 * t1030,
                 ),
             );
-            let t1052 = T::fused(
+            let t1043 = T::fused(
                 k(0.9147550817044594),
                 t282,
                 k(0.6136363636363636) * t301,
             );
-            let t1053 = T::fused(-t6, t1052, t17 * t1049);
-            let t1054 = T::fused(
+            let t1044 = T::fused(-t6, t1043, t17 * t1040);
+            let t1045 = T::fused(
                 -t29,
                 T::fused(k(0.37568058076225047), t282, k(0.9934472611469121) * t301),
-                t48 * t1045,
+                t48 * t1036,
             );
-            let t1055 = k(2.0) * t1044;
-            let t1056 = T::fused(
+            let t1046 = k(2.0) * t1035;
+            let t1047 = T::fused(
                 k(0.246102864920923),
                 T::fused(
                     -t29,
                     T::fused(-k(0.25555062599997597), t301, t282),
-                    t38 * t1045,
+                    t38 * t1036,
                 ),
-                t1055,
+                t1046,
             );
-            let t1057 = T::fused(
+            let t1048 = T::fused(
                 -k(0.0803601191578524),
-                T::fused(-t29, T::fused(k(4.416234255562085), t301, t282), t41 * t1045),
-                t1055,
+                T::fused(-t29, T::fused(k(4.416234255562085), t301, t282), t41 * t1036),
+                t1046,
             );
-            let t1058 = T::fused(
+            let t1049 = T::fused(
                 k(0.36134979423868313),
-                T::fused(-k(1.2857142857142858), t17 * t1056, t6 * t1057),
+                T::fused(-k(1.2857142857142858), t17 * t1047, t6 * t1048),
                 T::fused(
                     k(2.1766603443197954),
-                    T::fused(t26, t1053, t1043 * t57),
-                    t206 * t1054,
+                    T::fused(t26, t1044, t1034 * t57),
+                    t206 * t1045,
                 ),
             );
-            let t1059 = k(1.180643892119889) * t386;
-            let t1060 = T::fused(
+            let t1050 = k(1.180643892119889) * t386;
+            let t1051 = T::fused(
                 -x1,
-                T::fused(k(0.5936346393599442), t1051, t1058),
-                T::fused(-t60, T::fused(t17, t1052, t6 * t1049), t47 * t1059),
+                T::fused(k(0.5936346393599442), t1042, t1049),
+                T::fused(-t60, T::fused(t17, t1043, t6 * t1040), t47 * t1050),
             );
-            let t1061 = T::fused(
+            let t1052 = T::fused(
                 -t29,
                 T::fused(-k(13.585476419395064), t301, t282),
-                t61 * t1045,
+                t61 * t1036,
             );
-            let t1062 = k(3.478327964999673) * t440;
-            let t1063 = k(5.0) * t440;
-            let t1064 = T::fused(
+            let t1053 = k(3.478327964999673) * t440;
+            let t1054 = k(5.0) * t440;
+            let t1055 = T::fused(
                 -k(0.7666518779999278),
-                T::fused(t68, t1062, t289 * t67),
-                k(1.0666666666666667) * T::fused(t66, t285, t1063 * t64),
+                T::fused(t68, t1053, t289 * t67),
+                k(1.0666666666666667) * T::fused(t66, t285, t1054 * t64),
             );
-            let t1065 = T::fused(-k(2.24), t285, t1064);
-            let t1066 = T::fused(
+            let t1056 = T::fused(-k(2.24), t285, t1055);
+            let t1057 = T::fused(
                 -k(0.5518621316880434),
                 T::fused(
                     -t29,
                     T::fused(k(0.07136528672984159), t301, t282),
-                    t77 * t1045,
+                    t77 * t1036,
                 ),
-                T::fused(t4, T::fused(k(1.3536465206072552), t301, t282), t76 * t1039),
+                T::fused(t4, T::fused(k(1.3536465206072552), t301, t282), t76 * t1030),
             );
-            let t1067 = T::fused(
+            let t1058 = T::fused(
                 -k(1.2505973028522315),
-                T::fused(-t1043, t75, t26 * T::fused(-t301, t73, t282 * t74)),
-                t6 * (x1 * t1066),
+                T::fused(-t1034, t75, t26 * T::fused(-t301, t73, t282 * t74)),
+                t6 * (x1 * t1057),
             );
-            let t1068 = t9 * t1048;
-            let t1069 = T::fused(
+            let t1059 = t9 * t1039;
+            let t1060 = T::fused(
                 -k(1.3913311859998692),
-                T::fused(-t66, t289, t1063 * t68),
-                T::fused(-t64, t1062, t285 * t67),
+                T::fused(-t66, t289, t1054 * t68),
+                T::fused(-t64, t1053, t285 * t67),
             );
-            let t1070 = T::fused(k(2.921795490599725), t289, -t1069);
-            let t1071 = T::fused(
+            let t1061 = T::fused(k(2.921795490599725), t289, -t1060);
+            let t1062 = T::fused(
                 t29,
                 T::fused(-k(0.09882032667876588), t282, k(0.08254377978647137) * t301),
-                t84 * t1045,
+                t84 * t1036,
             )
                 + T::fused(
                     t86,
                     T::fused(-k(0.8624833627499189), t282, k(1.2857142857142858) * t301),
-                    t85 * t1070,
+                    t85 * t1061,
                 );
-            let t1072 = T::fused(
+            let t1063 = T::fused(
                 t4,
                 T::fused(k(2.9310710318397244), t282, k(1.426962962962963) * t301),
-                t81 * t1039,
+                t81 * t1030,
             )
                 - T::fused(
                     -t29,
                     T::fused(-k(0.3747747327079956), t301, t282),
-                    t82 * t1045,
+                    t82 * t1036,
                 );
-            let t1073 = T::fused(
+            let t1064 = T::fused(
                 k(1.888),
-                t1068,
-                T::fused(-k(1.7654518518518518), t1044, t80 * t1072) - t1071,
+                t1059,
+                T::fused(-k(1.7654518518518518), t1035, t80 * t1063) - t1062,
             );
-            let t1074 = k(1.4055284429998678) * T::fused(-t12, t1070, t282 * t86);
-            let t1075 = T::fused(t11, t1070, t301 * t86);
-            let t1076 = T::fused(
+            let t1065 = k(1.4055284429998678) * T::fused(-t12, t1061, t282 * t86);
+            let t1066 = T::fused(t11, t1061, t301 * t86);
+            let t1067 = T::fused(
                 k(0.09419237749546279),
-                T::fused(-t12, t1045, t282 * t29),
+                T::fused(-t12, t1036, t282 * t29),
                 t80
                     * T::fused(
                         -t95,
-                        t1039,
+                        t1030,
                         t4
                             * T::fused(
                                 -k(1.743801753119836),
@@ -18052,535 +18027,535 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                             ),
                     ),
             );
-            let t1077 = t1076
+            let t1068 = t1067
                 - T::fused(
                     -k(0.11273678478211281),
-                    T::fused(t11, t1045, t301 * t29),
-                    k(1.376) * t1068,
+                    T::fused(t11, t1036, t301 * t29),
+                    k(1.376) * t1059,
                 );
-            let t1078 = t1077 + (t1075 + T::fused(k(0.13163456790123457), t1044, t1074));
-            let t1079 = T::fused(
-                t1043,
+            let t1069 = t1068 + (t1066 + T::fused(k(0.13163456790123457), t1035, t1065));
+            let t1070 = T::fused(
+                t1034,
                 t214,
-                t26 * T::fused(t212, T::fused(t282, t104, t301 * t105), t1043 * t213),
+                t26 * T::fused(t212, T::fused(t282, t104, t301 * t105), t1034 * t213),
             );
-            let t1080 = k(0.5165816326530612) * t1068;
-            let t1081 = T::fused(
-                t1037 * x1,
+            let t1071 = k(0.5165816326530612) * t1059;
+            let t1072 = T::fused(
+                t1028 * x1,
                 t182,
-                T::fused(t3, t1050, t1038 * t55) * t180,
+                T::fused(t3, t1041, t1029 * t55) * t180,
             );
-            let t1082 = T::fused(-t1037, t179, t183 * T::fused(t3, t282, t12 * t1038))
-                - t1081;
-            let t1083 = T::fused(
-                t1037,
+            let t1073 = T::fused(-t1028, t179, t183 * T::fused(t3, t282, t12 * t1029))
+                - t1072;
+            let t1074 = T::fused(
+                t1028,
                 t178,
-                -T::fused(-t1038, t177, t3 * T::fused(-t1053, t116, t301 * t176)),
+                -T::fused(-t1029, t177, t3 * T::fused(-t1044, t116, t301 * t176)),
             );
-            let t1084 = t1083 - t1082;
-            let t1085 = T::fused(
+            let t1075 = t1074 - t1073;
+            let t1076 = T::fused(
                 u1,
-                t1084,
+                t1075,
                 k(1.797530864197531)
                     * (t165
                         * T::fused(
                             k(25.874500882497568),
                             t1,
-                            T::fused(-t26, t1050, t1043 * t55),
+                            T::fused(-t26, t1041, t1034 * t55),
                         )),
             );
-            let t1086 = T::fused(
-                -(t1074 + T::fused(t11, t1059, t301 * t60)),
+            let t1077 = T::fused(
+                -(t1065 + T::fused(t11, t1050, t301 * t60)),
                 t204,
-                T::fused(t1065, t202, t1085),
+                T::fused(t1056, t202, t1076),
             );
-            let t1087 = T::fused(
+            let t1078 = T::fused(
                 T::fused(
                     k(1.4055284429998678),
-                    t1075,
-                    -T::fused(-t12, t1059, t282 * t60),
+                    t1066,
+                    -T::fused(-t12, t1050, t282 * t60),
                 ),
                 t205,
-                t1086,
+                t1077,
             );
-            let t1088 = T::fused(
-                T::fused(-t34, t1055, t206 * t1080),
+            let t1079 = T::fused(
+                T::fused(-t34, t1046, t206 * t1071),
                 t110,
-                T::fused(T::fused(t34, t1080, t206 * t1055), t115, t1087),
+                T::fused(T::fused(t34, t1071, t206 * t1046), t115, t1078),
             );
-            let t1089 = T::fused(
+            let t1080 = T::fused(
                 k(0.8118755555555556),
-                t1079,
-                T::fused(-k(0.04), T::fused(t1048, t211, t9 * (t1048 * t210)), t1088),
+                t1070,
+                T::fused(-k(0.04), T::fused(t1039, t211, t9 * (t1039 * t210)), t1079),
             );
-            let t1090 = T::fused(
+            let t1081 = T::fused(
                 -t17,
-                T::fused(k(1.658466773711844), t1067, x1 * t1073),
-                T::fused(-t6, T::fused(-t1048, t94, x1 * t1078), t1089),
+                T::fused(k(1.658466773711844), t1058, x1 * t1064),
+                T::fused(-t6, T::fused(-t1039, t94, x1 * t1069), t1080),
             );
-            let t1091 = T::fused(
+            let t1082 = T::fused(
                 -k(0.1003448275862069),
                 T::fused(
-                    -t1045,
+                    -t1036,
                     t223,
-                    t29 * T::fused(k(0.48711340206185566), t1046, t6 * t1047),
+                    t29 * T::fused(k(0.48711340206185566), t1037, t6 * t1038),
                 ),
-                T::fused(x1, T::fused(t1061, t216, t53 * t1065) + t1060, t1090),
+                T::fused(x1, T::fused(t1052, t216, t53 * t1056) + t1051, t1081),
             );
-            let t1092 = T::fused(
+            let t1083 = T::fused(
                 -t6,
-                T::fused(-t301, t133, t17 * t1040),
+                T::fused(-t301, t133, t17 * t1031),
                 k(2.363156326451391) * (t301 * t196),
             );
-            let t1093 = T::fused(
-                -T::fused(t6, t1080, t17 * t1055),
+            let t1084 = T::fused(
+                -T::fused(t6, t1071, t17 * t1046),
                 t145,
-                T::fused(-t26, T::fused(-k(10.73312629199899), t301, t282), t1043 * t147),
+                T::fused(-t26, T::fused(-k(10.73312629199899), t301, t282), t1034 * t147),
             );
-            let t1094 = T::fused(
+            let t1085 = T::fused(
                 k(0.14933333333333335),
-                t1093,
-                T::fused(-T::fused(-t17, t1080, t6 * t1055), t148, t1073),
+                t1084,
+                T::fused(-T::fused(-t17, t1071, t6 * t1046), t148, t1064),
             );
-            let t1095 = T::fused(
+            let t1086 = T::fused(
                 -k(0.829233386855922),
-                T::fused(-t1056, t141, t6 * t1066),
-                t17 * T::fused(-x1, t1054, k(0.033484573502722326) * t1061),
+                T::fused(-t1047, t141, t6 * t1057),
+                t17 * T::fused(-x1, t1045, k(0.033484573502722326) * t1052),
             );
-            let t1096 = T::fused(
+            let t1087 = T::fused(
                 -k(0.25555062599997597),
                 T::fused(
                     -t86,
                     T::fused(-k(1.118033988749895), t301, t282),
-                    t174 * t1070,
+                    t174 * t1061,
                 ),
-                T::fused(-t52, t1065, t1065),
+                T::fused(-t52, t1056, t1056),
             );
-            let t1097 = T::fused(
-                t17 * t1057,
+            let t1088 = T::fused(
+                t17 * t1048,
                 t155,
                 T::fused(
                     t60,
-                    T::fused(-k(0.20327890704543541), t1050, t1053),
-                    t173 * t1059,
-                ) - t1096,
+                    T::fused(-k(0.20327890704543541), t1041, t1044),
+                    t173 * t1050,
+                ) - t1087,
             );
-            let t1098 = T::fused(
+            let t1089 = T::fused(
                 k(1.3937777777777778),
                 T::fused(
                     -t26,
                     T::fused(k(0.27152254012497445), t301, t282),
-                    t1043 * t159,
+                    t1034 * t159,
                 ),
-                t1078,
+                t1069,
             );
-            let t1099 = T::fused(
+            let t1090 = T::fused(
                 -t26,
                 T::fused(
-                    -t1043,
+                    -t1034,
                     t189,
                     k(0.21635810997513125) * T::fused(k(0.5243193878275368), t301, t282),
                 ),
-                t1043 * t190,
+                t1034 * t190,
             );
-            let t1100 = T::fused(
+            let t1091 = T::fused(
                 k(1.646341463414634),
-                T::fused(t1048, t193, t9 * (k(1.036641975308642) * (t1048 * t192))),
+                T::fused(t1039, t193, t9 * (k(1.036641975308642) * (t1039 * t192))),
                 T::fused(
                     k(3.3360329218106997),
-                    t1099,
-                    -T::fused(t17, t1098, T::fused(-u0, t1084, t1097)),
+                    t1090,
+                    -T::fused(t17, t1089, T::fused(-u0, t1075, t1088)),
                 ),
             );
-            let t1101 = T::fused(
+            let t1092 = T::fused(
                 k(0.19073538102085322),
-                T::fused(t1045, t170, t29 * T::fused(-t282, t168, t301 * t169)),
-                T::fused(-t6, t1095 - t1094, t1100),
+                T::fused(t1036, t170, t29 * T::fused(-t282, t168, t301 * t169)),
+                T::fused(-t6, t1086 - t1085, t1091),
             );
-            let t1102 = T::fused(
+            let t1093 = T::fused(
                 -k(1.2076754694478864),
                 T::fused(
-                    -t1039,
+                    -t1030,
                     t197,
-                    t4 * T::fused(k(1.781874039938556), t282 * t195, t1092),
+                    t4 * T::fused(k(1.781874039938556), t282 * t195, t1083),
                 ),
-                t1101,
+                t1092,
             );
-            let t1103 = T::fused(
+            let t1094 = T::fused(
                 k(0.14444444444444443),
-                t1102,
+                t1093,
                 -T::fused(
                     -k(0.6213685076675416),
-                    T::fused(t1039, t226, t4 * t1042),
-                    t1091,
+                    T::fused(t1030, t226, t4 * t1033),
+                    t1082,
                 ),
             );
-            let t1104 = t166 * t1103;
-            let t1105 = T::fused(
+            let t1095 = t166 * t1094;
+            let t1096 = T::fused(
                 k(1.6666666666666667),
-                t1102,
-                k(0.14444444444444443) * t1104,
+                t1093,
+                k(0.14444444444444443) * t1095,
             );
-            let t1106 = T::fused(
+            let t1097 = T::fused(
                 k(0.1),
-                t708,
-                T::fused(-t294, t762, T::fused(t308, t802, t315 * t762)),
+                t699,
+                T::fused(-t294, t753, T::fused(t308, t793, t315 * t753)),
             );
-            let t1107 = T::fused(
+            let t1098 = T::fused(
                 k(0.1),
-                t709,
-                T::fused(-t280, t762, T::fused(-t306, t802, t313 * t762)),
+                t700,
+                T::fused(-t280, t753, T::fused(-t306, t793, t313 * t753)),
             );
-            let t1108 = T::fused(
+            let t1099 = T::fused(
                 -t64,
-                t1107,
-                T::fused(t300, t760, T::fused(-t310, t801, t317 * t760)),
+                t1098,
+                T::fused(t300, t751, T::fused(-t310, t792, t317 * t751)),
             );
-            let t1109 = T::fused(-t511, t927, T::fused(-t518, t928, t516 * t930));
-            let t1110 = T::fused(-t518, t927, T::fused(-t530, t928, t527 * t930));
-            let t1111 = T::fused(
+            let t1100 = T::fused(-t511, t918, T::fused(-t518, t919, t516 * t921));
+            let t1101 = T::fused(-t518, t918, T::fused(-t530, t919, t527 * t921));
+            let t1102 = T::fused(
                 -t527,
                 t481,
-                T::fused(-t533, t488, T::fused(-k(0.2), t1109, k(0.1) * t1110)),
+                T::fused(-t533, t488, T::fused(-k(0.2), t1100, k(0.1) * t1101)),
             );
-            let t1112 = T::fused(t516, t474, t1111);
-            let t1113 = T::fused(
+            let t1103 = T::fused(t516, t474, t1102);
+            let t1104 = T::fused(
                 t68,
-                t1107,
-                T::fused(t300, t758, T::fused(-t310, t800, t317 * t758)),
+                t1098,
+                T::fused(t300, t749, T::fused(-t310, t791, t317 * t749)),
             );
-            let t1114 = T::fused(-t516, t927, T::fused(-t527, t928, t533 * t930));
-            let t1115 = T::fused(
+            let t1105 = T::fused(-t516, t918, T::fused(-t527, t919, t533 * t921));
+            let t1106 = T::fused(
                 -t518,
                 t474,
-                T::fused(t530, t481, T::fused(t527, t488, k(0.1) * t1114)),
+                T::fused(t530, t481, T::fused(t527, t488, k(0.1) * t1105)),
             );
-            let t1116 = T::fused(
+            let t1107 = T::fused(
                 -k(0.4472135954999579),
-                T::fused(t284, t1115, T::fused(t64, t1106, t1113)),
-                k(0.08944271909999159) * t613,
+                T::fused(t284, t1106, T::fused(t64, t1097, t1104)),
+                k(0.08944271909999159) * t612,
             );
-            let t1117 = T::fused(
+            let t1108 = T::fused(
                 -k(0.8944271909999159),
-                T::fused(t284, t1112, T::fused(t68, t1106, t1108)),
-                t1116,
+                T::fused(t284, t1103, T::fused(t68, t1097, t1099)),
+                t1107,
             );
-            let t1118 = T::fused(
+            let t1109 = T::fused(
                 t555,
                 t467,
-                T::fused(-t294, t825, T::fused(-t315, t748, t308 * t797)),
+                T::fused(-t294, t816, T::fused(-t315, t739, t308 * t788)),
             );
-            let t1119 = T::fused(t536, t1114, t1118);
-            let t1120 = T::fused(
+            let t1110 = T::fused(t536, t1105, t1109);
+            let t1111 = T::fused(
                 t553,
                 t469,
-                -T::fused(t280, t824, T::fused(t313, t744, t306 * t795)),
+                -T::fused(t280, t815, T::fused(t313, t735, t306 * t786)),
             );
-            let t1121 = T::fused(k(0.2), t817, t1120);
-            let t1122 = t1121 - t1119;
-            let t1123 = T::fused(
+            let t1112 = T::fused(k(0.2), t808, t1111);
+            let t1113 = t1112 - t1110;
+            let t1114 = T::fused(
                 t553,
                 t467,
-                T::fused(-t294, t824, T::fused(-t315, t744, t308 * t795)),
+                T::fused(-t294, t815, T::fused(-t315, t735, t308 * t786)),
             );
-            let t1124 = k(0.2) * t854;
-            let t1125 = T::fused(t536, t1110, -(t1124 + t1123));
-            let t1126 = T::fused(
+            let t1115 = k(0.2) * t845;
+            let t1116 = T::fused(t536, t1101, -(t1115 + t1114));
+            let t1117 = T::fused(
                 t555,
                 t469,
-                -T::fused(t280, t825, T::fused(t313, t748, t306 * t797)),
+                -T::fused(t280, t816, T::fused(t313, t739, t306 * t788)),
             );
-            let t1127 = t1126 - t1125;
-            let t1128 = T::fused(
+            let t1118 = t1117 - t1116;
+            let t1119 = T::fused(
                 k(0.2),
-                t708,
-                T::fused(-t294, t758, T::fused(t308, t800, t315 * t758)),
+                t699,
+                T::fused(-t294, t749, T::fused(t308, t791, t315 * t749)),
             );
-            let t1129 = T::fused(-t280, t760, T::fused(-t306, t801, t313 * t760));
-            let t1130 = t1129 + t1128;
-            let t1131 = T::fused(
+            let t1120 = T::fused(-t280, t751, T::fused(-t306, t792, t313 * t751));
+            let t1121 = t1120 + t1119;
+            let t1122 = T::fused(
                 k(0.2),
-                t709,
-                T::fused(-t280, t758, T::fused(-t306, t800, t313 * t758)),
+                t700,
+                T::fused(-t280, t749, T::fused(-t306, t791, t313 * t749)),
             );
-            let t1132 = T::fused(-t294, t760, T::fused(t308, t801, t315 * t760));
-            let t1133 = t1132 - t1131;
-            let t1134 = T::fused(
+            let t1123 = T::fused(-t294, t751, T::fused(t308, t792, t315 * t751));
+            let t1124 = t1123 - t1122;
+            let t1125 = T::fused(
                 -t64,
-                t1122,
-                T::fused(t68, t1127, T::fused(-t289, t1130, t285 * t1133)),
+                t1113,
+                T::fused(t68, t1118, T::fused(-t289, t1121, t285 * t1124)),
             );
-            let t1135 = T::fused(
+            let t1126 = T::fused(
                 -t68,
-                t1119,
-                T::fused(t64, t1126, T::fused(t285, t1129, t289 * t1132)),
+                t1110,
+                T::fused(t64, t1117, T::fused(t285, t1120, t289 * t1123)),
             );
-            let t1136 = T::fused(
+            let t1127 = T::fused(
                 t64,
-                t1125,
-                T::fused(-t68, t1121, T::fused(-t285, t1128, t289 * t1131)),
+                t1116,
+                T::fused(-t68, t1112, T::fused(-t285, t1119, t289 * t1122)),
             );
-            let t1137 = k(0.1) * t834;
-            let t1138 = T::fused(
+            let t1128 = k(0.1) * t825;
+            let t1129 = T::fused(
                 t556,
                 t465,
-                t1137 + T::fused(t300, t826, T::fused(t317, t751, t310 * t799)),
+                t1128 + T::fused(t300, t817, T::fused(t317, t742, t310 * t790)),
             );
-            let t1139 = T::fused(
+            let t1130 = T::fused(
                 t537,
-                t1109,
+                t1100,
                 -T::fused(
                     -k(0.4),
-                    t1134,
-                    T::fused(k(0.8), t1135, T::fused(k(0.2), t1136, t1138)),
+                    t1125,
+                    T::fused(k(0.8), t1126, T::fused(k(0.2), t1127, t1129)),
                 ),
             );
-            let t1140 = T::fused(
+            let t1131 = T::fused(
                 t511,
                 t474,
-                T::fused(-t518, t481, T::fused(-t516, t488, k(0.2) * t1114)),
+                T::fused(-t518, t481, T::fused(-t516, t488, k(0.2) * t1105)),
             );
-            let t1141 = T::fused(t326, t465, T::fused(-t333, t467, t335 * t469));
-            let t1142 = T::fused(t12, t465, T::fused(-t344, t467, t345 * t469));
-            let t1143 = T::fused(-t499, t1141, t505 * t1142);
-            let t1144 = T::fused(-t54, t465, T::fused(-t339, t467, t340 * t469));
-            let t1145 = T::fused(
+            let t1132 = T::fused(t326, t465, T::fused(-t333, t467, t335 * t469));
+            let t1133 = T::fused(t12, t465, T::fused(-t344, t467, t345 * t469));
+            let t1134 = T::fused(-t499, t1132, t505 * t1133);
+            let t1135 = T::fused(-t54, t465, T::fused(-t339, t467, t340 * t469));
+            let t1136 = T::fused(
                 -k(0.2),
-                t1143,
-                T::fused(-t552, t1141, T::fused(t554, t1144, t696 + t694 - t980)),
+                t1134,
+                T::fused(-t552, t1132, T::fused(t554, t1135, t687 + t685 - t971)),
             );
-            let t1146 = T::fused(
+            let t1137 = T::fused(
                 -t498,
-                t967,
-                T::fused(t508, t1005, T::fused(-t524, t994, t1145)),
+                t958,
+                T::fused(t508, t996, T::fused(t524, t985, t1136)),
             );
-            let t1147 = T::fused(
+            let t1138 = T::fused(
                 t556,
                 t467,
-                T::fused(t294, t826, T::fused(-t315, t751, t308 * t799)),
+                T::fused(t294, t817, T::fused(-t315, t742, t308 * t790)),
             );
-            let t1148 = T::fused(t536, t1109, T::fused(-k(0.1), t854, t1147));
-            let t1149 = T::fused(
+            let t1139 = T::fused(t536, t1100, T::fused(-k(0.1), t845, t1138));
+            let t1140 = T::fused(
                 t556,
                 t469,
-                -T::fused(-t280, t826, T::fused(t313, t751, t306 * t799)),
+                -T::fused(-t280, t817, T::fused(t313, t742, t306 * t790)),
             );
-            let t1150 = T::fused(-k(0.1), t817, t1149);
-            let t1151 = T::fused(
+            let t1141 = T::fused(-k(0.1), t808, t1140);
+            let t1142 = T::fused(
                 t285,
-                t1107,
-                T::fused(-t300, t825, T::fused(t317, t748, t310 * t797)),
+                t1098,
+                T::fused(-t300, t816, T::fused(t317, t739, t310 * t788)),
             );
-            let t1152 = T::fused(
+            let t1143 = T::fused(
                 t537,
-                t1114,
+                t1105,
                 -T::fused(
                     t555,
                     t465,
-                    T::fused(-t64, t1150, T::fused(t289, t1106, t1151)),
+                    T::fused(-t64, t1141, T::fused(t289, t1097, t1142)),
                 ),
             );
-            let t1153 = t713 + t712 - t951;
-            let t1154 = T::fused(
+            let t1144 = t704 + t703 - t942;
+            let t1145 = T::fused(
                 -k(0.1),
-                T::fused(t499, t1144, t501 * t1142),
-                T::fused(-t554, t1142, t1153),
+                T::fused(t499, t1135, t501 * t1133),
+                T::fused(-t554, t1133, t1144),
             );
-            let t1155 = T::fused(
+            let t1146 = T::fused(
                 -k(0.2),
-                T::fused(t501, t1141, t505 * t1144),
-                T::fused(-t551, t1141, t1154),
+                T::fused(t501, t1132, t505 * t1135),
+                T::fused(-t551, t1132, t1145),
             );
-            let t1156 = T::fused(
+            let t1147 = T::fused(
                 -t500,
-                t967,
-                T::fused(t509, t1005, T::fused(-t508, t994, t1155)),
+                t958,
+                T::fused(t509, t996, T::fused(t508, t985, t1146)),
             );
-            let t1157 = T::fused(
+            let t1148 = T::fused(
                 t289,
-                t1107,
-                T::fused(-t300, t824, T::fused(t317, t744, t310 * t795)),
+                t1098,
+                T::fused(-t300, t815, T::fused(t317, t735, t310 * t786)),
             );
-            let t1158 = T::fused(
+            let t1149 = T::fused(
                 t537,
-                t1110,
-                T::fused(t553, t465, T::fused(t68, t1150, T::fused(-t285, t1106, t1157))),
+                t1101,
+                T::fused(t553, t465, T::fused(t68, t1141, T::fused(-t285, t1097, t1148))),
             );
-            let t1159 = T::fused(
-                -t498,
-                t994,
+            let t1150 = T::fused(
+                t498,
+                t985,
                 T::fused(
                     k(0.1),
-                    t1143,
-                    T::fused(t551, t1144, T::fused(t552, t1142, t1153)),
+                    t1134,
+                    T::fused(t551, t1135, T::fused(t552, t1133, t1144)),
                 ),
             );
-            let t1160 = T::fused(-t504, t967, T::fused(t500, t1005, t1159));
-            let t1161 = T::fused(
+            let t1151 = T::fused(-t504, t958, T::fused(t500, t996, t1150));
+            let t1152 = T::fused(
                 -k(0.8),
-                T::fused(-t64, t1129, t68 * t1132),
-                T::fused(t300, t762, T::fused(-t310, t802, t317 * t762)),
+                T::fused(-t64, t1120, t68 * t1123),
+                T::fused(t300, t753, T::fused(-t310, t793, t317 * t753)),
             );
-            let t1162 = T::fused(
+            let t1153 = T::fused(
                 -k(0.4),
-                T::fused(t68, t1130, t64 * t1133),
-                T::fused(-k(0.2), T::fused(t64, t1128, t68 * t1131), t1161),
+                T::fused(t68, t1121, t64 * t1124),
+                T::fused(-k(0.2), T::fused(t64, t1119, t68 * t1122), t1152),
             );
-            let t1163 = T::fused(t284, t1140, -T::fused(-k(0.1), t613, t1162));
-            let t1164 = T::fused(
+            let t1154 = T::fused(t284, t1131, -T::fused(-k(0.1), t612, t1153));
+            let t1155 = T::fused(
                 k(0.4472135954999579),
                 T::fused(
                     t284,
-                    t1160,
-                    -T::fused(t512, t1115, T::fused(t64, t1148, t1158)),
+                    t1151,
+                    -T::fused(t512, t1106, T::fused(t64, t1139, t1149)),
                 ),
-                T::fused(t281, t1163, k(0.08944271909999159) * t834),
+                T::fused(t281, t1154, k(0.08944271909999159) * t825),
             );
-            let t1165 = T::fused(
+            let t1156 = T::fused(
                 -k(0.8944271909999159),
                 T::fused(
                     t284,
-                    t1156,
-                    T::fused(t512, t1112, -T::fused(-t68, t1148, t1152)),
+                    t1147,
+                    T::fused(t512, t1103, -T::fused(-t68, t1139, t1143)),
                 ),
-                t1164,
+                t1155,
             );
-            let t1166 = T::fused(
+            let t1157 = T::fused(
                 -t11,
                 T::fused(
                     t284,
-                    t1146,
-                    T::fused(t512, t1140, -T::fused(t281, t1117, t1139)),
+                    t1137,
+                    T::fused(t512, t1131, -T::fused(t281, t1108, t1130)),
                 ),
-                t12 * t1165,
+                t12 * t1156,
             );
-            let t1167 = T::fused(t260, t906, T::fused(-t254, t919, t269 * t921));
-            let t1168 = T::fused(t260, t907, T::fused(t269, t919, t254 * t921));
-            let t1169 = T::fused(t254, t893, T::fused(-t260, t922, t269 * t905));
-            let t1170 = T::fused(-t269, t893, T::fused(-t260, t923, t254 * t905));
-            let t1171 = T::fused(
+            let t1158 = T::fused(-t260, t897, T::fused(-t254, t910, t269 * t912));
+            let t1159 = T::fused(-t260, t898, T::fused(t269, t910, t254 * t912));
+            let t1160 = T::fused(-t254, t884, T::fused(t260, t913, t269 * t896));
+            let t1161 = T::fused(t269, t884, T::fused(t260, t914, t254 * t896));
+            let t1162 = T::fused(
                 -k(0.8944271909999159),
-                T::fused(t258, t1169, t264 * t1170),
-                k(0.4472135954999579) * T::fused(-t264, t1169, t258 * t1170),
+                T::fused(t258, t1160, t264 * t1161),
+                k(0.4472135954999579) * T::fused(-t264, t1160, t258 * t1161),
             );
-            let t1172 = T::fused(
-                k(0.25),
-                T::fused(t261, T::fused(t264, t1167, t258 * t1168), t256 * t1171),
-                k(16.099689437998485) * t1115,
+            let t1163 = T::fused(
+                -k(0.25),
+                T::fused(-t261, T::fused(t264, t1158, t258 * t1159), t256 * t1162),
+                k(16.099689437998485) * t1106,
             );
-            let t1173 = T::fused(
+            let t1164 = T::fused(
                 k(1.3416407864998738),
-                t1156,
+                t1147,
                 T::fused(
                     -k(3.0),
-                    T::fused(-t11, t1163, t12 * t1117),
-                    k(2.6832815729997477) * t1160,
+                    T::fused(-t11, t1154, t12 * t1108),
+                    k(2.6832815729997477) * t1151,
                 ),
             );
-            let t1174 = T::fused(
+            let t1165 = T::fused(
                 -t1,
-                T::fused(k(0.5), t1166, T::fused(k(8.049844718999243), t1112, -t1172)),
-                t9 * t1173,
+                T::fused(k(0.5), t1157, T::fused(k(8.049844718999243), t1103, -t1163)),
+                t9 * t1164,
             );
-            let t1175 = T::fused(
+            let t1166 = T::fused(
                 -t286,
-                t1130,
-                T::fused(-t326, t1107, T::fused(t290, t1131, t320 * t1132)),
+                t1121,
+                T::fused(-t326, t1098, T::fused(t290, t1122, t320 * t1123)),
             );
-            let t1176 = T::fused(-t54, t1106, t1175);
-            let t1177 = T::fused(
+            let t1167 = T::fused(-t54, t1097, t1166);
+            let t1168 = T::fused(
                 -t290,
-                t1128,
-                T::fused(-t54, t1107, T::fused(t286, t1133, t320 * t1129)),
+                t1119,
+                T::fused(-t54, t1098, T::fused(t286, t1124, t320 * t1120)),
             );
-            let t1178 = T::fused(t326, t1106, t1177);
-            let t1179 = T::fused(
+            let t1169 = T::fused(t326, t1097, t1168);
+            let t1170 = T::fused(
                 t323,
-                t1112,
-                T::fused(t302, t1115, T::fused(t64, t1176, t68 * t1178)),
+                t1103,
+                T::fused(t302, t1106, T::fused(t64, t1167, t68 * t1169)),
             );
-            let t1180 = T::fused(
+            let t1171 = T::fused(
                 t12,
-                t1146,
+                t1137,
                 -T::fused(
                     t54,
-                    t1156,
-                    -T::fused(t326, t1160, T::fused(t282, t1140, t1179)),
+                    t1147,
+                    -T::fused(t326, t1151, T::fused(t282, t1131, t1170)),
                 ),
             );
-            let t1181 = T::fused(
+            let t1172 = T::fused(
                 t258,
-                T::fused(t256, t1167, T::fused(t263, t1169, t262 * t1170)),
-                t264 * T::fused(-t256, t1168, T::fused(-t262, t1169, t263 * t1170)),
+                T::fused(-t256, t1158, T::fused(t263, t1160, t262 * t1161)),
+                t264 * T::fused(t256, t1159, T::fused(-t262, t1160, t263 * t1161)),
             );
-            let t1182 = T::fused(
+            let t1173 = T::fused(
                 -t288,
-                t1128,
-                T::fused(t323, t1107, T::fused(-t283, t1133, t319 * t1129)),
+                t1119,
+                T::fused(t323, t1098, T::fused(-t283, t1124, t319 * t1120)),
             );
-            let t1183 = T::fused(
+            let t1174 = T::fused(
                 -t320,
-                t1126,
+                t1117,
                 T::fused(
                     -t54,
-                    t1150,
-                    T::fused(-t284, t1176, T::fused(-t302, t1106, t1182)),
+                    t1141,
+                    T::fused(-t284, t1167, T::fused(-t302, t1097, t1173)),
                 ),
             );
-            let t1184 = T::fused(
+            let t1175 = T::fused(
                 t283,
-                t1130,
-                T::fused(t302, t1107, T::fused(t288, t1131, t319 * t1132)),
-            );
-            let t1185 = T::fused(
-                -t290,
                 t1121,
+                T::fused(t302, t1098, T::fused(t288, t1122, t319 * t1123)),
+            );
+            let t1176 = T::fused(
+                -t290,
+                t1112,
                 T::fused(
                     -t326,
-                    t1150,
-                    T::fused(t323, t1106, T::fused(t284, t1178, t1184)),
+                    t1141,
+                    T::fused(t323, t1097, T::fused(t284, t1169, t1175)),
                 ),
             );
-            let t1186 = T::fused(
+            let t1177 = T::fused(
                 t68,
                 T::fused(
                     t326,
-                    t1148,
-                    T::fused(t286, t1122, T::fused(-t290, t1125, t1183)),
+                    t1139,
+                    T::fused(t286, t1113, T::fused(-t290, t1116, t1174)),
                 ),
                 t64
                     * T::fused(
                         -t54,
-                        t1148,
-                        T::fused(-t320, t1119, T::fused(t286, t1127, t1185)),
+                        t1139,
+                        T::fused(-t320, t1110, T::fused(t286, t1118, t1176)),
                     ),
             );
-            let t1187 = T::fused(
+            let t1178 = T::fused(
                 k(11.2),
-                T::fused(-t12, t1140, T::fused(t54, t1112, t326 * t1115)),
-                T::fused(-k(0.35), t1181, k(0.7) * t1186),
+                T::fused(-t12, t1131, T::fused(t54, t1103, t326 * t1106)),
+                T::fused(k(0.35), t1172, k(0.7) * t1177),
             );
-            let t1188 = T::fused(
+            let t1179 = T::fused(
                 k(5.0),
-                T::fused(t344, t1109, T::fused(t339, t1114, t333 * t1110)),
-                -t1124,
+                T::fused(t344, t1100, T::fused(t339, t1105, t333 * t1101)),
+                -t1115,
             );
-            let t1189 = T::fused(
+            let t1180 = T::fused(
                 k(0.9),
-                T::fused(t12, t1109, T::fused(-t54, t1114, t326 * t1110)),
-                -t1137,
+                T::fused(t12, t1100, T::fused(-t54, t1105, t326 * t1101)),
+                -t1128,
             );
-            let t1190 = T::fused(
+            let t1181 = T::fused(
                 -k(5.0),
-                T::fused(t440, t1188, t66 * t708),
-                k(3.0) * T::fused(-t386, t1189, t59 * (k(0.3) * t613)),
+                T::fused(t440, t1179, t66 * t699),
+                k(3.0) * T::fused(-t386, t1180, t59 * (k(0.3) * t612)),
             );
-            let t1191 = T::fused(
+            let t1182 = T::fused(
                 -k(6.0),
-                t1174,
-                T::fused(-k(4.0), T::fused(t26, k(2.8) * t1180, t3 * t1187), t1190),
+                t1165,
+                T::fused(-k(4.0), T::fused(t26, k(2.8) * t1171, t3 * t1178), t1181),
             );
-            (t1016, t1024, t1032, t1034, t1036, t1104, t1105, t1191)
+            (t1007, t1015, t1023, t1024, t1025, t1027, t1095, t1096, t1182)
         };
         *dfdx = [
             k(0.0),
@@ -18606,19 +18581,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             T::fused(
                 -t464,
                 t248,
-                T::fused(-t489, t167, T::fused(-k(0.5), t1016, t1024)),
+                T::fused(-t489, t167, T::fused(-k(0.5), t1007, t1015)),
             ),
-            -T::fused(t464, t249, T::fused(t489, t244, t1032)),
-            -T::fused(t464, t250, T::fused(t489, t246, t1034)),
-            -T::fused(t464, t251, T::fused(t489, t247, t1036)),
+            -T::fused(t464, t249, T::fused(t489, t244, t1023)),
+            -T::fused(
+                t464,
+                t250,
+                T::fused(t489, t246, T::fused(-k(0.6666666666666666), t1024, t1025)),
+            ),
+            -T::fused(t464, t251, T::fused(t489, t247, t1027)),
             k(0.0),
         ];
         *dfdt = [
             k(0.0),
             k(0.0),
-            -t1104,
-            -t1105,
-            T::fused(-t464, t1105, T::fused(-t489, t1104, t1191)),
+            -t1095,
+            -t1096,
+            T::fused(-t464, t1096, T::fused(-t489, t1095, t1182)),
         ];
     }
     fn joint_input_jacobian(

@@ -15,7 +15,7 @@
 //! * joint_accelerations: 217 operations by normal form; 604 operations by orthogonal motions; 1 more compared
 //! * joint_accelerations_at: 589 operations by normal form; 965 operations by orthogonal motions; 3 more compared
 //! * corrected_accelerations: 895 operations by normal form in the bodies' frames; 1019 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 1653 operations by derivatives of u̇, from its leaves; 1653 operations by normal form of that; 7 more compared
+//! * joint_jacobian: 733 operations by derivatives of u̇, from its leaves; 733 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -36,14 +36,14 @@
 //! | read_joints | joint coordinates and rates | 175 | 172 | 0 | 347 | 0 of 10 | 2131 | 347 |
 //! | outputs | outputs, the accelerations being known | 460 | 558 | 2 | 1020 | 0 of 12 | 4.7e6 | 1020 |
 //! | joint_accelerations | u̇ in joint coordinates | 95 | 119 | 3 | 217 | 0 of 4 | 8880 | 218 |
-//! | joint_derivative | ẋ but for u̇ | 174 | 191 | 0 | 365 | 0 of 5 | 9859 | 365 |
+//! | joint_derivative | ẋ but for u̇ | 1 | 4 | 0 | 5 | 0 of 5 | 5 | 5 |
 //! | to_maximal | (q, v) of a joint state | 113 | 137 | 0 | 250 | 0 of 27 | 3491 | 250 |
 //! | to_joints | (x, u) of a maximal state | 181 | 181 | 0 | 362 | 0 of 8 | 3071 | 362 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 275 | 311 | 3 | 589 | 0 of 4 | 353061 | 590 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 398 | 494 | 3 | 895 | 0 of 12 | 1.1e7 | 896 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 392 | 442 | 0 | 834 | 0 of 8 | 461089 | 834 |
 //! | corrected_solution | both | 612 | 763 | 3 | 1378 | 0 of 20 | 1.1e9 | 1379 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 735 | 915 | 3 | 1653 | 46 of 90 | 1.5e7 | 1653 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 312 | 418 | 3 | 733 | 52 of 90 | 148038 | 733 |
 //!
 //! # Proof
 //!
@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
             k(0.4),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 256 operations (119 ±, 137 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 256 operations (119 ±, 137 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -349,7 +349,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 10]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 256 operations (119 ±, 137 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 256 operations (119 ±, 137 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -5624,257 +5624,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         );
         *out = [-t43, t44, t45, -t46];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 365 operations (174 ±, 191 ×, 0 ÷) and 4 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 5 operations (1 ±, 4 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
         let k = T::constant;
-        let x0 = x[0];
-        let x1 = x[1];
-        let x2 = x[2];
-        let x3 = x[3];
         let u0 = x[4];
         let u1 = x[5];
         let u2 = x[6];
         let u3 = x[7];
-        let t0 = k(0.5) * x0;
-        let t1 = t0.cos();
-        let t2 = t0.sin();
-        let t3 = t2 * t1;
-        let t4 = k(0.75) * t3;
-        let t5 = t2 * t2;
-        let t6 = t5 + t4;
-        let t7 = k(3.3333333333333335) * t6;
-        let t8 = k(0.15) - T::fused(k(0.5), x2, x1);
-        let t9 = u0 * t8;
-        let t10 = k(0.3) + T::fused(k(2.0), x2, x1);
-        let t11 = u0 * t10;
-        let t12 = t11 + T::fused(-k(3.0), u1 - u2, t9);
-        let t13 = u0 * t6;
-        let t14 = k(3.0) * t3;
-        let t15 = t5 - t14;
-        let t16 = u0 * t15;
-        let t17 = t16 - t13;
-        let t18 = t1 * t1;
-        let t19 = k(0.5) - T::fused(k(0.4444444444444444), t5, t18);
-        let t20 = u0 * t19;
-        let t21 = T::fused(k(0.4444444444444444), t13, t20);
-        let t22 = T::fused(k(0.4444444444444444), t16, t20);
-        let t23 = t17
-            - T::fused(
-                -k(0.5),
-                t17,
-                T::fused(k(2.25), t21, T::fused(k(2.25), t22, t17)),
-            );
-        let t24 = k(3.3333333333333335) * t15;
-        let t25 = k(1.5) * u2;
-        let t26 = k(0.3) + (x1 - x2);
-        let t27 = u0 * t26;
-        let t28 = t9 - (t27 + T::fused(k(0.75), u1, t25));
-        let t29 = k(7.5) * t19;
-        let t30 = t27 + (t11 - T::fused(k(3.0), u1, t25));
-        let t31 = k(0.5) * x3;
-        let t32 = t31.cos();
-        let t33 = t31.sin();
-        let t34 = (t33 - t32) * (t33 + t32);
-        let t35 = t33 * t32;
-        let t36 = k(6.0) * t35;
-        let t37 = k(1.0) + t34;
-        let t38 = u0 * (t37 + t36);
-        let t39 = u0 * (t37 - t36);
-        let t40 = T::fused(
-            k(1.7777777777777777),
-            u0 * (k(0.125) - t34),
-            T::fused(
-                -k(0.2222222222222222),
-                t38,
-                T::fused(k(0.4444444444444444), t39, u3),
-            ),
-        );
-        let t41 = u0 * (k(0.8) - t34);
-        let t42 = k(1.5) * t35;
-        let t43 = T::fused(
-            k(0.2222222222222222),
-            t39,
-            T::fused(
-                -k(0.2777777777777778),
-                t41,
-                T::fused(k(0.4444444444444444), u0 * (t37 + t42), u3),
-            ),
-        );
-        let t44 = T::fused(-k(0.8333333333333334), t40, t43);
-        let t45 = t2 * t32;
-        let t46 = t1 * t33;
-        let t47 = t2 * t33;
-        let t48 = k(0.6666666666666666) * t47;
-        let t49 = T::fused(k(0.16666666666666666), t47, t48 + (t46 + t45));
-        let t50 = T::fused(k(2.0), t47, -(t47 - T::fused(-k(4.5), t1 * t32, t47)));
-        let t51 = t50 * t50;
-        let t52 = k(10.125) - T::fused(k(9.0), t49 * t49, t51);
-        let t53 = T::fused(
-            k(0.03333333333333333),
-            t52 * t44,
-            T::fused(t30, t29, -T::fused(t28, t24, -T::fused(t12, t7, t23))),
-        );
-        let t54 = k(0.6666666666666666) * t50;
-        let t55 = T::fused(
-            -k(0.5),
-            t46,
-            t48 - T::fused(-k(0.3333333333333333), t47, t45),
-        );
-        let t56 = t55 * t54;
-        let t57 = T::fused(
-            -k(2.0),
-            t46,
-            T::fused(k(1.3333333333333333), t47, t45) - t48,
-        );
-        let t58 = t57 * t49;
-        let t59 = t58 - t56;
-        let t60 = t38 - T::fused(u0, t37 - t42, -T::fused(k(2.5), t41, k(4.5) * u3));
-        let t61 = T::fused(k(0.13333333333333333), t60, t40);
-        let t62 = T::fused(k(9.0), t43, t60);
-        let t63 = k(0.1111111111111111) * t62;
-        let t64 = k(0.16666666666666666) * (t57 * t50);
-        let t65 = t49 * t55;
-        let t66 = t65 + t64;
-        let t67 = T::fused(
-            k(0.03333333333333333),
-            T::fused(-t60, t59, t43 * t52),
-            -T::fused(t66, t63, -T::fused(k(0.25), t61 * t59, -t53)),
-        );
-        let t68 = k(4.0) * t66;
-        let t69 = T::fused(
-            k(0.25),
-            T::fused(-t40, t59, t43 * t68),
-            -T::fused(k(0.027777777777777776), T::fused(-t60, t68, t40 * t52), -t67),
-        );
-        let t70 = k(0.25) * t15;
-        let t71 = k(1.125) + (t6 + t70);
-        let t72 = T::fused(
-            t8,
-            t29,
-            T::fused(k(0.8333333333333334), t10 * t15, -T::fused(t26, t7, t71)),
-        );
-        let t73 = t49 * t54;
-        let t74 = t57 * t55;
-        let t75 = t74 + t73;
-        let t76 = k(10.125) - T::fused(k(9.0), t55 * t55, t51);
-        let t77 = k(0.04938271604938271) * t76;
-        let t78 = t65 - t64;
-        let t79 = k(2.25) * t20;
-        let t80 = t5 + t14;
-        let t81 = u0 * t80;
-        let t82 = t81 + t79;
-        let t83 = t5 - t4;
-        let t84 = u0 * t83;
-        let t85 = t79 + t84;
-        let t86 = t81 - t84;
-        let t87 = k(9.0) * T::fused(k(0.4444444444444444), t81, t20);
-        let t88 = t87
-            - T::fused(-k(2.0), t82, T::fused(-k(4.0), t85, T::fused(k(4.0), t86, t87)));
-        let t89 = T::fused(
-            k(13.333333333333334),
-            t30 * t83,
-            T::fused(
-                k(13.333333333333334),
-                t28 * t80,
-                T::fused(k(30.0), t19 * t12, -t88),
-            ),
-        );
-        let t90 = T::fused(
-            t62,
-            t77,
-            T::fused(t61, t75, T::fused(k(1.2), t44 * t78, -t89)),
-        );
-        let t91 = T::fused(
-            -k(1.2),
-            T::fused(k(0.1111111111111111), t60 * t75, t43 * t78),
-            t90,
-        ) + T::fused(-t60, t77, t40 * t78);
-        let t92 = T::fused(k(4.0), t83, T::fused(k(9.0), t19, t80))
-            * (t91 - T::fused(t40, t75, k(0.4444444444444444) * (t43 * t76)));
-        let t93 = k(0.1111111111111111) * t80;
-        let t94 = k(0.25) - (t19 - t93);
-        let t95 = T::fused(
-            k(1.4814814814814814),
-            t8 * t83,
-            T::fused(
-                -k(0.37037037037037035),
-                t10 * t80,
-                T::fused(-k(3.3333333333333335), t26 * t19, t94),
-            ),
-        );
-        let t96 = T::fused(
-            -k(0.027777777777777776),
-            t92,
-            (t93 + (t19 - T::fused(k(0.2222222222222222), t83, t94 - t95)))
-                * (t82 - (t85 - t86)),
-        );
-        let t97 = k(0.5) - T::fused(k(0.1111111111111111), t5, t18);
-        let t98 = k(2.25) * t97;
-        let t99 = t15 - t98;
-        let t100 = k(3.3333333333333335) * t80;
-        let t101 = T::fused(
-            t8,
-            t100,
-            T::fused(k(7.5), t10 * t97, T::fused(t26, t24, t99)),
-        );
-        let t102 = u0 * t97;
-        let t103 = T::fused(k(0.1111111111111111), t16, t102);
-        let t104 = k(9.0) * t102;
-        let t105 = t104 + t81;
-        let t106 = t16 - t81;
-        let t107 = T::fused(-k(9.0), t103, t106 - t105)
-            * (t98 + (t15 + T::fused(k(0.5), t80, t99 - t101)));
-        let t108 = t16 + t104;
-        let t109 = T::fused(
-            -t12,
-            t24,
-            t108 + T::fused(k(4.5), t103, t106 - (t108 + t105)),
-        );
-        let t110 = t58 + t56;
-        let t111 = T::fused(
-            k(0.3),
-            t44 * t110,
-            T::fused(t30, t100, -T::fused(k(30.0), t28 * t97, -t109)),
-        );
-        let t112 = k(10.125) - T::fused(k(2.25), t57 * t57, t51);
-        let t113 = t74 - t73;
-        let t114 = T::fused(
-            k(0.3),
-            T::fused(-t43, t110, k(0.04938271604938271) * (t60 * t112)),
-            -T::fused(t113, t63, T::fused(k(0.1111111111111111), t61 * t112, -t111)),
-        );
-        let t115 = T::fused(
-            k(0.1111111111111111),
-            T::fused(k(9.0), t43 * t113, t40 * t112),
-            T::fused(
-                k(0.25),
-                T::fused(t40, t110, k(0.4444444444444444) * (t60 * t113)),
-                t114,
-            ),
-        );
-        let t116 = T::fused(
-            k(0.1111111111111111),
-            (t80 - (t15 + t98)) * t115,
-            -T::fused(k(0.1111111111111111), t107, -t96),
-        );
-        let t117 = T::fused(
-            T::fused(k(0.4444444444444444), t17, t21 + t22),
-            t70 - (t6 - T::fused(k(1.125), t19, -(t71 + t72))),
-            t116,
-        );
-        let t118 = T::fused(
-            -T::fused(
-                k(0.4444444444444444),
-                t6,
-                T::fused(-k(0.1111111111111111), t15, t19),
-            ),
-            t69,
-            t117,
-        );
-        let t119 = u0
-            - T::fused(k(0.25), t40, T::fused(k(0.2222222222222222), t60, t43));
         *dx = [
             u0,
             u1,
@@ -5884,8 +5642,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             rates[1],
             rates[2],
             rates[3],
-            -(k(0.003950617283950617)
-                * T::fused(k(1.2641975308641975), t118 * t118, t119 * t119)),
+            -T::fused(u3, k(0.02) * u3, u1 * (k(0.8) * u1)),
         ];
     }
     /// Writes the maximal state of a joint state: 250 operations (113 ±, 137 ×, 0 ÷) and 4 functions.
@@ -9139,7 +8896,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1653 operations (735 ±, 915 ×, 3 ÷) and 8 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 733 operations (312 ±, 418 ×, 3 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -9156,1263 +8913,426 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
         let u1 = x[5];
         let u2 = x[6];
         let u3 = x[7];
-        let (
-            t16,
-            t17,
-            t31,
-            t51,
-            t107,
-            t122,
-            t144,
-            t150,
-            t155,
-            t159,
-            t164,
-            t165,
-            t167,
-            t168,
-            t169,
-            t170,
-            t171,
-            t172,
-            t173,
-            t174,
-            t175,
-            t176,
-            t179,
-            t180,
-            t181,
-            t182,
-            t183,
-            t184,
-            t185,
-            t186,
-            t187,
-            t188,
-            t189,
-            t190,
-            t191,
-            t193,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = x3.cos();
-            let t1 = x3.sin();
-            let t2 = T::fused(
-                k(0.9521072796934866),
-                T::fused(k(12.072434607645874), x1, t1),
-                -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t0),
-            );
-            let t3 = k(0.348) * t2;
-            let t4 = x0.sin();
-            let t5 = T::fused(
-                k(5.202735710796287),
+        let t0 = x3.cos();
+        let t1 = x3.sin();
+        let t2 = T::fused(
+            k(0.9521072796934866),
+            T::fused(k(12.072434607645874), x1, t1),
+            -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t0),
+        );
+        let t3 = k(0.348) * t2;
+        let t4 = x0.sin();
+        let t5 = T::fused(
+            k(5.202735710796287),
+            x2,
+            T::fused(
+                k(7.327796775769419),
+                x1,
+                -T::fused(k(0.1956521739130435), t1 - k(9.549313358302122), t0),
+            ),
+        );
+        let t6 = k(0.3032592592592593) * t5;
+        let t7 = x0.cos();
+        let t8 = T::fused(
+            k(0.348),
+            t1 * T::fused(-k(0.8714346530438485), t4, t7),
+            k(0.3313333333333333) * (t0 * T::fused(k(0.1790744466800805), t4, t7)),
+        );
+        let t9 = T::fused(-k(0.027555555555555555), t0, k(0.012444444444444444) * t1);
+        let t10 = x1 * t9;
+        let t11 = T::fused(k(0.012444444444444444), t0, k(0.027555555555555555) * t1);
+        let t12 = x2 * t11;
+        let t13 = k(0.002191111111111111) * t1;
+        let t14 = k(0.010245185185185185) * t0;
+        let t15 = k(0.014687407407407408) - t14 - t13 - t12 + t10;
+        let t16 = k(30.26023804720597) * t15;
+        let t17 = k(68.08553560621344) * t9;
+        let t18 = k(1.4) * t7;
+        let t19 = k(1.5777777777777777) * t4;
+        let t20 = T::fused(t17, t8, t19 + t18);
+        let t21 = t17 * t15;
+        let t22 = t21
+            - (T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t9);
+        let t23 = k(2.25) * t9;
+        let t24 = t17 * t23;
+        let t25 = k(1.0) / (k(0.6) - t24);
+        let t26 = t25 * t22;
+        let t27 = T::fused(t26, t20, T::fused(t16, t8, T::fused(t4, t3, t7 * t6)));
+        let t28 = k(2.25) * t11;
+        let t29 = t17 * t28;
+        let t30 = t25 * t29;
+        let t31 = k(68.08553560621344) * t11;
+        let t32 = k(4.0) * t7;
+        let t33 = k(2.2222222222222223) * t4;
+        let t34 = T::fused(t30, t20, T::fused(t31, t8, t33 - t32));
+        let t35 = t31 * t15;
+        let t36 = T::fused(
+            t30,
+            t22,
+            t35 + (T::fused(k(0.26666666666666666), x2, k(0.03911111111111111)) - t11),
+        );
+        let t37 = t28 * t31;
+        let t38 = k(1.0) / T::fused(t29, t30, -(k(0.6) - t37));
+        let t39 = t38 * t36;
+        let t40 = k(0.03106238683127572)
+            - T::fused(-k(0.11693827160493828), x1, k(0.0004938271604938272) * x2);
+        let t41 = T::fused(-k(0.007395637860082305), t0, t40);
+        let t42 = k(0.01146962962962963)
+            - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
+        let t43 = T::fused(k(0.002714074074074074), t0, t42);
+        let t44 = x1 + k(0.48233333333333334);
+        let t45 = k(0.1259259259259259) * x2;
+        let t46 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
+        let t47 = t46 + t45;
+        let t48 = T::fused(
+            x2,
+            t47,
+            T::fused(
+                k(0.5925925925925926),
+                x1 * t44,
+                T::fused(t1, t43, k(0.3062334156378601)),
+            ),
+        );
+        let t49 = T::fused(
+            t36,
+            t39,
+            -T::fused(t22, t26, T::fused(t15, t16, -T::fused(-t0, t41, t48))),
+        );
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * T::fused(t39, t34, -t27);
+        let t52 = k(0.348)
+            * T::fused(k(0.8714346530438485), t7 + k(0.5937957987298486), t4);
+        let t53 = k(0.3313333333333333)
+            * T::fused(k(0.1790744466800805), t7, -(t4 - k(0.8893360160965795)));
+        let t54 = T::fused(
+            t0,
+            t53,
+            -T::fused(t1, t52, T::fused(k(0.02), u3, k(0.6) * x3)),
+        );
+        let t55 = T::fused(
+            k(0.005428148148148148),
+            T::fused(-k(2.7249211547792336), t1, t0),
+            t42,
+        );
+        let t56 = k(0.002714074074074074) - T::fused(t1, t40, t0 * t55);
+        let t57 = u0 * t56;
+        let t58 = T::fused(k(0.25), t57, T::fused(-u2, t11, u1 * t9));
+        let t59 = k(2.0) * u0;
+        let t60 = T::fused(t59, t58, -t54);
+        let t61 = t17 * t60;
+        let t62 = k(2.25) * u3;
+        let t63 = t62 + t59;
+        let t64 = u3 * t63;
+        let t65 = t64 * t11;
+        let t66 = k(0.0004938271604938272) * t0;
+        let t67 = k(0.03155555555555556) * t1;
+        let t68 = T::fused(k(0.2518518518518518), x2, t46 - t67 + t66);
+        let t69 = u0 * t68;
+        let t70 = T::fused(-k(0.9375), t69, u1);
+        let t71 = k(0.5333333333333333) * u0;
+        let t72 = T::fused(
+            t71,
+            t70,
+            T::fused(
+                k(40.0),
                 x2,
                 T::fused(
-                    k(7.327796775769419),
-                    x1,
-                    -T::fused(k(0.1956521739130435), t1 - k(9.549313358302122), t0),
+                    k(1.5777777777777777),
+                    t7,
+                    T::fused(-k(1.4), t4, k(1.0222222222222221)),
                 ),
-            );
-            let t6 = k(0.3032592592592593) * t5;
-            let t7 = x0.cos();
-            let t8 = T::fused(
-                k(0.348),
-                t1 * T::fused(-k(0.8714346530438485), t4, t7),
-                k(0.3313333333333333) * (t0 * T::fused(k(0.1790744466800805), t4, t7)),
-            );
-            let t9 = T::fused(
-                -k(0.027555555555555555),
-                t0,
-                k(0.012444444444444444) * t1,
-            );
-            let t10 = x1 * t9;
-            let t11 = T::fused(
-                k(0.012444444444444444),
-                t0,
-                k(0.027555555555555555) * t1,
-            );
-            let t12 = x2 * t11;
-            let t13 = k(0.002191111111111111) * t1;
-            let t14 = k(0.010245185185185185) * t0;
-            let t15 = k(0.014687407407407408) - t14 - t13 - t12 + t10;
-            let t16 = k(30.26023804720597) * t15;
-            let t17 = k(68.08553560621344) * t9;
-            let t18 = k(1.4) * t7;
-            let t19 = k(1.5777777777777777) * t4;
-            let t20 = T::fused(t17, t8, t19 + t18);
-            let t21 = t17 * t15;
-            let t22 = t21
-                - (T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t9);
-            let t23 = k(2.25) * t9;
-            let t24 = t17 * t23;
-            let t25 = k(1.0) / (k(0.6) - t24);
-            let t26 = t25 * t22;
-            let t27 = T::fused(t26, t20, T::fused(t16, t8, T::fused(t4, t3, t7 * t6)));
-            let t28 = k(2.25) * t11;
-            let t29 = t17 * t28;
-            let t30 = t25 * t29;
-            let t31 = k(68.08553560621344) * t11;
-            let t32 = k(4.0) * t7;
-            let t33 = k(2.2222222222222223) * t4;
-            let t34 = T::fused(t30, t20, T::fused(t31, t8, t33 - t32));
-            let t35 = t31 * t15;
-            let t36 = T::fused(
-                t30,
-                t22,
-                t35
-                    + (T::fused(k(0.26666666666666666), x2, k(0.03911111111111111))
-                        - t11),
-            );
-            let t37 = t28 * t31;
-            let t38 = k(1.0) / T::fused(t29, t30, -(k(0.6) - t37));
-            let t39 = t38 * t36;
-            let t40 = k(0.03106238683127572)
-                - T::fused(-k(0.11693827160493828), x1, k(0.0004938271604938272) * x2);
-            let t41 = T::fused(-k(0.007395637860082305), t0, t40);
-            let t42 = k(0.01146962962962963)
-                - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
-            let t43 = T::fused(k(0.002714074074074074), t0, t42);
-            let t44 = x1 + k(0.48233333333333334);
-            let t45 = k(0.1259259259259259) * x2;
-            let t46 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
-            let t47 = t46 + t45;
-            let t48 = T::fused(
-                x2,
-                t47,
-                T::fused(
-                    k(0.5925925925925926),
-                    x1 * t44,
-                    T::fused(t1, t43, k(0.3062334156378601)),
-                ),
-            );
-            let t49 = T::fused(
-                t36,
-                t39,
-                -T::fused(t22, t26, T::fused(t15, t16, -T::fused(-t0, t41, t48))),
-            );
-            let t50 = k(1.0) / t49;
-            let t51 = t50 * T::fused(t39, t34, -t27);
-            let t52 = k(0.348)
-                * T::fused(k(0.8714346530438485), t7 + k(0.5937957987298486), t4);
-            let t53 = k(0.3313333333333333)
-                * T::fused(k(0.1790744466800805), t7, -(t4 - k(0.8893360160965795)));
-            let t54 = T::fused(
-                t0,
-                t53,
-                -T::fused(t1, t52, T::fused(k(0.02), u3, k(0.6) * x3)),
-            );
-            let t55 = T::fused(
-                k(0.005428148148148148),
-                T::fused(-k(2.7249211547792336), t1, t0),
-                t42,
-            );
-            let t56 = k(0.002714074074074074) - T::fused(t1, t40, t0 * t55);
-            let t57 = u0 * t56;
-            let t58 = T::fused(k(0.25), t57, T::fused(-u2, t11, u1 * t9));
-            let t59 = k(2.0) * u0;
-            let t60 = T::fused(t59, t58, -t54);
-            let t61 = t17 * t60;
-            let t62 = k(2.25) * u3;
-            let t63 = t62 + t59;
-            let t64 = u3 * t63;
-            let t65 = t64 * t11;
-            let t66 = k(0.0004938271604938272) * t0;
-            let t67 = k(0.03155555555555556) * t1;
-            let t68 = T::fused(k(0.2518518518518518), x2, t46 - t67 + t66);
-            let t69 = u0 * t68;
-            let t70 = T::fused(-k(0.9375), t69, u1);
-            let t71 = k(0.5333333333333333) * u0;
-            let t72 = T::fused(
-                t71,
-                t70,
-                T::fused(
-                    k(40.0),
+            ),
+        );
+        let t73 = t72 + t65 - t61;
+        let t74 = t31 * t60;
+        let t75 = k(0.10962962962962963) * u0;
+        let t76 = k(2.4442567567567566)
+            + T::fused(
+                k(0.5777027027027027),
+                t1,
+                -T::fused(
+                    k(1.0135135135135136),
                     x2,
-                    T::fused(
-                        k(1.5777777777777777),
-                        t7,
-                        T::fused(-k(1.4), t4, k(1.0222222222222221)),
-                    ),
+                    T::fused(-k(10.135135135135135), x1, t0),
                 ),
             );
-            let t73 = t72 + t65 - t61;
-            let t74 = t31 * t60;
-            let t75 = k(0.10962962962962963) * u0;
-            let t76 = k(2.4442567567567566)
-                + T::fused(
-                    k(0.5777027027027027),
-                    t1,
-                    -T::fused(
-                        k(1.0135135135135136),
-                        x2,
-                        T::fused(-k(10.135135135135135), x1, t0),
-                    ),
-                );
-            let t77 = T::fused(t76, t75, u2);
-            let t78 = T::fused(
-                k(0.8),
+        let t77 = T::fused(t76, t75, u2);
+        let t78 = T::fused(
+            k(0.8),
+            u1,
+            T::fused(
+                k(25.0),
+                x1,
+                T::fused(
+                    k(2.2222222222222223),
+                    t7,
+                    T::fused(k(4.0), t4, k(0.37777777777777777)),
+                ),
+            ),
+        );
+        let t79 = t64 * t9;
+        let t80 = T::fused(-t30, t73, t79 - T::fused(-t71, t77, t78) + t74);
+        let t81 = k(0.11693827160493828) * u1;
+        let t82 = T::fused(t76, t81, T::fused(-u3, t56, u2 * t68));
+        let t83 = x2 * t9;
+        let t84 = k(0.002191111111111111) * t0;
+        let t85 = x1 * t11;
+        let t86 = k(0.010245185185185185) * t1;
+        let t87 = t86 + (t85 - t84) + t83;
+        let t88 = u3 * u3;
+        let t89 = T::fused(t7, t3, -T::fused(t4, t6, -T::fused(u0, t82, t88 * t87)));
+        let t90 = T::fused(t39, t80, T::fused(t26, t73, T::fused(-t16, t60, t89)));
+        let t91 = T::fused(-t9, t17, k(0.26666666666666666));
+        let t92 = T::fused(-t30, t91, t9 * t31);
+        let t93 = t38 * t92;
+        let t94 = t25 * t91;
+        let t95 = k(30.26023804720597) * t9;
+        let t96 = T::fused(
+            k(0.11693827160493828),
+            t0,
+            -T::fused(
+                -k(0.11851851851851852),
+                x2,
+                T::fused(k(0.5925925925925926), x1 + t44, k(0.06755555555555555) * t1),
+            ),
+        );
+        let t97 = t96 + T::fused(t15, t95, t9 * t16) - T::fused(t22, t94, t26 * t91);
+        let t98 = t50 * t50;
+        let t99 = k(0.25) * u0;
+        let t100 = T::fused(k(0.06755555555555555), t0, k(0.11693827160493828) * t1);
+        let t101 = t59 * (t100 * t99);
+        let t102 = T::fused(
+            u0,
+            T::fused(
+                k(1.1851851851851851),
                 u1,
-                T::fused(
-                    k(25.0),
-                    x1,
-                    T::fused(
-                        k(2.2222222222222223),
-                        t7,
-                        T::fused(k(4.0), t4, k(0.37777777777777777)),
-                    ),
-                ),
-            );
-            let t79 = t64 * t9;
-            let t80 = T::fused(-t30, t73, t79 - T::fused(-t71, t77, t78) + t74);
-            let t81 = k(0.11693827160493828) * u1;
-            let t82 = T::fused(t76, t81, T::fused(-u3, t56, u2 * t68));
-            let t83 = x2 * t9;
-            let t84 = k(0.002191111111111111) * t0;
-            let t85 = x1 * t11;
-            let t86 = k(0.010245185185185185) * t1;
-            let t87 = t86 + (t85 - t84) + t83;
-            let t88 = u3 * u3;
-            let t89 = T::fused(t7, t3, -T::fused(t4, t6, -T::fused(u0, t82, t88 * t87)));
-            let t90 = T::fused(t39, t80, T::fused(t26, t73, T::fused(-t16, t60, t89)));
-            let t91 = T::fused(-t9, t17, k(0.26666666666666666));
-            let t92 = T::fused(-t30, t91, t9 * t31);
-            let t93 = t38 * t92;
-            let t94 = t25 * t91;
-            let t95 = k(30.26023804720597) * t9;
-            let t96 = T::fused(
-                k(0.11693827160493828),
+                T::fused(-k(0.11851851851851852), u2, u3 * t100),
+            ),
+            t88 * t11,
+        );
+        let t103 = t71 * (k(0.1111111111111111) * u0);
+        let t104 = T::fused(t17, t101, t103);
+        let t105 = T::fused(-t94, t73, t26 * t104)
+            + (t32 - (t33 - t102) + T::fused(-t95, t60, t16 * t101));
+        let t106 = T::fused(
+            t30,
+            t104,
+            T::fused(t31, t101, T::fused(-t71, k(1.1111111111111112) * u0, k(25.0))),
+        );
+        let t107 = T::fused(
+            -(t98 * (t97 - T::fused(t36, t93, t39 * t92))),
+            t90,
+            t50 * (T::fused(-t93, t80, t39 * t106) - t105),
+        );
+        let t108 = t17 * t11;
+        let t109 = T::fused(-t30, t108, T::fused(-t11, t31, k(0.26666666666666666)));
+        let t110 = t38 * t109;
+        let t111 = t25 * t108;
+        let t112 = k(30.26023804720597) * t11;
+        let t113 = t66 - (t67 - (t45 + t47)) + T::fused(t15, t112, t11 * t16);
+        let t114 = t113 + T::fused(t22, t111, t26 * t108)
+            + T::fused(t36, t110, t39 * t109);
+        let t115 = T::fused(k(0.03155555555555556), t0, k(0.0004938271604938272) * t1);
+        let t116 = u0 * t115;
+        let t117 = t59 * (k(0.25) * t116);
+        let t118 = T::fused(
+            -u0,
+            T::fused(
+                k(0.11851851851851852),
+                u1,
+                T::fused(-k(0.2518518518518518), u2, u3 * t115),
+            ),
+            t88 * t9,
+        );
+        let t119 = T::fused(
+            -t17,
+            t117,
+            T::fused(-t71, k(0.2361111111111111) * u0, k(40.0)),
+        );
+        let t120 = T::fused(-t111, t73, t26 * t119)
+            - (t18 + (t19 - t118) + T::fused(-t112, t60, t16 * t117));
+        let t121 = T::fused(t30, t119, T::fused(-t31, t117, t103));
+        let t122 = T::fused(
+            t98 * t114,
+            t90,
+            t50 * (T::fused(-t110, t80, t39 * t121) - t120),
+        );
+        let t123 = t85 + (t83 + (t86 - t84));
+        let t124 = t11 - T::fused(t17, t123, t35);
+        let t125 = t24 - t37;
+        let t126 = T::fused(t23, t31, t29);
+        let t127 = t25 * t25 * t126;
+        let t128 = T::fused(-t25, t125, t29 * t127);
+        let t129 = t9 - T::fused(-t31, t123, t21) + T::fused(-t30, t124, t22 * t128);
+        let t130 = t38 * t38 * (t126 + T::fused(-t29, t128, t30 * t125));
+        let t131 = T::fused(t38, t129, t36 * t130);
+        let t132 = T::fused(-t25, t124, t22 * t127);
+        let t133 = k(30.26023804720597) * t123;
+        let t134 = T::fused(-t0, k(0.007395637860082305) * t1, t1 * t41)
+            + T::fused(-t1, k(0.002714074074074074) * t1, t0 * t43);
+        let t135 = t134 - T::fused(t15, t133, t16 * t123)
+            + T::fused(-t22, t132, t26 * t124);
+        let t136 = T::fused(k(0.5777027027027027), t0, t1);
+        let t137 = T::fused(
+            t0,
+            t40,
+            -T::fused(
                 t0,
-                -T::fused(
-                    -k(0.11851851851851852),
-                    x2,
-                    T::fused(
-                        k(0.5925925925925926),
-                        x1 + t44,
-                        k(0.06755555555555555) * t1,
-                    ),
-                ),
-            );
-            let t97 = t96 + T::fused(t15, t95, t9 * t16) - T::fused(t22, t94, t26 * t91);
-            let t98 = t50 * t50;
-            let t99 = k(0.25) * u0;
-            let t100 = T::fused(k(0.06755555555555555), t0, k(0.11693827160493828) * t1);
-            let t101 = t59 * (t100 * t99);
-            let t102 = T::fused(
-                u0,
+                k(0.005428148148148148) * T::fused(k(2.7249211547792336), t0, t1),
+                t1 * t55,
+            ),
+        );
+        let t138 = T::fused(
+            u0,
+            T::fused(t136, t81, T::fused(-u2, t115, u3 * t137)),
+            t88 * (t12 + (t14 + (t13 - t10))),
+        );
+        let t139 = T::fused(
+            k(0.348),
+            t7 * T::fused(k(0.9521072796934866), t0, t1),
+            -T::fused(
+                k(0.3032592592592593),
+                t4 * T::fused(-k(0.1956521739130435), t0, t1),
+                -t138,
+            ),
+        );
+        let t140 = T::fused(
+            t59,
+            T::fused(-t137, t99, T::fused(u1, t11, u2 * t9)),
+            T::fused(t1, t53, T::fused(t0, t52, k(0.6))),
+        );
+        let t141 = T::fused(-t71, k(0.9375) * t116, t79) + T::fused(t17, t140, t74);
+        let t142 = T::fused(-t132, t73, t26 * t141)
+            + (T::fused(t133, t60, t16 * t140) - t139);
+        let t143 = T::fused(-t128, t73, t30 * t141)
+            - (T::fused(-t31, t140, t61) - T::fused(t71, t136 * t75, t65));
+        let t144 = T::fused(
+            -(t98 * (t135 + T::fused(t36, t131, t39 * t129))),
+            t90,
+            t50 * (T::fused(t131, t80, t39 * t143) - t142),
+        );
+        let t145 = T::fused(t59, k(0.25) * t56, k(2.0) * t58);
+        let t146 = k(2.0) * u3;
+        let t147 = T::fused(
+            -t17,
+            t145,
+            T::fused(
+                t11,
+                t146,
+                T::fused(-t71, k(0.9375) * t68, k(0.5333333333333333) * t70),
+            ),
+        );
+        let t148 = T::fused(
+            t31,
+            t145,
+            T::fused(
+                t9,
+                t146,
                 T::fused(
-                    k(1.1851851851851851),
-                    u1,
-                    T::fused(-k(0.11851851851851852), u2, u3 * t100),
+                    k(0.5333333333333333),
+                    t77,
+                    t71 * (k(0.10962962962962963) * t76),
                 ),
-                t88 * t11,
-            );
-            let t103 = t71 * (k(0.1111111111111111) * u0);
-            let t104 = T::fused(t17, t101, t103);
-            let t105 = T::fused(-t94, t73, t26 * t104)
-                + (t32 - (t33 - t102) + T::fused(-t95, t60, t16 * t101));
-            let t106 = T::fused(
-                t30,
-                t104,
-                T::fused(t31, t101, T::fused(-t71, k(1.1111111111111112) * u0, k(25.0))),
-            );
-            let t107 = T::fused(
-                -(t98 * (t97 - T::fused(t36, t93, t39 * t92))),
-                t90,
-                t50 * (T::fused(-t93, t80, t39 * t106) - t105),
-            );
-            let t108 = t17 * t11;
-            let t109 = T::fused(-t30, t108, T::fused(-t11, t31, k(0.26666666666666666)));
-            let t110 = t38 * t109;
-            let t111 = t25 * t108;
-            let t112 = k(30.26023804720597) * t11;
-            let t113 = t66 - (t67 - (t45 + t47)) + T::fused(t15, t112, t11 * t16);
-            let t114 = t113 + T::fused(t22, t111, t26 * t108)
-                + T::fused(t36, t110, t39 * t109);
-            let t115 = T::fused(
-                k(0.03155555555555556),
-                t0,
-                k(0.0004938271604938272) * t1,
-            );
-            let t116 = u0 * t115;
-            let t117 = t59 * (k(0.25) * t116);
-            let t118 = T::fused(
-                -u0,
-                T::fused(
-                    k(0.11851851851851852),
-                    u1,
-                    T::fused(-k(0.2518518518518518), u2, u3 * t115),
-                ),
-                t88 * t9,
-            );
-            let t119 = T::fused(
-                -t17,
-                t117,
-                T::fused(-t71, k(0.2361111111111111) * u0, k(40.0)),
-            );
-            let t120 = T::fused(-t111, t73, t26 * t119)
-                - (t18 + (t19 - t118) + T::fused(-t112, t60, t16 * t117));
-            let t121 = T::fused(t30, t119, T::fused(-t31, t117, t103));
-            let t122 = T::fused(
-                t98 * t114,
-                t90,
-                t50 * (T::fused(-t110, t80, t39 * t121) - t120),
-            );
-            let t123 = t85 + (t83 + (t86 - t84));
-            let t124 = t11 - T::fused(t17, t123, t35);
-            let t125 = t24 - t37;
-            let t126 = T::fused(t23, t31, t29);
-            let t127 = t25 * t25 * t126;
-            let t128 = T::fused(-t25, t125, t29 * t127);
-            let t129 = t9 - T::fused(-t31, t123, t21) + T::fused(-t30, t124, t22 * t128);
-            let t130 = t38 * t38 * (t126 + T::fused(-t29, t128, t30 * t125));
-            let t131 = T::fused(t38, t129, t36 * t130);
-            let t132 = T::fused(-t25, t124, t22 * t127);
-            let t133 = k(30.26023804720597) * t123;
-            let t134 = T::fused(-t0, k(0.007395637860082305) * t1, t1 * t41)
-                + T::fused(-t1, k(0.002714074074074074) * t1, t0 * t43);
-            let t135 = t134 - T::fused(t15, t133, t16 * t123)
-                + T::fused(-t22, t132, t26 * t124);
-            let t136 = T::fused(k(0.5777027027027027), t0, t1);
-            let t137 = T::fused(
-                t0,
-                t40,
-                -T::fused(
-                    t0,
-                    k(0.005428148148148148) * T::fused(k(2.7249211547792336), t0, t1),
-                    t1 * t55,
-                ),
-            );
-            let t138 = T::fused(
-                u0,
-                T::fused(t136, t81, T::fused(-u2, t115, u3 * t137)),
-                t88 * (t12 + (t14 + (t13 - t10))),
-            );
-            let t139 = T::fused(
-                k(0.348),
-                t7 * T::fused(k(0.9521072796934866), t0, t1),
-                -T::fused(
-                    k(0.3032592592592593),
-                    t4 * T::fused(-k(0.1956521739130435), t0, t1),
-                    -t138,
-                ),
-            );
-            let t140 = T::fused(
-                t59,
-                T::fused(-t137, t99, T::fused(u1, t11, u2 * t9)),
-                T::fused(t1, t53, T::fused(t0, t52, k(0.6))),
-            );
-            let t141 = T::fused(-t71, k(0.9375) * t116, t79) + T::fused(t17, t140, t74);
-            let t142 = T::fused(-t132, t73, t26 * t141)
-                + (T::fused(t133, t60, t16 * t140) - t139);
-            let t143 = T::fused(-t128, t73, t30 * t141)
-                - (T::fused(-t31, t140, t61) - T::fused(t71, t136 * t75, t65));
-            let t144 = T::fused(
-                -(t98 * (t135 + T::fused(t36, t131, t39 * t129))),
-                t90,
-                t50 * (T::fused(t131, t80, t39 * t143) - t142),
-            );
-            let t145 = T::fused(t59, k(0.25) * t56, k(2.0) * t58);
-            let t146 = k(2.0) * u3;
-            let t147 = T::fused(
-                -t17,
-                t145,
-                T::fused(
-                    t11,
-                    t146,
-                    T::fused(-t71, k(0.9375) * t68, k(0.5333333333333333) * t70),
-                ),
-            );
-            let t148 = T::fused(
-                t31,
-                t145,
-                T::fused(
-                    t9,
-                    t146,
-                    T::fused(
-                        k(0.5333333333333333),
-                        t77,
-                        t71 * (k(0.10962962962962963) * t76),
-                    ),
-                ),
-            );
-            let t149 = T::fused(t30, t147, -t148);
-            let t150 = t50
-                * T::fused(t39, t149, -T::fused(t26, t147, -T::fused(t16, t145, -t82)));
-            let t151 = t59 * t9;
-            let t152 = T::fused(-t17, t151, t71);
-            let t153 = T::fused(t30, t152, T::fused(-t31, t151, k(0.8)));
-            let t154 = T::fused(
-                -t39,
-                t153,
-                T::fused(
-                    t26,
-                    t152,
-                    T::fused(-t16, t151, u0 * (k(0.11693827160493828) * t76)),
-                ),
-            );
-            let t155 = t50 * t154;
-            let t156 = t59 * t11;
-            let t157 = t17 * t156;
-            let t158 = T::fused(-t30, t157, T::fused(-t31, t156, t71));
-            let t159 = t50
-                * T::fused(t39, t158, T::fused(t26, t157, T::fused(t16, t156, t69)));
-            let t160 = t62 + t63;
-            let t161 = T::fused(-k(1.3617107121242686), t9, t11 * t160);
-            let t162 = T::fused(
-                -t30,
+            ),
+        );
+        let t149 = T::fused(t30, t147, -t148);
+        let t150 = t50
+            * T::fused(t39, t149, -T::fused(t26, t147, -T::fused(t16, t145, -t82)));
+        let t151 = t59 * t9;
+        let t152 = T::fused(-t17, t151, t71);
+        let t153 = T::fused(t30, t152, T::fused(-t31, t151, k(0.8)));
+        let t154 = T::fused(
+            -t39,
+            t153,
+            T::fused(
+                t26,
+                t152,
+                T::fused(-t16, t151, u0 * (k(0.11693827160493828) * t76)),
+            ),
+        );
+        let t155 = t50 * t154;
+        let t156 = t59 * t11;
+        let t157 = t17 * t156;
+        let t158 = T::fused(-t30, t157, T::fused(-t31, t156, t71));
+        let t159 = t50
+            * T::fused(t39, t158, T::fused(t26, t157, T::fused(t16, t156, t69)));
+        let t160 = t62 + t63;
+        let t161 = T::fused(-k(1.3617107121242686), t9, t11 * t160);
+        let t162 = T::fused(-t30, t161, T::fused(k(1.3617107121242686), t11, t9 * t160));
+        let t163 = T::fused(
+            -t39,
+            t162,
+            T::fused(
+                -t26,
                 t161,
-                T::fused(k(1.3617107121242686), t11, t9 * t160),
-            );
-            let t163 = T::fused(
-                -t39,
-                t162,
-                T::fused(
-                    -t26,
-                    t161,
-                    T::fused(k(0.6052047609441195), t15, T::fused(-t87, t146, t57)),
-                ),
-            );
-            let t164 = t50 * t163;
-            let t165 = T::fused(-t39, t51, t38 * t34);
-            let t166 = t50 * t90;
-            let t167 = T::fused(-t38, t106, T::fused(-t93, t166, t39 * t107));
-            let t168 = T::fused(t38, t121, -T::fused(-t110, t166, t39 * t122));
-            let t169 = T::fused(t131, t166, t39 * t144)
-                - T::fused(t130, t80, t38 * t143);
-            let t170 = T::fused(-t38, t149, t39 * t150);
-            let t171 = T::fused(t39, t155, t38 * t153);
-            let t172 = T::fused(-t39, t159, t38 * t158);
-            let t173 = T::fused(t39, t164, t38 * t162);
-            let t174 = T::fused(t30, t165, -T::fused(-t26, t51, t25 * t20));
-            let t175 = T::fused(
-                t30,
-                t167,
-                -T::fused(-t25, t104, T::fused(t94, t166, t26 * t107)),
-            );
-            let t176 = T::fused(
-                t30,
-                t168,
-                -T::fused(t25, t119, -T::fused(t111, t166, t26 * t122)),
-            );
-            let t177 = T::fused(t132, t166, t26 * t144)
-                - T::fused(-t127, t73, t25 * t141);
-            let t178 = T::fused(-t39, t166, t38 * t80);
-            let t179 = T::fused(-t128, t178, t30 * t169) - t177;
-            let t180 = T::fused(t30, t170, T::fused(-t26, t150, t25 * t147));
-            let t181 = T::fused(-t30, t171, T::fused(t26, t155, t25 * t152));
-            let t182 = T::fused(t30, t172, T::fused(t26, t159, t25 * t157));
-            let t183 = T::fused(t30, t173, T::fused(-t26, t164, t25 * t161));
-            let t184 = T::fused(
-                t17,
-                t174,
-                T::fused(t31, t165, -T::fused(-t16, t51, k(30.26023804720597) * t8)),
-            );
-            let t185 = T::fused(
-                t31,
-                t167,
-                -T::fused(-k(30.26023804720597), t101, T::fused(-t95, t166, t16 * t107)),
-            );
-            let t186 = T::fused(
-                t31,
-                t168,
-                T::fused(k(30.26023804720597), t117, T::fused(t112, t166, t16 * t122)),
-            );
-            let t187 = T::fused(t17, t178, t31 * t169)
-                - T::fused(
-                    -k(30.26023804720597),
-                    t140,
-                    T::fused(t133, t166, t16 * t144),
-                );
-            let t188 = T::fused(
-                -t31,
-                T::fused(t30, t178, T::fused(t26, t166, t25 * t73)),
-                t17 * t179,
-            );
-            let t189 = T::fused(
-                t17,
-                t180,
-                T::fused(t31, t170, -T::fused(t16, t150, k(30.26023804720597) * t145)),
-            );
-            let t190 = T::fused(
-                -t17,
-                t181,
-                T::fused(t31, t171, T::fused(-t16, t155, k(30.26023804720597) * t151)),
-            );
-            let t191 = T::fused(
-                t17,
-                t182,
-                T::fused(t31, t172, T::fused(t16, t159, k(30.26023804720597) * t156)),
-            );
-            let t192 = k(0.5) * x3;
-            let t193 = t192.sin();
-            let t194 = k(2.0) * t193;
-            let t195 = t192.cos();
-            let t196 = t195 * t194;
-            let t197 = k(0.6666666666666666) * t196;
-            let t198 = t193 + t195;
-            let t199 = t193 - t195;
-            (
-                t16,
-                t17,
-                t31,
-                t51,
-                t107,
-                t122,
-                t144,
-                t150,
-                t155,
-                t159,
-                t164,
-                t165,
-                t167,
-                t168,
-                t169,
-                t170,
-                t171,
-                t172,
-                t173,
-                t174,
-                t175,
-                t176,
-                t179,
-                t180,
-                t181,
-                t182,
-                t183,
-                t184,
-                t185,
-                t186,
-                t187,
-                t188,
-                t189,
-                t190,
-                t191,
-                t193,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (
-            t202,
-            t203,
-            t205,
-            t206,
-            t209,
-            t211,
-            t212,
-            t214,
-            t216,
-            t217,
-            t218,
-            t221,
-            t231,
-            t232,
-            t233,
-            t234,
-            t238,
-            t239,
-            t240,
-            t243,
-            t250,
-            t251,
-            t253,
-            t257,
-            t258,
-            t259,
-            t263,
-            t264,
-            t267,
-            t291,
-            t293,
-            t295,
-            t298,
-            t300,
-            t308,
-            t317,
-            t319,
-            t321,
-            t323,
-            t326,
-            t341,
-            t342,
-            t343,
-            t344,
-            t346,
-            t347,
-            t348,
-            t351,
-            t353,
-            t354,
-            t355,
-            t358,
-            t360,
-            t365,
-            t370,
-            t371,
-            t375,
-            t377,
-            t379,
-            t381,
-            t382,
-            t383,
-            t384,
-            t385,
-            t386,
-            t387,
-            t388,
-            t389,
-            t391,
-            t392,
-            t393,
-            t394,
-            t395,
-            t397,
-            t398,
-            t399,
-        ) = {
-            let t200 = t199 * t198;
-            let t201 = T::fused(k(0.2222222222222222), t200, k(0.2222222222222222));
-            let t202 = t201 - t197;
-            let t203 = k(0.6666666666666666) * u0;
-            let t204 = t203 * t202;
-            let t205 = T::fused(-k(0.5555555555555556), t200, k(0.4444444444444444));
-            let t206 = k(0.3333333333333333) * u0;
-            let t207 = k(0.3333333333333333) * t196;
-            let t208 = T::fused(k(0.4444444444444444), t200, k(0.4444444444444444));
-            let t209 = t208 + t207;
-            let t210 = k(0.6666666666666666) * u3;
-            let t211 = t210 + T::fused(t203, t209, -T::fused(t206, t205, -t204));
-            let t212 = k(0.6666666666666666) * t193;
-            let t213 = k(0.5) * x0;
-            let t214 = t213.cos();
-            let t215 = t214 * t212;
-            let t216 = k(0.3333333333333333) * t193;
-            let t217 = t213.sin();
-            let t218 = k(0.6666666666666666) * t217;
-            let t219 = t218 * t216;
-            let t220 = t218 * t212;
-            let t221 = k(0.3333333333333333) * t217;
-            let t222 = T::fused(t221, t195, t220 - (t219 + t215));
-            let t223 = t221 * t212;
-            let t224 = T::fused(t214, t195, -(t219 - t223 + t220));
-            let t225 = t224 * t222;
-            let t226 = t218 * t195;
-            let t227 = t226 + (t215 + T::fused(t221, t216, t220));
-            let t228 = t226 - (t223 + T::fused(-t214, t216, t220));
-            let t229 = t228 * t227;
-            let t230 = t229 + t225;
-            let t231 = k(2.0) * t230;
-            let t232 = T::fused(-k(0.8888888888888888), t200, k(0.1111111111111111));
-            let t233 = t201 + t197;
-            let t234 = T::fused(
-                k(0.3333333333333333),
-                u3,
-                t204 - T::fused(-t203, t232, t206 * t233),
-            );
-            let t235 = t224 * t228;
-            let t236 = t222 * t227;
-            let t237 = t236 - t235;
-            let t238 = k(2.0) * t237;
-            let t239 = t208 - t207;
-            let t240 = t210 + T::fused(t203, t205, -T::fused(-t203, t233, t206 * t239));
-            let t241 = t224 * t224;
-            let t242 = k(0.5) - T::fused(t227, t227, t241);
-            let t243 = k(2.0) * t242;
-            let t244 = T::fused(
-                -k(0.05),
-                T::fused(t231, t240, t243 * t234),
-                k(0.03) * T::fused(-t238, t240, t243 * t211),
-            );
-            let t245 = T::fused(k(0.1), t211, k(0.05) * t240);
-            let t246 = T::fused(k(0.03), t240, k(0.1) * t234);
-            let t247 = T::fused(-k(0.05), t234, k(0.03) * t211);
-            let t248 = k(0.6666666666666666) * x2;
-            let t249 = k(0.6666666666666666) * x1;
-            let t250 = k(0.2) + t249 - t248;
-            let t251 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t248;
-            let t252 = t251 * t203;
-            let t253 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
-                - T::fused(t250, t206, t252);
-            let t254 = t218 * t218;
-            let t255 = t214 * t214;
-            let t256 = k(0.5) - (t255 + t254);
-            let t257 = k(2.0) * t256;
-            let t258 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t249);
-            let t259 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
-                + T::fused(-t258, t203, t250 * t203);
-            let t260 = t214 * t218;
-            let t261 = t218 * t221;
-            let t262 = t261 - t260;
-            let t263 = k(2.0) * t262;
-            let t264 = T::fused(
-                k(0.6666666666666666),
-                u1 - u2,
-                -T::fused(t258, t206, t252),
-            );
-            let t265 = t214 * t221;
-            let t266 = t254 + t265;
-            let t267 = k(2.0) * t266;
-            let t268 = k(0.13333333333333333) * u0;
-            let t269 = k(0.06666666666666667) * u0;
-            let t270 = T::fused(-t263, t268, t267 * t269);
-            let t271 = t270 + T::fused(t257, t253, T::fused(-t263, t259, t267 * t264))
-                - T::fused(t243, t247, -T::fused(t231, t245, t238 * t246));
-            let t272 = t203 * t263;
-            let t273 = T::fused(-t206, t267, t272);
-            let t274 = t203 * t257;
-            let t275 = T::fused(t203, t267, t274);
-            let t276 = t206 * t257;
-            let t277 = t276 + t272;
-            let t278 = t270
-                - T::fused(-k(0.1), t273, T::fused(k(0.1), t275, k(0.2) * t277))
-                - (t271 + T::fused(-k(0.1), T::fused(t231, t211, t238 * t234), t244));
-            let t279 = k(1.3333333333333333) * t256;
-            let t280 = t279
-                - T::fused(-k(1.3333333333333333), t266, k(0.6666666666666666) * t262);
-            let t281 = k(0.2) * t262;
-            let t282 = k(0.4) * t266;
-            let t283 = k(0.2) + (t282 + t281);
-            let t284 = T::fused(k(0.2), t242, T::fused(-k(0.1), t237, k(0.06) * t230));
-            let t285 = t284
-                - (t283 + T::fused(-t258, t257, T::fused(-t251, t263, t250 * t267)));
-            let t286 = t284 - t285 - (t283 - T::fused(k(0.2), t256, -(t282 - t281)));
-            let t287 = T::fused(
-                k(0.6666666666666666),
-                t273,
-                T::fused(k(0.3333333333333333), t275, k(0.6666666666666666) * t277),
-            );
-            let t288 = t224 * t227;
-            let t289 = t228 * t222;
-            let t290 = t289 - t288;
-            let t291 = k(2.0) * t290;
-            let t292 = k(0.5) - T::fused(t222, t222, t241);
-            let t293 = k(2.0) * t292;
-            let t294 = t236 + t235;
-            let t295 = k(2.0) * t294;
-            let t296 = T::fused(
-                -k(0.05),
-                T::fused(-t291, t240, t295 * t234),
-                k(0.03) * T::fused(-t293, t240, t295 * t211),
-            );
-            let t297 = t261 + t260;
-            let t298 = k(2.0) * t297;
-            let t299 = k(0.5) - T::fused(t221, t221, t255);
-            let t300 = k(2.0) * t299;
-            let t301 = T::fused(t300, t268, t263 * t269);
-            let t302 = t301 + T::fused(-t298, t253, T::fused(t300, t259, t263 * t264))
-                + T::fused(t295, t247, -T::fused(-t291, t245, t293 * t246));
-            let t303 = t203 * t300;
-            let t304 = T::fused(t206, t263, t303);
-            let t305 = t203 * t298;
-            let t306 = t305 - t272;
-            let t307 = T::fused(t206, t298, t303);
-            let t308 = t301
-                + T::fused(-k(0.1), t304, T::fused(k(0.1), t306, k(0.2) * t307))
-                - (t302 - T::fused(-k(0.1), T::fused(-t291, t211, t293 * t234), t296));
-            let t309 = T::fused(
-                -k(1.3333333333333333),
-                t297,
-                T::fused(k(1.3333333333333333), t262, k(0.6666666666666666) * t299),
-            );
-            let t310 = k(0.2) * t299;
-            let t311 = k(0.4) * t262;
-            let t312 = k(0.2) * t297;
-            let t313 = t311 - t310;
-            let t314 = T::fused(-k(0.2), t294, T::fused(k(0.1), t292, k(0.06) * t290));
-            let t315 = t314
-                - (t313 + T::fused(t258, t298, T::fused(t251, t300, t250 * t263)));
-            let t316 = t314 - t315 - (t313 + (t312 + (t311 + t310)));
-            let t317 = T::fused(
-                k(0.6666666666666666),
-                t304,
-                T::fused(k(0.3333333333333333), t306, k(0.6666666666666666) * t307),
-            );
-            let t318 = k(0.5) - T::fused(t228, t228, t241);
-            let t319 = k(2.0) * t318;
-            let t320 = t289 + t288;
-            let t321 = k(2.0) * t320;
-            let t322 = t229 - t225;
-            let t323 = k(2.0) * t322;
-            let t324 = T::fused(
-                -k(0.05),
-                T::fused(t319, t240, t323 * t234),
-                k(0.03) * T::fused(t321, t240, t323 * t211),
-            );
-            let t325 = t254 - t265;
-            let t326 = k(2.0) * t325;
-            let t327 = T::fused(t298, t268, t257 * t269);
-            let t328 = t327 + T::fused(t326, t253, T::fused(t298, t259, t257 * t264))
-                - T::fused(t323, t247, T::fused(-t319, t245, t321 * t246));
-            let t329 = t305 + t276;
-            let t330 = T::fused(t203, t326, t274);
-            let t331 = T::fused(t206, t326, -t305);
-            let t332 = t327
-                - T::fused(k(0.1), t329, T::fused(k(0.1), t330, k(0.2) * t331))
-                - (t328 + T::fused(k(0.1), T::fused(-t319, t211, t321 * t234), t324));
-            let t333 = T::fused(
-                k(1.3333333333333333),
-                t325,
-                T::fused(k(0.6666666666666666), t297, t279),
-            );
-            let t334 = k(0.4) * t256;
-            let t335 = k(0.1) - (t334 - t312);
-            let t336 = T::fused(k(0.2), t322, T::fused(k(0.1), t320, k(0.06) * t318));
-            let t337 = t336
-                + (t335 - T::fused(-t258, t326, T::fused(t251, t298, t250 * t257)));
-            let t338 = t336 - t337 + (t335 + T::fused(k(0.2), t325, -(t334 + t312)));
-            let t339 = T::fused(
-                -k(0.6666666666666666),
-                t329,
-                T::fused(k(0.3333333333333333), t330, k(0.6666666666666666) * t331),
-            );
-            let t340 = T::fused(t333, t332, t339 * t338)
-                - T::fused(-t309, t308, t317 * t316);
-            let t341 = k(1.6) * (t340 + T::fused(t280, t278, t287 * t286));
-            let t342 = t280 * t341;
-            let t343 = k(0.1) * t342;
-            let t344 = k(0.05) * t342;
-            let t345 = T::fused(-t211, t343, T::fused(-t240, t344, t245 * t342));
-            let t346 = t333 * t341;
-            let t347 = k(0.05) * t346;
-            let t348 = k(0.03) * t346;
-            let t349 = T::fused(t234, t347, T::fused(-t211, t348, t247 * t346));
-            let t350 = k(2.0) * (t349 + t345);
-            let t351 = k(0.03) * t342;
-            let t352 = T::fused(-t234, t343, T::fused(-t240, t351, t246 * t342));
-            let t353 = t309 * t341;
-            let t354 = k(0.05) * t353;
-            let t355 = k(0.03) * t353;
-            let t356 = T::fused(t234, t354, T::fused(-t211, t355, t247 * t353));
-            let t357 = k(2.0) * (t356 + t352);
-            let t358 = k(0.1) * t353;
-            let t359 = T::fused(-t211, t358, T::fused(-t240, t354, t245 * t353));
-            let t360 = k(0.1) * t346;
-            let t361 = T::fused(-t234, t360, T::fused(-t240, t348, t246 * t346));
-            let t362 = k(2.0) * (t361 - t359);
-            let t363 = T::fused(-t234, t358, T::fused(-t240, t355, t246 * t353));
-            let t364 = T::fused(
-                t227,
-                t357,
-                T::fused(-t228, t362, k(2.0) * (t222 * (k(2.0) * t363))),
-            );
-            let t365 = T::fused(t224, t350, t364);
-            let t366 = k(2.0) * (t349 - t345);
-            let t367 = T::fused(t234, t344, T::fused(-t211, t351, t247 * t342));
-            let t368 = t227 * (k(2.0) * t367);
-            let t369 = k(2.0) * (t361 + t359);
-            let t370 = T::fused(
-                -t228,
-                t366,
-                T::fused(t222, t357, t368 - T::fused(t224, t369, -t368)),
-            );
-            let t371 = t370 - t365;
-            let t372 = k(2.0) * (t356 - t352);
-            let t373 = T::fused(-t211, t360, T::fused(-t240, t347, t245 * t346));
-            let t374 = t224 * (k(2.0) * (t373 - t363 - t367));
-            let t375 = T::fused(
-                -t222,
-                t350,
-                T::fused(-t228, t372, t374 + T::fused(t227, t369, t374)),
-            );
-            let t376 = T::fused(
-                -t224,
-                t372,
-                T::fused(t222, t362, k(2.0) * (t228 * (k(2.0) * t373))),
-            );
-            let t377 = T::fused(t227, t366, t376);
-            let t378 = t286 * t341;
-            let t379 = T::fused(k(0.3333333333333333), t378, -t343);
-            let t380 = t338 * t341;
-            let t381 = T::fused(k(0.3333333333333333), t380, -t360);
-            let t382 = t381 + t379;
-            let t383 = k(0.6666666666666666) * t378;
-            let t384 = T::fused(-k(0.2), t342, t383);
-            let t385 = k(0.6666666666666666) * t380;
-            let t386 = t385 + t360;
-            let t387 = t386 - t384;
-            let t388 = t287 * t341;
-            let t389 = t339 * t341;
-            let t390 = T::fused(
-                -t206,
-                t387,
-                T::fused(-t258, t388, T::fused(-t264, t346, t250 * t389)),
-            );
-            let t391 = t278 * t341;
-            let t392 = t332 * t341;
-            let t393 = k(0.2) * t388;
-            let t394 = T::fused(
-                -k(2.0),
-                T::fused(-t253, t342, T::fused(t203, t382, t390)),
-                T::fused(
-                    -k(1.3333333333333333),
-                    t392 + t391,
-                    T::fused(k(0.4), t389, -t393),
-                ),
-            );
-            let t395 = t316 * t341;
-            let t396 = k(0.6666666666666666) * t395;
-            let t397 = t396 + t358;
-            let t398 = T::fused(-k(0.2), t353, t396);
-            let t399 = t398 + t397;
-            (
-                t202,
-                t203,
-                t205,
-                t206,
-                t209,
-                t211,
-                t212,
-                t214,
-                t216,
-                t217,
-                t218,
-                t221,
-                t231,
-                t232,
-                t233,
-                t234,
-                t238,
-                t239,
-                t240,
-                t243,
-                t250,
-                t251,
-                t253,
-                t257,
-                t258,
-                t259,
-                t263,
-                t264,
-                t267,
-                t291,
-                t293,
-                t295,
-                t298,
-                t300,
-                t308,
-                t317,
-                t319,
-                t321,
-                t323,
-                t326,
-                t341,
-                t342,
-                t343,
-                t344,
-                t346,
-                t347,
-                t348,
-                t351,
-                t353,
-                t354,
-                t355,
-                t358,
-                t360,
-                t365,
-                t370,
-                t371,
-                t375,
-                t377,
-                t379,
-                t381,
-                t382,
-                t383,
-                t384,
-                t385,
-                t386,
-                t387,
-                t388,
-                t389,
-                t391,
-                t392,
-                t393,
-                t394,
-                t395,
-                t397,
-                t398,
-                t399,
-            )
-        };
-        let (
-            t430,
-            t431,
-            t432,
-            t434,
-            t435,
-            t437,
-            t439,
-            t445,
-            t449,
-            t450,
-            t453,
-            t465,
-            t468,
-            t471,
-        ) = {
-            let t400 = t317 * t341;
-            let t401 = t308 * t341;
-            let t402 = T::fused(
-                -k(2.0),
-                T::fused(t259, t353, T::fused(t203, t399, t251 * t400)),
-                T::fused(k(0.6666666666666666), t401, k(0.2) * t400),
-            );
-            let t403 = t214 * (t402 - t394);
-            let t404 = t383 + t343;
-            let t405 = T::fused(k(0.3333333333333333), t395, -t358);
-            let t406 = t405 + t384 + t404;
-            let t407 = T::fused(
-                t251,
-                t388,
-                T::fused(t264, t353, T::fused(t206, t397, t250 * t400)),
-            );
-            let t408 = k(1.3333333333333333) * t401;
-            let t409 = T::fused(
-                -k(2.0),
-                T::fused(-t259, t342, T::fused(-t203, t406, t407)),
-                T::fused(
-                    -k(0.6666666666666666),
-                    t391,
-                    T::fused(k(0.4), t400, t408) + t393,
-                ),
-            );
-            let t410 = T::fused(-k(0.2), t346, t385);
-            let t411 = t410 + t386 + t405;
-            let t412 = T::fused(
-                -t206,
-                t398,
-                T::fused(-t258, t400, T::fused(-t259, t346, t251 * t389)),
-            );
-            let t413 = T::fused(
-                k(2.0),
-                T::fused(t253, t353, T::fused(-t203, t411, t412)),
-                T::fused(-k(0.2), t389 - t400, k(0.6666666666666666) * t392) - t408,
-            );
-            let t414 = t413 - t409;
-            let t415 = T::fused(
-                -t264,
-                t342,
-                T::fused(-t206, t404, T::fused(t203, t379, t250 * t388)),
-            );
-            let t416 = T::fused(
-                -k(2.0),
-                t415,
-                T::fused(-k(1.3333333333333333), t391, k(0.4) * t388),
-            );
-            let t417 = T::fused(
-                t253,
-                t346,
-                T::fused(-t203, t381, T::fused(-t206, t410, t258 * t389)),
-            );
-            let t418 = T::fused(
-                -k(2.0),
-                t417,
-                T::fused(k(1.3333333333333333), t392, k(0.2) * t389),
-            );
-            let t419 = t418 + t416;
-            let t420 = T::fused(
-                -t216,
-                t377,
-                t403 + (T::fused(-t218, t414, t221 * t419) + t403),
-            );
-            let t421 = t375 - t365;
-            let t422 = t365 + (t377 + t370 + t375);
-            let t423 = t377 - t370;
-            let t424 = t218 * (t418 - t416 + t394);
-            let t425 = t413 + t409;
-            let t426 = T::fused(
-                t195,
-                t423,
-                t424 + (T::fused(t214, t414, t221 * t425) + t424),
-            );
-            let t427 = t377 - t375;
-            let t428 = T::fused(
-                t216,
-                t370,
-                T::fused(-t218, t425, T::fused(t214, t419, k(2.0) * (t221 * t402))),
-            );
-            let t429 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t216, t421, T::fused(-t212, t422, t426)),
-                k(0.3333333333333333) * T::fused(t195, t365, T::fused(t212, t427, t428)),
-            );
-            let t430 = T::fused(
-                -t217,
-                T::fused(t212, t371, T::fused(-t195, t375, t420)),
-                t214 * t429,
-            );
-            let t431 = T::fused(t257, t342, T::fused(-t298, t353, t326 * t346));
-            let t432 = T::fused(-t263, t342, T::fused(t300, t353, t298 * t346));
-            let t433 = t203 * t432;
-            let t434 = T::fused(
-                t206,
-                t431,
-                T::fused(t267, t388, T::fused(-t263, t400, t257 * t389)) - t433,
-            );
-            let t435 = T::fused(t267, t342, T::fused(t263, t353, t257 * t346));
-            let t436 = T::fused(
-                -t206,
-                t435,
-                T::fused(t257, t388, T::fused(t298, t400, t326 * t389)),
-            );
-            let t437 = t436 - t433;
-            let t438 = t435 + t431;
-            let t439 = T::fused(
-                t203,
-                t438,
-                T::fused(-t263, t388, T::fused(-t300, t400, t298 * t389)),
-            );
-            let t440 = T::fused(t231, t342, T::fused(t291, t353, t319 * t346));
-            let t441 = T::fused(t243, t342, T::fused(-t295, t353, t323 * t346));
-            let t442 = T::fused(
-                -k(0.4444444444444444),
-                u0,
-                T::fused(
-                    k(0.6666666666666666),
-                    t240,
-                    T::fused(k(0.3333333333333333), t234, k(0.6666666666666666) * t211),
-                ),
-            );
-            let t443 = k(0.02666666666666667) * t442;
-            let t444 = T::fused(
-                t291,
-                t358,
-                T::fused(t295, t355, T::fused(t319, t360, T::fused(-t323, t348, t443))),
-            );
-            let t445 = T::fused(
-                t231,
-                t343,
-                T::fused(
-                    -t243,
-                    t351,
-                    T::fused(-k(0.1), t440, T::fused(k(0.03), t441, t444)),
-                ),
-            );
-            let t446 = T::fused(-t238, t342, T::fused(t293, t353, t321 * t346));
-            let t447 = T::fused(
-                -t295,
-                t354,
-                T::fused(
-                    -t321,
-                    t360,
-                    T::fused(t323, t347, k(0.013333333333333334) * t442),
-                ),
-            );
-            let t448 = T::fused(
-                t243,
-                t344,
-                T::fused(
-                    k(0.1),
-                    t446,
-                    T::fused(-k(0.05), t441, T::fused(-t293, t358, t447)),
-                ),
-            );
-            let t449 = T::fused(t238, t343, t448);
-            let t450 = t449 + t445;
-            let t451 = t203 * t450;
-            let t452 = T::fused(
-                t291,
-                t354,
-                T::fused(-t293, t355, T::fused(t319, t347, T::fused(-t321, t348, t443))),
-            );
-            let t453 = T::fused(
-                t231,
-                t344,
-                T::fused(
-                    t238,
-                    t351,
-                    T::fused(-k(0.05), t440, T::fused(k(0.03), t446, t452)),
-                ),
-            );
-            let t454 = t203 * t453;
-            let t455 = T::fused(-t206, t449, t454);
-            let t456 = t203 * t445;
-            let t457 = t206 * t453;
-            let t458 = T::fused(
-                k(0.6666666666666666),
-                t455 - t451,
-                k(0.3333333333333333) * (t457 + t456),
-            );
-            let t459 = T::fused(
-                k(0.5555555555555556),
-                T::fused(-t206, t445, t454),
-                T::fused(
-                    k(0.4444444444444444),
-                    t457 - t456,
-                    k(0.8888888888888888) * (t203 * t449),
-                ),
-            );
-            let t460 = T::fused(-k(0.2222222222222222), t455 + t451, t459);
-            let t461 = t198 * t460;
-            let t462 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t214, t371, T::fused(t218, t422, t221 * t427)),
-                k(0.3333333333333333)
-                    * T::fused(-t218, t421, T::fused(-t221, t370, t214 * t377)),
-            );
-            let t463 = t199 * t460;
-            let t464 = t463
-                - (T::fused(-t221, t365, T::fused(t214, t375, t218 * t423)) + t461);
-            let t465 = T::fused(
-                -t195,
-                T::fused(-k(2.0), t195 * t458, t463 - (t462 - t461)),
-                t193 * T::fused(-t194, t458, t464),
-            );
-            let t466 = T::fused(
-                t257,
-                t382,
-                T::fused(-t300, t399, T::fused(-t298, t411, t326 * t381)),
-            );
-            let t467 = T::fused(
-                t258,
-                t432,
-                T::fused(-t250, t432, T::fused(t263, t406, T::fused(t267, t379, t466))),
-            );
-            let t468 = T::fused(
-                t232,
-                t449,
-                T::fused(t233, t453, T::fused(t205, t453, T::fused(t251, t438, t467))),
-            );
-            let t469 = T::fused(
-                -t257,
-                t387,
-                T::fused(-t263, t397, T::fused(-t298, t398, t326 * t410)),
-            );
-            let t470 = T::fused(
-                -t239,
-                t453,
-                T::fused(t250, t431, T::fused(t258, t435, T::fused(-t267, t404, t469))),
-            );
-            let t471 = T::fused(
-                -k(0.3333333333333333),
-                T::fused(-t205, t445, T::fused(-t233, t449, t470)),
-                k(0.017777777777777778) * t442,
-            );
-            (
-                t430,
-                t431,
-                t432,
-                t434,
-                t435,
-                t437,
-                t439,
-                t445,
-                t449,
-                t450,
-                t453,
-                t465,
-                t468,
-                t471,
-            )
-        };
+                T::fused(k(0.6052047609441195), t15, T::fused(-t87, t146, t57)),
+            ),
+        );
+        let t164 = t50 * t163;
+        let t165 = T::fused(-t39, t51, t38 * t34);
+        let t166 = t50 * t90;
+        let t167 = T::fused(-t38, t106, T::fused(-t93, t166, t39 * t107));
+        let t168 = T::fused(t38, t121, -T::fused(-t110, t166, t39 * t122));
+        let t169 = T::fused(t131, t166, t39 * t144) - T::fused(t130, t80, t38 * t143);
+        let t170 = T::fused(-t38, t149, t39 * t150);
+        let t171 = T::fused(t39, t155, t38 * t153);
+        let t172 = T::fused(-t39, t159, t38 * t158);
+        let t173 = T::fused(t39, t164, t38 * t162);
+        let t174 = T::fused(t30, t165, -T::fused(-t26, t51, t25 * t20));
+        let t175 = T::fused(
+            t30,
+            t167,
+            -T::fused(-t25, t104, T::fused(t94, t166, t26 * t107)),
+        );
+        let t176 = T::fused(
+            t30,
+            t168,
+            -T::fused(t25, t119, -T::fused(t111, t166, t26 * t122)),
+        );
+        let t177 = T::fused(t132, t166, t26 * t144) - T::fused(-t127, t73, t25 * t141);
+        let t178 = T::fused(-t39, t166, t38 * t80);
+        let t179 = T::fused(-t128, t178, t30 * t169) - t177;
+        let t180 = T::fused(t30, t170, T::fused(-t26, t150, t25 * t147));
+        let t181 = T::fused(-t30, t171, T::fused(t26, t155, t25 * t152));
+        let t182 = T::fused(t30, t172, T::fused(t26, t159, t25 * t157));
+        let t183 = T::fused(t30, t173, T::fused(-t26, t164, t25 * t161));
+        let t184 = T::fused(
+            t17,
+            t174,
+            T::fused(t31, t165, -T::fused(-t16, t51, k(30.26023804720597) * t8)),
+        );
+        let t185 = T::fused(
+            t31,
+            t167,
+            -T::fused(-k(30.26023804720597), t101, T::fused(-t95, t166, t16 * t107)),
+        );
+        let t186 = T::fused(
+            t31,
+            t168,
+            T::fused(k(30.26023804720597), t117, T::fused(t112, t166, t16 * t122)),
+        );
+        let t187 = T::fused(t17, t178, t31 * t169)
+            - T::fused(-k(30.26023804720597), t140, T::fused(t133, t166, t16 * t144));
+        let t188 = T::fused(
+            -t31,
+            T::fused(t30, t178, T::fused(t26, t166, t25 * t73)),
+            t17 * t179,
+        );
+        let t189 = T::fused(
+            t17,
+            t180,
+            T::fused(t31, t170, -T::fused(t16, t150, k(30.26023804720597) * t145)),
+        );
+        let t190 = T::fused(
+            -t17,
+            t181,
+            T::fused(t31, t171, T::fused(-t16, t155, k(30.26023804720597) * t151)),
+        );
+        let t191 = T::fused(
+            t17,
+            t182,
+            T::fused(t31, t172, T::fused(t16, t159, k(30.26023804720597) * t156)),
+        );
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -10490,22 +9410,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                 -T::fused(-t31, t173, T::fused(t16, t164, k(0.6052047609441195))),
             ),
             k(0.0),
-            k(0.5) * t430,
-            -T::fused(k(0.6666666666666666), t437 + t434, k(0.3333333333333333) * t439),
-            -T::fused(k(0.6666666666666666), t439 - t434, k(0.3333333333333333) * t437),
-            -(k(0.5) * t465),
-            T::fused(
-                -k(0.6666666666666666),
-                T::fused(t202, t450, T::fused(t209, t445, t468)),
-                t471,
-            ),
-            T::fused(
-                k(0.6666666666666666),
-                t431,
-                T::fused(k(0.3333333333333333), t432, k(0.6666666666666666) * t435),
-            ),
-            T::fused(-k(0.6666666666666666), t435 - t432, k(0.3333333333333333) * t431),
-            -T::fused(k(0.6666666666666666), t453 + t445, k(0.3333333333333333) * t449),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(1.6) * u1),
+            k(0.0),
+            -(k(0.04) * u3),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];

@@ -116,7 +116,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenFourBar<T> {
             k(1.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 76 operations (25 ±, 51 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 76 operations (25 ±, 51 ×, 0 ÷) and 1 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);

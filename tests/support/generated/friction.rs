@@ -137,7 +137,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Friction<T> {
             k(2.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 85 operations (28 ±, 57 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 85 operations (28 ±, 57 ×, 0 ÷) and 1 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -295,7 +295,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 12]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 85 operations (28 ±, 57 ×, 0 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 85 operations (28 ±, 57 ×, 0 ÷) and 1 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -1434,7 +1434,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             -(k(0.25) * u4),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 37 operations (12 ±, 25 ×, 0 ÷) and 1 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 37 operations (12 ±, 25 ×, 0 ÷) and 1 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -1448,8 +1448,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let u2 = x[8];
         let u3 = x[9];
         let u4 = x[10];
-        let t0 = T::fused(k(1.25), u0 * (k(10.0) * u0).tanh(), k(12.5) * (u4 * u4));
-        let t1 = k(0.04) * T::fused(u1, u1, T::fused(u2, u2, T::fused(u3, u3, t0)));
+        let t0 = T::fused(
+            u2,
+            u2,
+            T::fused(k(1.25), u0 * (k(10.0) * u0).tanh(), u1 * u1),
+        );
         *dx = [
             u0,
             -(k(0.5) * T::fused(x4, u3, T::fused(x3, u2, x2 * u1))),
@@ -1462,7 +1465,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             rates[2],
             rates[3],
             rates[4],
-            -t1,
+            -(k(0.04) * T::fused(k(12.5), u4 * u4, T::fused(u3, u3, t0))),
         ];
     }
     /// Writes the maximal state of a joint state: 1 operations (0 ±, 1 ×, 0 ÷) and 2 functions.

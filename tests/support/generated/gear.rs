@@ -105,7 +105,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Gear<T> {
             k(0.04999999999999989),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 49 operations (16 ±, 33 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 49 operations (16 ±, 33 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);

@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 134 operations (52 ±, 82 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 134 operations (52 ±, 82 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -279,7 +279,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 134 operations (52 ±, 82 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 134 operations (52 ±, 82 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -1443,7 +1443,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
         );
         *out = [t6, k(1.5)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 18 operations (6 ±, 12 ×, 0 ÷) and 2 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 18 operations (6 ±, 12 ×, 0 ÷) and 2 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -41,7 +41,7 @@
 //! | newton_step | dependent positions, one Newton step | 47 | 79 | 1 | 127 | 3 of 7 | 7172 | 127 |
 //! | solve_velocities | dependent velocities, eq. (19) | 13 | 19 | 1 | 33 | 3 of 6 | 138 | 33 |
 //! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
-//! | joint_derivative | ẋ but for u̇ | 1 | 3 | 0 | 4 | 0 of 2 | 4 | 4 |
+//! | joint_derivative | ẋ but for u̇ | 1 | 2 | 0 | 3 | 0 of 2 | 3 | 3 |
 //! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 13 | 2 | 1 |
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
@@ -114,7 +114,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Motor<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 28 operations (9 ±, 19 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 28 operations (9 ±, 19 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -180,7 +180,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Motor<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 28 operations (9 ±, 19 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 28 operations (9 ±, 19 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -808,13 +808,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Motor<T> {
         let u0 = x[1];
         *out = [k(50.0) * T::fused(-k(0.03), u0, self.torque)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 4 operations (1 ±, 3 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 3 operations (1 ±, 2 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
         let k = T::constant;
         let u0 = x[1];
-        *dx = [u0, rates[0], T::fused(-u0, k(0.03) * u0, self.torque * u0)];
+        *dx = [u0, rates[0], u0 * T::fused(-k(0.03), u0, self.torque)];
     }
     /// Writes the maximal state of a joint state: 1 operations (0 ±, 1 ×, 0 ÷) and 2 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -1021,7 +1021,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Motor<T> {
     }
     fn set_input(&mut self, index: usize, value: T) -> bool {
         match index {
-            0 => self.torque = value,
+            0 => {
+                self.torque = value;
+            }
             _ => return false,
         }
         true

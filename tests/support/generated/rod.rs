@@ -88,7 +88,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Rod<T> {
             k(-4.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);

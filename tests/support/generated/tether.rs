@@ -105,7 +105,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Tether<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -165,7 +165,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 0]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -639,7 +639,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
             -(k(0.25) * (u3 * u4)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -109,7 +109,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
             k(0.9),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 42 operations (14 ±, 28 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 42 operations (14 ±, 28 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -167,7 +167,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 6]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 42 operations (14 ±, 28 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 42 operations (14 ±, 28 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -1132,7 +1132,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
             -(k(0.13095861707700368) * T::fused(t2, t9, t6)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

@@ -177,7 +177,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Chain<T> {
             k(-1.2865292928082),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 144 operations (48 ±, 96 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 144 operations (48 ±, 96 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -457,7 +457,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 18]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 144 operations (48 ±, 96 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 144 operations (48 ±, 96 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -9536,7 +9536,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
             T::fused(k(0.746268656716418), T::fused(k(0.28), t191, t306), -t305),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);

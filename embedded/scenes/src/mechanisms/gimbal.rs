@@ -126,7 +126,9 @@ impl<T: gyro_sim::Scalar> Gimbal<T> {
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
         let mut parameters = self.parameters;
         match index {
-            0 => parameters.rotor_mass = value,
+            0 => {
+                parameters.rotor_mass = value;
+            }
             _ => return false,
         }
         self.set_parameters(parameters);
@@ -225,7 +227,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Gimbal<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 73 operations (24 ±, 49 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 73 operations (24 ±, 49 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -393,7 +395,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 73 operations (24 ±, 49 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 73 operations (24 ±, 49 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -2943,7 +2945,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
             -T::fused(t0, t4, k(100000.0) * (u0 * t3)),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 1 operations (0 ±, 1 ×, 0 ÷).
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 1 operations (0 ±, 1 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -3831,7 +3833,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Gimbal<T> {
     }
     fn set_input(&mut self, index: usize, value: T) -> bool {
         match index {
-            0 => self.torque = value,
+            0 => {
+                self.torque = value;
+            }
             _ => return false,
         }
         true
