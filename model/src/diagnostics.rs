@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label};
-use codespan_reporting::files::SimpleFile;
+use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term::termcolor::Buffer;
 use codespan_reporting::term::{self, Chars, Config, Styles, StylesWriter};
 
@@ -14,7 +14,22 @@ pub struct Diagnostics {
     file_name: String,
     text: String,
     mistakes: Vec<Diagnostic>,
+    /// Where the lines of the text begin.
+    starts: Vec<usize>,
 }
+
+/// Mistakes that are shown; how many more there are is said.
+const SHOWN: usize = 30;
+
+/// Bytes of the longest line that is shown whole. Of a longer one only the part around the place is shown.
+const LONGEST_LINE: usize = 400;
+
+/// Bytes of such a line before and after the place.
+const BEFORE: usize = 60;
+const AFTER: usize = 100;
+
+/// Characters of the longest message that is shown whole.
+const LONGEST_MESSAGE: usize = 800;
 
 /// One mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,7 +62,8 @@ impl Diagnostics {
             (a.span.start, a.span.end, &a.message).cmp(&(b.span.start, b.span.end, &b.message))
         });
         mistakes.dedup();
-        Self { file_name: file_name.to_owned(), text: text.to_owned(), mistakes }
+        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Self { file_name: file_name.to_owned(), text: text.to_owned(), mistakes, starts }
     }
 
     /// The mistakes in the order of the page.
@@ -55,7 +71,7 @@ impl Diagnostics {
         &self.mistakes
     }
 
-    /// The mistakes as plain text for a terminal or a log, each with its `file:line:column`.
+    /// The mistakes as plain text for a terminal or a log, each with its `file:line:column`: the first thirty, and how many more there are.
     pub fn render(&self) -> String {
         self.render_with(Buffer::no_color())
     }
@@ -68,31 +84,117 @@ impl Diagnostics {
     fn render_with(&self, mut buffer: Buffer) -> String {
         let config = Config { chars: Chars::ascii(), ..Config::default() };
         let styles = Styles::default();
-        let file = SimpleFile::new(&self.file_name, &self.text);
-        for mistake in &self.mistakes {
+        for mistake in self.mistakes.iter().take(SHOWN) {
+            let file = Excerpt { page: self, at: mistake.span.start };
             let mut writer = StylesWriter::new(&mut buffer, &styles);
-            term::emit_to_write_style(&mut writer, &config, &file, &self.report(mistake))
+            term::emit_to_write_style(&mut writer, &config, &file, &file.report(mistake))
                 .expect("spans lie within the text and a buffer in memory takes every write");
         }
-        String::from_utf8_lossy(buffer.as_slice()).into_owned()
+        let mut text = String::from_utf8_lossy(buffer.as_slice()).into_owned();
+        match self.mistakes.len().saturating_sub(SHOWN) {
+            0 => {}
+            1 => text.push_str("error: and 1 more mistake\n"),
+            more => text.push_str(&format!("error: and {more} more mistakes\n")),
+        }
+        text
     }
+}
 
+/// The page as the message about one place shows it.
+struct Excerpt<'a> {
+    page: &'a Diagnostics,
+    /// The place, in bytes.
+    at: usize,
+}
+
+impl Excerpt<'_> {
     fn report(&self, mistake: &Diagnostic) -> Report<()> {
-        let primary = Label::primary((), self.within(&mistake.span)).with_message(&mistake.label);
-        let related =
-            mistake.related.iter().map(|r| Label::secondary((), self.within(&r.span)).with_message(&r.label));
+        let primary = Label::primary((), self.within(&mistake.span)).with_message(cut(&mistake.label));
+        let is_shown = |other: &&Related| {
+            let line = self.line(self.index(other.span.start));
+            (line.start..=line.end).contains(&other.span.start)
+        };
+        let related = mistake.related.iter().filter(is_shown);
+        let related = related.map(|r| Label::secondary((), self.within(&r.span)).with_message(cut(&r.label)));
         Report::error()
-            .with_message(&mistake.message)
+            .with_message(cut(&mistake.message))
             .with_labels(std::iter::once(primary).chain(related).collect())
-            .with_notes(vec![mistake.help.clone()])
+            .with_notes(vec![cut(&mistake.help)])
     }
 
-    /// The span moved to character boundaries of the text.
+    /// The span moved to character boundaries of what is shown.
     fn within(&self, span: &Range<usize>) -> Range<usize> {
-        let boundary =
-            |at: usize| (0..=at.min(self.text.len())).rev().find(|&k| self.text.is_char_boundary(k));
-        let start = boundary(span.start).unwrap_or(0);
-        start..boundary(span.end).unwrap_or(0).max(start)
+        let shown = |at: usize| {
+            let line = self.line(self.index(at));
+            boundary(&self.page.text, at).clamp(line.start, line.end)
+        };
+        let start = shown(span.start);
+        start..shown(span.end).max(start)
+    }
+
+    /// The line that a byte is in.
+    fn index(&self, at: usize) -> usize {
+        self.page.starts.partition_point(|&start| start <= at).saturating_sub(1)
+    }
+
+    /// The bytes of a line, its end included.
+    fn whole_line(&self, index: usize) -> Range<usize> {
+        let starts = &self.page.starts;
+        let start = starts.get(index).copied().unwrap_or(self.page.text.len());
+        start..starts.get(index + 1).copied().unwrap_or(self.page.text.len())
+    }
+
+    /// The bytes of a line that are shown.
+    fn line(&self, index: usize) -> Range<usize> {
+        let line = self.whole_line(index);
+        if line.len() <= LONGEST_LINE {
+            return line;
+        }
+        let around = self.at.clamp(line.start, line.end);
+        let first = around.saturating_sub(BEFORE).max(line.start);
+        let last = (around + AFTER).min(line.end);
+        boundary(&self.page.text, first)..boundary(&self.page.text, last)
+    }
+}
+
+impl<'a> Files<'a> for Excerpt<'_> {
+    type FileId = ();
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, (): ()) -> Result<&'a str, Error> {
+        Ok(&self.page.file_name)
+    }
+
+    fn source(&'a self, (): ()) -> Result<&'a str, Error> {
+        Ok(&self.page.text)
+    }
+
+    fn line_index(&'a self, (): (), byte_index: usize) -> Result<usize, Error> {
+        Ok(self.index(byte_index))
+    }
+
+    fn column_number(&'a self, (): (), line_index: usize, byte_index: usize) -> Result<usize, Error> {
+        let start = self.whole_line(line_index).start;
+        let before = self.page.text.get(start..byte_index.max(start)).unwrap_or_default();
+        Ok(before.chars().count() + 1)
+    }
+
+    fn line_range(&'a self, (): (), line_index: usize) -> Result<Range<usize>, Error> {
+        Ok(self.line(line_index))
+    }
+}
+
+/// The last character boundary up to a byte.
+fn boundary(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len())).rev().find(|&k| text.is_char_boundary(k)).unwrap_or(0)
+}
+
+/// A message without what is too much of it.
+fn cut(message: &str) -> String {
+    match message.char_indices().nth(LONGEST_MESSAGE) {
+        None => message.to_owned(),
+        Some((end, _)) => format!("{}...", &message[..end]),
     }
 }
 
@@ -103,3 +205,45 @@ impl fmt::Display for Diagnostics {
 }
 
 impl std::error::Error for Diagnostics {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mistake(span: Range<usize>) -> Diagnostic {
+        let words = |text: &str| text.to_owned();
+        Diagnostic { span, message: words("m"), label: words("l"), help: words("h"), related: Vec::new() }
+    }
+
+    #[test]
+    fn of_many_mistakes_the_first_are_shown_and_the_rest_is_counted() {
+        let text = "x\n".repeat(100);
+        let mistakes = |n: usize| (0..n).map(|k| mistake(2 * k..2 * k + 1)).collect();
+        let shown = |n: usize| Diagnostics::new("p.toml", &text, mistakes(n)).render();
+        assert!(!shown(30).contains("more") && shown(30).contains("p.toml:30:1"));
+        assert!(shown(31).ends_with("and 1 more mistake\n"));
+        assert!(shown(99).ends_with("and 69 more mistakes\n") && !shown(99).contains("p.toml:31:1"));
+    }
+
+    #[test]
+    fn of_a_long_line_the_part_around_the_place_is_shown() {
+        let text = format!("a\n{}here{}\nb\n", "é".repeat(100_000), "ü".repeat(100_000));
+        let at = text.find("here").expect("it is there");
+        let mut far = mistake(at..at + 4);
+        far.related = vec![Related { span: 5..9, label: "far".to_owned() }];
+        far.help = "x".repeat(100_000);
+        let shown = Diagnostics::new("p.toml", &text, vec![far]).render();
+        assert!(shown.contains("p.toml:2:100001") && shown.contains("ééhereüü"), "{shown}");
+        assert!(shown.contains("^^^^ l") && !shown.contains("far"), "{shown}");
+        assert!(shown.len() < 3000, "{}", shown.len());
+    }
+
+    #[test]
+    fn places_at_the_ends_of_long_lines_are_shown() {
+        let text = "z".repeat(10_000);
+        for (span, column) in [(0..0, 1), (0..10_000, 1), (9_999..10_000, 10_000), (10_000..10_000, 10_001)] {
+            let shown = Diagnostics::new("p.toml", &text, vec![mistake(span)]).render();
+            assert!(shown.contains(&format!("p.toml:1:{column}\n")) && shown.len() < 1000, "{shown}");
+        }
+    }
+}

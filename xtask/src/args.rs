@@ -251,7 +251,7 @@ pub(crate) struct ImportArgs {
     /// Where to write the page [default: beside the robot, with the extension toml]
     #[arg(long, value_name = "MODEL.toml")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace a page that is there already
+    /// Replace a page that an import has written
     #[arg(long)]
     pub(crate) force: bool,
 }

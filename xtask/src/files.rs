@@ -1,6 +1,8 @@
-//! Reading and writing files, whole or not at all.
+//! Reading files, and where the workspace is.
 
 use crate::failure::Failure;
+use crate::write::{self, Known};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -10,16 +12,56 @@ pub(crate) fn root() -> PathBuf {
     xtask.parent().unwrap_or(xtask).to_path_buf()
 }
 
-/// The text of a model page.
-pub(crate) fn read_page(path: &Path) -> Result<String, Failure> {
-    let bytes = fs::read(path).map_err(|e| Failure::Usage(unreadable(path, &e)))?;
+/// The largest page, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies takes.
+pub(crate) const LARGEST_PAGE: u64 = 4 << 20;
+
+/// The largest table of a motion or an input that is read: two million rows and more.
+pub(crate) const LARGEST_TABLE: u64 = 64 << 20;
+
+/// The text of a file that the run depends on, which nothing may overwrite from now on.
+pub(crate) fn input(path: &Path, largest: u64) -> io::Result<String> {
+    let text = text(path, largest)?;
+    write::note_input(path);
+    Ok(text)
+}
+
+/// The text of an ordinary file that is not too large: a pipe or a device might have no end.
+pub(crate) fn text(path: &Path, largest: u64) -> io::Result<String> {
+    // Before it is opened: opening a pipe waits for its other end.
+    let found = fs::metadata(path)?;
+    if !found.is_file() {
+        let what = if found.is_dir() { "it is a folder" } else { "it is a pipe or a device, not a file" };
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)?.take(largest + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > largest {
+        let words = format!("it is larger than {} MB, the most that is read", largest >> 20);
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, words));
+    }
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        Failure::Usage(format!("{}: not UTF-8 text: byte {at} belongs to no character", path.display()))
+        io::Error::new(
+            io::ErrorKind::InvalidData,
+            format!("not UTF-8 text: byte {at} belongs to no character"),
+        )
     })
 }
 
+/// The text of a model page.
+pub(crate) fn read_page(path: &Path) -> Result<String, Failure> {
+    input(path, LARGEST_PAGE).map_err(|e| Failure::Usage(unreadable(path, &e)))
+}
+
+/// The text of a page of the documentation that is to be brought up to date.
+pub(crate) fn read_template(path: &Path) -> Result<String, Failure> {
+    text(path, LARGEST_PAGE).map_err(|e| Failure::Usage(unreadable(path, &e)))
+}
+
 fn unreadable(path: &Path, error: &io::Error) -> String {
+    if error.kind() == io::ErrorKind::InvalidData {
+        return format!("{}: {error}", path.display());
+    }
     let words = format!("{} cannot be read: {error}", path.display());
     let file_name = format!("{}.toml", path.file_stem().unwrap_or_default().to_string_lossy());
     let shipped = root().join("models").join(file_name);
@@ -35,26 +77,9 @@ pub(crate) fn holds(path: &Path, text: &str) -> bool {
     fs::read(path).is_ok_and(|old| old == text.as_bytes())
 }
 
-/// Writes a file unless it has this text already, through a neighbour that is renamed, so that the file is always
-/// whole. Returns whether it was written.
-pub(crate) fn write_if_changed(path: &Path, text: &str) -> io::Result<bool> {
-    if holds(path, text) {
-        return Ok(false);
-    }
-    let file_name = path.file_name().unwrap_or_default().to_string_lossy();
-    let neighbour = path.with_file_name(format!(".{file_name}.{}", std::process::id()));
-    let written = fs::write(&neighbour, text).and_then(|()| fs::rename(&neighbour, path));
-    if written.is_err() {
-        // The first error is the one to tell.
-        let _ = fs::remove_file(&neighbour);
-    }
-    written.map(|()| true)
-}
-
-/// The same; an error is the command's failure.
+/// Writes a file in a place of the tool's own. Returns whether it was written: not if it has this text already.
 pub(crate) fn write(path: &Path, text: &str) -> Result<bool, Failure> {
-    write_if_changed(path, text)
-        .map_err(|e| Failure::Run(format!("{} cannot be written: {e}", path.display())))
+    write::write(path, text, Known::Place)
 }
 
 /// A path as messages and generated files show it: relative to the workspace if inside of it, with slashes.
@@ -93,17 +118,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_file_is_written_once_and_leaves_no_neighbour() {
-        let folder = Folder::new();
-        let path = folder.0.join("x.rs");
-        assert!(write_if_changed(&path, "one").unwrap());
-        assert!(!write_if_changed(&path, "one").unwrap());
-        assert!(write_if_changed(&path, "two").unwrap());
-        assert_eq!(fs::read_to_string(&path).unwrap(), "two");
-        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
-    }
-
-    #[test]
     fn pages_that_cannot_be_read_are_named() {
         let folder = Folder::new();
         let path = folder.0.join("x.toml");
@@ -112,5 +126,23 @@ pub(crate) mod tests {
         assert!(words.contains("x.toml: not UTF-8 text: byte 8"), "{words}");
         let Err(Failure::Usage(words)) = read_page(&folder.0.join("none.toml")) else { panic!("no file") };
         assert!(words.contains("none.toml cannot be read"), "{words}");
+    }
+
+    #[test]
+    fn what_is_no_file_or_too_large_is_refused() {
+        let folder = Folder::new();
+        let path = folder.0.join("x.csv");
+        fs::write(&path, "t,x\n").unwrap();
+        assert_eq!(text(&path, 4).unwrap(), "t,x\n");
+        assert!(text(&path, 3).unwrap_err().to_string().contains("larger than"));
+        assert!(text(&folder.0, 4).unwrap_err().to_string().contains("folder"));
+        #[cfg(unix)]
+        assert!(text(Path::new("/dev/zero"), 4).unwrap_err().to_string().contains("device"));
+        #[cfg(unix)]
+        {
+            let pipe = folder.0.join("pipe");
+            assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+            assert!(text(&pipe, 4).unwrap_err().to_string().contains("pipe"));
+        }
     }
 }

@@ -4,8 +4,10 @@ use crate::args::GenerateArgs;
 use crate::failure::Failure;
 use crate::verify::verify_quickly;
 use crate::words::count;
+use crate::write::{self, Known};
 use crate::{files, remarks, scene};
 use gyro_codegen::Module;
+use gyro_verifier::constants::Constants;
 use rayon::prelude::*;
 use similar::TextDiff;
 use std::fmt::Write as _;
@@ -75,8 +77,9 @@ fn outputs(args: &GenerateArgs, places: &[Places]) -> Result<Outputs, Failure> {
         if let Some(place) = place {
             names[place].push(module.name);
         }
+        // The module first: it is by the module beside them that the constants are known.
+        outputs.files.push(Output { path: path.clone(), text: module.code });
         outputs.files.push(Output { path: path.with_extension("exact"), text: module.constants });
-        outputs.files.push(Output { path, text: module.code });
     }
     for (place, names) in places.iter().zip(&names) {
         outputs.to_do.extend(by_hand(&place.generated, names, args.models.is_empty())?);
@@ -129,6 +132,7 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
     outputs.files.iter().try_for_each(spare_what_is_not_generated)?;
     let mut n_fresh = 0;
     for output in &outputs.files {
+        // Known by what has just been looked at.
         if files::write(&output.path, &output.text)? {
             say(&format!("wrote {}", output.path.display()));
         } else {
@@ -141,19 +145,26 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
     if outputs.to_do.is_empty() { Ok(()) } else { Err(Failure::Run(outputs.to_do.join("\n"))) }
 }
 
-/// Refuses to replace a module that somebody wrote.
+/// Refuses to replace what somebody else wrote, or what this run reads. A module is known by its first line. A file of constants has no
+/// room for one: it is known by the generated module beside it and by being just such a file, line for line.
 fn spare_what_is_not_generated(output: &Output) -> Result<(), Failure> {
-    let is_module = output.text.starts_with(MARK);
-    let is_written_by_hand = is_module
-        && fs::read_to_string(&output.path)
-            .is_ok_and(|text| !text.trim().is_empty() && !text.starts_with(MARK));
-    if is_written_by_hand {
-        let path = output.path.display();
-        return Err(Failure::Usage(format!(
-            "{path} exists and is not a generated file: choose another place with --out, or move it away"
-        )));
+    let path = &output.path;
+    if output.text.starts_with(MARK) {
+        return write::check(path, Known::Mark(MARK));
     }
-    Ok(())
+    write::check(path, Known::Place)?;
+    let is_module = fs::read(path.with_extension("rs")).is_ok_and(|text| text.starts_with(MARK.as_bytes()));
+    let is_constants = |text: &str| text.is_empty() || is_module && Constants::read(text).is_ok();
+    match fs::read_to_string(path) {
+        Ok(text) if !is_constants(&text) => Err(Failure::Usage(format!(
+            "{} exists and is not a file that this tool has written: choose another place with --out, or move it away",
+            path.display()
+        ))),
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(Failure::Usage(format!("{} exists and cannot be read: {error}", path.display())))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Compares files with what they should be.
@@ -334,7 +345,7 @@ inertia = [1e-4, 1e-4, 2e-4]
         let page = folder.0.join("mine.toml");
         fs::write(&page, PAGE).unwrap();
         let path =
-            |out| outputs(&args(std::slice::from_ref(&page), out), &places).unwrap().files[1].path.clone();
+            |out| outputs(&args(std::slice::from_ref(&page), out), &places).unwrap().files[0].path.clone();
         assert_eq!(path(None), folder.0.join("plate.rs"));
         assert_eq!(path(Some(folder.0.join("x.rs"))), folder.0.join("x.rs"));
         let two = args(&[page.clone(), page.clone()], Some(folder.0.join("x.rs")));
@@ -343,6 +354,28 @@ inertia = [1e-4, 1e-4, 2e-4]
         );
         let same = args(&[page.clone(), page], None);
         assert!(matches!(outputs(&same, &places), Err(Failure::Usage(words)) if words.contains("same name")));
+    }
+
+    #[test]
+    fn what_was_written_by_hand_stays() {
+        let (folder, places) = workspace("");
+        let page = folder.0.join("mine.toml");
+        fs::write(&page, PAGE).unwrap();
+        let attempt = || outputs(&args(std::slice::from_ref(&page), None), &places).and_then(|o| write(&o));
+        for (name, text) in
+            [("plate.exact", "my notes\n"), ("plate.exact", "1.5 = 3/2\n"), ("plate.rs", "fn main() {}\n")]
+        {
+            let path = folder.0.join(name);
+            fs::write(&path, text).unwrap();
+            assert!(matches!(attempt(), Err(Failure::Usage(words)) if words.contains(name)), "{name}");
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+            assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 4, "nothing else is written either");
+            fs::remove_file(&path).unwrap();
+        }
+        attempt().unwrap();
+        attempt().unwrap();
+        fs::write(folder.0.join("plate.exact"), "my notes\n").unwrap();
+        assert!(attempt().is_err());
     }
 
     #[test]

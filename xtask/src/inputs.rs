@@ -2,10 +2,9 @@
 
 use crate::args::Feed;
 use crate::failure::Failure;
-use crate::words;
+use crate::{files, words};
 use gyro_model::Model;
 use gyro_runner::Input;
-use std::fs;
 use std::path::Path;
 
 /// The inputs that the command line gives.
@@ -38,7 +37,8 @@ fn unknown(model: &Model, name: &str, known: &[&str]) -> Failure {
 }
 
 fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
-    let text = fs::read_to_string(path).map_err(|e| format!("the file cannot be read: {e}"))?;
+    let text =
+        files::input(path, files::LARGEST_TABLE).map_err(|e| format!("the file cannot be read: {e}"))?;
     rows(&text)
 }
 

@@ -33,6 +33,7 @@ mod variants;
 mod verdict;
 mod verify;
 mod words;
+mod write;
 
 use args::{Cli, Command};
 use clap::Parser;

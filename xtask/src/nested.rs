@@ -9,13 +9,13 @@ use crate::failure::Failure;
 use crate::progress::Spinner;
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
-use crate::{files, machine_code};
+use crate::{files, machine_code, remarks};
 use gyro_codegen::Module;
 use gyro_model::Model;
 use gyro_runner::protocol::{Reply, Request};
 use gyro_runner::{Event, Summary, Timing};
 use std::collections::hash_map::DefaultHasher;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::hash::{Hash, Hasher};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -210,26 +210,38 @@ fn build(package: &Package) -> Result<(), Failure> {
     fs::create_dir_all(folder.join("src")).map_err(said)?;
     let lock = File::create(cache.join("lock")).map_err(said)?;
     // Released when the file is closed at the end of this function. Two runs at once take turns at building.
-    lock.lock().map_err(said)?;
+    wait_for(&lock, remarks::note).map_err(said)?;
     files::write(&folder.join("Cargo.toml"), &package.manifest)?;
     let (file, root) = &package.root;
     files::write(&folder.join("src").join(file), root)?;
     if let Some(mechanism) = &package.mechanism {
         files::write(&folder.join("src").join("mechanism.rs"), mechanism)?;
     }
-    copy_lock_file(&folder).map_err(said)?;
+    copy_lock_file(&folder)?;
     let _spinner = Spinner::new(format!("compiling {}", package.name));
     compile(package, &target())
 }
 
+/// Waits until a file can be locked, and says so if that is not at once.
+fn wait_for(lock: &File, tell: impl Fn(&str)) -> std::io::Result<()> {
+    match lock.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => {
+            tell("another run is compiling; this one waits for it to finish");
+            lock.lock()
+        }
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
 /// The workspace's versions hold here too. Cargo drops from its copy what the package does not need.
-fn copy_lock_file(folder: &Path) -> std::io::Result<()> {
+fn copy_lock_file(folder: &Path) -> Result<(), Failure> {
     let copy = folder.join("Cargo.lock");
     if copy.is_file() {
         return Ok(());
     }
     match fs::read_to_string(files::root().join("Cargo.lock")) {
-        Ok(text) => files::write_if_changed(&copy, &text).map(|_| ()),
+        Ok(text) => files::write(&copy, &text).map(|_| ()),
         Err(_) => Ok(()),
     }
 }
@@ -364,6 +376,22 @@ mod tests {
         assert_eq!(n_samples, 1);
         assert!(heard(sample).0.unwrap().is_none(), "a program that was killed says nothing");
         assert!(matches!(heard("nonsense\n").0, Err(Failure::Run(_))));
+    }
+
+    #[test]
+    fn who_waits_for_another_build_says_so() {
+        let folder = files::tests::Folder::new();
+        let path = folder.0.join("lock");
+        let (first, second) = (File::create(&path).unwrap(), File::create(&path).unwrap());
+        let (sender, heard) = std::sync::mpsc::channel();
+        let tell = |words: &str| sender.send(words.to_owned()).unwrap();
+        wait_for(&first, tell).unwrap();
+        assert!(heard.try_recv().is_err(), "nothing is said where nobody waits");
+        std::thread::scope(|scope| {
+            scope.spawn(|| wait_for(&second, tell).unwrap());
+            assert!(heard.recv().unwrap().contains("another run is compiling"));
+            first.unlock().unwrap();
+        });
     }
 
     #[test]

@@ -17,7 +17,7 @@ const CALLS: u64 = 100;
 /// Measures and writes the page.
 pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
     let path = args.out.clone().unwrap_or_else(|| files::root().join("docs").join("performance.md"));
-    let page = files::read_page(&path)?;
+    let page = files::read_template(&path)?;
     fs::create_dir_all(folder()).map_err(|e| said(&folder(), &e))?;
     let page = if args.only_lanes { page } else { without_lanes(page, args)? };
     let page = replaced(&page, "lanes", &lanes::table()?)?;

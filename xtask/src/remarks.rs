@@ -25,6 +25,12 @@ pub(crate) fn warn(words: &str) {
     let _ = writeln!(std::io::stderr(), "warning: {words}");
 }
 
+/// Says on standard error what is going on.
+pub(crate) fn note(words: &str) {
+    // Nobody is left to be told if standard error is closed.
+    let _ = writeln!(std::io::stderr(), "note: {words}");
+}
+
 /// A dropped row in words: whose it is, what it says, and whose multipliers are not unique without it.
 pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
     let row = dropped.row;

@@ -5,7 +5,6 @@ use crate::failure::Failure;
 use crate::{files, inputs, remarks};
 use gyro_model::{JointKind, Method, Model, Move, Rational, Support};
 use gyro_runner::{Approach, Coordinates, Correction, Settings, Start};
-use std::fs;
 use std::path::Path;
 
 /// A run to be made.
@@ -74,7 +73,7 @@ pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut load = |table: &str| {
         let path = folder.join(table);
-        fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
+        files::input(&path, files::LARGEST_TABLE).map_err(|e| format!("{}: {e}", path.display()))
     };
     gyro_model::read_with(&path.display().to_string(), &text, &mut load).map_err(Failure::Page)
 }

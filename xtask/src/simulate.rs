@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome};
-use crate::{columns, files, json, linearization, nested, plot, summary, words};
+use crate::write::{self, Known};
+use crate::{columns, json, linearization, nested, plot, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
@@ -101,22 +102,32 @@ fn folder(args: &SimulateArgs, name: &str) -> Result<Option<PathBuf>, Failure> {
     };
     fs::create_dir_all(&folder)
         .map_err(|e| Failure::Usage(format!("--out: {} cannot be made: {e}", folder.display())))?;
+    let files = plot::NAMES.iter().map(|plot| plot_path(name, plot, &folder));
+    files.chain([table_path(name, &folder)]).try_for_each(|path| write::check(&path, Known::Record))?;
     Ok(Some(folder))
+}
+
+fn plot_path(name: &str, plot: &str, folder: &Path) -> PathBuf {
+    folder.join(format!("{name}-{plot}.svg"))
+}
+
+fn table_path(name: &str, folder: &Path) -> PathBuf {
+    folder.join(format!("{name}.csv"))
 }
 
 fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut written = vec![write_table(model, samples, folder)?];
     for (name, svg) in plot::pages(model, samples).map_err(Failure::Run)? {
-        let path = folder.join(format!("{}-{name}.svg", model.name));
-        files::write(&path, &svg)?;
+        let path = plot_path(&model.name, name, folder);
+        write::write(&path, &svg, Known::Record)?;
         written.push(path);
     }
     Ok(written)
 }
 
 fn write_table(model: &Model, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
-    let path = folder.join(format!("{}.csv", model.name));
-    files::write(&path, &columns::text(&columns::columns(model, samples)))?;
+    let path = table_path(&model.name, folder);
+    write::write(&path, &columns::text(&columns::columns(model, samples)), Known::Record)?;
     Ok(path)
 }
 
@@ -126,8 +137,7 @@ fn keep_what_there_is(model: &Model, samples: &[Sample], folder: Option<&Path>, 
         return failure;
     };
     for name in plot::NAMES {
-        // There may be none.
-        let _ = fs::remove_file(folder.join(format!("{}-{name}.svg", model.name)));
+        write::remove(&plot_path(&model.name, name, folder));
     }
     match write_table(model, samples, folder) {
         Ok(path) => Failure::Run(format!(

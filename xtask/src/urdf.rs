@@ -14,11 +14,14 @@ use crate::args::ImportArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::words::count;
+use crate::write::{self, Known};
 use gyro_model::Model;
 use std::fmt::Write as _;
-use std::fs;
 use std::io::Write as _;
 use std::path::Path;
+
+/// How an imported page begins.
+const MARK: &str = "# Written by cargo xtask import";
 
 /// Writes the page and says what has no counterpart on it.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
@@ -30,12 +33,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         )));
     }
     let file = args.file.display().to_string();
-    let text =
-        fs::read_to_string(&args.file).map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
+    let text = files::input(&args.file, files::LARGEST_PAGE)
+        .map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
+    write::check(&out, Known::Mark(MARK))?;
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let (page, remarks) = convert(&file, &shown, &text).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::Page)?;
-    files::write(&out, &page)?;
+    write::write(&out, &page, Known::Mark(MARK))?;
     // What was said is only about a file that is there already.
     let _ = std::io::stdout().write_all(report(&out, &model, &remarks).as_bytes());
     Ok(())

@@ -238,6 +238,17 @@ fn nothing_is_overwritten_or_written_for_a_bad_robot() {
     let again = xtask(&["import", file.to_str().unwrap(), "--out", page.to_str().unwrap()]);
     assert_eq!(again.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&again.stderr).contains("exists: choose another place"));
+    // What was imported may be imported anew; what somebody wrote, and the robot itself, may not be replaced.
+    let force = ["import", file.to_str().unwrap(), "--force", "--out"];
+    let forced = |out: &Path| xtask(&[&force[..], &[out.to_str().unwrap()]].concat());
+    assert!(forced(&page).status.success());
+    let own = folder.0.join("own.toml");
+    fs::write(&own, "format = 1\n").unwrap();
+    for path in [own.as_path(), &file] {
+        let before = fs::read(path).unwrap();
+        assert_eq!(forced(path).status.code(), Some(2));
+        assert_eq!(fs::read(path).unwrap(), before);
+    }
     let robot = folder.0.join("bad.urdf");
     fs::write(&robot, "<robot name='r'><link name='a'/><link name='b'/></robot>").unwrap();
     let bad = xtask(&["import", robot.to_str().unwrap()]);

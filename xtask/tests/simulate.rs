@@ -19,6 +19,8 @@ impl Folder {
     fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        // What the tool keeps of what it wrote.
+        names.retain(|name| name != ".gyro-sim");
         names.sort();
         names
     }
@@ -395,4 +397,64 @@ fn bad_requests_leave_nothing_behind() {
         assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{args:?}");
     }
     assert_eq!(folder.files(), ["bad.toml"]);
+}
+
+/// A body on a table that follows `shaken.csv`, which is also the name of what a run writes.
+const TABLED: &str = "format = 1
+name = \"shaken\"
+[simulation]
+t_end = 0.01
+[[body]]
+name = \"table\"
+driven = { translation = [{ table = \"shaken.csv\" }, 0, 0] }
+[[body]]
+name = \"plate\"
+mass = 0.1
+inertia = [1e-4, 1e-4, 2e-4]
+[[joint]]
+name = \"slide\"
+kind = \"prismatic\"
+axis = [1, 0, 0]
+zero = [0, 1, 0]
+first = { body = \"table\" }
+second = { body = \"plate\" }
+";
+
+const TABLE: &str = "t,x\n0,0\n1,0.01\n2,0\n";
+
+fn refused(output: &Output, words: &str) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && said.contains(words), "{said}");
+}
+
+#[test]
+fn inputs_and_the_files_of_others_are_not_overwritten() {
+    let folder = Folder::new("spared");
+    fs::write(folder.0.join("shaken.toml"), TABLED).unwrap();
+    fs::write(folder.0.join("shaken.csv"), TABLE).unwrap();
+    let run = |out: &str| simulate(&folder, &["shaken.toml", "--engine", "assembled", "--out", out]);
+    refused(&run("."), "shaken.csv is read by this run");
+    assert_eq!(fs::read_to_string(folder.0.join("shaken.csv")).unwrap(), TABLE);
+    assert_eq!(folder.files(), ["shaken.csv", "shaken.toml"]);
+    // What a run has written another may replace, until somebody else has.
+    for _ in 0..2 {
+        assert!(run("out").status.success());
+    }
+    let plot = folder.0.join("out").join("shaken-motion.svg");
+    fs::write(&plot, "mine").unwrap();
+    refused(&run("out"), "shaken-motion.svg exists");
+    assert_eq!(fs::read_to_string(&plot).unwrap(), "mine");
+}
+
+#[test]
+#[cfg(unix)]
+fn tables_and_inputs_are_files() {
+    let folder = Folder::new("pipes");
+    fs::write(folder.0.join("shaken.toml"), TABLED).unwrap();
+    assert!(Command::new("mkfifo").arg(folder.0.join("shaken.csv")).status().unwrap().success());
+    refused(&simulate(&folder, &["shaken.toml", "--engine", "assembled"]), "a pipe or a device");
+    refused(&simulate(&folder, &["shaken.csv"]), "a pipe or a device");
+    let page = model("../tests/models/motor.toml");
+    let input = ["--input", "torque=/dev/zero", "--engine", "assembled"];
+    refused(&simulate(&folder, &[&[page.as_str()], &input[..]].concat()), "a pipe or a device");
 }

@@ -132,7 +132,10 @@ fn check(reader: &mut Reader<'_>, model: &mut Model) {
 fn syntax_mistakes(text: &str, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
     let mistake = |error: &toml::de::Error| {
         let span = error.span().unwrap_or_default();
-        let help = syntax_help(error.message(), text.get(span.start..).unwrap_or_default()).to_owned();
+        let written = text.get(span.start..).unwrap_or_default();
+        // As much as a header takes: all that follows, for each of many errors, would be a square of it.
+        let written = written.char_indices().nth(20).map_or(written, |(end, _)| &written[..end]);
+        let help = syntax_help(error.message(), written).to_owned();
         let message = format!("TOML syntax: {}", error.message().trim_end_matches(", expected nothing"));
         Diagnostic { span, message, label: "not understood".to_owned(), help, related: Vec::new() }
     };

@@ -43,8 +43,19 @@ pub(super) fn snake_case(written: &str) -> String {
     if is_snake_case(name) { name.to_owned() } else { format!("a{name}") }
 }
 
+/// Longer names, and more of them, are not searched for what may have been meant.
+const LONGEST: usize = 100;
+const MOST: usize = 1000;
+
 /// The known name that differs least from what was written, if it is near enough to have been meant.
 pub(super) fn nearest<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
+    // The search takes as long as lengths and numbers of names multiplied.
+    let is_near =
+        |name: &&&str| name.len().abs_diff(written.len()) <= name.len().max(written.len()).div_ceil(3);
+    let known: Vec<&str> = known.iter().filter(is_near).copied().collect();
+    if written.len() > LONGEST || known.len() > MOST {
+        return None;
+    }
     let written = written.to_lowercase();
     let distance = |name: &str| strsim::damerau_levenshtein(&written, &name.to_lowercase());
     let letters = |name: &str| {
@@ -69,8 +80,13 @@ pub(super) fn instead(written: &str, known: &[&str]) -> String {
 
 /// Names in backquotes, separated by commas.
 pub(super) fn list(names: &[&str]) -> String {
-    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+    let shown: Vec<String> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+    let more = names.len().saturating_sub(LISTED);
+    if more == 0 { shown.join(", ") } else { format!("{} and {more} more", shown.join(", ")) }
 }
+
+/// Names of a list that are written out.
+const LISTED: usize = 40;
 
 #[cfg(test)]
 mod tests {

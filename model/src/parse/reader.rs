@@ -1,6 +1,6 @@
 //! What is found while a page is walked: mistakes, and the place of everything in the text.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
 use crate::JointKind;
@@ -28,7 +28,7 @@ pub(super) struct Reader<'t> {
     /// Names of the page's drivers; outputs refer to them.
     pub(super) drivers: Vec<Option<String>>,
     /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
-    taken: Vec<(String, Range<usize>, &'static str)>,
+    taken: HashMap<String, (Range<usize>, &'static str)>,
 }
 
 /// What others need to know of a joint to refer to it, as far as the page says it well.
@@ -65,7 +65,7 @@ impl<'t> Reader<'t> {
             bodies: Vec::new(),
             joints: Vec::new(),
             drivers: Vec::new(),
-            taken: Vec::new(),
+            taken: HashMap::new(),
         }
     }
 
@@ -75,8 +75,8 @@ impl<'t> Reader<'t> {
         if matches!(what, "body" | "force") {
             return;
         }
-        let earlier = self.taken.iter().find(|(other, _, kind)| other == name && *kind != what).cloned();
-        if let Some((_, first, kind)) = earlier {
+        let earlier = self.taken.get(name).filter(|(_, kind)| *kind != what).cloned();
+        if let Some((first, kind)) = earlier {
             let related = Related { span: first, label: format!("a {kind} here") };
             let words = [
                 format!("`{name}` names a {kind} and a {what}").replace("a output", "an output"),
@@ -86,7 +86,7 @@ impl<'t> Reader<'t> {
             ];
             self.clash(place, span.clone(), related, words);
         }
-        self.taken.push((name.to_owned(), span.clone(), what));
+        self.taken.entry(name.to_owned()).or_insert_with(|| (span.clone(), what));
     }
 
     /// The text of a table.
@@ -186,11 +186,12 @@ impl<'t> Reader<'t> {
 
     /// Syntax errors, with those mistakes that they cannot have caused: written ones on other lines.
     pub(super) fn into_certain(self, syntax: Vec<Diagnostic>) -> Vec<Diagnostic> {
-        let line = |at: usize| self.text.bytes().take(at).filter(|&b| b == b'\n').count();
-        let bad: HashSet<usize> = syntax.iter().map(|d| line(d.span.start)).collect();
+        let ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
+        let line = |at: usize| ends.partition_point(|&end| end < at);
+        let bad: BTreeSet<usize> = syntax.iter().map(|d| line(d.span.start)).collect();
         let certain = self.mistakes.iter().filter(|m| {
             let span = &m.diagnostic.span;
-            m.nature == Nature::Written && !(line(span.start)..=line(span.end)).any(|l| bad.contains(&l))
+            m.nature == Nature::Written && bad.range(line(span.start)..=line(span.end)).next().is_none()
         });
         let certain: Vec<Diagnostic> = certain.map(|m| m.diagnostic.clone()).collect();
         syntax.into_iter().chain(certain).collect()

@@ -120,7 +120,11 @@ impl Matched {
 
     /// Passes over `#[doc = "..."]`, in either form, and remembers the last one.
     fn skip_docs(&mut self, found: &mut Peekable<impl Iterator<Item = TokenTree> + Clone>) {
-        loop {
+        // A copy of what is to come is taken only where a `#` stands: one for each token would take a square of them.
+        while found
+            .peek()
+            .is_some_and(|token| matches!(token, TokenTree::Punct(mark) if mark.as_char() == '#'))
+        {
             let mut ahead = found.clone();
             if ahead.next_if(|token| token.to_string() == "#").is_none() {
                 return;

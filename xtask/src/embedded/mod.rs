@@ -78,7 +78,7 @@ fn check_clocks(boards: &[Board]) -> Result<(), Failure> {
 
 fn write(args: &EmbeddedArgs, tables: &[(&str, String)]) -> Result<(), Failure> {
     let path = args.out.clone().unwrap_or_else(|| files::root().join("docs").join("embedded.md"));
-    let mut page = files::read_page(&path)?;
+    let mut page = files::read_template(&path)?;
     for (name, table) in tables {
         page = replaced(&page, name, table)?;
     }

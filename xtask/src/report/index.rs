@@ -7,10 +7,9 @@ use super::data::table;
 use super::goals;
 use super::page::Page;
 use super::study::Study;
-use super::write::CHOICES;
+use super::write::{CHOICES, own};
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
-use crate::files;
 use crate::words::number;
 use std::path::Path;
 
@@ -44,8 +43,8 @@ pub(crate) fn add(study: &Study, machine: &str, folder: &Path) -> Result<(), Fai
         study.goals.iter().map(with_name).collect(),
     )?;
     let page = page(scenes, goals, machine);
-    files::write(&folder.join("index.md"), &page.markdown())?;
-    files::write(&folder.join("index.html"), &page.html("gyro-sim: error against run time"))?;
+    own(&folder.join("index.md"), &page.markdown())?;
+    own(&folder.join("index.html"), &page.html("gyro-sim: error against run time"))?;
     Ok(())
 }
 
@@ -68,7 +67,7 @@ fn merged(
     rows.extend(new);
     rows.sort_by(|a, b| a[0].cmp(&b[0]));
     let head: Vec<String> = head.iter().map(|s| (*s).to_owned()).collect();
-    files::write(path, &table(&head, rows.iter().cloned()))?;
+    own(path, &table(&head, rows.iter().cloned()))?;
     Ok(rows)
 }
 

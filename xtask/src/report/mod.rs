@@ -37,13 +37,15 @@ use study::{Effort, Study};
 pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let pages = pages(args)?;
     // A mistake in the last of them is better known before anything is compiled.
-    pages.iter().try_for_each(|path| scene::read(path).map(|_| ()))?;
+    let names =
+        pages.iter().map(|path| Ok(scene::read(path)?.name)).collect::<Result<Vec<String>, Failure>>()?;
     let folder = args.out.clone().unwrap_or_else(|| {
         // A quick look does not replace what was measured with care.
         let root = files::root();
         if args.quick { root.join("target").join("report") } else { root.join("docs").join("report") }
     });
     fs::create_dir_all(folder.join("images")).map_err(|e| unusable(&folder, &e))?;
+    names.iter().try_for_each(|name| write::check(name, &folder))?;
     let twin = nested::twin()?;
     let machine = crate::performance::machine_in("release")?;
     let effort = if args.quick { Effort::quick() } else { Effort::full() };

@@ -12,7 +12,9 @@ use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::files;
 use crate::words::{count, number};
+use crate::write::{self, Known};
 use gyro_runner::Integrator;
+use std::fs;
 use std::path::Path;
 
 /// Writes the page in both forms, its figures and its data.
@@ -20,7 +22,7 @@ pub(crate) fn study(study: &Study, machine: &str, folder: &Path) -> Result<(), F
     let name = &study.lab.name;
     let page = page(study, machine);
     for (file, svg) in page.figures() {
-        files::write(&folder.join("images").join(file), svg)?;
+        own(&folder.join("images").join(file), svg)?;
     }
     let t_end = study.lab.t_end;
     let knob = study.knob.label(&study.lab.model);
@@ -31,9 +33,34 @@ pub(crate) fn study(study: &Study, machine: &str, folder: &Path) -> Result<(), F
         (format!("{name}-drift.csv"), data::drifts(&study.drifts)),
         (format!("{name}-stability.csv"), data::trials(&study.maps, &knob)),
     ] {
-        files::write(&folder.join(file), &text)?;
+        own(&folder.join(file), &text)?;
     }
     Ok(())
+}
+
+/// What the report of a scene, and the index, are written to; none may be a file that somebody else has written.
+pub(crate) fn check(name: &str, folder: &Path) -> Result<(), Failure> {
+    let own = [".md", ".html", ".csv", "-drift.csv", "-stability.csv"].map(|end| format!("{name}{end}"));
+    let index = ["index.md", "index.html", "index.csv", "goals.csv"].map(str::to_owned);
+    own.iter().chain(&index).try_for_each(|file| {
+        let path = folder.join(file);
+        write::check(&path, known(&path))
+    })
+}
+
+/// Writes one of a report's files.
+pub(crate) fn own(path: &Path, text: &str) -> Result<bool, Failure> {
+    write::write(path, text, known(path))
+}
+
+/// The documentation of the workspace and what is built are the tool's own; other folders are the user's.
+fn known(path: &Path) -> Known {
+    let inside = |folder: &str| {
+        let own = fs::canonicalize(files::root().join(folder));
+        let found = path.parent().map(fs::canonicalize);
+        matches!((own, found), (Ok(own), Some(Ok(found))) if found.starts_with(&own))
+    };
+    if inside("docs/report") || inside("target") { Known::Place } else { Known::Record }
 }
 
 fn page(study: &Study, machine: &str) -> Page {

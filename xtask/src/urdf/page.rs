@@ -1,5 +1,6 @@
 //! The page of a robot as text.
 
+use super::MARK;
 use super::merge::{Merged, Place};
 use super::names::{Names, snake_case};
 use super::robot::{Inertial, Joint, Kind, Robot};
@@ -49,7 +50,7 @@ struct Page<'a> {
 impl Page<'_> {
     fn head(&self, file: &str, remarks: &[String]) -> String {
         let mut text = format!(
-            "# Written by cargo xtask import from {file}. A body's frame is at its mass centre, with the axes of its link's\n\
+            "{MARK} from {file}. A body's frame is at its mass centre, with the axes of its link's\n\
              # <inertial>. What differs from the robot:\n"
         );
         for remark in remarks {
