@@ -1,0 +1,50 @@
+//! Random model pages: correct mechanisms with everything that the format has, written as people and programs write them.
+//!
+//! Trees of one to four bodies with joints of all kinds, roots that are fixed, driven, free or held by rows of their own, loops, couplers, drivers,
+//! forces and outputs; numbers that a program printed, that somebody shortened, that differ by less than a float can tell. A start is
+//! planted: joints that close loops are put where the bodies already are. So no page should be refused by anybody.
+//!
+//! ```
+//! let text = gyro_pages::page(7);
+//! let model = gyro_model::read_with("page.toml", &text, &mut gyro_pages::load).expect("a correct page");
+//! assert!(model.assemble().is_ok());
+//! ```
+#![deny(missing_docs)]
+
+mod bodies;
+mod closing;
+mod dice;
+mod elements;
+mod loops;
+mod page;
+mod vector;
+
+use page::Page;
+
+/// The page of a seed, always the same.
+pub fn page(seed: u64) -> String {
+    let mut page = Page::new(seed);
+    page.tree();
+    page.drivers();
+    if page.is_closed {
+        if page.dice.once_in(2) {
+            page.coupler();
+        }
+        page.close();
+    }
+    let places = loops::places(&page.read());
+    page.forces(&places);
+    page.outputs();
+    page.text()
+}
+
+/// The one table that pages name.
+///
+/// # Errors
+/// Any other.
+pub fn load(name: &str) -> Result<String, String> {
+    if name == "t.csv" { Ok(TABLE.to_owned()) } else { Err(format!("there is no {name}")) }
+}
+
+/// The text of `t.csv`.
+pub const TABLE: &str = "t,x\n0,0\n0.5,0.1\n1,0.3333333333333333\n2,-0.25\n";

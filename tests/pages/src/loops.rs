@@ -1,0 +1,168 @@
+//! What ties the tree's coordinates: drivers, couplers, and joints that close loops. Loops are closed where the tree already is, so
+//! that a consistent start exists.
+
+use crate::closing::{Closing, REGULAR};
+use crate::dice::value;
+use crate::page::{KINDS, Page};
+use crate::vector::Place;
+use gyro_model::{Kinematics, Model, Number, Support, to_f64};
+
+/// How often a place for a loop's joint is looked for.
+const TRIES: usize = 20;
+
+impl Page {
+    /// Drivers of joint coordinates, seldom more than one.
+    pub fn drivers(&mut self) {
+        for _ in 0..self.dice.pick(&[0, 0, 0, 1, 1, 2]) {
+            let Some((joint, coordinate)) = self.free_coordinate() else { return };
+            self.take(joint, coordinate);
+            let (on, motion) = (self.on(joint, coordinate), self.motion(2));
+            let name = self.n_drivers;
+            self.n_drivers += 1;
+            self.elements += &format!("\n[[driver]]\nname = \"d{name}\"\n{on}motion = {motion}\n");
+        }
+    }
+
+    /// A gear, a belt, a rack and pinion.
+    pub fn coupler(&mut self) {
+        let Some(first) = self.free_coordinate() else { return };
+        let Some(second) = (0..TRIES).find_map(|_| self.free_coordinate().filter(|other| *other != first))
+        else {
+            return;
+        };
+        let ratio = self.dice.pick(&["-1.7", "2", "-0.3333333333333333", "0.5", "-3"]).to_owned();
+        // What the coordinates are at the start; somebody may have shortened it.
+        let start = self.read().assemble().unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        let at = |(joint, coordinate): (usize, &str)| {
+            let names = self.joints[joint].kind.coordinates;
+            let place = names.iter().position(|&name| name == coordinate).expect("one of its coordinates");
+            start.joints[joint].position[place]
+        };
+        let offset = at(second) - value(&ratio) * at(first);
+        let offset = if self.dice.once_in(2) { format!("{offset:.3}") } else { format!("{offset:?}") };
+        self.take(second.0, second.1);
+        self.joints[first.0].taken.push(first.1);
+        let ratio = self.tunable(ratio);
+        let [first, second] = [first, second]
+            .map(|(joint, coordinate)| format!("{{ joint = \"j{joint}\", coordinate = {coordinate:?} }}"));
+        self.elements += &format!(
+            "\n[[coupler]]\nname = \"coupler\"\nfirst = {first}\nsecond = {second}\nratio = {ratio}\noffset = {offset}\n"
+        );
+    }
+
+    /// A coordinate that nothing prescribes, if there is one and enough ways to move remain without it.
+    fn free_coordinate(&mut self) -> Option<(usize, &'static str)> {
+        let free: Vec<_> =
+            self.coordinates().into_iter().filter(|(j, c)| !self.joints[*j].taken.contains(c)).collect();
+        (!free.is_empty() && self.freedoms > usize::from(self.is_closed))
+            .then(|| free[self.dice.below(free.len())])
+    }
+
+    fn take(&mut self, joint: usize, coordinate: &'static str) {
+        self.joints[joint].taken.push(coordinate);
+        self.freedoms -= 1;
+    }
+
+    /// All joint coordinates.
+    pub fn coordinates(&self) -> Vec<(usize, &'static str)> {
+        let joints = self.joints.iter().enumerate();
+        joints.flat_map(|(index, joint)| joint.kind.coordinates.iter().map(move |&c| (index, c))).collect()
+    }
+
+    /// The keys that name a coordinate; one alone need not be named.
+    pub fn on(&mut self, joint: usize, coordinate: &str) -> String {
+        let is_alone = self.joints[joint].kind.coordinates.len() == 1;
+        let named = format!("coordinate = {coordinate:?}\n");
+        format!("joint = \"j{joint}\"\n{}", if is_alone && self.dice.once_in(2) { "" } else { &named })
+    }
+
+    /// Joints between bodies that hang on each other already.
+    pub fn close(&mut self) {
+        for _ in 0..1 + self.dice.below(2) {
+            let model = self.read();
+            let places = places(&model);
+            let motions = free_motions(&model);
+            let closed = (0..TRIES).find_map(|_| {
+                self.closing(&places).filter(|closing| closing.is_regular(&model, &places, &motions))
+            });
+            if let Some(closing) = closed {
+                self.freedoms -= 6 - closing.kind.freedoms;
+                self.joints.push(closing.joint());
+            }
+        }
+    }
+
+    /// A joint that holds where the bodies are; none where it would leave no way to move.
+    fn closing(&mut self, places: &[Place]) -> Option<Closing> {
+        let bodies = [self.dice.below(places.len()), self.dice.below(places.len())];
+        let kinds = ["rod", "rod", "spherical", "point_on_line", "planar", "universal"];
+        let name = self.dice.pick(&kinds);
+        let kind = *KINDS.iter().find(|kind| kind.name == name)?;
+        let [a, b] = bodies;
+        let moves = |body: usize| self.bodies[body].0.moves();
+        // A free body's tree hangs on nothing else.
+        let is_possible = a != b && self.roots[a] == self.roots[b] && (moves(a) || moves(b));
+        let mut vector = || [(); 3].map(|()| (100.0 * self.dice.between(-1.0, 1.0)).round() / 100.0);
+        let (points, axis, zero) = ([vector(), vector()], vector(), vector());
+        // A body that hangs on a rod has a place of its own as long as nothing but rods holds it.
+        let hangs_on_rod =
+            |body: usize| self.joints.iter().any(|joint| joint.kind.name == "rod" && joint.child == body);
+        let is_possible = is_possible && (name == "rod" || !bodies.into_iter().any(hangs_on_rod));
+        (is_possible && self.freedoms > 6 - kind.freedoms)
+            .then(|| Closing::between(kind, bodies, places, points, [axis, zero]))?
+    }
+
+    /// The page as far as it has come.
+    ///
+    /// # Panics
+    /// If it is refused: nothing on it should be wrong.
+    pub fn read(&self) -> Model {
+        let text = self.text();
+        let model = gyro_model::read_with("page.toml", &text, &mut crate::load);
+        model.unwrap_or_else(|problems| panic!("{text}\n{problems}"))
+    }
+}
+
+/// Where the bodies are at the start.
+pub fn places(model: &Model) -> Vec<Place> {
+    let start = model.assemble().unwrap_or_else(|error| panic!("{}: {error}", model.name));
+    let mut slots = start.q.chunks_exact(7);
+    let of = |body: &gyro_model::Body| match body.support {
+        Support::Fixed => Place {
+            position: body.position.each_ref().map(exact),
+            orientation: unit(body.orientation.each_ref().map(exact)),
+        },
+        Support::Driven => {
+            let at = body.motion.as_ref().map(|motion| motion.state(model, body, 0.0)).expect("it is driven");
+            Place { position: at.r.0, orientation: at.p.0 }
+        }
+        _ => {
+            let q = slots.next().expect("seven numbers a body");
+            Place { position: [q[0], q[1], q[2]], orientation: [q[3], q[4], q[5], q[6]] }
+        }
+    };
+    model.bodies.iter().map(of).collect()
+}
+
+fn exact(number: &Number) -> f64 {
+    match number {
+        Number::Exact(value) => to_f64(value),
+        _ => unreachable!("places are written out"),
+    }
+}
+
+fn unit(p: [f64; 4]) -> [f64; 4] {
+    let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
+    p.map(|e| e / length)
+}
+
+/// The motions that the rows of a tree leave free, velocities of mass centres and w' of its bodies with coordinates.
+fn free_motions(model: &Model) -> Vec<Vec<f64>> {
+    let start = model.assemble().unwrap_or_else(|error| panic!("{}: {error}", model.name));
+    let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
+    let jacobian = Kinematics::at(model, 0.0).jacobian(&start.q, &near);
+    // Of the squared rows, whose singular vectors are as many as there are columns.
+    let squared = (jacobian.transpose() * jacobian).symmetric_eigen();
+    let free = squared.eigenvalues.iter().enumerate().filter(|(_, value)| **value < REGULAR * REGULAR);
+    free.map(|(column, _)| squared.eigenvectors.column(column).iter().copied().collect()).collect()
+}

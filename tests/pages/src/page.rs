@@ -1,0 +1,186 @@
+//! A page in the making.
+
+use crate::dice::{Dice, value};
+use std::fmt::Write as _;
+
+/// A kind of joint: name, coordinates, how many rates are free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kind {
+    pub name: &'static str,
+    pub coordinates: &'static [&'static str],
+    pub freedoms: usize,
+}
+
+const fn kind(name: &'static str, coordinates: &'static [&'static str], freedoms: usize) -> Kind {
+    Kind { name, coordinates, freedoms }
+}
+
+pub const KINDS: [Kind; 10] = [
+    kind("revolute", &["angle"], 1),
+    kind("spherical", &[], 3),
+    kind("fixed", &[], 0),
+    kind("universal", &["first_angle", "second_angle"], 2),
+    kind("cylindrical", &["angle", "displacement"], 2),
+    kind("prismatic", &["displacement"], 1),
+    kind("planar", &["x", "y", "angle"], 3),
+    kind("screw", &["angle"], 1),
+    kind("point_on_line", &["displacement"], 4),
+    kind("rod", &[], 5),
+];
+
+/// What holds a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hold {
+    Fixed,
+    Constrained,
+    Driven,
+    Free,
+    Joint,
+}
+
+impl Hold {
+    /// Whether the body has coordinates and a mass.
+    pub fn moves(self) -> bool {
+        matches!(self, Self::Constrained | Self::Free | Self::Joint)
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub kind: Kind,
+    /// The body that hangs on it; of what closes a loop, the second.
+    pub child: usize,
+    pub text: String,
+    /// Keys that the start is given by; dropped where a coordinate is prescribed or coupled.
+    pub starts: Vec<(&'static str, String)>,
+    /// Coordinates that a driver or a coupler has taken.
+    pub taken: Vec<&'static str>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Page {
+    pub dice: Dice,
+    pub name: String,
+    pub parameters: Vec<(String, String)>,
+    pub inputs: Vec<(String, String)>,
+    pub gravity: [String; 3],
+    pub bodies: Vec<(Hold, String)>,
+    /// The tree that each body belongs to: a free body's own, or zero.
+    pub roots: Vec<usize>,
+    pub joints: Vec<Joint>,
+    /// All the rest.
+    pub elements: String,
+    /// How many ways there are to move.
+    pub freedoms: usize,
+    /// Whether something will close loops or couple coordinates: then starts are guesses.
+    pub is_closed: bool,
+    pub n_drivers: usize,
+    /// Frames with long numbers.
+    pub n_rough: usize,
+}
+
+impl Page {
+    pub fn new(seed: u64) -> Self {
+        let mut dice = Dice::new(seed);
+        let is_closed = dice.once_in(3);
+        let gravity = if dice.once_in(4) { ["0", "0", "0"] } else { dice.pick(&GRAVITIES) };
+        Self {
+            dice,
+            name: format!("page_{seed}"),
+            parameters: Vec::new(),
+            inputs: Vec::new(),
+            gravity: gravity.map(str::to_owned),
+            bodies: Vec::new(),
+            roots: Vec::new(),
+            joints: Vec::new(),
+            elements: String::new(),
+            freedoms: 0,
+            is_closed,
+            n_drivers: 0,
+            n_rough: 0,
+        }
+    }
+
+    /// The number itself or, seldom, a parameter that has it as its default.
+    pub fn tunable(&mut self, number: String) -> String {
+        if !self.dice.once_in(8) || value(&number) == 0.0 {
+            return number;
+        }
+        let (sign, size) = match number.strip_prefix('-') {
+            Some(size) => ("-", size.to_owned()),
+            None => ("", number),
+        };
+        let name = format!("p{}", self.parameters.len());
+        self.parameters.push((name.clone(), size));
+        format!("\"{sign}{name}\"")
+    }
+
+    /// A strength: a number, a parameter or an input.
+    pub fn strength(&mut self, number: String) -> String {
+        if !self.dice.once_in(3) {
+            return self.tunable(number);
+        }
+        // One input may serve several forces; only those that are not negative serve where nothing negative may stand.
+        let is_negative = |number: &String| number.starts_with('-');
+        let fitting = |(_, known): &&(String, String)| is_negative(&number) || !is_negative(known);
+        let known: Vec<_> = self.inputs.iter().filter(fitting).map(|(name, _)| name.clone()).collect();
+        let name = if known.is_empty() || self.dice.once_in(3) {
+            let name = format!("in{}", self.inputs.len());
+            self.inputs.push((name.clone(), number));
+            name
+        } else {
+            known[self.dice.below(known.len())].clone()
+        };
+        format!("\"{name}\"")
+    }
+
+    pub fn tunables(&mut self, numbers: [String; 3]) -> String {
+        list(&numbers.map(|number| self.tunable(number)))
+    }
+
+    /// The page's text.
+    pub fn text(&self) -> String {
+        let mut text = format!("format = 1\nname = {:?}\ngravity = {}\n", self.name, list(&self.gravity));
+        for (table, entries) in [("parameters", &self.parameters), ("inputs", &self.inputs)] {
+            if !entries.is_empty() {
+                let _ = writeln!(text, "\n[{table}]");
+                entries.iter().for_each(|(name, value)| text += &format!("{name} = {value}\n"));
+            }
+        }
+        for (index, (_, body)) in self.bodies.iter().enumerate() {
+            let _ = write!(text, "\n[[body]]\nname = \"b{index}\"\n{body}");
+        }
+        for (index, joint) in self.joints.iter().enumerate() {
+            let _ = write!(text, "\n[[joint]]\nname = \"j{index}\"\n{}", joint.text);
+            let starts: Vec<_> = joint.starts.iter().filter(|(key, _)| !joint.has_taken(key)).collect();
+            starts.iter().for_each(|(key, start)| text += &format!("{key} = {start}\n"));
+            if self.is_closed && !starts.is_empty() {
+                text += "rough = true\n";
+            }
+        }
+        text + &self.elements
+    }
+}
+
+impl Joint {
+    fn has_taken(&self, key: &str) -> bool {
+        key == "rate" && !self.taken.is_empty() || self.taken.contains(&key.trim_end_matches("_deg"))
+    }
+}
+
+const GRAVITIES: [[&str; 3]; 5] = [
+    ["0", "0", "-9.81"],
+    ["0", "-9.81", "0"],
+    ["0", "0", "-9.80665"],
+    ["9.81", "0", "0"],
+    ["0.5", "-9", "1.25"],
+];
+
+pub fn list(numbers: &[String]) -> String {
+    format!("[{}]", numbers.join(", "))
+}
+
+/// The digits that read back as this number.
+pub fn printed(numbers: [f64; 3]) -> [String; 3] {
+    numbers.map(|number| format!("{number:?}"))
+}
