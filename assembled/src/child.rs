@@ -3,7 +3,7 @@
 use crate::{BuildError, Careful, Dense, Form, Precision, Recursive};
 use gyro_model::Model;
 use gyro_runner::protocol::Request;
-use gyro_runner::{Summary, child, motion};
+use gyro_runner::{Failure, Summary, child, motion};
 use gyro_sim::{Partition, Ports, Projection};
 use std::io::Write;
 use std::process::ExitCode;
@@ -24,7 +24,7 @@ fn answer<M: Partition + Ports + Projection + 'static>(
     mechanism: Result<M, BuildError>,
     request: &Request,
     output: &mut dyn Write,
-) -> Result<Summary, String> {
-    let mut mechanism = mechanism.map_err(|e| e.to_string())?;
+) -> Result<Summary, Failure> {
+    let mut mechanism = mechanism.map_err(|e| Failure::Refused(e.to_string()))?;
     child::answer(&mut mechanism, &motion::Projecting, request, output)
 }

@@ -468,6 +468,18 @@ impl Model {
         ))
     }
 
+    /// Whether an input may have this value.
+    ///
+    /// # Errors
+    /// The message says what the value makes unphysical.
+    pub fn check_input(&self, index: usize, value: &Rational) -> Result<(), String> {
+        let mut model = self.clone();
+        if let Some(input) = model.inputs.get_mut(index) {
+            input.value = value.clone();
+        }
+        validate::physical(&model).map_or(Ok(()), Err)
+    }
+
     /// The same model with parameters set anew. Start over from the page's start: assemble it again.
     ///
     /// # Errors

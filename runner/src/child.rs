@@ -20,15 +20,19 @@ pub fn main<M: Partition + Ports + 'static, K: Kit<M>>(build: impl Fn(&[f64]) ->
 }
 
 /// The same for whatever can answer a request.
-pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Summary, String>) -> ExitCode {
+pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Summary, Failure>) -> ExitCode {
     let mut input = io::stdin().lock();
     let mut output = BufWriter::new(io::stdout().lock());
     let mut is_well = true;
     while let Some(text) = request_text(&mut input) {
-        let request = text.and_then(|text| Request::parse(&text).map_err(|e| e.to_string()));
+        let request = text.and_then(|text| Request::parse(&text).map_err(|e| Failure::run(e.to_string())));
         let outcome = request.and_then(|request| answer(&request, &mut output));
         is_well = outcome.is_ok();
-        let last = outcome.map_or_else(Reply::Failed, Reply::Done);
+        let last = match outcome {
+            Ok(summary) => Reply::Done(summary),
+            Err(Failure::Refused(words)) => Reply::Refused(words),
+            Err(failure) => Reply::Failed(failure.to_string()),
+        };
         let told = writeln!(output, "{}", last.to_line()).and_then(|()| output.flush());
         if told.is_err() {
             return ExitCode::FAILURE;
@@ -38,7 +42,7 @@ pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Sum
 }
 
 /// The lines up to the end of a request; `None` when nothing comes any more.
-fn request_text(input: &mut impl BufRead) -> Option<Result<String, String>> {
+fn request_text(input: &mut impl BufRead) -> Option<Result<String, Failure>> {
     let mut text = String::new();
     loop {
         let began = text.len();
@@ -46,7 +50,7 @@ fn request_text(input: &mut impl BufRead) -> Option<Result<String, String>> {
             Ok(0) => return (!text.is_empty()).then_some(Ok(text)),
             Ok(_) if text[began..].trim_end() == END => return Some(Ok(text)),
             Ok(_) => (),
-            Err(error) => return Some(Err(error.to_string())),
+            Err(error) => return Some(Err(Failure::Output(error))),
         }
     }
 }
@@ -54,28 +58,31 @@ fn request_text(input: &mut impl BufRead) -> Option<Result<String, String>> {
 /// Runs, and measures if that is asked for: the figures of the run, or in words why there are none.
 ///
 /// # Errors
-/// The failure in words.
+/// The failure of the run or of its output.
 pub fn answer<M: Partition + Ports + 'static>(
     mechanism: &mut M,
     kit: &dyn Kit<M>,
     request: &Request,
     output: &mut dyn Write,
-) -> Result<Summary, String> {
+) -> Result<Summary, Failure> {
     let plan: (&Settings, _) = (&request.settings, &request.approach);
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => writeln!(output, "{}", sample_line(sample)),
         Event::Linear(linear) => writeln!(output, "{}", Reply::Linear(linear.clone()).to_line()),
+        Event::Forecast(forecast) => {
+            writeln!(output, "{}", Reply::Forecast(forecast).to_line())?;
+            output.flush()
+        }
         Event::Progress(t) => {
             writeln!(output, "{}", Reply::Progress(t).to_line())?;
             output.flush()
         }
     };
-    let in_words = |failure: Failure| failure.to_string();
-    let summary = run_by(mechanism, kit, plan, &request.start, told).map_err(in_words)?;
+    let summary = run_by(mechanism, kit, plan, &request.start, told)?;
     if let Some(seconds) = request.measure_for {
         let budget = Duration::from_secs_f64(seconds);
-        let timing = time_by(mechanism, kit, plan, &request.start, budget).map_err(in_words)?;
-        writeln!(output, "{}", Reply::Timed(timing).to_line()).map_err(|e| e.to_string())?;
+        let timing = time_by(mechanism, kit, plan, &request.start, budget)?;
+        writeln!(output, "{}", Reply::Timed(timing).to_line())?;
     }
     Ok(summary)
 }

@@ -30,7 +30,10 @@ pub fn companions(settings: &Settings, approach: &Approach, inputs_vary: bool) -
             let tolerance = Some((tolerance / 100.0).max(FINEST));
             (*settings, Approach { tolerance, budget: Some(PATIENCE), ..*approach })
         }
-        None => (Settings { step: settings.step / 4.0, ..*settings }, *approach),
+        None => (
+            Settings { step: settings.step / 4.0, ..*settings },
+            Approach { budget: None, patience: None, ..*approach },
+        ),
     };
     let corrected = |correction| {
         let when = Some(When::Steps(1));
@@ -83,25 +86,30 @@ fn larger(worst: f64, x: f64) -> f64 {
     if x <= worst || worst.is_nan() { worst } else { x }
 }
 
-fn gap(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-fn rate(joint: &JointSample) -> [f64; 3] {
+pub(crate) fn rate(joint: &JointSample) -> [f64; 3] {
     match *joint {
         JointSample::Angle { rate, .. } | JointSample::Length { rate, .. } => [rate, 0.0, 0.0],
         JointSample::Orientation { rate, .. } => rate,
     }
 }
 
-fn size(joint: &JointSample) -> f64 {
+pub(crate) fn size(joint: &JointSample) -> f64 {
     match joint {
         JointSample::Angle { position, .. } | JointSample::Length { position, .. } => position.abs(),
         JointSample::Orientation { .. } => 0.0,
     }
 }
 
-fn distance(one: &JointSample, other: &JointSample) -> f64 {
+/// How far a coordinate has gone from its start: of an orientation the angle.
+pub(crate) fn departure(start: &JointSample, joint: &JointSample) -> f64 {
+    distance(start, joint)
+}
+
+pub(crate) fn distance(one: &JointSample, other: &JointSample) -> f64 {
     match (one, other) {
         (JointSample::Angle { position: a, .. }, JointSample::Angle { position: b, .. })
         | (JointSample::Length { position: a, .. }, JointSample::Length { position: b, .. }) => (a - b).abs(),

@@ -1,14 +1,22 @@
 //! Failures in words, with names instead of indices.
 
 use crate::Coordinates;
+use crate::advice::{Advice, try_words};
 use gyro_sim::{Coordinate, Error, Mechanism, Owner};
 use std::{fmt, io};
 
 /// Why a run has ended early.
 #[derive(Debug)]
 pub enum Failure {
-    /// The run itself, in words: time, joint or body, number, and what to try.
-    Run(String),
+    /// It cannot be made as it was asked for: why, in words. No step has been taken.
+    Refused(String),
+    /// The run itself.
+    Run {
+        /// Time, joint or body, and number.
+        words: String,
+        /// What to try.
+        advice: Vec<Advice>,
+    },
     /// The samples could not be handed on.
     Output(io::Error),
 }
@@ -22,7 +30,8 @@ impl From<io::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Run(words) => f.write_str(words),
+            Self::Refused(words) => f.write_str(words),
+            Self::Run { words, advice } => write!(f, "{words}{}", try_words(advice)),
             Self::Output(error) => write!(f, "samples cannot be written: {error}"),
         }
     }
@@ -30,7 +39,14 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// An error of the solvers in words: when, whose and how much, and what to try.
+impl Failure {
+    /// A failure about which nothing can be done by other options.
+    pub(crate) fn run(words: String) -> Self {
+        Self::Run { words, advice: Vec::new() }
+    }
+}
+
+/// An error of the solvers in words: when, whose and how much.
 pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
     describe_in(mechanism, Coordinates::Maximal, error)
 }
@@ -42,30 +58,22 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
         Coordinates::Joint => joint_element(mechanism, usize::from(*index)),
     };
     match error {
-        Error::NotFinite { t, index } => format!(
-            "at t = {t} s {} is no longer finite; try a smaller --step or --correct-every",
-            element(index)
-        ),
+        Error::NotFinite { t, index } => format!("at t = {t} s {} is no longer finite", element(index)),
         Error::StepTooShort { t, step, index } => format!(
-            "at t = {t} s {} would need steps as short as {step:e} s for this --tolerance; try a larger one",
+            "at t = {t} s {} would need steps as short as {step:e} s for this tolerance",
             element(index)
         ),
         Error::Setting { setting, value } => format!("{setting} = {value} s is no length of a step"),
         Error::NoEnd { t, t_end } => format!("at t = {t} s there is no way to t = {t_end} s"),
-        Error::TooManySteps { t, steps } => format!(
-            "at t = {t} s the budget of {steps} steps is used up; try a larger --tolerance, or --integrator rodas4 if the scene is \
-             stiff"
-        ),
+        Error::TooManySteps { t, steps } => format!("at t = {t} s the budget of {steps} steps is used up"),
         Error::Stiff { t, rate, step } => format!(
-            "at t = {t} s this scene is stiff for this method: a rate of {rate:.4e}/s allows it steps of no more than {step:.3e} s; \
-             use --integrator rodas4"
+            "at t = {t} s a rate of {rate:.4e}/s allows this method steps of no more than {step:.3e} s, too many for its budget"
         ),
         Error::Tolerance { relative, smallest, .. } => format!(
             "a tolerance of {relative:e} cannot be met: at least {smallest:.1e} in this precision, and finite"
         ),
         Error::NoConvergence { t, violation, owner } => format!(
-            "at t = {t} s the constraints of {} cannot be met: {violation:e} remains after Newton's iterations; \
-             try a smaller --step or --correct-every",
+            "at t = {t} s the constraints of {} cannot be met: {violation:e} remains after Newton's iterations",
             name(mechanism, *owner)
         ),
         Error::Singular { t, pivot, owner } => {
@@ -74,13 +82,12 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
             });
             format!(
                 "at t = {t} s the dependent coordinates cannot be solved for: a pivot is {pivot:e}; the mechanism is in \
-                 a singular pose{whose}, or the step is too large: try a smaller --step or --correct-every"
+                 a singular pose{whose}, or the step is too large"
             )
         }
         Error::Jump { t, change, limit, owner } => format!(
             "at t = {t} s the constraints of {} can be met only by a change of {change:e} where {limit:e} is safe: the \
-             mechanism is near a singular pose and might go on in another way than it came, or the step is too large: try a \
-             smaller --step or --correct-every",
+             mechanism is near a singular pose and might go on in another way than it came, or the step is too large",
             name(mechanism, *owner)
         ),
     }
@@ -172,7 +179,7 @@ mod tests {
         ] {
             let found = describe(&spinner, &error);
             assert!(found.starts_with(words), "{found}");
-            assert!(found.ends_with("try a smaller --step or --correct-every"), "{found}");
+            assert!(!found.contains("try"), "{found}");
         }
     }
 }

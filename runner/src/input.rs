@@ -28,7 +28,7 @@ impl Input {
 }
 
 /// Whether any input changes, so that steps must be taken one by one.
-pub(crate) fn any_varies(inputs: &[Input]) -> bool {
+pub fn any_varies(inputs: &[Input]) -> bool {
     inputs.iter().any(|input| input.rows.windows(2).any(|pair| pair[0][1] != pair[1][1]))
 }
 

@@ -9,27 +9,39 @@
 //! ```
 #![deny(missing_docs)]
 
+mod advice;
 mod approach;
 pub mod child;
 mod companion;
 mod failure;
+mod forecast;
+mod grade;
 mod input;
 pub mod motion;
+mod offers;
 mod pivots;
 pub mod protocol;
+mod remark;
 mod run;
 mod sample;
 mod schedule;
+mod spectrum;
 mod summary;
 mod timing;
 
+pub use advice::{Advice, Change, Plan};
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
 pub use companion::{Difference, companions, differences};
 pub use failure::{Failure, describe, describe_in};
-pub use input::Input;
+pub use forecast::{Forecast, duration_words};
+pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
+pub use input::{Input, any_varies};
+pub use offers::Offers;
+pub use remark::{Promise, Remark};
 pub use run::{Event, Start, run, run_by};
 pub use sample::{BodySample, JointSample, Sample};
 pub use schedule::{Impossible, Schedule, Segment, Settings};
+pub use spectrum::fastest_rate;
 pub use summary::{Summary, Tracker, energy_error};
 pub use timing::{Timing, time_by};
 

@@ -1,6 +1,7 @@
 //! A motion under way, whatever integrates it.
 
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::offers::Offers;
 use crate::pivots;
 use gyro_sim::integrate::{Embedded, Method};
 use gyro_sim::{
@@ -49,6 +50,15 @@ pub trait Kit<M: Partition + Ports> {
     /// # Errors
     /// What the mechanism lacks for this approach.
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+    /// What can be asked for; the precision and the inputs are the run's.
+    fn offers(&self) -> Offers {
+        Offers { joint_space: false, derivatives: false, projection: false, ..Offers::ALL }
+    }
+    /// The work of the applied forces over the mechanism's size and of their moments over a radian, J: what energies are rounded
+    /// against. Zero where the forces are not at hand.
+    fn work_scale(&self, _mechanism: &M, _t: f64, _y: &M::State) -> f64 {
+        0.0
+    }
     /// The smallest pivot of the constraint Jacobian by full pivoting, lengths in units of the mechanism's size; `None` where the
     /// Jacobian is not at hand. It vanishes in singular poses.
     fn smallest_pivot(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<f64> {
@@ -155,6 +165,14 @@ impl<M: Partition + Ports + Projection + 'static> Kit<M> for Projecting {
         Ok(maximal(approach, correction, y))
     }
 
+    fn offers(&self) -> Offers {
+        Offers { joint_space: false, derivatives: false, ..Offers::ALL }
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
         Some(pivots::smallest(mechanism, t, y))
     }
@@ -172,6 +190,14 @@ where
             return Ok(implicit(mechanism, approach, self.0.clone(), correction, y));
         }
         Ok(maximal(approach, correction, y))
+    }
+
+    fn offers(&self) -> Offers {
+        Offers { joint_space: false, ..Offers::ALL }
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
     }
 
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
@@ -195,6 +221,14 @@ where
             return Ok(adaptive(duals, method, Uncorrected, approach, &x));
         }
         Ok(explicit(Joint, Uncorrected, approach, &x))
+    }
+
+    fn offers(&self) -> Offers {
+        Offers::ALL
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
     }
 
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
@@ -244,6 +278,14 @@ where
         Ok(explicit(Joint, Uncorrected, approach, &x))
     }
 
+    fn offers(&self) -> Offers {
+        Offers::ALL
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
         Some(pivots::smallest(mechanism, t, y))
     }
@@ -278,6 +320,18 @@ fn only_explicit(approach: &Approach) -> Result<(), String> {
         return Err("rodas4 needs derivatives, which only generated code has".to_owned());
     }
     Ok(())
+}
+
+/// The work of all applied forces over the mechanism's size and of all moments over a radian, J.
+fn work_scale<M: Projection<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
+    let mut forces = mechanism.velocities();
+    mechanism.applied_force(Scalar::constant(t), y, &mut forces);
+    let size = mechanism.size().to_f64();
+    let work = |(k, force): (usize, &M::Scalar)| {
+        let force = force.abs().to_f64();
+        if k % 6 < 3 { force * size } else { force }
+    };
+    forces.as_ref().iter().enumerate().map(work).sum()
 }
 
 fn square<T>(state: &[T]) -> usize {

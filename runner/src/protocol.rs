@@ -4,7 +4,7 @@
 //! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output, and waits for the next.
 
 use crate::motion::Linear;
-use crate::{Approach, BodySample, Input, JointSample, Sample, Settings, Start, Summary, Timing};
+use crate::{Approach, BodySample, Forecast, Input, JointSample, Sample, Settings, Start, Summary, Timing};
 use gyro_sim::Statistics;
 use gyro_sim::integrate::Work;
 use gyro_yardstick::Measured;
@@ -38,12 +38,16 @@ pub enum Reply {
     Linear(Linear),
     /// The run has reached this time, s.
     Progress(f64),
+    /// How long the run will take.
+    Forecast(Forecast),
     /// What the run costs when nobody looks at it.
     Timed(Timing),
     /// The run is complete.
     Done(Summary),
     /// The run has failed: why, in words.
     Failed(String),
+    /// The run cannot be made as it was asked for: why, in words.
+    Refused(String),
 }
 
 /// A line that does not belong to the protocol.
@@ -66,12 +70,13 @@ impl Request {
         if let Some(every) = correct_every {
             let _ = writeln!(text, "correct_every {every:?}");
         }
-        let Approach { integrator, tolerance, coordinates, correction, when, budget, examine } =
+        let Approach { integrator, tolerance, coordinates, correction, when, budget, patience, examine } =
             self.approach;
         let _ = writeln!(text, "integrator {integrator}\ncoordinates {coordinates}\ncorrection {correction}");
         let _ = tolerance.map(|tolerance| writeln!(text, "tolerance {tolerance:?}"));
         let _ = when.map(|when| writeln!(text, "when {when}"));
         let _ = budget.map(|budget| writeln!(text, "budget {budget}"));
+        let _ = patience.map(|patience| writeln!(text, "patience {patience:?}"));
         let _ = writeln!(text, "examine {examine}");
         line(&mut text, "parameters", &self.parameters);
         line(&mut text, "positions", &self.start.positions);
@@ -117,6 +122,7 @@ impl Request {
             "correction" => self.approach.correction = values.parse().ok()?,
             "when" => self.approach.when = Some(values.parse().ok()?),
             "examine" => self.approach.examine = values.parse().ok()?,
+            "patience" => self.approach.patience = Some(values.parse().ok()?),
             "budget" => self.approach.budget = Some(values.parse().ok()?),
             "parameters" => self.parameters = list(values)?,
             "positions" => self.start.positions = list(values)?,
@@ -161,7 +167,9 @@ impl Reply {
                 statistics(&mut text, met);
                 text
             }
+            Self::Forecast(Forecast { steps, seconds }) => format!("forecast {steps:?} {seconds:?}"),
             Self::Failed(words) => format!("failed {}", words.replace('\n', " ")),
+            Self::Refused(words) => format!("refused {}", words.replace('\n', " ")),
         }
     }
 
@@ -182,7 +190,9 @@ impl Reply {
             "progress" => Self::Progress(words.next()?),
             "timed" => Self::Timed(words.timing()?),
             "done" => Self::Done(words.summary()?),
+            "forecast" => Self::Forecast(Forecast { steps: words.next()?, seconds: words.next()? }),
             "failed" => return Some(Self::Failed(rest.to_owned())),
+            "refused" => return Some(Self::Refused(rest.to_owned())),
             _ => return None,
         };
         words.0.next().is_none().then_some(reply)
@@ -368,6 +378,7 @@ mod tests {
                     correction: Correction::Baumgarte(AWKWARD[0]),
                     when: correct_every.map(When::Violation),
                     budget: correct_every.map(|_| 7),
+                    patience: correct_every,
                     examine: correct_every.is_some(),
                 },
                 parameters: vec![1.0 / 7.0],
@@ -425,7 +436,9 @@ mod tests {
                 statistics: Statistics { accepted: 3, fastest_rate: AWKWARD[4], ..Statistics::default() },
             }),
             Reply::Done(summary),
+            Reply::Forecast(Forecast { steps: 1e12, seconds: AWKWARD[0] }),
             Reply::Failed("at t = 1 s the end".to_owned()),
+            Reply::Refused("a budget of 0 steps".to_owned()),
         ] {
             assert_eq!(Reply::parse(&reply.to_line()).unwrap(), reply);
         }

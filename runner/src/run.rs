@@ -1,11 +1,15 @@
 //! The loop.
 
+use crate::advice::Plan;
+use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
 use crate::motion::{self, Kit, Linear, Motion};
+use crate::offers::Offers;
 use crate::sample::Observer;
+use crate::spectrum::fastest_rate;
 use crate::{
-    Approach, Coordinates, Correction, Failure, Input, Integrator, Sample, Schedule, Segment, Settings,
-    Summary, Tracker, describe, describe_in,
+    Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
+    describe, describe_in,
 };
 use gyro_sim::{Error, JointCoordinate, Partition, Ports, Real, Scalar, Turns};
 use std::io;
@@ -36,6 +40,8 @@ pub enum Event<'a> {
     Sample(&'a Sample),
     /// The linearisation at the end, if it is asked for and there is one.
     Linear(&'a Linear),
+    /// How long the run will take. Comes before a long one of fixed steps.
+    Forecast(Forecast),
     /// The run has reached this time, s. Comes every now and then, for a progress bar.
     Progress(f64),
 }
@@ -74,51 +80,106 @@ pub fn run_by<M: Partition + Ports + 'static>(
     kit: &dyn Kit<M>,
     (settings, approach): (&Settings, &Approach),
     start: &Start,
-    mut tell: impl FnMut(Event<'_>) -> io::Result<()>,
+    tell: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> Result<Summary, Failure> {
     let settings = scheduled(settings, approach);
-    settings.check().map_err(|e| Failure::Run(e.to_string()))?;
-    check(approach, start)?;
+    let offers = Offers {
+        epsilon: <M::Scalar as Real>::EPSILON.to_f64(),
+        inputs_vary: any_varies(&start.inputs),
+        ..kit.offers()
+    };
+    if let Some(words) = offers.refusal(&settings, approach) {
+        return Err(Failure::Refused(words));
+    }
     let y = state(mechanism, start)?;
     refuse_singular(mechanism, &y)?;
     set(mechanism, &start.inputs, 0.0);
-    let motion = kit.begin(mechanism, approach, &y).map_err(Failure::Run)?;
-    let mut run = Run::new(mechanism, motion, y, start);
-    let mut tracker = Tracker::default();
-    let mut last_told = Instant::now();
-    let in_words =
-        |mechanism: &M, error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
-    let sample = run.sample(0.0).map_err(|e| in_words(run.mechanism, e))?;
-    tracker.add(&sample);
-    tell(Event::Sample(&sample))?;
-    for segment in Schedule::new(&settings) {
-        let advanced = match approach.tolerance {
-            None => run.advance(&segment),
-            Some(_) => run.advance_beyond(segment.to, settings.t_end),
-        };
-        advanced.map_err(|e| in_words(run.mechanism, e))?;
-        if segment.samples {
-            let sample = run.sample(segment.to).map_err(|e| in_words(run.mechanism, e))?;
-            run.look_at_pivots(kit, approach, segment.to);
-            tracker.add(&sample);
-            tell(Event::Sample(&sample))?;
-        }
-        if last_told.elapsed() >= PROGRESS_EVERY {
-            tell(Event::Progress(segment.to))?;
-            last_told = Instant::now();
-        }
-    }
+    let mut told = Told { tell, last: Instant::now() };
+    foretell(mechanism, kit, (&settings, approach), &y, &mut told)?;
+    let motion = kit.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
+    let mut run = Run::new(mechanism, motion, y, start, approach);
+    let outcome = run.follow(kit, (&settings, approach), &mut told);
     run.finish();
-    if let Some(linear) = approach
-        .examine
-        .then(|| kit.linearise(run.mechanism, settings.t_end, &run.y, &run.angles()))
-        .flatten()
-    {
-        let linear = if counts_work(run.mechanism, start) { linear.without_last() } else { linear };
-        tell(Event::Linear(&linear))?;
+    match outcome {
+        Ok(()) => Ok(run.summary),
+        Err(Halt::Output(error)) => Err(Failure::Output(error)),
+        Err(Halt::Solver(error)) => {
+            let words = describe_in(run.mechanism, approach.coordinates, &error);
+            let plan = Plan { settings: &settings, approach, offers: &offers };
+            // The steps' length is asked about only where stability may limit it.
+            let asks = matches!(error, Error::Stiff { .. } | Error::TooManySteps { .. });
+            let linear =
+                asks.then(|| kit.linearise(run.mechanism, run.read_at, &run.y, &run.angles())).flatten();
+            let fastest = linear.as_ref().map(fastest_rate);
+            Err(Failure::Run { words, advice: plan.after(&error, &run.summary.statistics, fastest) })
+        }
     }
-    tracker.finish(&mut run.summary);
-    Ok(run.summary)
+}
+
+/// Why a run ends before its time.
+enum Halt {
+    Solver(Error),
+    Output(io::Error),
+}
+
+impl From<Error> for Halt {
+    fn from(error: Error) -> Self {
+        Self::Solver(error)
+    }
+}
+
+impl From<io::Error> for Halt {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+/// Whoever is told, and when that was last about progress.
+struct Told<F> {
+    tell: F,
+    last: Instant,
+}
+
+impl<F: FnMut(Event<'_>) -> io::Result<()>> Told<F> {
+    fn progress(&mut self, t: f64) -> io::Result<()> {
+        if self.last.elapsed() < PROGRESS_EVERY {
+            return Ok(());
+        }
+        self.last = Instant::now();
+        (self.tell)(Event::Progress(t))
+    }
+}
+
+/// Says how long many fixed steps will take; refuses them where that is longer than anyone wants to wait.
+fn foretell<M: Partition + Ports + 'static, F: FnMut(Event<'_>) -> io::Result<()>>(
+    mechanism: &M,
+    kit: &dyn Kit<M>,
+    (settings, approach): (&Settings, &Approach),
+    y: &M::State,
+    told: &mut Told<F>,
+) -> Result<(), Failure> {
+    #[expect(clippy::cast_precision_loss, reason = "a number of steps to be told")]
+    let budget = approach.budget.map_or(f64::INFINITY, |budget| budget as f64);
+    let steps = (settings.t_end / settings.step).min(budget);
+    if approach.tolerance.is_some() || !forecast::is_long(steps) {
+        return Ok(());
+    }
+    let motion = kit.begin(mechanism, approach, y).map_err(Failure::Refused)?;
+    let Some(forecast) = forecast::forecast(mechanism, motion, (steps, settings.step)) else { return Ok(()) };
+    (told.tell)(Event::Forecast(forecast))?;
+    match approach.patience {
+        Some(patience) if forecast.seconds > patience && approach.budget.is_none() => {
+            Err(Failure::Refused(format!(
+                "the run would take {:.3e} steps of {:e} s, {}: choose a longer --step; or, to make it all the same, give \
+                 --budget {:.0}",
+                forecast.steps,
+                settings.step,
+                forecast::duration_words(forecast.seconds),
+                forecast.steps.ceil() + 1.0
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run.
@@ -132,26 +193,11 @@ pub(crate) fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
     Settings { correct_every: settings.correct_every.filter(|_| has_moments), step, ..*settings }
 }
 
-fn check(approach: &Approach, start: &Start) -> Result<(), Failure> {
-    if approach.tolerance.is_none() {
-        return Ok(());
-    }
-    if approach.integrator == Integrator::Rk4 {
-        let words = "rk4 has no error estimate: give it a --step instead of a --tolerance, or use tsit5, dop853 or rodas4";
-        return Err(Failure::Run(words.to_owned()));
-    }
-    if any_varies(&start.inputs) {
-        let words = "inputs that vary are held over each step, so steps have to be fixed: give a --step instead of a --tolerance";
-        return Err(Failure::Run(words.to_owned()));
-    }
-    Ok(())
-}
-
 /// In a singular pose accelerations are not defined: better to say so than to integrate what is not finite.
 fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), Failure> {
     let t = Scalar::constant(0.0);
     match mechanism.newton_step(t, &mechanism.independent(t, start), &mut start.clone()) {
-        Err(error @ Error::Singular { .. }) => Err(Failure::Run(describe(mechanism, &error))),
+        Err(error @ Error::Singular { .. }) => Err(Failure::run(describe(mechanism, &error))),
         _ => Ok(()),
     }
 }
@@ -162,39 +208,106 @@ struct Run<'a, M: Partition + Ports> {
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
     steps_at_once: u64,
+    /// Fixed steps that may yet be taken; under error control the solver counts them.
+    budget: u64,
     /// The maximal state when it was last looked at.
     y: M::State,
     turns: Turns<M>,
     /// When the turns were last read, s.
     read_at: f64,
     observer: Observer<'a, M>,
+    /// Whether the state ends with the work, which is no state of a linearisation.
+    counts_work: bool,
     summary: Summary,
 }
 
 impl<'a, M: Partition + Ports> Run<'a, M> {
-    fn new(mechanism: &'a mut M, mut motion: Box<dyn Motion<M>>, y: M::State, start: &'a Start) -> Self {
+    fn new(
+        mechanism: &'a mut M,
+        mut motion: Box<dyn Motion<M>>,
+        y: M::State,
+        start: &'a Start,
+        approach: &Approach,
+    ) -> Self {
         start.inputs.iter().for_each(|input| motion.set_input(input.index, input.at(0.0)));
         let angles: Vec<M::Scalar> = start.angles.iter().map(|&a| Scalar::constant(a)).collect();
         Self {
             motion,
             inputs: &start.inputs,
             steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
+            budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
             observer: Observer::new(mechanism, &start.observed_bodies),
+            counts_work: counts_work(mechanism, start),
             mechanism,
             y,
             summary: Summary::default(),
         }
     }
 
+    /// From the start, which is the first sample, to the end.
+    fn follow<F: FnMut(Event<'_>) -> io::Result<()>>(
+        &mut self,
+        kit: &dyn Kit<M>,
+        (settings, approach): (&Settings, &Approach),
+        told: &mut Told<F>,
+    ) -> Result<(), Halt> {
+        let mut tracker = Tracker::default();
+        self.record(0.0, (kit, approach), &mut tracker, told)?;
+        for segment in Schedule::new(settings) {
+            match approach.tolerance {
+                None => self.advance(&segment, told)?,
+                Some(_) => self.advance_beyond(segment.to, settings.t_end, told)?,
+            }
+            if segment.samples {
+                self.record(segment.to, (kit, approach), &mut tracker, told)?;
+            }
+            told.progress(segment.to)?;
+        }
+        let linear =
+            approach.examine.then(|| kit.linearise(self.mechanism, settings.t_end, &self.y, &self.angles()));
+        if let Some(linear) = linear.flatten() {
+            let linear = if self.counts_work { linear.without_last() } else { linear };
+            (told.tell)(Event::Linear(&linear))?;
+        }
+        tracker.finish(&mut self.summary);
+        Ok(())
+    }
+
+    /// Takes a sample, follows what it says and hands it on.
+    fn record<F: FnMut(Event<'_>) -> io::Result<()>>(
+        &mut self,
+        t: f64,
+        (kit, approach): (&dyn Kit<M>, &Approach),
+        tracker: &mut Tracker,
+        told: &mut Told<F>,
+    ) -> Result<(), Halt> {
+        let sample = self.sample(t)?;
+        if t > 0.0 {
+            self.look_at_pivots(kit, approach, t);
+        }
+        let scale = kit.work_scale(self.mechanism, t, &self.y).max(sample.potential.abs());
+        tracker.add(&sample, scale * <M::Scalar as Real>::EPSILON.to_f64());
+        Ok((told.tell)(Event::Sample(&sample))?)
+    }
+
     /// Equal steps, and a correction where the schedule has one.
-    fn advance(&mut self, segment: &Segment) -> Result<(), Error> {
+    fn advance<F: FnMut(Event<'_>) -> io::Result<()>>(
+        &mut self,
+        segment: &Segment,
+        told: &mut Told<F>,
+    ) -> Result<(), Halt> {
         #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
         let h = (segment.to - segment.from) / segment.n_steps as f64;
         let mut done = 0;
         while done < segment.n_steps {
-            let n_steps = (segment.n_steps - done).min(self.steps_at_once);
+            let n_steps = (segment.n_steps - done).min(self.steps_at_once).min(self.budget);
+            if n_steps == 0 {
+                let steps = self.motion.statistics().accepted;
+                return Err(Error::TooManySteps { t: self.motion.time(), steps }.into());
+            }
+            self.budget -= n_steps;
             self.set_inputs();
             let began = Instant::now();
             for _ in 0..n_steps {
@@ -203,6 +316,7 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
             self.summary.run_time_s += began.elapsed().as_secs_f64();
             done += n_steps;
             self.read_turns(self.motion.time())?;
+            told.progress(self.motion.time())?;
         }
         if segment.corrects {
             let began = Instant::now();
@@ -213,7 +327,12 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
     }
 
     /// Steps under error control until a time is passed.
-    fn advance_beyond(&mut self, t: f64, t_end: f64) -> Result<(), Error> {
+    fn advance_beyond<F: FnMut(Event<'_>) -> io::Result<()>>(
+        &mut self,
+        t: f64,
+        t_end: f64,
+        told: &mut Told<F>,
+    ) -> Result<(), Halt> {
         // As the motion counts time: in single precision the end may come before this number.
         let t = M::Scalar::constant(t).to_f64();
         while self.motion.time() < t {
@@ -223,6 +342,7 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
             if self.motion.time() <= t {
                 self.read_turns(self.motion.time())?;
             }
+            told.progress(self.motion.time())?;
         }
         Ok(())
     }
@@ -317,7 +437,7 @@ fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> R
     if fits {
         return Ok(());
     }
-    Err(Failure::Run(format!(
+    Err(Failure::Refused(format!(
         "the start has {} positions, {} velocities and {} turn references, the mechanism has {n_bodies} bodies and {length} \
          elements of its state",
         found[0], found[1], found[2]

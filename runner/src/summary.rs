@@ -35,11 +35,15 @@ pub struct Tracker {
     norm_violation: f64,
     energy_error: f64,
     energy_scale: f64,
+    rounding: f64,
 }
 
+/// An energy of so many roundings is none.
+const ROUNDINGS: f64 = 1e3;
+
 impl Tracker {
-    /// Takes the next sample into account.
-    pub fn add(&mut self, sample: &Sample) {
+    /// Takes the next sample into account; `rounding` is what rounding makes of the energies that are in play there, J.
+    pub fn add(&mut self, sample: &Sample, rounding: f64) {
         let first = self.first.get_or_insert_with(|| sample.clone());
         let error = energy_error(first, sample).abs();
         let scale = sample.kinetic.max((sample.potential - first.potential).abs());
@@ -48,6 +52,7 @@ impl Tracker {
         self.norm_violation = self.norm_violation.max(sample.norm_violation);
         self.energy_error = self.energy_error.max(error);
         self.energy_scale = self.energy_scale.max(scale);
+        self.rounding = self.rounding.max(rounding);
     }
 
     /// Writes what was seen into a summary.
@@ -55,9 +60,13 @@ impl Tracker {
         summary.position_violation = self.position_violation;
         summary.velocity_violation = self.velocity_violation;
         summary.norm_violation = self.norm_violation;
-        // Nothing moves and nothing has changed: no drift, not 0/0.
-        summary.energy_drift =
-            if self.energy_error == 0.0 { 0.0 } else { self.energy_error / self.energy_scale };
+        // Where nothing moves, what rounding makes of that is no drift, and neither is 0/0.
+        let floor = ROUNDINGS * self.rounding;
+        summary.energy_drift = if self.energy_error <= floor && self.energy_scale <= floor {
+            0.0
+        } else {
+            self.energy_error / self.energy_scale.max(floor)
+        };
     }
 }
 
@@ -89,7 +98,7 @@ mod tests {
 
     fn track(samples: &[Sample]) -> Summary {
         let (mut tracker, mut summary) = (Tracker::default(), Summary::default());
-        samples.iter().for_each(|s| tracker.add(s));
+        samples.iter().for_each(|s| tracker.add(s, 1e-16));
         tracker.finish(&mut summary);
         summary
     }
@@ -100,6 +109,12 @@ mod tests {
         // Errors 0, 0.75 and 0; scales 0, 2 and 4.
         assert_eq!(summary.energy_drift, 0.75 / 4.0);
         assert_eq!((summary.position_violation, summary.velocity_violation), (2e-3, 0.5));
+    }
+
+    #[test]
+    fn rounding_of_a_body_that_cannot_move_is_no_drift_and_more_is() {
+        assert_eq!(track(&[sample(0.0, 5.0, 0.0), sample(1e-34, 5.0, 0.0)]).energy_drift, 0.0);
+        assert_eq!(track(&[sample(0.0, 5.0, 0.0), sample(1e-6, 5.0, 0.0)]).energy_drift, 1.0);
     }
 
     #[test]

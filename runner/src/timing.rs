@@ -32,8 +32,8 @@ pub fn time_by<M: Partition + Ports + 'static>(
     let segments: Vec<_> = Schedule::new(&settings).collect();
     let mut statistics = Statistics::default();
     let once = || -> Result<(), Failure> {
-        let mut motion = kit.begin(mechanism, approach, &y).map_err(Failure::Run)?;
-        let in_words = |error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
+        let mut motion = kit.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
+        let in_words = |error: Error| Failure::run(describe_in(mechanism, approach.coordinates, &error));
         if approach.tolerance.is_some() {
             // As the motion counts time: in single precision the end may come before this number.
             let t_end = M::Scalar::constant(settings.t_end).to_f64();

@@ -135,7 +135,7 @@ const REASONS: [(&str, bool); 8] = [
     ("can be met only by a change", true),
     ("cannot be solved for", false),
     ("the budget of", false),
-    ("is stiff for this method", false),
+    ("allows this method steps of", false),
     (REFUSED, false),
 ];
 
@@ -300,7 +300,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// A tolerance that no number of this precision can meet is an error before the first step.
+    /// A tolerance that no number of this precision can meet is refused before the first step.
     fn refused<T: Real + 'static>(&mut self, tolerance: f64) {
         let stand = Stand::<T>::new(self.scene.page, &self.double.start);
         let settings = self.scene.settings(1.0);
@@ -311,7 +311,7 @@ impl<'a> Judge<'a> {
             let approach = Approach { tolerance: Some(tolerance), ..approach };
             let (samples, outcome) = stand.run(&settings, &approach);
             let words = outcome.err().map_or(String::new(), |failure| failure.to_string());
-            if samples.len() == 1 && words.starts_with(&format!("a tolerance of {tolerance:e} cannot be met"))
+            if samples.is_empty() && words.starts_with(&format!("a tolerance of {tolerance:e} cannot be met"))
             {
                 *self.tally.errors.entry(REFUSED).or_default() += 1;
             } else {

@@ -6,9 +6,16 @@ use gyro_runner::{Coordinates, Correction, Integrator, When};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+/// What every command returns.
+pub(crate) const EXIT_CODES: &str = "Exit codes:
+  0  it is done
+  1  it was asked for correctly and did not succeed: a run that ends early, a refuted proof, a stale file under --check
+  2  it cannot be done as it was asked for: an option, a page or a file; nothing was begun
+  3  the run has come to its end, and its result is worthless; files and figures are written all the same";
+
 /// From a page of bodies and joints to Rust code and to plots.
 #[derive(Debug, Parser)]
-#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", after_help = EXIT_CODES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -111,7 +118,10 @@ pub(crate) struct InspectArgs {
   cargo xtask simulate models/gyroscope.toml --integrator dop853 --tolerance 1e-9 --coordinates joint --verify
   cargo xtask simulate models/gyroscope.toml --linearize 0.5 --json
   cargo xtask simulate my-gimbal.toml --set rotor_mass=0.085 --json
-  cargo xtask simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01")]
+  cargo xtask simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
+
+Exit codes: 0 done; 1 the run has failed; 2 it cannot be made as it was asked for; 3 it has come to its end, and the result is
+worthless")]
 pub(crate) struct SimulateArgs {
     /// Model page, anywhere on disk
     #[arg(value_name = "MODEL")]
@@ -135,7 +145,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "NAME", value_parser = integrator, default_value = "rk4")]
     pub(crate) integrator: Integrator,
     /// Error tolerated in each step, relative and absolute: steps are then as long as it allows
-    #[arg(long, value_name = "TOL", conflicts_with = "step")]
+    #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
     /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code only)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
@@ -146,8 +156,9 @@ pub(crate) struct SimulateArgs {
     /// When they are corrected: steps=K or violation=SIZE [default: --correct-every; every step with --tolerance]
     #[arg(long, value_name = "WHEN", value_parser = when, conflicts_with = "correct_every")]
     pub(crate) correct_when: Option<When>,
-    /// Steps after which a run under --tolerance is given up
-    #[arg(long, value_name = "STEPS")]
+    /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more than an hour
+    /// are made only with a budget
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) budget: Option<u64>,
     /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
     #[arg(long)]
@@ -353,6 +364,13 @@ fn when(text: &str) -> Result<When, String> {
         .map_err(|()| "steps=K or violation=SIZE was expected, such as steps=5 or violation=1e-10".to_owned())
 }
 
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
+        _ => Err("a number above 0 and at most 1 was expected, such as 1e-9".to_owned()),
+    }
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -429,6 +447,24 @@ mod tests {
             (&["--every", "inf"], "a positive number of seconds was expected"),
             (&["--correct-every", "0"], "a positive number of seconds was expected"),
             (&["--step", "fast"], "a positive number of seconds was expected"),
+            (&["--tolerance", "nan"], "a number above 0 and at most 1 was expected"),
+            (&["--tolerance", "inf"], "a number above 0 and at most 1 was expected"),
+            (&["--tolerance", "-1e-9"], "a number above 0 and at most 1 was expected"),
+            (&["--tolerance", "0"], "a number above 0 and at most 1 was expected"),
+            (&["--tolerance", ""], "a number above 0 and at most 1 was expected"),
+            (&["--tolerance", "1e400"], "a number above 0 and at most 1 was expected"),
+            (&["--tolerance", "2"], "a number above 0 and at most 1 was expected"),
+            (&["--budget", "0"], "0 is not in 1.."),
+            (&["--budget", "-1"], "invalid value"),
+            (&["--budget", "nan"], "invalid"),
+            (&["--budget", "1e3"], "invalid"),
+            (&["--step", "1e400"], "a positive number of seconds was expected"),
+            (&["--step", ""], "a positive number of seconds was expected"),
+            (&["--linearize", "nan"], "a positive number of seconds was expected"),
+            (&["--correction", "baumgarte=nan"], "such as baumgarte=100"),
+            (&["--correct-when", "violation=1e400"], "such as steps=5"),
+            (&["--correct-when", "steps=1e12"], "such as steps=5"),
+            (&["--input", "motor=1e400"], "`1e400` is not a finite number"),
             (&["--set", "mass"], "PARAMETER=VALUE was expected"),
             (&["--set", "mass=heavy"], "`heavy` is not a decimal number"),
             (&["--set", "mass=nan"], "`nan` is not a decimal number"),

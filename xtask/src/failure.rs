@@ -13,13 +13,15 @@ pub(crate) enum Failure {
     Page(Diagnostics),
     /// It made sense and did not succeed: exit status 1.
     Run(String),
+    /// It succeeded, and what has come of it is worthless: exit status 3.
+    Worthless(String),
 }
 
 impl Failure {
     /// What is wrong.
     pub(crate) fn words(&self) -> String {
         match self {
-            Self::Usage(words) | Self::Run(words) => words.clone(),
+            Self::Usage(words) | Self::Run(words) | Self::Worthless(words) => words.clone(),
             Self::Page(mistakes) => mistakes.render(),
         }
     }
@@ -32,6 +34,7 @@ impl Failure {
             Self::Page(mistakes) if stderr.is_terminal() => (mistakes.render_colored(), 2),
             Self::Page(mistakes) => (mistakes.render(), 2),
             Self::Run(words) => (format!("error: {words}\n"), 1),
+            Self::Worthless(words) => (format!("error: {words}\n"), 3),
         };
         // Nobody is left to be told if standard error is closed.
         let _ = stderr.write_all(text.as_bytes());

@@ -3,7 +3,7 @@
 use crate::args::Feed;
 use crate::failure::Failure;
 use crate::{files, words};
-use gyro_model::Model;
+use gyro_model::{Model, Rational};
 use gyro_runner::Input;
 use std::path::Path;
 
@@ -22,9 +22,25 @@ pub(crate) fn inputs(model: &Model, given: &[(String, Feed)]) -> Result<Vec<Inpu
             Feed::File(path) => read(path)
                 .map_err(|words| Failure::Usage(format!("--input {name}={}: {words}", path.display())))?,
         };
+        check(model, index, &rows).map_err(|words| Failure::Usage(format!("--input {name}: {words}")))?;
         inputs.push(Input { index, rows });
     }
     Ok(inputs)
+}
+
+/// The values of an input make sense if its extremes do: what must hold of a coefficient is a sign or a range of sizes.
+fn check(model: &Model, index: usize, rows: &[[f64; 2]]) -> Result<(), String> {
+    let by = |less: fn(f64, f64) -> bool| {
+        rows.iter().copied().reduce(|extreme, row| if less(row[1], extreme[1]) { row } else { extreme })
+    };
+    let is_nearer = |a: f64, b: f64| a != 0.0 && (b == 0.0 || a.abs() < b.abs());
+    for row in [by(|a, b| a < b), by(|a, b| a > b), by(is_nearer)].into_iter().flatten() {
+        let [t, value] = row;
+        let exact = Rational::from_float(value).ok_or_else(|| format!("{value} is not finite"))?;
+        let place = if rows.len() > 1 { format!(" at t = {t} s") } else { String::new() };
+        model.check_input(index, &exact).map_err(|words| format!("with {value}{place} {words}"))?;
+    }
+    Ok(())
 }
 
 fn unknown(model: &Model, name: &str, known: &[&str]) -> Failure {

@@ -1,11 +1,11 @@
 //! The summary as one JSON object.
 
 use crate::scene::Scene;
-use crate::verdict::{Outcome, Verdict};
+use crate::verdict::{self, Outcome, Verdict};
 use crate::{columns, linearization, remarks};
 use gyro_model::Model;
-use gyro_runner::JointSample;
 use gyro_runner::motion::Linear;
+use gyro_runner::{Advice, Difference, JointSample};
 use serde_json::{Map, Value, json};
 
 /// The object: see the documentation of `simulate --json`.
@@ -42,15 +42,20 @@ pub(crate) fn object(
         "steps_limited_by_stability": summary.statistics.limited_by_stability,
         "chart_switches": summary.chart_switches,
         "run_time_s": summary.run_time_s,
+        "warnings": verdict::warnings(scene, outcome),
     });
     if let Some(verdict) = verdict {
         object["verdict"] = json!({
-            "estimated_errors": by_name(&verdict.errors),
-            "estimated_rate_errors": by_name(&verdict.rate_errors),
+            "grade": verdict.judgement.grade.name(),
+            "relative_error": verdict.judgement.relative,
+            "usable_until": verdict.judgement.until,
+            "estimated_errors": by_name(verdict, |error| error.position),
+            "estimated_rate_errors": by_name(verdict, |error| error.rate),
             "companion": verdict.companion,
             "smallest_pivot": summary.smallest_pivot,
             "fastest_eigenvalue": verdict.fastest_eigenvalue,
-            "advice": verdict.advice,
+            "advice": verdict.remarks.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "try": verdict.remarks.iter().filter_map(|r| r.advice.as_ref().map(Advice::flags)).collect::<Vec<_>>(),
         });
     }
     if let Some(linear) = linear {
@@ -113,6 +118,7 @@ pub(crate) fn redundant(model: &Model) -> Vec<Value> {
 }
 
 /// Errors by the names of their coordinates.
-fn by_name(errors: &[(String, &'static str, f64)]) -> Value {
-    errors.iter().map(|(name, _, error)| (name.clone(), json!(error))).collect::<Map<_, _>>().into()
+fn by_name(verdict: &Verdict, of: fn(&Difference) -> f64) -> Value {
+    let named = verdict.coordinates.iter().zip(&verdict.judgement.errors);
+    named.map(|((name, _), error)| (name.clone(), json!(of(error)))).collect::<Map<_, _>>().into()
 }

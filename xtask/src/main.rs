@@ -7,6 +7,7 @@ mod embedded;
 mod failure;
 mod files;
 mod fit;
+mod folder;
 mod generate;
 mod inputs;
 mod inspect;

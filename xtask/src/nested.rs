@@ -340,9 +340,11 @@ fn listen(
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
             Reply::Linear(linear) => tell(Event::Linear(&linear)),
             Reply::Progress(t) => tell(Event::Progress(t)),
+            Reply::Forecast(forecast) => tell(Event::Forecast(forecast)),
             Reply::Timed(timed) => timing = Some(timed),
             Reply::Done(summary) => return Ok(Some((summary, timing))),
             Reply::Failed(words) => return Err(Failure::Run(words)),
+            Reply::Refused(words) => return Err(Failure::Usage(words)),
         }
     }
     Ok(None)

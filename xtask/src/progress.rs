@@ -1,6 +1,8 @@
 //! A progress bar on standard error, for long runs and for terminals only.
 
+use gyro_runner::{Forecast, duration_words};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write as _;
 use std::time::{Duration, Instant};
 
 /// Shows how far a run is once it has taken a while.
@@ -14,12 +16,24 @@ pub(crate) struct Progress {
 /// A run shorter than this is over before anyone has read the bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+/// Whoever waits for so long, s, is told beforehand.
+const LONG: f64 = 10.0;
+
 /// Positions of the bar.
 const DIVISIONS: u64 = 1000;
 
 impl Progress {
     pub(crate) fn new(t_end: f64) -> Self {
         Self { began: Instant::now(), t_end, bar: None }
+    }
+
+    /// Says how long the run will take, if that is long.
+    pub(crate) fn foretold(&self, forecast: &Forecast) {
+        if forecast.seconds > LONG {
+            let words = duration_words(forecast.seconds);
+            // Nobody is left to be told if standard error is closed.
+            let _ = writeln!(std::io::stderr(), "{:.3e} steps will take {words}", forecast.steps);
+        }
     }
 
     /// The run has reached this time.

@@ -3,8 +3,8 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::{files, inputs, remarks};
-use gyro_model::{JointKind, Method, Model, Move, Rational, Support};
-use gyro_runner::{Approach, Coordinates, Correction, Settings, Start};
+use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support, Tree};
+use gyro_runner::{Approach, Coordinates, Correction, Input, Offers, Settings, Start, any_varies};
 use std::path::Path;
 
 /// A run to be made.
@@ -18,6 +18,10 @@ pub(crate) struct Scene {
     pub(crate) model: Model,
     pub(crate) settings: Settings,
     pub(crate) approach: Approach,
+    /// What could have been asked for.
+    pub(crate) offers: Offers,
+    /// Whether all work is accounted for, so that the energy's balance has to close.
+    pub(crate) is_balanced: bool,
     pub(crate) start: Start,
     /// How far the assembly has moved what the page gives of the start.
     pub(crate) moved: Vec<Move>,
@@ -31,18 +35,24 @@ impl Scene {
         let page = read_counting_work(&args.model)?;
         remarks::report_redundant(&page, &args.model.display().to_string(), args.strict)?;
         let model = with_parameters(&page, &args.set)?;
-        let settings = settings(&model, args);
-        settings.check().map_err(|e| Failure::Usage(e.to_string()))?;
+        let (settings, approach) = (settings(&model, args), approach(&model, args));
+        let inputs = inputs::inputs(&model, &args.input)?;
+        let offers = Offers { inputs_vary: any_varies(&inputs), ..offers(&model, args) };
+        if let Some(words) = refusal(&offers, &settings, &approach, args) {
+            return Err(Failure::Usage(words));
+        }
         let assembled =
             model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", args.model.display())))?;
-        let start = Start { inputs: inputs::inputs(&model, &args.input)?, ..start(&model, &assembled) };
+        let start = Start { inputs, ..start(&model, &assembled) };
         let page_name = files::shown(&args.model);
         let moved = assembled.moved;
         Ok(Self {
             page,
             page_name,
             settings,
-            approach: approach(&model, args),
+            approach,
+            offers,
+            is_balanced: is_balanced(&model, &start.inputs),
             model,
             start,
             moved,
@@ -92,6 +102,45 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
     page.with_parameters(set).map_err(|words| Failure::Usage(format!("--set: {words}")))
 }
 
+/// What the engine and the model allow.
+fn offers(model: &Model, args: &SimulateArgs) -> Offers {
+    let is_generated = args.engine == Engine::Generated;
+    let is_tree = Tree::of(model).is_open() && model.couplers.is_empty() && model.drivers.is_empty();
+    let epsilon = match args.precision {
+        Precision::F32 => f64::from(f32::EPSILON),
+        Precision::F64 => f64::EPSILON,
+    };
+    Offers { joint_space: is_generated && is_tree, derivatives: is_generated, epsilon, ..Offers::ALL }
+}
+
+/// An input that changes a conservative force while it acts does work that the mechanism does not count.
+fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
+    let varies = |number: &Number| match number {
+        Number::Input { index, .. } => {
+            inputs.iter().any(|input| input.index == *index && any_varies(std::slice::from_ref(input)))
+        }
+        Number::Exact(_) | Number::Parameter { .. } => false,
+    };
+    !model.forces.iter().any(|force| match &force.kind {
+        ForceKind::Spring { stiffness, free, .. } => varies(stiffness) || varies(free),
+        ForceKind::Link { stiffness, free_length, .. } => varies(stiffness) || varies(free_length),
+        _ => false,
+    })
+}
+
+/// What cannot be done as it was asked for. Under error control the page's step is none of the run's.
+fn refusal(offers: &Offers, settings: &Settings, approach: &Approach, args: &SimulateArgs) -> Option<String> {
+    if args.linearize.is_some() && !offers.joint_space {
+        let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
+        return Some(words.to_owned());
+    }
+    let step = if approach.tolerance.is_some() { settings.t_end } else { settings.step };
+    offers.refusal(&Settings { step, ..*settings }, approach)
+}
+
+/// A run of fixed steps that would take longer than this, s, is made only by those who say so.
+const PATIENCE: f64 = 3600.0;
+
 fn approach(model: &Model, args: &SimulateArgs) -> Approach {
     let correction = match (args.correction, args.method.map_or(model.simulation.method, Method::from)) {
         (Some(correction), _) => correction,
@@ -105,6 +154,7 @@ fn approach(model: &Model, args: &SimulateArgs) -> Approach {
         correction,
         when: args.correct_when,
         budget: args.budget,
+        patience: Some(PATIENCE),
         examine: args.verify || args.linearize.is_some(),
     }
 }

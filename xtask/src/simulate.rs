@@ -2,41 +2,42 @@
 
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome};
 use crate::write::{self, Known};
-use crate::{columns, json, linearization, nested, plot, summary, words};
+use crate::{columns, json, linearization, nested, plot, remarks, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Simulates a model, prints a summary and writes its files.
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let scene = Scene::new(args)?;
-    let folder = folder(args, &scene.model.name)?;
+    let opened = folder(args, &scene.model.name)?;
+    let folder = opened.as_ref().map(Folder::path);
     let mut outcome = Outcome::default();
     if let Err(failure) = run(&scene, &mut outcome) {
-        return Err(keep_what_there_is(&scene.model, &outcome.samples, folder.as_deref(), failure));
+        return Err(keep_what_there_is(&scene.model, &outcome.samples, folder, failure));
     }
-    if args.linearize.is_some() && outcome.linear.is_none() {
-        let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
-        return Err(Failure::Usage(words.to_owned()));
-    }
+    let written = match folder {
+        Some(folder) => write_files(&scene.model, &outcome.samples, folder)?,
+        None => Vec::new(),
+    };
     let verdict = match args.verify {
         true => Some(verdict::verdict(&scene, &outcome, |companion| {
             let mut other = Outcome::default();
             run(companion, &mut other).map(|()| other)
         })?),
-        false => None,
+        false => {
+            verdict::warnings(&scene, &outcome).iter().for_each(|words| remarks::warn(words));
+            None
+        }
     };
-    let written = match &folder {
-        Some(folder) => write_files(&scene.model, &outcome.samples, folder)?,
-        None => Vec::new(),
-    };
+    let worthless = verdict::worthless(&scene, &outcome, verdict.as_ref());
     let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());
     let text = if args.json {
         format!("{}\n", json::object(&scene, &outcome, verdict.as_ref(), linear))
@@ -45,7 +46,8 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         let verdict = verdict.map_or(String::new(), |verdict| verdict::text(&verdict, &outcome));
         summary::text(&scene, &outcome.samples, &outcome.summary, &(verdict + &linear), &written)
     };
-    say(&text)
+    say(&text)?;
+    worthless.map_or(Ok(()), Err)
 }
 
 /// Whoever closes the pipe has read enough; any other loss of output is a failure.
@@ -66,6 +68,7 @@ fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     let mut tell = |event: Event<'_>| match event {
         Event::Sample(sample) => samples.push(sample.clone()),
         Event::Linear(found) => *linear = Some(found.clone()),
+        Event::Forecast(forecast) => progress.foretold(&forecast),
         Event::Progress(t) => progress.reached(t),
     };
     let summary = match scene.engine {
@@ -89,22 +92,24 @@ fn twin(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Result<Su
         quick_look(&scene.model, (form, precision), (&scene.settings, &scene.approach), &scene.start, tell);
     outcome.map_err(|error| match error {
         QuickLookError::Start(error) => Failure::Usage(error.to_string()),
+        QuickLookError::Run(refused @ gyro_runner::Failure::Refused(_)) => {
+            Failure::Usage(refused.to_string())
+        }
         QuickLookError::Run(failure) => Failure::Run(failure.to_string()),
     })
 }
 
 /// Where files go, if any are to be written; a place that cannot be used is found out before the run.
-fn folder(args: &SimulateArgs, name: &str) -> Result<Option<PathBuf>, Failure> {
+fn folder(args: &SimulateArgs, name: &str) -> Result<Option<Folder>, Failure> {
     let folder = match &args.out {
         Some(folder) => folder.clone(),
         None if args.json => return Ok(None),
         None => Path::new("out").join(name),
     };
-    fs::create_dir_all(&folder)
-        .map_err(|e| Failure::Usage(format!("--out: {} cannot be made: {e}", folder.display())))?;
+    let opened = Folder::open(&folder)?;
     let files = plot::NAMES.iter().map(|plot| plot_path(name, plot, &folder));
     files.chain([table_path(name, &folder)]).try_for_each(|path| write::check(&path, Known::Record))?;
-    Ok(Some(folder))
+    Ok(Some(opened))
 }
 
 fn plot_path(name: &str, plot: &str, folder: &Path) -> PathBuf {

@@ -1,33 +1,35 @@
 //! `simulate --verify`: how far a run can be trusted.
 //!
 //! A companion run of the same scene, by finer means and where there are some by other ones, says how large the error of each joint
-//! coordinate is: the largest difference over all samples. Everything else was watched by the run itself.
+//! coordinate is: the largest difference over all samples. It is held against the size of the motion, and so is the energy's drift
+//! ([`gyro_runner::judge`]).
 
 use crate::args::{Engine, Precision};
 use crate::columns;
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::words::{number, table};
+use gyro_model::Model;
 use gyro_runner::motion::Linear;
-use gyro_runner::{Approach, Coordinates, Correction, Integrator, Sample, Settings, Summary, differences};
+use gyro_runner::{
+    Approach, Coordinates, Difference, Grade, Judgement, Measure, Plan, Reason, Remark, Sample, Settings,
+    Summary, judge,
+};
 use nalgebra::DMatrix;
 use std::fmt::Write as _;
 
 /// What is known of a run's quality.
 #[derive(Debug)]
 pub(crate) struct Verdict {
-    /// Estimated error of each joint coordinate over the run, with its name and unit.
-    pub(crate) errors: Vec<(String, &'static str, f64)>,
-    /// The same of their rates.
-    pub(crate) rate_errors: Vec<(String, &'static str, f64)>,
-    /// The largest of all in units of the tolerance, where there is one.
-    in_tolerances: f64,
+    pub(crate) judgement: Judgement,
+    /// Name and units of each coordinate that was judged: of its position and of its rate.
+    pub(crate) coordinates: Vec<(String, [&'static str; 2])>,
     /// What the companion was.
     pub(crate) companion: String,
     /// The fastest eigenvalue of the linearised motion at the end, 1/s; none for mechanisms without a joint form.
     pub(crate) fastest_eigenvalue: Option<f64>,
-    /// What to do about it, sentence by sentence.
-    pub(crate) advice: Vec<String>,
+    /// What to say and to try.
+    pub(crate) remarks: Vec<Remark>,
 }
 
 /// Samples, figures and linearisation of a run.
@@ -38,7 +40,8 @@ pub(crate) struct Outcome {
     pub(crate) linear: Option<Linear>,
 }
 
-/// Judges a run. `run` makes companions.
+/// Judges a run. `run` makes companions: one whose own energy balance is open, or whose joints come apart, is taken only where there is
+/// no better one.
 ///
 /// # Errors
 /// No companion came to its end.
@@ -47,14 +50,24 @@ pub(crate) fn verdict(
     outcome: &Outcome,
     mut run: impl FnMut(&Scene) -> Result<Outcome, Failure>,
 ) -> Result<Verdict, Failure> {
-    let mut last = None;
+    let (mut doubtful, mut last) = (None, None);
     for companion in companions(scene) {
         match run(&companion) {
-            Ok(other) => return Ok(compare(scene, outcome, &companion, &other)),
+            Ok(other) if gyro_runner::balance(&other.summary, scene.is_balanced).is_empty() => {
+                return Ok(compare(scene, outcome, &companion, &other));
+            }
+            Ok(other) => doubtful = doubtful.or(Some((companion, other))),
             Err(failure) => last = Some(failure),
         }
     }
-    Err(last.unwrap_or_else(|| Failure::Run("there is no finer run to compare with".to_owned())))
+    match (doubtful, last) {
+        (Some((companion, other)), _) => Ok(compare(scene, outcome, &companion, &other)),
+        (None, Some(failure)) => Err(Failure::Run(format!(
+            "the run is complete but cannot be judged, as no run to compare it with comes to its end: {}",
+            failure.words()
+        ))),
+        (None, None) => Err(Failure::Run("there is no finer run to compare with".to_owned())),
+    }
 }
 
 /// Scenes to compare with, the best first.
@@ -64,33 +77,41 @@ fn companions(scene: &Scene) -> Vec<Scene> {
         // Only generated code has joint coordinates.
         let engine =
             if approach.coordinates == Coordinates::Joint { Engine::Generated } else { scene.engine };
+        let approach = Approach { patience: None, ..approach };
         Scene { precision: Precision::F64, engine, settings, approach, ..scene.clone() }
     };
     gyro_runner::companions(&scene.settings, &scene.approach, vary).into_iter().map(double).collect()
 }
 
 fn compare(scene: &Scene, outcome: &Outcome, companion: &Scene, other: &Outcome) -> Verdict {
-    let columns = columns::coordinates(&scene.model);
-    let differences = differences(&outcome.samples, &other.samples);
-    let tolerance = scene.approach.tolerance.unwrap_or(1.0);
-    let in_tolerances = differences.iter().map(|d| d.in_tolerances(tolerance));
+    let measure = Measure {
+        tolerance: scene.approach.tolerance,
+        size: scene.model.size(),
+        is_balanced: scene.is_balanced,
+    };
+    let judgement = judge((&outcome.samples, &outcome.summary), (&other.samples, &other.summary), &measure);
     let fastest_eigenvalue = outcome.linear.as_ref().or(other.linear.as_ref()).map(fastest);
-    let mut verdict = Verdict {
-        errors: Vec::new(),
-        rate_errors: Vec::new(),
-        in_tolerances: in_tolerances.fold(0.0, |worst, x| if x <= worst { worst } else { x }),
+    let plan = Plan { settings: &scene.settings, approach: &scene.approach, offers: &scene.offers };
+    Verdict {
+        remarks: plan.remarks(&judgement, &outcome.summary, fastest_eigenvalue),
+        judgement,
+        coordinates: judged(&scene.model),
         companion: words(companion),
         fastest_eigenvalue,
-        advice: Vec::new(),
-    };
-    for (column, difference) in columns.into_iter().zip(differences) {
-        let units =
-            if column.is_orientation() { ("rad", "rad/s") } else { (column.unit(), column.rate_unit()) };
-        verdict.errors.push((column.name.clone(), units.0, difference.position));
-        verdict.rate_errors.push((column.name, units.1, difference.rate));
     }
-    verdict.advice = advice(scene, outcome, &verdict);
-    verdict
+}
+
+/// Joint coordinates, then position and orientation of each body that is observed.
+fn judged(model: &Model) -> Vec<(String, [&'static str; 2])> {
+    let joints = columns::coordinates(model).into_iter().map(|column| {
+        let units =
+            if column.is_orientation() { ["rad", "rad/s"] } else { [column.unit(), column.rate_unit()] };
+        (column.name, units)
+    });
+    let bodies = crate::scene::observed(model).into_iter().flat_map(|(_, name)| {
+        [(format!("{name} position"), ["m", "m/s"]), (format!("{name} orientation"), ["rad", "rad/s"])]
+    });
+    joints.chain(bodies).collect()
 }
 
 fn words(scene: &Scene) -> String {
@@ -114,92 +135,70 @@ pub(crate) fn eigenvalues(linear: &Linear) -> Vec<[f64; 2]> {
     values
 }
 
-/// Constraint violations larger than this deserve a word.
-const VISIBLE_VIOLATION: f64 = 1e-9;
-
-/// A pivot smaller than this is near a singular pose.
-const SMALL_PIVOT: f64 = 1e-3;
-
-fn advice(scene: &Scene, outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
-    let mut advice = Vec::new();
-    let statistics = &outcome.summary.statistics;
-    let [worst, worst_rate] = [&verdict.errors, &verdict.rate_errors]
-        .map(|errors| errors.iter().map(|e| e.2).fold(0.0, |worst, e| if e <= worst { worst } else { e }));
-    let approach = &scene.approach;
-    match approach.tolerance {
-        Some(tolerance) if verdict.in_tolerances <= 10.0 => {
-            advice.push(format!("The errors are within ten times the tolerance of {tolerance:e}."));
+/// What a grade means for this run.
+fn sentence(judgement: &Judgement) -> String {
+    let [position, rate] = [|e: &Difference| e.position, |e: &Difference| e.rate]
+        .map(|of| number(judgement.errors.iter().map(of).fold(0.0, f64::max), 2));
+    let relative = number(judgement.relative, 2);
+    match judgement.grade {
+        Grade::Good => format!("good: no error is larger than {relative} of its motion."),
+        Grade::Usable => {
+            format!("usable to {relative} of the motion: positions to {position}, rates to {rate}.")
         }
-        Some(tolerance) => advice.push(format!(
-            "Errors have added up to {} times the tolerance: for {tolerance:e} over this run try --tolerance {:.0e}.",
-            number(verdict.in_tolerances, 2),
-            tolerance / verdict.in_tolerances
-        )),
-        None if worst.is_finite() && worst_rate.is_finite() => advice.push(format!(
-            "Positions can be trusted to {}, rates to {}; half the step would divide a smooth motion's errors by {}.",
-            number(worst, 2),
-            number(worst_rate, 2),
-            2_u32.pow(order(approach.integrator))
-        )),
-        None => advice.push("The result cannot be trusted: the companion ends elsewhere.".to_owned()),
+        Grade::Worthless => {
+            let reason = judgement.reasons.first().map_or(String::new(), ToString::to_string);
+            format!("worthless: {reason}{}", until(judgement))
+        }
     }
-    let share = statistics.limited_by_stability as f64 / statistics.accepted.max(1) as f64;
-    if share > 0.25 {
-        advice.push(format!(
-            "{} % of the steps were as long as stability allows, not accuracy: the scene is stiff for {}; --integrator rodas4 is not \
-             limited so.",
-            number(100.0 * share, 2),
-            approach.integrator
-        ));
-    }
-    if statistics.rejected > statistics.accepted / 2 {
-        advice.push(format!(
-            "{} steps were rejected for {} accepted: something in the motion is not smooth.",
-            statistics.rejected, statistics.accepted
-        ));
-    }
-    if outcome.summary.position_violation > VISIBLE_VIOLATION {
-        let cure = if approach.correction == Correction::None {
-            "choose a --correction"
-        } else {
-            "correct more often"
-        };
-        advice.push(format!(
-            "Constraints were violated by up to {}: {cure}.",
-            number(outcome.summary.position_violation, 2)
-        ));
-    }
-    if let Some(pivot) = outcome.summary.smallest_pivot.filter(|pivot| *pivot < SMALL_PIVOT) {
-        advice.push(format!(
-            "The smallest pivot of the constraints was {}: the mechanism has come near a singular pose, where errors are enlarged.",
-            number(pivot, 2)
-        ));
-    }
-    if outcome.summary.energy_drift > 1e3 * worst.max(1e-14) {
-        advice.push(format!(
-            "The energy balance is open by {} of the energy that moves, more than the estimated error explains.",
-            number(outcome.summary.energy_drift, 2)
-        ));
-    }
-    advice
 }
 
-fn order(integrator: Integrator) -> u32 {
-    match integrator {
-        Integrator::Rk4 | Integrator::Rodas4 => 4,
-        Integrator::Tsit5 => 5,
-        Integrator::Dop853 => 8,
+fn until(judgement: &Judgement) -> String {
+    if judgement.until > 0.0
+        && judgement.until < judgement.t_end
+        && matches!(judgement.reasons.first(), Some(Reason::Error(_)))
+    {
+        format!(" Up to t = {} s none is.", number(judgement.until, 4))
+    } else {
+        String::new()
     }
+}
+
+/// Why the command ends with a status of its own, if it does: by the verdict, or, without one, by what the run tells itself.
+pub(crate) fn worthless(scene: &Scene, outcome: &Outcome, verdict: Option<&Verdict>) -> Option<Failure> {
+    let reason = match verdict {
+        Some(verdict) => {
+            let reasons = &verdict.judgement.reasons;
+            (verdict.judgement.grade == Grade::Worthless).then(|| reasons.first().copied())?
+        }
+        None => gyro_runner::balance(&outcome.summary, scene.is_balanced).first().copied(),
+    };
+    let reason = reason.filter(|reason| reason.grade() == Grade::Worthless)?;
+    Some(Failure::Worthless(format!("the result is worthless. {reason}")))
+}
+
+/// What a run says of itself that is not good, for those who have not asked for a verdict.
+pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
+    let reasons = gyro_runner::balance(&outcome.summary, scene.is_balanced);
+    reasons
+        .iter()
+        .map(|reason| format!("{reason} --verify tells how far the result can be trusted."))
+        .collect()
 }
 
 /// The verdict in words.
 pub(crate) fn text(verdict: &Verdict, outcome: &Outcome) -> String {
     let row = |name: String, value: String| vec![name, value];
     let mut rows = Vec::new();
-    for (errors, of) in [(&verdict.errors, ""), (&verdict.rate_errors, "the rate of ")] {
-        rows.extend(errors.iter().map(|(name, unit, error)| {
-            row(format!("estimated error of {of}{name}"), format!("{} {unit}", number(*error, 2)))
-        }));
+    for (which, of) in [(0, ""), (1, "the rate of ")] {
+        rows.extend(verdict.coordinates.iter().zip(&verdict.judgement.errors).map(
+            |((name, units), error)| {
+                let error = [error.position, error.rate][which];
+                row(
+                    format!("estimated error of {of}{name}"),
+                    format!("{} {}", number(error, 2), units[which]),
+                )
+            },
+        ));
     }
     if let Some(pivot) = outcome.summary.smallest_pivot {
         rows.push(row("smallest pivot of the constraints".to_owned(), number(pivot, 3)));
@@ -208,8 +207,9 @@ pub(crate) fn text(verdict: &Verdict, outcome: &Outcome) -> String {
         rows.push(row("fastest eigenvalue at the end".to_owned(), format!("{} 1/s", number(rate, 4))));
     }
     let mut text = format!("\nverdict (compared with {})\n{}", verdict.companion, table(&rows));
-    for sentence in &verdict.advice {
-        let _ = writeln!(text, "{sentence}");
+    let _ = writeln!(text, "{}", sentence(&verdict.judgement));
+    for remark in &verdict.remarks {
+        let _ = writeln!(text, "{remark}");
     }
     text
 }

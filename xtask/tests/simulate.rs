@@ -92,7 +92,8 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "steps_limited_by_stability",
             "t",
             "tolerance",
-            "velocity_violation"
+            "velocity_violation",
+            "warnings"
         ]
     );
     assert_eq!((assembled["steps"].as_u64(), assembled["t"].as_f64()), (Some(500), Some(0.05)));
@@ -116,7 +117,7 @@ fn a_run_is_judged_and_linearised() {
         let error = verdict["estimated_errors"][joint].as_f64().unwrap();
         assert!(error > 0.0 && error < 1e-9, "{joint}: {verdict}");
     }
-    assert!(!verdict["advice"].as_array().unwrap().is_empty(), "{verdict}");
+    assert_eq!(verdict["grade"], "good", "{verdict}");
     let joint = ["--coordinates", "joint", "--integrator", "dop853", "--tolerance", "1e-9"];
     let linear = json(&folder, &[&[&page, "--linearize", "0.05"][..], &joint].concat());
     // The rotor has turned by five radians, more than half a turn.
@@ -457,4 +458,61 @@ fn tables_and_inputs_are_files() {
     let page = model("../tests/models/motor.toml");
     let input = ["--input", "torque=/dev/zero", "--engine", "assembled"];
     refused(&simulate(&folder, &[&[page.as_str()], &input[..]].concat()), "a pipe or a device");
+}
+
+/// The motor's shaft in a bearing whose drag is an input.
+fn dragged() -> String {
+    let damper = "[[force]]\nname = \"bearing\"\nkind = \"damper\"\njoint = \"shaft\"\ndamping = \"drag\"\n";
+    MOTOR.replace("push = 0\n", "push = 0\ndrag = 0.1\n") + damper
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
+    let folder = Folder::new("refused");
+    fs::write(folder.0.join("motor.toml"), dragged()).unwrap();
+    fs::write(folder.0.join("drag.csv"), "t,drag\n0,1\n1,-0.5\n2,1\n").unwrap();
+    fs::write(folder.0.join("tiny.toml"), dragged().replace("step = 1e-3", "step = 1e-12")).unwrap();
+    fs::write(folder.0.join("ramp.csv"), "t,torque\n0,0\n1,2\n").unwrap();
+    let assembled = ["motor.toml", "--engine", "assembled"];
+    let controlled = ["--integrator", "dop853", "--tolerance"];
+    let negative = "the damping of force `bearing` is negative";
+    for (args, message) in [
+        (&["--input", "drag=-1"][..], negative),
+        (&["--input", "drag=drag.csv"], "with -0.5 at t = 1 s the damping"),
+        (&["--input", "torque=1e300"], "input `torque` is too large or too small to compute with"),
+        (&["--coordinates", "joint"], "joint coordinates are for generated code of trees"),
+        (&["--correction", "closed-form"], "the closed form is for generated code of trees"),
+        (&["--linearize", "0.5"], "--linearize is about joint coordinates"),
+        (&["--integrator", "rodas4"], "rodas4 needs derivatives"),
+        (&["--tolerance", "1e-9"], "rk4 has no error estimate"),
+        (&[&controlled[..], &["nan"]].concat(), "a number above 0 and at most 1 was expected"),
+        (&[&controlled[..], &["1e-16"]].concat(), "a tolerance of 1e-16 cannot be met"),
+        (&[&controlled[..], &["1e-9", "--precision", "f32"]].concat(), "a tolerance of 1e-9 cannot be met"),
+        (&[&controlled[..], &["1e-9", "--input", "torque=ramp.csv"]].concat(), "inputs that vary are held"),
+        (&["--step", "1e-12"], "steps of 1e-12 s, about"),
+        (&["--step", "1e-15"], "at most 1e13 are accepted"),
+    ] {
+        let output = simulate(&folder, &[&assembled[..], args, &["--out", "new/folder"]].concat());
+        let words = String::from_utf8(output.stderr).unwrap();
+        assert!(words.contains(message), "{args:?}: {words}");
+        assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{args:?}");
+    }
+    // The same in the page, and said by the program that was compiled.
+    let output = simulate(&folder, &["tiny.toml", "--out", "new"]);
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert!(words.contains("will take about") && words.contains("give --budget"), "{words}");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(folder.files(), ["drag.csv", "motor.toml", "ramp.csv", "tiny.toml"]);
+}
+
+#[test]
+fn a_budget_ends_fixed_steps() {
+    let folder = Folder::new("budget");
+    fs::write(folder.0.join("motor.toml"), MOTOR).unwrap();
+    let run = ["motor.toml", "--engine", "assembled", "--json"];
+    let output = simulate(&folder, &[&run[..], &["--budget", "700"]].concat());
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert!(words.contains("the budget of 700 steps is used up; try --budget 2001"), "{words}");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(simulate(&folder, &[&run[..], &["--budget", "2001"]].concat()).status.success());
 }

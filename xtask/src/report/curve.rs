@@ -105,7 +105,8 @@ impl Curve {
             Setting::Steps(_) => None,
         };
         let when = Some(When::Steps(1));
-        let budget = Some(budget);
+        // Fixed steps are as many as they are.
+        let budget = tolerance.map(|_| budget);
         Approach {
             integrator: self.integrator,
             tolerance,
@@ -113,6 +114,7 @@ impl Curve {
             correction,
             when,
             budget,
+            patience: None,
             examine: false,
         }
     }

@@ -285,7 +285,8 @@ pub(crate) fn find(
         coordinates,
         correction: Correction::Partition,
         when: Some(When::Steps(1)),
-        budget: Some(200_000),
+        budget: tolerance.map(|_: f64| 200_000),
+        patience: None,
         examine: false,
     };
     let plan = |t_end: f64, step: f64, approach| Plan {

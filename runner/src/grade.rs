@@ -1,0 +1,419 @@
+//! How good a run is: what it is worth beside a companion, and what its own balance says.
+//!
+//! An error is held against the size of the motion. For a grade of *good* every coordinate is held against its own motion, however small
+//! that is beside the others', and an angle against a radian at most; for *worthless* it has to be lost beyond doubt. What is
+//! between is usable as far as its errors say.
+
+use crate::companion::{Difference, departure, distance, gap, rate, size};
+use crate::{BodySample, JointSample, Sample, Summary};
+
+/// What a run is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Grade {
+    /// As accurate as it was asked to be, and to a thousandth of the motion at least.
+    Good,
+    /// The motion is there, with the errors that are told.
+    Usable,
+    /// The motion is another one.
+    Worthless,
+}
+
+/// Why a run is not better than it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// The error of a coordinate, in terms of its motion.
+    Error(f64),
+    /// The errors in units of the tolerance.
+    Tolerance(f64),
+    /// Energy that no work accounts for, in terms of the energy that moves.
+    Energy(f64),
+    /// The same where a companion whose balance closes has found the same motion: the work is wrong, the motion is not.
+    Work(f64),
+    /// The joints are apart by this part of the mechanism's size.
+    Violation(f64),
+    /// The smallest pivot of the constraints: near a singular pose a mechanism may go on in another way.
+    Pivot(f64),
+}
+
+/// What a judgement depends on besides the runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Measure {
+    /// The tolerance of the run, if it has one.
+    pub tolerance: Option<f64>,
+    /// Length of the mechanism, m: by it lengths are compared with angles.
+    pub size: f64,
+    /// Whether all work is accounted for, so that the energy's balance has to close.
+    pub is_balanced: bool,
+}
+
+/// What is known of a run.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// What it is worth.
+    pub grade: Grade,
+    /// What keeps it from being better, the gravest first.
+    pub reasons: Vec<Reason>,
+    /// Estimated errors of each joint coordinate, then of position and orientation of each observed body.
+    pub errors: Vec<Difference>,
+    /// The largest error in terms of the motion.
+    pub relative: f64,
+    /// The largest error in units of the tolerance.
+    pub in_tolerances: f64,
+    /// Up to when no coordinate is lost, s.
+    pub until: f64,
+    /// When the run ends, s.
+    pub t_end: f64,
+}
+
+/// Errors up to this part of the motion are good.
+const GOOD: f64 = 1e-3;
+/// Beyond this part of it there is nothing left.
+const LOST: f64 = 0.3;
+/// Errors of steps add up to so many tolerances.
+const TOLERANCES: f64 = 10.0;
+/// An angle's error is held against no more than this, rad.
+const RADIAN: f64 = 1.0;
+/// A motion smaller than this part of the largest one is held against that for a grade of good.
+const SMALL: f64 = 1e-6;
+/// The same for a grade of worthless, at least and, under a coarse tolerance, at most.
+const NEGLIGIBLE: [f64; 2] = [1e-3, 1e-2];
+/// A smaller pivot is near a singular pose.
+const SMALL_PIVOT: f64 = 1e-3;
+/// Joints that are apart by this part of the mechanism's size make it another mechanism.
+const APART: f64 = 0.1;
+
+impl Grade {
+    /// In one word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Usable => "usable",
+            Self::Worthless => "worthless",
+        }
+    }
+}
+
+impl Reason {
+    /// What the run is worth for this reason.
+    pub fn grade(self) -> Grade {
+        let (good, lost, value) = match self {
+            Self::Error(_) => return Grade::Worthless,
+            Self::Tolerance(times) => return if times <= TOLERANCES { Grade::Good } else { Grade::Usable },
+            Self::Work(_) => return Grade::Usable,
+            Self::Pivot(pivot) => return if pivot >= SMALL_PIVOT { Grade::Good } else { Grade::Usable },
+            Self::Energy(drift) => (GOOD, LOST, drift),
+            Self::Violation(violation) => (GOOD, APART, violation),
+        };
+        // What is no number is worse than any.
+        if value <= good {
+            Grade::Good
+        } else if value <= lost {
+            Grade::Usable
+        } else {
+            Grade::Worthless
+        }
+    }
+}
+
+/// What a run says of itself, the gravest first: the energy's balance, where work is accounted for, and the joints.
+pub fn balance(summary: &Summary, is_balanced: bool) -> Vec<Reason> {
+    let energy = is_balanced.then_some(Reason::Energy(summary.energy_drift));
+    let all = energy.into_iter().chain([Reason::Violation(summary.position_violation)]);
+    sorted(all.filter(|reason| reason.grade() > Grade::Good).collect())
+}
+
+fn sorted(mut reasons: Vec<Reason>) -> Vec<Reason> {
+    reasons.sort_by_key(|reason| std::cmp::Reverse(reason.grade()));
+    reasons
+}
+
+/// Holds a run against a companion with the same samples.
+pub fn judge(
+    (samples, summary): (&[Sample], &Summary),
+    (others, other): (&[Sample], &Summary),
+    measure: &Measure,
+) -> Judgement {
+    let tracks = tracks(samples, others);
+    let scale = Scale::of(&tracks, measure);
+    let is_complete = samples.len() == others.len();
+    let relative = worst(tracks.iter().map(|track| scale.strict(track)));
+    let lost = worst(tracks.iter().map(|track| scale.lenient(track)));
+    let errors: Vec<Difference> = tracks.iter().map(Track::difference).collect();
+    let tolerance = measure.tolerance.unwrap_or(1.0);
+    let in_tolerances = worst(errors.iter().map(|error| error.in_tolerances(tolerance)));
+    let is_lost = lost > LOST || !is_complete;
+    let is_near = relative <= GOOD;
+    // Work may be lost where the motion is not, as a companion shows whose own balance closes.
+    let closes = balance(other, measure.is_balanced).is_empty();
+    let excused = |reason| match reason {
+        Reason::Energy(drift) if is_near && !is_lost && closes => Reason::Work(drift),
+        other => other,
+    };
+    let mut reasons: Vec<Reason> = balance(summary, measure.is_balanced).into_iter().map(excused).collect();
+    reasons.extend(measure.tolerance.map(|_| Reason::Tolerance(in_tolerances)));
+    reasons.extend(summary.smallest_pivot.map(Reason::Pivot));
+    reasons.retain(|reason| reason.grade() > Grade::Good);
+    let of_errors = if is_lost {
+        Grade::Worthless
+    } else if is_near {
+        Grade::Good
+    } else {
+        Grade::Usable
+    };
+    let grade = reasons.iter().map(|reason| reason.grade()).fold(of_errors, Grade::max);
+    if is_lost {
+        reasons.insert(0, Reason::Error(lost));
+    }
+    let until = scale.until(&tracks, samples);
+    let t_end = samples.last().map_or(0.0, |sample| sample.t);
+    Judgement { t_end, grade, reasons: sorted(reasons), errors, relative, in_tolerances, until }
+}
+
+/// What is not a number is worse than any.
+fn worst(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |worst: f64, x| if x <= worst || worst.is_nan() { worst } else { x })
+}
+
+/// One coordinate over the samples.
+struct Track {
+    is_length: bool,
+    /// Error of position and of rate at each sample, and how far the companion has gone and how fast it is.
+    positions: Vec<[f64; 2]>,
+    rates: Vec<[f64; 2]>,
+    /// The companion's largest position.
+    size: f64,
+}
+
+impl Track {
+    fn new(one: &[JointSample], other: &[JointSample]) -> Self {
+        let pairs = || one.iter().zip(other);
+        let still = [0.0; 3];
+        Self {
+            is_length: matches!(other.first(), Some(JointSample::Length { .. })),
+            positions: pairs().map(|(a, b)| [distance(a, b), departure(&other[0], b)]).collect(),
+            rates: pairs().map(|(a, b)| [gap(&rate(a), &rate(b)), gap(&rate(b), &still)]).collect(),
+            size: worst(other.iter().map(size)),
+        }
+    }
+
+    fn largest(pairs: &[[f64; 2]], which: usize) -> f64 {
+        worst(pairs.iter().map(|pair| pair[which]))
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a number of samples")]
+    fn mean(pairs: &[[f64; 2]], which: usize) -> f64 {
+        (pairs.iter().map(|pair| pair[which].powi(2)).sum::<f64>() / pairs.len().max(1) as f64).sqrt()
+    }
+
+    fn difference(&self) -> Difference {
+        Difference {
+            position: Self::largest(&self.positions, 0),
+            rate: Self::largest(&self.rates, 0),
+            largest: [self.size, Self::largest(&self.rates, 1)],
+        }
+    }
+}
+
+/// Joint coordinates, then the bodies that were observed.
+fn tracks(samples: &[Sample], others: &[Sample]) -> Vec<Track> {
+    let n = samples.first().map_or(0, |sample| sample.coordinates.len());
+    let joints = (0..n).map(|k| {
+        let of = |samples: &[Sample]| samples.iter().map(|s| s.coordinates[k]).collect::<Vec<_>>();
+        Track::new(&of(samples), &of(others))
+    });
+    let n_bodies = samples.first().map_or(0, |sample| sample.bodies.len());
+    let bodies = (0..n_bodies).flat_map(|k| {
+        let of = |samples: &[Sample]| samples.iter().map(|s| s.bodies[k]).collect::<Vec<_>>();
+        [body_track(&of(samples), &of(others)), orientation_track(&of(samples), &of(others))]
+    });
+    joints.chain(bodies).collect()
+}
+
+fn body_track(one: &[BodySample], other: &[BodySample]) -> Track {
+    let pairs = || one.iter().zip(other);
+    let (r, s) = (
+        |b: &BodySample| [b.pose[0], b.pose[1], b.pose[2]],
+        |b: &BodySample| [b.velocity[0], b.velocity[1], b.velocity[2]],
+    );
+    let still = [0.0; 3];
+    Track {
+        is_length: true,
+        positions: pairs().map(|(a, b)| [gap(&r(a), &r(b)), gap(&r(b), &r(&other[0]))]).collect(),
+        rates: pairs().map(|(a, b)| [gap(&s(a), &s(b)), gap(&s(b), &still)]).collect(),
+        size: worst(other.iter().map(|b| gap(&r(b), &still))),
+    }
+}
+
+fn orientation_track(one: &[BodySample], other: &[BodySample]) -> Track {
+    let orientation = |bodies: &[BodySample]| -> Vec<JointSample> {
+        let of = |b: &BodySample| JointSample::Orientation {
+            position: [b.pose[3], b.pose[4], b.pose[5], b.pose[6]],
+            rate: [b.velocity[3], b.velocity[4], b.velocity[5]],
+        };
+        bodies.iter().map(of).collect()
+    };
+    Track::new(&orientation(one), &orientation(other))
+}
+
+/// The largest motion of the companion: what small ones are held against.
+struct Scale {
+    /// rad, and rad/s at most and on average.
+    angle: f64,
+    rate: f64,
+    mean_rate: f64,
+    size: f64,
+    negligible: f64,
+}
+
+impl Scale {
+    fn of(tracks: &[Track], measure: &Measure) -> Self {
+        let size = if measure.size > 0.0 { measure.size } else { 1.0 };
+        let all = |of: &dyn Fn(&Track) -> f64| {
+            worst(tracks.iter().map(|track| if track.is_length { of(track) / size } else { of(track) }))
+        };
+        let [least, most] = NEGLIGIBLE;
+        Self {
+            angle: all(&|track| Track::largest(&track.positions, 1)).min(RADIAN),
+            rate: all(&|track| Track::largest(&track.rates, 1)),
+            mean_rate: all(&|track| Track::mean(&track.rates, 1)),
+            size,
+            negligible: measure
+                .tolerance
+                .map_or(least, |tolerance| (TOLERANCES * tolerance).clamp(least, most)),
+        }
+    }
+
+    /// In the unit of a track.
+    fn in_unit(&self, track: &Track, scale: f64) -> f64 {
+        if track.is_length { scale * self.size } else { scale }
+    }
+
+    fn strict(&self, track: &Track) -> f64 {
+        let motion = Track::largest(&track.positions, 1);
+        let motion = if track.is_length { motion } else { motion.min(RADIAN) };
+        let position = Track::largest(&track.positions, 0);
+        let rate = Track::largest(&track.rates, 0);
+        ratio(position, motion.max(SMALL * self.in_unit(track, self.angle)))
+            .max(ratio(rate, Track::largest(&track.rates, 1).max(SMALL * self.in_unit(track, self.rate))))
+    }
+
+    fn lenient(&self, track: &Track) -> f64 {
+        let rate = Track::mean(&track.rates, 1).max(self.negligible * self.in_unit(track, self.mean_rate));
+        ratio(Track::largest(&track.positions, 0), self.reach(track))
+            .max(ratio(Track::mean(&track.rates, 0), rate))
+    }
+
+    /// The motion that an error is held against before a coordinate counts as lost.
+    fn reach(&self, track: &Track) -> f64 {
+        Track::largest(&track.positions, 1).max(self.negligible * self.in_unit(track, self.angle))
+    }
+
+    /// The time of the last sample before a coordinate is lost.
+    fn until(&self, tracks: &[Track], samples: &[Sample]) -> f64 {
+        let is_lost = |k: usize| {
+            let mut ratios = tracks.iter().map(|track| (track.positions.get(k), self.reach(track)));
+            ratios.any(|(pair, reach)| pair.is_none_or(|pair| ratio(pair[0], reach) > LOST))
+        };
+        let kept = (0..samples.len()).take_while(|&k| !is_lost(k)).last();
+        kept.map_or(0.0, |k| samples[k].t)
+    }
+}
+
+/// No error is none, whatever it is held against; and what is no number is lost.
+fn ratio(error: f64, size: f64) -> f64 {
+    let ratio = if error == 0.0 { 0.0 } else { error / size };
+    if ratio.is_nan() { f64::INFINITY } else { ratio }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MEASURE: Measure = Measure { tolerance: None, size: 1.0, is_balanced: true };
+
+    /// Two angles over a second: one of `amplitude`, the other a spin.
+    fn samples(amplitude: f64, frequency: f64, spin: f64) -> Vec<Sample> {
+        let at = |k: i32| {
+            let t = f64::from(k) / 50.0;
+            let angle = |position, rate| JointSample::Angle { position, rate };
+            let (sin, cos) = (frequency * t).sin_cos();
+            Sample {
+                t,
+                coordinates: vec![angle(amplitude * sin, amplitude * frequency * cos), angle(spin * t, spin)],
+                outputs: vec![],
+                bodies: vec![],
+                kinetic: 1.0,
+                potential: 0.0,
+                work: 0.0,
+                position_violation: 0.0,
+                velocity_violation: 0.0,
+                norm_violation: 0.0,
+                chart_switches: 0,
+            }
+        };
+        (0..=50).map(at).collect()
+    }
+
+    fn graded(one: &[Sample], other: &[Sample], summary: &Summary) -> Judgement {
+        judge((one, summary), (other, &Summary::default()), &MEASURE)
+    }
+
+    #[test]
+    fn errors_are_held_against_the_motion() {
+        let truth = samples(1.6e-3, 20.0, 100.0);
+        let fine = Summary::default();
+        for (amplitude, frequency, spin, grade) in [
+            (1.6e-3, 20.0, 100.0, Grade::Good),
+            (1.6e-3 * 1.0005, 20.0, 100.0, Grade::Good),
+            (1.6e-3 * 1.01, 20.0, 100.0, Grade::Usable),
+            // A thousandth of a radian is the whole motion of the first angle.
+            (1.6e-3, 30.0, 100.0, Grade::Worthless),
+            (3484.0, 20.0, 100.0, Grade::Worthless),
+            // The spin has lost its phase, and its rate is right.
+            (1.6e-3, 20.0, 101.0, Grade::Usable),
+            (1.6e-3, 20.0, 200.0, Grade::Worthless),
+            (f64::NAN, 20.0, 100.0, Grade::Worthless),
+        ] {
+            let found = graded(&samples(amplitude, frequency, spin), &truth, &fine);
+            assert_eq!(found.grade, grade, "{amplitude} {frequency} {spin}: {:?}", found.reasons);
+        }
+        let found = graded(&truth[..10], &truth, &fine);
+        assert_eq!(found.grade, Grade::Worthless, "a run that is not complete");
+    }
+
+    #[test]
+    fn a_run_is_usable_until_it_is_lost() {
+        let truth = samples(1.0, 5.0, 0.0);
+        let mut run = truth.clone();
+        for sample in &mut run[30..] {
+            sample.coordinates[0] = JointSample::Angle { position: 7.0, rate: 0.0 };
+        }
+        let found = graded(&run, &truth, &Summary::default());
+        assert_eq!((found.grade, found.until), (Grade::Worthless, truth[29].t));
+    }
+
+    #[test]
+    fn an_open_balance_and_open_joints_tell_without_a_companion() {
+        let of = |energy_drift, position_violation| {
+            let summary = Summary { energy_drift, position_violation, ..Summary::default() };
+            balance(&summary, true).first().map(|reason| reason.grade())
+        };
+        assert_eq!(of(1e-6, 1e-9), None);
+        assert_eq!(of(1e-2, 1e-9), Some(Grade::Usable));
+        assert_eq!(of(1.0, 1e-9), Some(Grade::Worthless));
+        assert_eq!(of(f64::NAN, 0.0), Some(Grade::Worthless));
+        assert_eq!(of(0.0, 0.5), Some(Grade::Worthless));
+        let open = Summary { energy_drift: 1.0, ..Summary::default() };
+        assert!(
+            balance(&open, false).is_empty(),
+            "an input that changes a spring does work that nobody counts"
+        );
+    }
+
+    #[test]
+    fn no_small_motion_is_good_because_a_large_one_is() {
+        let truth = samples(1e-5, 20.0, 100.0);
+        let found = graded(&samples(2e-5, 20.0, 100.0), &truth, &Summary::default());
+        assert!(found.grade > Grade::Good && found.relative > 0.5, "{found:?}");
+    }
+}

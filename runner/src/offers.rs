@@ -1,0 +1,130 @@
+//! What can be asked of a mechanism, and in words why something cannot.
+
+use crate::{Approach, Coordinates, Correction, Integrator, Settings};
+
+/// What a mechanism, the engine that moves it and what is fed into it allow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offers {
+    /// Joint coordinates, and the closed-form correction by way of them.
+    pub joint_space: bool,
+    /// Derivatives, which implicit methods need.
+    pub derivatives: bool,
+    /// The projection in the metric of the masses.
+    pub projection: bool,
+    /// The distance from one to the next number of the run's precision.
+    pub epsilon: f64,
+    /// Whether an input changes during the run.
+    pub inputs_vary: bool,
+}
+
+/// A tolerance beyond which nothing is asked for: an error as large as the motion.
+const COARSEST: f64 = 1.0;
+
+/// Solvers refuse tolerances that are finer than this many units in the last place of one.
+const ULPS: f64 = 4.0;
+
+impl Offers {
+    /// All there is, in double precision and with constant inputs.
+    pub const ALL: Self = Self {
+        joint_space: true,
+        derivatives: true,
+        projection: true,
+        epsilon: f64::EPSILON,
+        inputs_vary: false,
+    };
+
+    /// The finest tolerance that is accepted.
+    pub fn finest_tolerance(&self) -> f64 {
+        ULPS * self.epsilon
+    }
+
+    /// Why a run cannot be made as it is asked for; `None` if it can.
+    pub fn refusal(&self, settings: &Settings, approach: &Approach) -> Option<String> {
+        if let Err(impossible) = settings.check() {
+            return Some(impossible.to_string());
+        }
+        if approach.budget == Some(0) {
+            return Some("a budget of 0 steps leads nowhere".to_owned());
+        }
+        self.refused_tolerance(approach).or_else(|| self.refused_method(approach))
+    }
+
+    fn refused_tolerance(&self, approach: &Approach) -> Option<String> {
+        let tolerance = approach.tolerance?;
+        let finest = self.finest_tolerance();
+        let words = if !(finest..=COARSEST).contains(&tolerance) {
+            return Some(format!(
+                "a tolerance of {tolerance:e} cannot be met: it has to be between {finest:.1e}, the finest in this precision, and \
+                 {COARSEST}"
+            ));
+        } else if approach.integrator == Integrator::Rk4 {
+            "rk4 has no error estimate: give it a --step instead of a --tolerance, or use tsit5, dop853 or rodas4"
+        } else if self.inputs_vary {
+            "inputs that vary are held over each step, so steps have to be fixed: give a --step instead of a --tolerance"
+        } else {
+            return None;
+        };
+        Some(words.to_owned())
+    }
+
+    fn refused_method(&self, approach: &Approach) -> Option<String> {
+        let words = match (approach.coordinates, approach.correction) {
+            (Coordinates::Joint, _) if !self.joint_space => {
+                "joint coordinates are for generated code of trees"
+            }
+            (Coordinates::Maximal, Correction::ClosedForm) if !self.joint_space => {
+                "the closed form is for generated code of trees"
+            }
+            (Coordinates::Maximal, Correction::MassWeighted | Correction::Baumgarte(_))
+                if !self.projection =>
+            {
+                return Some(format!(
+                    "the correction {} needs a projection, which this mechanism does not have",
+                    approach.correction
+                ));
+            }
+            _ if approach.integrator == Integrator::Rodas4 && !self.derivatives => {
+                "rodas4 needs derivatives, which only generated code has"
+            }
+            _ => return None,
+        };
+        Some(words.to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTINGS: Settings = Settings { t_end: 1.0, step: 1e-3, correct_every: None, sample_every: 0.1 };
+
+    #[test]
+    fn what_cannot_be_done_is_refused_in_words() {
+        let controlled =
+            Approach { integrator: Integrator::Dop853, tolerance: Some(1e-9), ..Approach::default() };
+        let joint = Approach { coordinates: Coordinates::Joint, ..Approach::default() };
+        let loops = Offers { joint_space: false, ..Offers::ALL };
+        let twin = Offers { derivatives: false, ..loops };
+        let single = Offers { epsilon: f64::from(f32::EPSILON), ..Offers::ALL };
+        let tolerance = |tolerance| Approach { tolerance: Some(tolerance), ..controlled };
+        let stiff = Approach { integrator: Integrator::Rodas4, ..controlled };
+        for (offers, approach, words) in [
+            (Offers::ALL, tolerance(f64::NAN), "a tolerance of NaN cannot be met"),
+            (Offers::ALL, tolerance(0.0), "a tolerance of 0e0 cannot be met"),
+            (Offers::ALL, tolerance(1e10), "a tolerance of 1e10 cannot be met"),
+            (single, tolerance(1e-9), "a tolerance of 1e-9 cannot be met"),
+            (Offers::ALL, Approach { integrator: Integrator::Rk4, ..controlled }, "rk4 has no error"),
+            (Offers { inputs_vary: true, ..Offers::ALL }, controlled, "inputs that vary are held"),
+            (loops, joint, "joint coordinates are for"),
+            (loops, Approach { correction: Correction::ClosedForm, ..controlled }, "the closed form is for"),
+            (twin, stiff, "rodas4 needs derivatives"),
+            (Offers::ALL, Approach { budget: Some(0), ..controlled }, "a budget of 0 steps"),
+        ] {
+            let found = offers.refusal(&SETTINGS, &approach).unwrap_or_default();
+            assert!(found.starts_with(words), "{approach}: {found}");
+        }
+        for approach in [controlled, joint, stiff, tolerance(1.0), tolerance(1e-15)] {
+            assert_eq!(Offers::ALL.refusal(&SETTINGS, &approach), None, "{approach}");
+        }
+    }
+}
