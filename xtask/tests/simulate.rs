@@ -396,3 +396,17 @@ fn bad_requests_leave_nothing_behind() {
     }
     assert_eq!(folder.files(), ["bad.toml"]);
 }
+
+#[test]
+fn what_has_no_joint_coordinates_is_said_and_a_tree_is_called_a_tree() {
+    let folder = Folder::new("joint");
+    let check = |page: &str, engine: &str, words: &str| {
+        let output = simulate(&folder, &[&model(page), "--engine", engine, "--coordinates", "joint"]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && said.contains(words), "{page} {engine}: {said}");
+    };
+    check("compound-pendulum.toml", "recursive", "leave out --engine recursive");
+    check("compound-pendulum.toml", "assembled", "leave out --engine");
+    check("four-bar.toml", "generated", "has a loop, which is closed by joint `knee`");
+    check("four-bar.toml", "recursive", "has a loop");
+}
