@@ -311,7 +311,9 @@ where
 fn only_maximal(approach: &Approach) -> Result<(), String> {
     match approach.coordinates {
         Coordinates::Maximal => Ok(()),
-        Coordinates::Joint => Err("joint coordinates are for generated code of trees".to_owned()),
+        Coordinates::Joint => {
+            Err("joint coordinates are for trees of joints, and for generated code".to_owned())
+        }
     }
 }
 

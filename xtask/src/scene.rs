@@ -35,6 +35,7 @@ impl Scene {
         let page = read_counting_work(&args.model)?;
         remarks::report_redundant(&page, &args.model.display().to_string(), args.strict)?;
         let model = with_parameters(&page, &args.set)?;
+        refuse_joint_coordinates(&model, args)?;
         let (settings, approach) = (settings(&model, args), approach(&model, args));
         let inputs = inputs::inputs(&model, &args.input)?;
         let offers = Offers { inputs_vary: any_varies(&inputs), ..offers(&model, args) };
@@ -91,6 +92,42 @@ pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
 /// The same for a run, whose balance of energy needs the work even where the page leaves it out of the module.
 pub(crate) fn read_counting_work(path: &Path) -> Result<Model, Failure> {
     read(path).map(|model| Model { counts_work: true, ..model })
+}
+
+/// Joint coordinates are for trees, and for generated code: which of the two is missing, and what to leave out.
+fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Failure> {
+    if args.coordinates != Coordinates::Joint {
+        return Ok(());
+    }
+    let words = match (args.engine, what_is_no_tree(model)) {
+        (_, Some(what)) => {
+            format!("joint coordinates are for trees of joints, and `{}` has {what}", model.name)
+        }
+        (Engine::Recursive, None) => {
+            "the recursive twin runs in maximal states, though it solves in joint coordinates: \
+             for generated code in joint coordinates leave out --engine recursive"
+                .to_owned()
+        }
+        (Engine::Assembled | Engine::Dense, None) => {
+            "the twins run in maximal coordinates: for joint coordinates leave out --engine".to_owned()
+        }
+        (Engine::Generated, None) => return Ok(()),
+    };
+    Err(Failure::Usage(format!("--coordinates joint: {words}")))
+}
+
+/// What keeps a mechanism from being described by its joints' coordinates alone.
+fn what_is_no_tree(model: &Model) -> Option<String> {
+    let named = |what: &str, name: &str| Some(format!("{what} `{name}`"));
+    let driver = model.drivers.first().map(|driver| &driver.name);
+    let coupler = model.couplers.first().map(|coupler| &coupler.name);
+    let closing = Tree::of(model).loop_joints.first().map(|&joint| &model.joints[joint].name);
+    match (driver, coupler, closing) {
+        (Some(name), ..) => named("the driver", name),
+        (_, Some(name), _) => named("the coupler", name),
+        (.., Some(name)) => named("a loop, which is closed by joint", name),
+        _ => None,
+    }
 }
 
 fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Failure> {

@@ -480,7 +480,7 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
         (&["--input", "drag=-1"][..], negative),
         (&["--input", "drag=drag.csv"], "with -0.5 at t = 1 s the damping"),
         (&["--input", "torque=1e300"], "input `torque` is too large or too small to compute with"),
-        (&["--coordinates", "joint"], "joint coordinates are for generated code of trees"),
+        (&["--coordinates", "joint"], "the twins run in maximal coordinates"),
         (&["--correction", "closed-form"], "the closed form is for generated code of trees"),
         (&["--linearize", "0.5"], "--linearize is about joint coordinates"),
         (&["--integrator", "rodas4"], "rodas4 needs derivatives"),
@@ -515,4 +515,18 @@ fn a_budget_ends_fixed_steps() {
     assert!(words.contains("the budget of 700 steps is used up; try --budget 2001"), "{words}");
     assert_eq!(output.status.code(), Some(1));
     assert!(simulate(&folder, &[&run[..], &["--budget", "2001"]].concat()).status.success());
+}
+
+#[test]
+fn what_has_no_joint_coordinates_is_said_and_a_tree_is_called_a_tree() {
+    let folder = Folder::new("joint");
+    let check = |page: &str, engine: &str, words: &str| {
+        let output = simulate(&folder, &[&model(page), "--engine", engine, "--coordinates", "joint"]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && said.contains(words), "{page} {engine}: {said}");
+    };
+    check("compound-pendulum.toml", "recursive", "leave out --engine recursive");
+    check("compound-pendulum.toml", "assembled", "leave out --engine");
+    check("four-bar.toml", "generated", "has a loop, which is closed by joint `knee`");
+    check("four-bar.toml", "recursive", "has a loop");
 }

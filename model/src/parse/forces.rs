@@ -92,7 +92,8 @@ fn force(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: Strin
     let kind = section.require_choice(reader, "kind", &title, ("kind of force", &KINDS));
     if let Some(kind) = kind {
         let word = KINDS.iter().find(|(_, other)| *other == kind).map_or("", |(word, _)| word);
-        section::refuse_others(reader, &section, &KEYS, (word, kind.keys()));
+        let kinds = KINDS.map(|(word, kind)| (word, kind.keys()));
+        section::refuse_others(reader, &section, &KEYS, (word, &kinds));
     }
     let force = Reading { section, title: &title, index };
     let kind = match kind {

@@ -1,6 +1,7 @@
 //! Joints: their kind, where they are on each of their bodies, and the numbers of their kind.
 
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use super::kinds::{self, KINDS};
 use super::numbers::{number, per_turn, plain_number};
@@ -140,13 +141,38 @@ fn require_direction(
         [side] => (format!("`{side}` of {title}"), format!("in `{side}`")),
         _ => (title.to_owned(), "in the joint, for both bodies".to_owned()),
     };
-    let example = if key == "axis" { "axis = [0, 0, 1]" } else { "zero = [1, 0, 0]" };
+    let other = if key == "axis" { "zero" } else { "axis" };
+    let of_ends = sides.iter().map(|side| {
+        let end = section.get(side.key()).and_then(|item| item.value.get_ref().as_table());
+        end.and_then(|end| end.get(other)).or_else(|| section.get(other).map(|item| item.value))
+    });
+    let others: Vec<&DeValue<'_>> = of_ends.flatten().map(Spanned::get_ref).collect();
+    let example = format!("{key} = {}", off(key, &others));
     let words = [
         format!("{of} has no `{key}`"),
         format!("needs `{key}`"),
         format!("write {example} {place}: {meaning}"),
     ];
     reader.missing(section.place(key), words);
+}
+
+/// A coordinate direction for a key that is parallel to none of the others, which may be parameters or no directions at all.
+fn off(key: &str, others: &[&DeValue<'_>]) -> &'static str {
+    let is_zero = |value: &DeValue<'_>| match value {
+        DeValue::Integer(number) => number.as_str().trim_start_matches(['+', '-']) == "0",
+        DeValue::Float(number) => number.as_str().parse() == Ok(0.0),
+        _ => false,
+    };
+    let across = |direction: &DeValue<'_>, k: usize| {
+        let element = direction.as_array().and_then(|elements| elements.get(k));
+        element.is_none_or(|element| is_zero(element.get_ref()))
+    };
+    let alone = |direction: &DeValue<'_>, k: usize| (0..3).all(|l| l == k || across(direction, l));
+    let order = if key == "axis" { [2, 0, 1] } else { [0, 1, 2] };
+    let suits = |k: &usize| others.iter().all(|other| other.as_array().is_none() || !alone(other, *k));
+    let clear = |k: &usize| others.iter().all(|other| across(other, *k));
+    let best = order.into_iter().find(clear).or_else(|| order.into_iter().find(suits));
+    ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"][best.unwrap_or(order[0])]
 }
 
 /// What both ends of a joint share.

@@ -1,5 +1,6 @@
 //! The reader: from the text of a page to a checked [`Model`], or to every mistake in it at once.
 
+mod arithmetic;
 mod bodies;
 mod couplings;
 mod driven;
@@ -17,6 +18,7 @@ mod reader;
 mod references;
 mod section;
 mod start;
+mod synonyms;
 mod table;
 mod tensor;
 mod units;

@@ -1,5 +1,7 @@
 //! Names: what may be one, and which one may have been meant.
 
+use super::synonyms;
+
 /// Words that Rust keeps for itself: a module or a field cannot have such a name.
 const KEYWORDS: [&str; 51] = [
     "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
@@ -41,6 +43,11 @@ pub(super) fn snake_case(written: &str) -> String {
     }
     let name = name.trim_end_matches('_');
     if is_snake_case(name) { name.to_owned() } else { format!("a{name}") }
+}
+
+/// The known name that was meant: what another program's word stands for, or else the nearest in letters.
+pub(super) fn meant<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
+    synonyms::meant(written, known).or_else(|| nearest(written, known))
 }
 
 /// Longer names, and more of them, are not searched for what may have been meant.

@@ -5,7 +5,7 @@ use toml::de::DeValue;
 
 use super::reader::Reader;
 use super::section::{Item, Section, found};
-use super::{names, units};
+use super::{arithmetic, names, units};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::validate::{Owner, Place};
 use crate::{Number, Rational, parse_decimal};
@@ -94,13 +94,15 @@ fn not_plain(reader: &Reader<'_>, place: Place, text: &str) -> [String; 3] {
         (true, _) => "a parameter",
         (false, true) => "an input",
         _ => {
-            return units::with_unit(place, text).unwrap_or_else(|| {
-                [
-                    format!("expected a number for `{key}`"),
-                    format!("found the text {text:?}"),
-                    "write a number such as 0.5 or 100e-7".to_owned(),
-                ]
-            });
+            return arithmetic::refused(reader, place, text)
+                .or_else(|| units::with_unit(place, text))
+                .unwrap_or_else(|| {
+                    [
+                        format!("expected a number for `{key}`"),
+                        format!("found the text {text:?}"),
+                        "write a number such as 0.5 or 100e-7".to_owned(),
+                    ]
+                });
         }
     };
     let help = format!("write the number itself in place of {text:?}");
@@ -131,7 +133,10 @@ fn elements(
     let what = format!("an array of {length} numbers");
     let example = format!("{} = [{}]", item.key(), example(item.key(), length).join(", "));
     let Some(elements) = item.value.get_ref().as_array() else {
-        item.wrong_type(reader, &what, &example);
+        match (length, along_one_axis(item)) {
+            (3, Some(help)) => item.wrong_type_with(reader, &what, help),
+            _ => item.wrong_type(reader, &what, &example),
+        }
         return None;
     };
     if elements.len() != length {
@@ -141,6 +146,35 @@ fn elements(
         elements.iter().map(|value| element(reader, Item { place: item.place, value })).collect();
     let numbers: Option<Vec<Number>> = numbers.into_iter().collect();
     numbers.filter(|numbers| numbers.len() == length)
+}
+
+/// What to write instead of a number, or of an axis by its letter, where a vector of three is wanted.
+fn along_one_axis(item: Item<'_>) -> Option<String> {
+    let key = item.key();
+    let along = |k: usize, number: &str| {
+        let elements: Vec<&str> = (0..3).map(|l| if k == l { number } else { "0" }).collect();
+        format!("{key} = [{}]", elements.join(", "))
+    };
+    let number = match item.value.get_ref() {
+        DeValue::Integer(number) => number.as_str(),
+        DeValue::Float(number) => number.as_str(),
+        DeValue::String(text) => {
+            let (sign, letter) = text.strip_prefix('-').map_or(("1", &**text), |letter| ("-1", letter));
+            let k = ["x", "y", "z"].iter().position(|axis| *axis == letter.to_ascii_lowercase())?;
+            return Some(format!("write {}", along(k, sign)));
+        }
+        _ => return None,
+    };
+    let is_zero = number.parse() == Ok(0.0);
+    if key == "gravity" && !is_zero {
+        let down = format!("-{}", number.trim_start_matches(['+', '-']));
+        let [x, y, z] = [0, 1, 2].map(|k| along(k, &down));
+        return Some(format!(
+            "write {z} if the z axis points up, {y} if y does, {x} if x does: a single number does not say where down is"
+        ));
+    }
+    let [x, y, z] = [0, 1, 2].map(|k| along(k, number));
+    (!is_zero).then(|| format!("write {x}, {y} or {z}: a single number does not say along which axis"))
 }
 
 /// Degrees in rad.
@@ -182,7 +216,8 @@ fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names
         (Some(index), Names::ParametersAndInputs) => return Some(Number::Input { index, negated }),
         (Some(_), Names::Parameters) => item.wrong(reader, not_an_input(item.key(), name)),
         (None, _) => {
-            let words = units::with_unit(item.place, text)
+            let words = arithmetic::refused(reader, item.place, text)
+                .or_else(|| units::with_unit(item.place, text))
                 .unwrap_or_else(|| unknown_name(reader, item.key(), text, allowed));
             item.wrong(reader, words);
         }

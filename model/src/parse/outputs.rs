@@ -64,7 +64,8 @@ fn output(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: Stri
     let kind = section.require_choice(reader, "kind", &title, ("kind of output", &KINDS));
     if let Some(kind) = kind {
         let word = KINDS.iter().find(|(_, other)| *other == kind).map_or("", |(word, _)| word);
-        section::refuse_others(reader, &section, &KEYS, (word, kind.keys()));
+        let kinds = KINDS.map(|(word, kind)| (word, kind.keys()));
+        section::refuse_others(reader, &section, &KEYS, (word, &kinds));
     }
     let kind = match kind {
         Some(Kind::Reaction) => OutputKind::Reaction {

@@ -5,8 +5,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::names;
 use super::reader::Reader;
+use super::{names, synonyms};
 use crate::validate::{Owner, Place};
 
 /// A table with the keys that it may have.
@@ -38,7 +38,7 @@ impl<'t> Section<'t> {
         for (key, value) in table {
             match known.iter().find(|name| **name == key.get_ref().as_ref()) {
                 Some(name) => reader.mark(Place { owner, key: name }, value.span()),
-                None => unknown_key(reader, owner, title, key, known),
+                None => unknown_key(reader, (owner, title), key, known, table),
             }
         }
         Self { owner, table }
@@ -134,10 +134,15 @@ impl<'t> Item<'t> {
 
     /// Reports that something of another type was expected.
     pub(super) fn wrong_type(&self, reader: &mut Reader<'_>, expected: &str, example: &str) {
+        self.wrong_type_with(reader, expected, format!("write {example}"));
+    }
+
+    /// The same with another cure.
+    pub(super) fn wrong_type_with(&self, reader: &mut Reader<'_>, expected: &str, help: String) {
         let words = [
             format!("`{}` must be {expected}", self.key()),
             format!("found {}", found(self.value.get_ref())),
-            format!("write {example}"),
+            help,
         ];
         self.wrong(reader, words);
     }
@@ -166,9 +171,10 @@ impl<'t> Item<'t> {
             let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
             let list = names::list(&known);
             let key = self.key();
-            let help = match names::nearest(written, &known) {
-                Some(name) => format!("write `{name}`; the {key}s are {list}"),
-                None => format!("the {key}s are {list}"),
+            let help = match (synonyms::no_kind(written, what), names::meant(written, &known)) {
+                (Some(help), _) => help.to_owned(),
+                (None, Some(name)) => format!("write `{name}`; the {key}s are {list}"),
+                (None, None) => format!("the {key}s are {list}"),
             };
             self.wrong(reader, [format!("unknown {what} `{written}`"), format!("not a {key}"), help]);
         }
@@ -250,34 +256,55 @@ pub(super) fn found(value: &DeValue<'_>) -> String {
     }
 }
 
-/// Refuses the keys that belong to other kinds of the same section. `name` and `kind` belong to all.
+/// The kinds of a section, each with its own keys. `name` and `kind` belong to all.
+pub(super) type Kinds<'k> = &'k [(&'static str, &'static [&'static str])];
+
+/// Refuses the keys that belong to other kinds of the same section.
+///
+/// Where another kind has all the keys that are there it is the kind that was meant, and nothing is asked of the one that is written.
 pub(super) fn refuse_others(
     reader: &mut Reader<'_>,
     section: &Section<'_>,
     all: &[&'static str],
-    (kind, own): (&str, &[&str]),
+    (kind, kinds): (&str, Kinds<'_>),
 ) {
-    for key in all.iter().filter(|key| !own.contains(key) && !matches!(**key, "name" | "kind")) {
-        let help = match own {
-            [] => "remove it: it has no keys of its own".to_owned(),
-            own => format!("its keys are {}", names::list(own)),
+    let own = kinds.iter().find(|(name, _)| *name == kind).map_or(&[][..], |(_, keys)| keys);
+    let is_kind_s = |key: &str, keys: &[&str]| matches!(key, "name" | "kind") || keys.contains(&key);
+    let written: Vec<&str> = all.iter().copied().filter(|key| section.has(key)).collect();
+    let fits = |keys: &[&str]| written.iter().all(|key| is_kind_s(key, keys));
+    if fits(own) {
+        return;
+    }
+    let other = kinds.iter().find(|(_, keys)| fits(keys)).map(|(name, _)| *name);
+    for key in all.iter().filter(|key| !is_kind_s(key, own) && section.has(key)) {
+        let help = match (other, own) {
+            (Some(other), _) => format!("write kind = {other:?}, which has these keys"),
+            (None, []) => "remove it: it has no keys of its own".to_owned(),
+            (None, own) => format!("remove it: its keys are {}", names::list(own)),
         };
         section.refuse(reader, key, &format!("{} of kind \"{kind}\" has no `{key}`", section.noun()), &help);
+    }
+    if other.is_some() {
+        own.iter().for_each(|key| reader.doubt(section.place(key)));
     }
 }
 
 fn unknown_key(
     reader: &mut Reader<'_>,
-    owner: Owner,
-    title: &str,
+    (owner, title): (Owner, &str),
     key: &Spanned<DeString<'_>>,
     known: &[&'static str],
+    table: &DeTable<'_>,
 ) {
     let written = key.get_ref();
-    let nearest = names::nearest(written, known).and_then(|name| known.iter().find(|k| **k == name));
-    let help = match nearest {
-        Some(name) => format!("write `{name}`"),
-        None => format!("its keys are {}", names::list(known)),
+    let elsewhere = synonyms::elsewhere(written, known);
+    let meant = names::meant(written, known).filter(|_| elsewhere.is_none());
+    let nearest = meant.and_then(|name| known.iter().find(|k| **k == name));
+    let help = match (elsewhere, nearest) {
+        (Some(help), _) => help.to_owned(),
+        (None, Some(name)) if table.contains_key(*name) => format!("remove it: there is `{name}` already"),
+        (None, Some(name)) => format!("write `{name}`"),
+        (None, None) => format!("its keys are {}", names::list(known)),
     };
     if let Some(key) = nearest {
         // The key that was meant is not reported as missing, too.

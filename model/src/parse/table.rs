@@ -101,7 +101,7 @@ fn find_columns(
         return if known.len() == 2 { Ok([0, 1]) } else { Err(refusal(path, &reason, &help)) };
     };
     let find = |name: &str| {
-        let help = || names::instead(name, &known);
+        let help = || format!("{} in place of {name:?}", names::instead(name, &known));
         known
             .iter()
             .position(|other| *other == name)

@@ -23,7 +23,7 @@ pub(super) fn tensor(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number;
             item.wrong_type(
                 reader,
                 "three moments of inertia, a table of elements or a symmetric matrix",
-                "inertia = [xx, yy, zz], { xx = .., yy = .., zz = .., xy = .., xz = .., yz = .. } or three rows of three",
+                "inertia = [xx, yy, zz], or a table of `xx`, `yy`, `zz`, `xy`, `xz`, `yz`, or three rows of three",
             );
             None
         }

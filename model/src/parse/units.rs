@@ -46,6 +46,11 @@ fn split(text: &str) -> Option<(Rational, &str)> {
     longest.filter(|(_, unit)| !unit.is_empty())
 }
 
+/// What follows a number at the start of a text.
+pub(super) fn rest(text: &str) -> Option<&str> {
+    split(text).map(|(_, rest)| rest)
+}
+
 fn is_degrees(unit: &str) -> bool {
     matches!(unit, "deg" | "°" | "degree" | "degrees")
 }
@@ -121,7 +126,12 @@ fn known(unit: &str) -> Option<(&'static str, Rational)> {
 
 /// A number as one would write it.
 fn plain(value: &Rational) -> String {
-    value.to_f64().map_or_else(String::new, |value| format!("{value:?}").trim_end_matches(".0").to_owned())
+    value.to_f64().map_or_else(String::new, shown)
+}
+
+/// The same of a float.
+pub(super) fn shown(value: f64) -> String {
+    format!("{value:?}").trim_end_matches(".0").to_owned()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Axes, zero directions and Euler parameters, decided exactly.
 
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
 use super::{Owner, Place, Problem, Side};
 use crate::assemble::cross;
@@ -66,10 +66,13 @@ fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Probl
         help,
     };
     let vanishes = |v: &[Rational; 3]| v.iter().all(Zero::is_zero);
-    for (key, direction) in [("axis", &axis), ("zero", &zero)] {
+    let others = [&joint.first, &joint.second].map(|end| exact_directions(model, end));
+    // The direction may be shared by both ends, and must then suit both.
+    let off = |key: usize| off(&others.each_ref().map(|ends| &ends[key]));
+    for (key, direction, example) in [("axis", &axis, off(1)), ("zero", &zero, off(0))] {
         if vanishes(direction) {
             let message = format!("the {key} direction of {of} is zero");
-            let help = format!("write a direction of any length but 0, such as {key} = [0, 0, 1]");
+            let help = format!("write a direction of any length but 0, such as {key} = {example}");
             return Some(problem(key, message, "has no direction", help));
         }
     }
@@ -77,7 +80,7 @@ fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Probl
         let message = format!("the zero direction of {of} is parallel to its axis");
         let help = format!(
             "angles are measured across the axis: write a direction off it, such as zero = {}",
-            off(&axis)
+            off(0)
         );
         let also = Some((place("axis"), "the axis".to_owned()));
         Problem { also, ..problem("zero", message, "parallel to the axis", help) }
@@ -102,8 +105,13 @@ fn exact_directions(model: &Model, end: &JointEnd) -> [[Rational; 3]; 2] {
     [&end.axis, &end.zero].map(|v| v.each_ref().map(|x| model.exact(x)))
 }
 
-/// A coordinate direction far from an axis.
-fn off(axis: &[Rational; 3]) -> &'static str {
-    let smallest = (0..3).min_by_key(|&k| axis[k].abs());
-    ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"][smallest.unwrap_or(0)]
+/// A coordinate direction far from some directions, of which it is parallel to none.
+fn off(directions: &[&[Rational; 3]]) -> &'static str {
+    let cosine = |k: usize, v: &[Rational; 3]| {
+        let square = v.iter().fold(Rational::zero(), |sum, x| sum + x * x);
+        if square.is_zero() { square } else { &v[k] * &v[k] / square }
+    };
+    let largest = |k: usize| directions.iter().map(|v| cosine(k, v)).max();
+    let best = (0..3).min_by_key(|&k| largest(k));
+    ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"][best.unwrap_or(0)]
 }

@@ -4,6 +4,7 @@ mod assembly;
 mod bad_models;
 mod closing;
 mod closing_kinds;
+mod cures;
 mod elements;
 mod format_page;
 mod fuzz;
