@@ -311,7 +311,7 @@ impl Parent {
 }
 
 /// Rotations that change one of the rows with these gradients and not the others; perpendicular to a single free axis.
-fn right_inverse(graph: &mut Graph, gradients: &[Vec3], free: &[Vec3]) -> Vec<Vec3> {
+pub fn right_inverse(graph: &mut Graph, gradients: &[Vec3], free: &[Vec3]) -> Vec<Vec3> {
     match (gradients, free) {
         ([], _) => Vec::new(),
         ([a], _) => {

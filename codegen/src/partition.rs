@@ -9,7 +9,7 @@
 
 use crate::closing::closing_rows;
 use crate::definitions::Expansion;
-use crate::freedom::Freedom;
+use crate::freedom::{Freedom, right_inverse};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{Mat3, Vec3, Vec4, ZERO3};
@@ -203,15 +203,29 @@ impl Block {
     /// w' changed so that the body's dot-1 rows hold. What is solved for is the change, across the free axis: the rate about
     /// that axis is the independent velocity, and a large spin takes no part in the rounding.
     fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
+        let directions = self.directions(system, kinematics);
         let mut expansion = Expansion::with_values(&system.definitions, solved.clone());
         let mut w = system.poses[system.slots[self.slot]].w;
-        for (row, forced) in self.freedom.rows.clone().zip(&self.freedom.forced).skip(3) {
+        for (row, direction) in self.freedom.rows.clone().skip(3).zip(directions) {
             let residual = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
-            let direction = forced.rho.map(|e| expansion.of(&mut system.graph, e));
+            let direction = direction.map(|e| expansion.of(&mut system.graph, e));
             let change = system.graph.scale_vec(residual, &direction);
             w = system.graph.sub_vec(&w, &change);
         }
         w
+    }
+
+    /// For each dot-1 row the rotation that changes it alone and is across the body's own axis. That of the null space is across the
+    /// second body's: off the constraints another one, if it is the first body that hangs on the joint.
+    fn directions(&self, system: &mut System, kinematics: &Kinematics) -> Vec<Vec3> {
+        match (self.attachment, self.joint_kind(system)) {
+            (Attachment::Joint { joint, reversed: true, .. }, Some(JointKind::Revolute)) => {
+                let rows = self.freedom.rows.clone().skip(3);
+                let gradients: Vec<_> = rows.map(|row| kinematics.rotation(row, self.slot)).collect();
+                right_inverse(&mut system.graph, &gradients, &[system.joints[joint].first.h])
+            }
+            _ => self.freedom.forced.iter().skip(3).map(|forced| forced.rho).collect(),
+        }
     }
 
     /// The joint's point rows of Φ or Φ̇ at the given values, with the sign that this body's own r or s has in them.

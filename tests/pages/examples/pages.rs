@@ -1,4 +1,4 @@
-//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [FILE...]`.
+//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [--read] [FILE...]`.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_verifier::{Depth, verify};
@@ -9,15 +9,22 @@ use std::time::{Duration, Instant};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
-    let (mut seed, mut count, mut prints, mut files) = (0, 100, false, Vec::new());
+    let (mut seed, mut count, mut prints, mut reads, mut files) = (0, 100, false, false, Vec::new());
     while let Some(argument) = arguments.next() {
         let mut number = || arguments.next().and_then(|n| n.parse::<u64>().ok()).expect("a number follows");
         match argument.as_str() {
             "--seed" => seed = number(),
             "--count" => count = number(),
             "--print" => prints = true,
+            "--read" => reads = true,
             _ => files.push(argument),
         }
+    }
+    if reads {
+        // A page that is refused panics while its start is planted.
+        let refused = |seed: &u64| catch_unwind(|| gyro_pages::page(*seed)).is_err();
+        let refused: Vec<u64> = (seed..seed + count).filter(refused).collect();
+        return println!("{} of {count} pages are not correct: {refused:?}", refused.len());
     }
     if prints {
         return (seed..seed + count).for_each(|seed| println!("{}", gyro_pages::page(seed)));

@@ -17,7 +17,7 @@ impl Page {
             Hold::Constrained,
         ]);
         self.body(root);
-        let n_moving = self.dice.pick(&[1, 1, 1, 1, 1, 2, 2, 2, 3, 4]);
+        let n_moving = self.dice.pick(&[1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 3, 4]);
         for _ in usize::from(root.moves())..n_moving.max(usize::from(root.moves())) {
             if self.dice.once_in(12) {
                 self.body(Hold::Free);
@@ -45,6 +45,7 @@ impl Page {
         let root = if hold == Hold::Free { self.bodies.len() + 1 } else { 0 };
         self.bodies.push((hold, text));
         self.roots.push(root);
+        self.held.push(0);
     }
 
     fn hung_body(&mut self, parent: usize) {
@@ -67,6 +68,7 @@ impl Page {
         }
         self.bodies.push((Hold::Joint, text));
         self.roots.push(self.roots[parent]);
+        self.held.push(if kind.name == "rod" { child } else { self.held[parent] });
         self.freedoms += kind.freedoms;
         self.joint(kind, [parent, child], has_spin);
     }
@@ -76,14 +78,20 @@ impl Page {
         let [first, second] = if self.dice.once_in(5) { [child, parent] } else { [parent, child] };
         let mut text = format!("kind = {:?}\n", kind.name);
         match kind.name {
-            "rod" => text += &format!("length = {}\n", self.positive()),
+            // About as long as its guess is far away.
+            "rod" => {
+                let length = format!("{:.2}", self.dice.between(4.0, 5.5));
+                text += &format!("length = {}\n", self.tunable(length));
+            }
             "screw" if self.dice.once_in(2) => text += &format!("lead = {}\n", self.positive()),
             "screw" => text += &format!("pitch = {}\n", self.dice.number()),
             _ => {}
         }
         let frames = self.frames(kind);
         for (key, body, frame) in [("first", first, &frames[0]), ("second", second, &frames[1])] {
-            let point = self.dice.point();
+            // A rod that pulls at the mass centre need not turn the body when the start is assembled.
+            let is_pulled = kind.name == "rod" && body == child;
+            let point = if is_pulled { [(); 3].map(|()| "0".to_owned()) } else { self.dice.point() };
             let point = self.tunables(point);
             text += &format!("{key} = {{ body = \"b{body}\", point = {point}{frame} }}\n");
         }
@@ -92,7 +100,7 @@ impl Page {
             text += &format!("friction = {}\n", self.positive());
         }
         let starts = self.starts(kind, has_spin);
-        self.joints.push(Joint { kind, child, text, starts, taken: Vec::new() });
+        self.joints.push(Joint { kind, text, starts, taken: Vec::new(), following: Vec::new() });
     }
 
     /// The ends' axes and zero directions.
@@ -110,7 +118,7 @@ impl Page {
     fn frame(&mut self) -> String {
         loop {
             // Several frames with long numbers take the generator minutes: one on a page is enough to be wrong.
-            let is_rough = self.n_rough == 0 && self.dice.once_in(6);
+            let is_rough = self.n_rough == 0 && self.dice.once_in(30);
             let direction = if is_rough { Dice::rough_direction } else { Dice::direction };
             let (axis, zero) = (direction(&mut self.dice), self.dice.direction());
             let [h, z] = [&axis, &zero].map(|v| [0, 1, 2].map(|k| value(&v[k])));

@@ -88,7 +88,7 @@ impl Closing {
             let frame = frame.map_or(String::new(), |[axis, zero]| format!(", axis = {axis}, zero = {zero}"));
             text += &format!("{key} = {{ body = \"b{body}\", point = {}{frame} }}\n", list(&printed(point)));
         }
-        Joint { kind: self.kind, child: self.ends[1].body, text, starts: Vec::new(), taken: Vec::new() }
+        Joint { kind: self.kind, text, starts: Vec::new(), taken: Vec::new(), following: Vec::new() }
     }
 
     /// What the joint holds at zero, or at its length.

@@ -35,6 +35,7 @@ pub fn page(seed: u64) -> String {
     let places = loops::places(&page.read());
     page.forces(&places);
     page.outputs();
+    page.read();
     page.text()
 }
 

@@ -60,6 +60,7 @@ impl Page {
 
     fn take(&mut self, joint: usize, coordinate: &'static str) {
         self.joints[joint].taken.push(coordinate);
+        self.joints[joint].following.push(coordinate);
         self.freedoms -= 1;
     }
 
@@ -104,10 +105,7 @@ impl Page {
         let is_possible = a != b && self.roots[a] == self.roots[b] && (moves(a) || moves(b));
         let mut vector = || [(); 3].map(|()| (100.0 * self.dice.between(-1.0, 1.0)).round() / 100.0);
         let (points, axis, zero) = ([vector(), vector()], vector(), vector());
-        // A body that hangs on a rod has a place of its own as long as nothing but rods holds it.
-        let hangs_on_rod =
-            |body: usize| self.joints.iter().any(|joint| joint.kind.name == "rod" && joint.child == body);
-        let is_possible = is_possible && (name == "rod" || !bodies.into_iter().any(hangs_on_rod));
+        let is_possible = is_possible && (name == "rod" || self.held[a] == self.held[b]);
         (is_possible && self.freedoms > 6 - kind.freedoms)
             .then(|| Closing::between(kind, bodies, places, points, [axis, zero]))?
     }

@@ -48,13 +48,13 @@ impl Hold {
 #[derive(Clone, Debug)]
 pub struct Joint {
     pub kind: Kind,
-    /// The body that hangs on it; of what closes a loop, the second.
-    pub child: usize,
     pub text: String,
     /// Keys that the start is given by; dropped where a coordinate is prescribed or coupled.
     pub starts: Vec<(&'static str, String)>,
     /// Coordinates that a driver or a coupler has taken.
     pub taken: Vec<&'static str>,
+    /// Those of them whose start follows from it.
+    pub following: Vec<&'static str>,
 }
 
 #[derive(Clone, Debug)]
@@ -67,6 +67,8 @@ pub struct Page {
     pub bodies: Vec<(Hold, String)>,
     /// The tree that each body belongs to: a free body's own, or zero.
     pub roots: Vec<usize>,
+    /// The last body before it that hangs on a rod, or zero: its place is a guess as long as nothing but rods holds its tree.
+    pub held: Vec<usize>,
     pub joints: Vec<Joint>,
     /// All the rest.
     pub elements: String,
@@ -92,6 +94,7 @@ impl Page {
             gravity: gravity.map(str::to_owned),
             bodies: Vec::new(),
             roots: Vec::new(),
+            held: Vec::new(),
             joints: Vec::new(),
             elements: String::new(),
             freedoms: 0,
@@ -152,7 +155,7 @@ impl Page {
         }
         for (index, joint) in self.joints.iter().enumerate() {
             let _ = write!(text, "\n[[joint]]\nname = \"j{index}\"\n{}", joint.text);
-            let starts: Vec<_> = joint.starts.iter().filter(|(key, _)| !joint.has_taken(key)).collect();
+            let starts: Vec<_> = joint.starts.iter().filter(|(key, _)| !joint.follows(key)).collect();
             starts.iter().for_each(|(key, start)| text += &format!("{key} = {start}\n"));
             if self.is_closed && !starts.is_empty() {
                 text += "rough = true\n";
@@ -163,8 +166,8 @@ impl Page {
 }
 
 impl Joint {
-    fn has_taken(&self, key: &str) -> bool {
-        key == "rate" && !self.taken.is_empty() || self.taken.contains(&key.trim_end_matches("_deg"))
+    fn follows(&self, key: &str) -> bool {
+        key == "rate" && !self.following.is_empty() || self.following.contains(&key.trim_end_matches("_deg"))
     }
 }
 

@@ -1,0 +1,89 @@
+//! A sample of random pages is generated and proved. `cargo run --release -p gyro-pages --example pages -- --count 10000` does more.
+
+use gyro_verifier::{Depth, verify};
+
+/// Seeds of the sample. Any will do: pages are short, and a few of a thousand take long.
+const SEEDS: std::ops::Range<u64> = 2000..2030;
+
+/// What is wrong with a page; nothing if it is generated and proved.
+fn refused(seed: u64) -> Option<String> {
+    let text = gyro_pages::page(seed);
+    let model = match gyro_model::read_with("page.toml", &text, &mut gyro_pages::load) {
+        Ok(model) => model,
+        Err(problems) => return Some(format!("{problems}")),
+    };
+    let module = match gyro_codegen::generate_model("page.toml", &model) {
+        Ok(module) => module,
+        Err(error) => return Some(format!("{error}")),
+    };
+    let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+    (!report.is_proved()).then(|| format!("{report}"))
+}
+
+#[test]
+fn random_pages_are_proved() {
+    let half = |parity: u64| move |seed: &u64| seed % 2 == parity;
+    let all = |parity| {
+        SEEDS.filter(half(parity)).filter_map(|seed| Some((seed, refused(seed)?))).collect::<Vec<_>>()
+    };
+    let refused = std::thread::scope(|scope| {
+        let threads = [0, 1].map(|parity| scope.spawn(move || all(parity)));
+        threads.map(|thread| thread.join().expect("no panic")).concat()
+    });
+    let words: Vec<_> = refused.iter().map(|(seed, why)| format!("page {seed}: {why}")).collect();
+    assert!(words.is_empty(), "{} of {} pages:\n{}", words.len(), SEEDS.count(), words.join("\n"));
+}
+
+/// The same seed gives the same page, and pages have all that there is.
+#[test]
+fn pages_have_everything() {
+    assert_eq!(gyro_pages::page(5), gyro_pages::page(5));
+    let pages: Vec<_> = (0..300).map(gyro_pages::page).collect();
+    let things = [
+        "revolute",
+        "spherical",
+        "\"fixed\"",
+        "universal",
+        "cylindrical",
+        "prismatic",
+        "planar",
+        "screw",
+        "point_on_line",
+        "\"rod\"",
+        "fixed = true",
+        "\"constrained\"",
+        "free = true",
+        "driven",
+        "[[coupler]]",
+        "[[driver]]",
+        "\"spring\"",
+        "\"damper\"",
+        "\"coulomb\"",
+        "\"stop\"",
+        "\"motor\"",
+        "\"link\"",
+        "\"load\"",
+        "\"pose\"",
+        "\"velocity\"",
+        "\"acceleration\"",
+        "\"inertial\"",
+        "\"reaction\"",
+        "\"driver\"",
+        "\"energy\"",
+        "\"power\"",
+        "[parameters]",
+        "[inputs]",
+        "rough",
+        "t.csv",
+        "product",
+        "xy =",
+        "[[1",
+        "pitch",
+        "lead",
+        "friction =",
+    ];
+    for thing in things {
+        let count = pages.iter().filter(|page| page.contains(thing)).count();
+        assert!(count >= 3, "{thing}: on {count} of {} pages", pages.len());
+    }
+}
