@@ -1,10 +1,9 @@
 //! The data sheet of a generated module: sizes, what each function costs pass by pass, what was left out; and the head of the file,
-//! which shows it.
+//! which shows of it what the verifier can see for itself.
 
 use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::{ExprId, Graph};
-use crate::joint_space::MAX_RATES;
 use crate::schedule::{Operations, Passes};
 use gyro_model::{Model, RowOwner, Support};
 use std::fmt::Write;
@@ -24,6 +23,8 @@ pub struct Sheet {
     pub phi_pi: usize,
     /// What the mechanism could have had and has not, so that no instruction is spent on it.
     pub left_out: Vec<String>,
+    /// The same, where only the derivation knows of it: what a verifier cannot see is not said in the module.
+    pub spared: Vec<String>,
     /// The functions that compute something.
     pub functions: Vec<Function>,
 }
@@ -83,6 +84,7 @@ impl Sheet {
             phi_q: equations.phi_q.len(),
             phi_pi: equations.phi_pi.len(),
             left_out: left_out(equations),
+            spared: spared(equations),
             functions: functions.iter().map(|function| Function::of(equations, function)).collect(),
         }
     }
@@ -145,17 +147,9 @@ impl Sheet {
             ),
         ];
         lines.extend(self.left_out.iter().map(|what| format!("* left out: {what}")));
-        lines.extend(self.functions.iter().flat_map(Function::choices));
         lines.extend(
-            [
-                "",
-                "Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals \
-                 are quotients.",
-                "",
-                "| function | computes | + − | × | ÷ | total | zeros | written out | shared |",
-                "|---|---|---|---|---|---|---|---|---|",
-            ]
-            .map(String::from),
+            ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"]
+                .map(String::from),
         );
         lines.extend(self.functions.iter().map(Function::row));
         lines
@@ -185,27 +179,13 @@ impl Function {
     fn row(&self) -> String {
         let Operations { additions, multiplications, divisions, .. } = self.operations;
         format!(
-            "| {} | {} | {additions} | {multiplications} | {divisions} | {} | {} of {} | {} | {} |",
+            "| {} | {} | {additions} | {multiplications} | {divisions} | {} | {} of {} |",
             self.name,
             self.computes,
             self.operations.total(),
             self.zeros,
             self.results,
-            large(self.passes.written_out),
-            self.passes.shared
         )
-    }
-
-    /// Which form was taken, and the next one, if several were compared.
-    fn choices(&self) -> Option<String> {
-        let taken = self.forms.iter().find(|form| form.is_taken)?;
-        let others: Vec<&Form> = self.forms.iter().filter(|form| !form.is_taken).collect();
-        let next = others.iter().min_by_key(|form| form.operations.total())?;
-        let more =
-            if others.len() > 1 { format!("; {} more compared", others.len() - 1) } else { String::new() };
-        let [taken, next] =
-            [taken, next].map(|form| format!("{} operations by {}", form.operations.total(), form.name));
-        Some(format!("* {}: {taken}; {next}{more}", self.name))
     }
 }
 
@@ -224,6 +204,19 @@ pub fn printable(name: &str) -> String {
     name.chars().map(|c| if plain(c) { c.to_string() } else { c.escape_default().to_string() }).collect()
 }
 
+/// What only the derivation knows to have been spared.
+fn spared(equations: &Equations) -> Vec<String> {
+    let mut spared = Vec::new();
+    if equations.n_vanishing > 0 {
+        spared.push(format!("{} entries of Φ_π' (zero for unit Euler parameters)", equations.n_vanishing));
+    }
+    spared.extend(equations.joint_space.iter().flat_map(|space| &space.invariant).map(|&body| {
+        let name = &equations.model.bodies[body].name;
+        format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
+    }));
+    spared
+}
+
 fn left_out(equations: &Equations) -> Vec<String> {
     let model = equations.model;
     let mut left_out: Vec<String> = model
@@ -239,17 +232,10 @@ fn left_out(equations: &Equations) -> Vec<String> {
         let (owner, index) = (owner_name(model, redundant.row.owner), redundant.row.index + 1);
         format!("row {index} of {owner} (redundant)")
     }));
-    if equations.n_vanishing > 0 {
-        left_out.push(format!("{} entries of Φ_π' (zero for unit Euler parameters)", equations.n_vanishing));
-    }
     match &equations.joint_space {
         Some(space) => {
-            left_out.extend(space.invariant.iter().map(|&body| {
-                let name = &model.bodies[body].name;
-                format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
-            }));
             left_out.extend(space.jacobian.is_none().then(|| {
-                format!("the Jacobian of the joint form (for up to {MAX_RATES} rates, without third derivatives of tables)")
+                "the Jacobian of the joint form (too many rates, or third derivatives of tables)".to_owned()
             }));
         }
         None => left_out.push("joint coordinates (for trees without couplers and drivers)".into()),

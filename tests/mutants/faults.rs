@@ -51,6 +51,8 @@ const FAULTS: &[Fault] = &[
     fault("constraints.rs", "screw", "rows[2] = «system.graph.sub(rows[2], advance)»;", "system.graph.add(rows[2], advance)"),
     fault("coordinate.rs", "bob", "«graph.mat_vec(&j.a, &joint.second.point)»);\n    let (point_i", "graph.transposed_vec(&j.a, &joint.second.point)"),
     fault("coordinate.rs", "slider", "let u = «system.graph.mat_vec(&a, u)»;", "*u"),
+    // What vanishes where |p| = 1.
+    fault("functions.rs", "free-body", "phi: «equations.phi.clone()»,", "equations.phi.iter().map(|_| Graph::ZERO).collect()"),
     // Rotations and their rates.
     fault("linear.rs", "bob", "let sum = self.dot(&[g[0][k], g[1][k], g[2][k]], w);\n            «self.mul(half, sum)»", "sum"),
     fault("linear.rs", "bob", "[«[n1, e0, e3, n2]», [n2", "[n1, e0, n3, e2]"),

@@ -56,7 +56,8 @@ fn package(pendulum: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("outside");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("src")).unwrap();
-    let (gyro_sim, gyro_codegen) = (root().join("gyro-sim"), root().join("codegen"));
+    let [gyro_sim, gyro_codegen, gyro_verifier] =
+        ["gyro-sim", "codegen", "verifier"].map(|folder| root().join(folder));
     let manifest = format!(
         "[package]
 name = \"outside\"
@@ -70,6 +71,7 @@ gyro-sim = {{ path = {gyro_sim:?}, default-features = false }}
 
 [build-dependencies]
 gyro-codegen = {{ path = {gyro_codegen:?} }}
+gyro-verifier = {{ path = {gyro_verifier:?} }}
 
 [profile.dev]
 debug = false
@@ -129,4 +131,12 @@ fn a_package_outside_generates_its_own_mechanisms() {
     let refused = cargo(&package(&page.replace("mass = 0.5", "mass = -0.5")), &target, "run", &[]);
     assert!(!refused.is_success);
     assert!(refused.stderr.contains("mass"), "{}", refused.stderr);
+    // Nor does one whose module is not what the page says.
+    let wrong = package(&page);
+    let built = fs::read_to_string(wrong.join("build.rs"))
+        .unwrap()
+        .replace("WRONG: bool = false", "WRONG: bool = true");
+    fs::write(wrong.join("build.rs"), built).unwrap();
+    let refused = cargo(&wrong, &target, "run", &[]);
+    assert!(!refused.is_success && refused.stderr.contains("REFUTED"), "{}", refused.stderr);
 }

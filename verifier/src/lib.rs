@@ -42,7 +42,9 @@
 
 pub mod atoms;
 pub mod constants;
+pub mod divisors;
 pub mod field;
+mod finite;
 pub mod interpreter;
 pub mod joints;
 pub mod module;
@@ -50,14 +52,20 @@ mod numeric;
 pub mod point;
 pub mod program;
 pub mod proof;
+mod prove;
 mod rates;
 pub mod refusal;
 mod report;
 pub mod rounding;
+mod seed;
+mod sheet;
 pub mod structure;
 mod tape;
 pub mod textbook;
 mod verify;
 
+pub use finite::problems as not_finite;
+pub use prove::{NotProved, prove, prove_with};
 pub use report::{ACCEPTED_LOG10, Finding, Report};
-pub use verify::{Depth, verify};
+pub use seed::Seed;
+pub use verify::{Depth, verify, verify_at, with_proof};

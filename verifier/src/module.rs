@@ -15,8 +15,8 @@ use block::{Before, Form, Reader, Sizes};
 use gyro_model::{Model, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
-pub(crate) use skeleton::n_state;
 use skeleton::{Choice, Has};
+pub(crate) use skeleton::{n_state, type_name};
 use std::collections::BTreeMap;
 use syn::Block;
 
@@ -31,6 +31,8 @@ pub struct Module {
     pub programs: BTreeMap<String, Program>,
     /// What each function's documentation says of it.
     pub docs: BTreeMap<String, String>,
+    /// All documentation but the data sheet, with its line.
+    pub all_docs: Vec<(usize, String)>,
     /// Row and column of each value that `phi_q` gives.
     pub phi_q_pattern: Vec<(usize, usize)>,
     /// Row and column of each value that `phi_pi` gives.
@@ -172,17 +174,16 @@ impl Module {
         let jacobian = text.contains("gyro_sim::JointJacobian");
         let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };
         let joints = JointLayout::of(model);
-        let name = skeleton::type_name(&model.name);
+        let name = type_name(&model.name);
         let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
-        Self::assemble(model, text, constants, tables, joints, &matched)
+        Self::assemble(model, constants, tables, joints, &matched)
     }
 
     fn assemble(
         model: &Model,
-        text: &str,
         constants: Constants,
         tables: Vec<Spline>,
         joints: Option<JointLayout>,
@@ -236,11 +237,8 @@ impl Module {
         };
         let pattern = |name: &str| block::pattern(&block(&matched.holes[name])?);
         let module = Self {
-            sheet: text
-                .lines()
-                .filter_map(|line| line.strip_prefix("//!"))
-                .map(|line| line.trim().to_owned())
-                .collect(),
+            sheet: matched.sheet.clone(),
+            all_docs: matched.docs.clone(),
             docs: matched.holes.iter().map(|(name, hole)| (name.clone(), hole.doc.clone())).collect(),
             phi_q_pattern: pattern("phi_q_pattern")?,
             phi_pi_pattern: pattern("phi_pi_pattern")?,

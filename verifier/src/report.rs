@@ -1,7 +1,10 @@
 //! What was proved of a module, for people and for programs.
 
+use crate::divisors::Divisor;
 use crate::proof::{Claim, Verdict};
 use crate::refusal::Refusal;
+use crate::seed::Seed;
+use crate::sheet::PROOF;
 use serde_json::{Value, json};
 use std::fmt;
 
@@ -22,6 +25,8 @@ pub struct Report {
     pub is_mersenne: bool,
     /// Points at which each claim was tested.
     pub points: u32,
+    /// What the points, and a prime that was drawn, come from.
+    pub seed: Seed,
     /// The claims.
     pub findings: Vec<Finding>,
     /// What is wrong with the text or its exact constants so that nothing could be proved.
@@ -30,6 +35,8 @@ pub struct Report {
     pub problems: Vec<String>,
     /// What is not wrong but could be better: zeros that are stored, numbers that are computed twice or not used, or counted wrongly.
     pub flaws: Vec<String>,
+    /// All divisions, with whether what they divide by is never zero.
+    pub divisors: Vec<Divisor>,
     /// What could not be decided, besides findings.
     pub undecided: Vec<String>,
 }
@@ -88,11 +95,15 @@ impl Finding {
 impl Report {
     /// Whether all is proved and nothing is wrong.
     pub fn is_proved(&self) -> bool {
+        self.is_right() && self.flaws.is_empty()
+    }
+
+    /// Whether all is proved, though it may be flawed.
+    pub fn is_right(&self) -> bool {
         !self.findings.is_empty()
             && self.findings.iter().all(Finding::is_proved)
             && self.refusals.is_empty()
             && self.problems.is_empty()
-            && self.flaws.is_empty()
             && self.undecided.is_empty()
     }
 
@@ -103,43 +114,27 @@ impl Report {
             || self.findings.iter().any(Finding::is_refuted)
     }
 
-    /// The bound on the probability that any claim of the report is false, as a logarithm to base ten.
+    /// The bound on the probability that any claim of the report is false, as a logarithm to base ten; zero where something is not proved.
     pub fn error_log10(&self) -> f64 {
+        if !self.is_right() {
+            return 0.0;
+        }
         let errors = self.findings.iter().map(Finding::error_log10);
         errors.fold(f64::NEG_INFINITY, f64::max) + MOST_CLAIMS.log10()
     }
 
     /// What the data sheet of the module says of the proof: a section of lines.
-    pub fn sheet(&self) -> Vec<String> {
+    pub fn section(&self) -> Vec<String> {
         let (proved, open): (Vec<&Finding>, Vec<&Finding>) =
             self.findings.iter().partition(|f| f.is_proved());
-        let points = if self.points == 1 { "a random point" } else { "random points" };
-        let mut lines = vec![
-            "# Proof".to_owned(),
-            String::new(),
-            format!("Equal to the textbook's at {points} modulo a prime of {} bits:", self.prime_bits),
-        ];
-        for group in proved.chunk_by(|a, b| a.claim.against() == b.claim.against()) {
-            let functions: Vec<String> = group.iter().map(|finding| finding.functions()).collect();
-            lines.push(format!("* {}: {}", functions.join(", "), group[0].claim.against()));
-        }
-        let errors = proved.iter().map(|finding| finding.error_log10());
-        let worst = errors.fold(f64::NEG_INFINITY, f64::max) + MOST_CLAIMS.log10();
-        lines.extend([
-            String::new(),
-            format!("All of it holds but with a probability below 1e{:.0}.", worst.ceil()),
-        ]);
+        let proved: Vec<Claim> = proved.into_iter().map(|finding| finding.claim).collect();
         let open = open.into_iter().map(Finding::functions).chain(self.undecided.iter().cloned());
-        let has_charts = self.findings.iter().any(|finding| finding.claim == Claim::NewtonStep);
-        let pivoting = (!has_charts).then(|| "the choice of coordinates (pivoting at run time)".to_owned());
-        let not_proved: Vec<String> =
-            open.chain(pivoting).chain(["the size of rounding errors".to_owned()]).collect();
-        lines.push(format!("Not proved: {}.", not_proved.join(", ")));
-        lines
+        section(&proved, &open.collect::<Vec<_>>())
     }
 
     /// The report as JSON.
     pub fn to_json(&self) -> Value {
+        let of_divisor = |divisor: &Divisor| json!({ "function": divisor.function, "line": divisor.line, "is_never_zero": divisor.is_never_zero });
         let refusals = self.refusals.iter().map(|r| json!({ "line": r.line, "message": r.message }));
         json!({
             "mechanism": self.mechanism,
@@ -149,21 +144,60 @@ impl Report {
             "prime": self.prime(),
             "prime_bits": self.prime_bits,
             "points": self.points,
+            "seed": self.seed.to_string(),
             "findings": self.findings.iter().map(Finding::to_json).collect::<Vec<_>>(),
             "refusals": refusals.collect::<Vec<_>>(),
             "problems": self.problems,
             "flaws": self.flaws,
             "undecided": self.undecided,
+            "divisors": self.divisors.iter().map(of_divisor).collect::<Vec<_>>(),
         })
     }
 
-    fn prime(&self) -> String {
-        if self.is_mersenne {
-            format!("2^{} - 1", self.prime_bits)
+    /// How many divisions there are, and function by function the lines of those by what may be zero.
+    fn divisors_in_words(&self) -> Vec<String> {
+        let total = self.divisors.len();
+        let open: Vec<&Divisor> = self.divisors.iter().filter(|divisor| !divisor.is_never_zero).collect();
+        let head = format!("{} of {total} divisors are never zero; the others by line", total - open.len());
+        let of_function = |group: &[&Divisor]| {
+            let lines: Vec<String> = group.iter().map(|divisor| divisor.line.to_string()).collect();
+            format!("  {}: {}", group[0].function, lines.join(", "))
+        };
+        let groups = open.chunk_by(|a, b| a.function == b.function).map(of_function);
+        let head = (total > 0).then_some(if open.is_empty() {
+            format!("all {total} divisors are never zero")
         } else {
-            format!("random, {} bits", self.prime_bits)
-        }
+            head
+        });
+        head.into_iter().chain(groups).collect()
     }
+
+    /// The prime in words; none where nothing was tested.
+    fn prime(&self) -> Option<String> {
+        let of_bits = |bits: u64| {
+            if self.is_mersenne { format!("2^{bits} - 1") } else { format!("random, {bits} bits") }
+        };
+        (self.prime_bits > 0).then(|| of_bits(self.prime_bits))
+    }
+}
+
+/// The section of a data sheet on claims that are proved, and on what is not.
+pub(crate) fn section(proved: &[Claim], open: &[String]) -> Vec<String> {
+    let mut lines = vec![
+        PROOF.to_owned(),
+        String::new(),
+        "Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):".to_owned(),
+    ];
+    for group in proved.chunk_by(|a, b| a.against() == b.against()) {
+        let functions: Vec<&str> = group.iter().flat_map(|claim| claim.functions()).copied().collect();
+        lines.push(format!("* {}: {}", functions.join(", "), group[0].against()));
+    }
+    let has_charts = proved.contains(&Claim::NewtonStep) || open.iter().any(|name| name == "newton_step");
+    let pivoting = (!has_charts).then(|| "the choice of coordinates (pivoting at run time)".to_owned());
+    let not_proved: Vec<String> =
+        open.iter().cloned().chain(pivoting).chain(["the size of rounding errors".to_owned()]).collect();
+    lines.extend([String::new(), format!("Not proved: {}.", not_proved.join(", "))]);
+    lines
 }
 
 impl fmt::Display for Report {
@@ -176,7 +210,11 @@ impl fmt::Display for Report {
             }
             _ => "NOT PROVED",
         };
-        writeln!(f, "{}: {verdict} (prime: {}; points: {})", self.mechanism, self.prime(), self.points)?;
+        write!(f, "{}: {verdict}", self.mechanism)?;
+        match self.prime() {
+            Some(prime) => writeln!(f, " (prime: {prime}; points: {}; seed: {})", self.points, self.seed)?,
+            None => writeln!(f)?,
+        }
         for refusal in &self.refusals {
             writeln!(f, "  {refusal}")?;
         }
@@ -194,6 +232,6 @@ impl fmt::Display for Report {
             };
             writeln!(f, "  {:26} {:58} {verdict}", finding.functions(), finding.claim.words())?;
         }
-        Ok(())
+        self.divisors_in_words().into_iter().try_for_each(|line| writeln!(f, "  {line}"))
     }
 }

@@ -3,6 +3,7 @@
 use crate::module::{Module, SET_UP};
 use crate::program::{Node, Program, Source};
 use crate::refusal::Refusal;
+use crate::sheet;
 use gyro_model::Model;
 use std::collections::{HashMap, HashSet};
 
@@ -52,10 +53,9 @@ pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
         problems.extend(repetitions(program).into_iter().map(|(line, first)| {
             Refusal::new(line, format!("`{name}` computes again what line {first} computes"))
         }));
-        problems.extend(misdescribed(name, program, module));
     }
     problems.extend(unread(module));
-    problems.extend(sheet_problems(model, module));
+    problems.extend(sheet::problems(model, module));
     problems
 }
 
@@ -120,99 +120,6 @@ fn sum((a, minus_a): Signed, (b, minus_b): Signed) -> (Made, bool) {
     let ((a, minus_a), (b, minus_b)) =
         if a <= b { ((a, minus_a), (b, minus_b)) } else { ((b, minus_b), (a, minus_a)) };
     (Made::Sum(a, b, minus_a != minus_b), minus_a)
-}
-
-/// Whether the documentation of a function states its operations.
-fn misdescribed(name: &str, program: &Program, module: &Module) -> Option<Refusal> {
-    let Operations { additions, multiplications, divisions, functions } = Operations::of(program);
-    let total = Operations::of(program).total();
-    let calls = if functions > 0 { format!(" and {functions} functions") } else { String::new() };
-    let expected =
-        format!(": {total} operations ({additions} ±, {multiplications} ×, {divisions} ÷){calls}.");
-    let doc = module.docs.get(name).map_or("", String::as_str);
-    let line = program.lines.first().copied().unwrap_or(0);
-    let is_right = program.results.is_empty() || doc.ends_with(&expected);
-    (!is_right).then(|| {
-        Refusal::new(line, format!("`{name}` has{}, its documentation says `{}`", &expected[1..], doc.trim()))
-    })
-}
-
-/// What the data sheet says otherwise than it is.
-fn sheet_problems(model: &Model, module: &Module) -> Vec<Refusal> {
-    // What goes on from other accelerations in the same way has no row of its own.
-    let listed = module.written.iter().filter(|(name, _)| *name != "corrected_derivative");
-    let expected = listed.map(|(name, program)| row(model, module, name, program));
-    // What gives no numbers is not listed.
-    let expected: Vec<String> = expected.filter(|row| !row.ends_with("| 0 of 0 |")).collect();
-    let rows: Vec<&String> = module.sheet.iter().filter(|line| line.starts_with('|')).skip(2).collect();
-    let mut problems = Vec::new();
-    for row in &expected {
-        let found = rows.iter().filter(|line| without_words(line) == *row).count();
-        if found != 1 {
-            problems.push(Refusal::new(1, format!("the data sheet has {found} rows `{row}`")));
-        }
-    }
-    if rows.len() != expected.len() {
-        problems.push(Refusal::new(
-            1,
-            format!("the data sheet has {} functions instead of {}", rows.len(), expected.len()),
-        ));
-    }
-    let non_zeros = non_zeros(model, module);
-    if !module.sheet.contains(&non_zeros) {
-        problems.push(Refusal::new(1, format!("the data sheet does not say `{non_zeros}`")));
-    }
-    problems
-}
-
-/// `| phi_q | 68 | 137 | 0 | 205 | 0 of 77 |`: a row of the data sheet without what it says in words.
-fn row(model: &Model, module: &Module, name: &str, program: &Program) -> String {
-    let operations = Operations::of(program);
-    let is_zero = |id: usize| match program.nodes[id] {
-        Node::Constant(place) => module.constants.values[place].literal == 0.0,
-        _ => false,
-    };
-    let zeros = program.results.iter().filter(|&&id| is_zero(id)).count();
-    let (n, work) = (model.coordinate_bodies().len(), usize::from(model.has_work()));
-    let n_rates = module.joints.as_ref().map_or(0, |joints| joints.n_rates);
-    let (name, results) = match name {
-        "newton_step" => (name, 7 * n),
-        "solve_velocities" => (name, 6 * n),
-        "derivative" => (name, program.results.len() - 6 * n),
-        "joint_derivative" => (name, program.results.len() - n_rates),
-        // Work goes through.
-        "to_maximal" | "to_joints" => (name, program.results.len() - work),
-        "chart_vectors" => ("chart vectors", program.results.len()),
-        _ => (name, program.results.len()),
-    };
-    format!(
-        "| {name} | {} | {} | {} | {} | {zeros} of {results} |",
-        operations.additions,
-        operations.multiplications,
-        operations.divisions,
-        operations.total(),
-    )
-}
-
-/// Nor what the operations were before the last pass.
-fn without_words(line: &str) -> String {
-    let mut cells: Vec<&str> = line.trim_end_matches(" |").split(" | ").collect();
-    if cells.len() > 2 {
-        cells.remove(1);
-    }
-    cells.truncate(6);
-    cells.join(" | ") + " |"
-}
-
-fn non_zeros(model: &Model, module: &Module) -> String {
-    let (n, rows) = (model.coordinate_bodies().len(), model.rows().len());
-    format!(
-        "* non-zeros: Φ_q {} of {}, (Φ_r, Φ_π') {} of {}",
-        module.phi_q_pattern.len(),
-        (rows + n) * 7 * n,
-        module.phi_pi_pattern.len(),
-        rows * 6 * n
-    )
 }
 
 #[cfg(test)]

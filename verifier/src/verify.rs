@@ -1,9 +1,11 @@
 //! Verifies one module from its text.
 
+use crate::divisors::divisors;
 use crate::module::Module;
 use crate::proof::{Claim, Decider, Statements, Verdict};
-use crate::report::{ACCEPTED_LOG10, Finding, Report};
-use crate::{numeric, structure};
+use crate::report::{self, ACCEPTED_LOG10, Finding, Report};
+use crate::seed::Seed;
+use crate::{finite, numeric, sheet, structure};
 use gyro_model::Model;
 use num_bigint::BigUint;
 use std::f64::consts::LOG10_2;
@@ -26,38 +28,80 @@ impl Depth {
     }
 }
 
-/// Seed of the prime and the points: the same module is tested in the same way each time.
-const SEED: u64 = 0x6779_726f;
-
 /// Verifies a module's text, and the text of its exact constants, against the model that it claims to be of.
 ///
 /// Nothing of the module is believed: its text must be of the subset that the generator writes, everything in it but the
-/// formulas as the model determines it, and the formulas equal to the textbook's.
+/// formulas as the model determines it, and the formulas equal to the textbook's. The same module is tested in the same way each time: whoever
+/// knows that can write a wrong one that passes, by chance or otherwise, so that nobody's word need be taken use [`verify_at`].
 pub fn verify(model: &Model, module: &str, constants: &str, depth: Depth) -> Report {
-    let empty = Report { mechanism: model.name.clone(), points: depth.points(), ..Report::default() };
+    verify_at(model, module, constants, depth, Seed::FIXED)
+}
+
+/// The same with the prime and the points of a seed, such as [`Seed::fresh`].
+pub fn verify_at(model: &Model, module: &str, constants: &str, depth: Depth, seed: Seed) -> Report {
+    let empty = Report { mechanism: model.name.clone(), points: depth.points(), seed, ..Report::default() };
     match Module::read(model, module, constants) {
         Ok(module) => prove(model, &module, empty),
         Err(refusal) => Report { refusals: vec![refusal], ..empty },
     }
 }
 
+/// A module's text with the section on its proof on the data sheet, and the report on this very text, byte for byte.
+pub fn with_proof(model: &Model, module: &str, constants: &str, depth: Depth) -> (String, Report) {
+    // What will be proved is nearly always all.
+    let Ok(read) = Module::read(model, module, constants) else {
+        return (module.to_owned(), verify(model, module, constants, depth));
+    };
+    let text = with_section(module, &report::section(&claims(model, &read), &[]));
+    let report = verify(model, &text, constants, depth);
+    let section = report.section();
+    if report.findings.is_empty() || report::section(&claims(model, &read), &[]) == section {
+        return (text, report);
+    }
+    let text = with_section(module, &section);
+    let report = verify(model, &text, constants, depth);
+    (text, report)
+}
+
+/// A module with more lines at the end of its data sheet.
+fn with_section(module: &str, lines: &[String]) -> String {
+    let is_sheet = |line: &&str| {
+        line.starts_with("//!") || !(line.starts_with("///") || line.starts_with(char::is_alphabetic))
+    };
+    let lines_before = module.split_inclusive('\n').take_while(is_sheet);
+    let (head, rest) = module.split_at(lines_before.map(str::len).sum());
+    let lines: String = lines.iter().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect();
+    format!("{}\n//!\n{lines}\n{rest}", head.trim_end())
+}
+
+/// What is claimed of a module.
+fn claims(model: &Model, module: &Module) -> Vec<Claim> {
+    let mut claims = Claim::all(module);
+    claims.retain(|claim| *claim != Claim::Outputs || !model.outputs.is_empty());
+    claims
+}
+
 /// Proves a module that was read.
 fn prove(model: &Model, module: &Module, report: Report) -> Report {
     let mut report = Report {
         flaws: structure::problems(model, module).iter().map(ToString::to_string).collect(),
-        problems: numeric::problems(model, module),
+        problems: [
+            numeric::problems(model, module, report.seed),
+            finite::problems(model, module, report.seed),
+        ]
+        .concat(),
+        divisors: divisors(model, module),
         ..report
     };
-    let mut claims = Claim::all(module);
-    claims.retain(|claim| *claim != Claim::Outputs || !model.outputs.is_empty());
+    let claims = claims(model, module);
     let statements = Statements::new(model, module, &claims);
     let degree_log2 = statements.degrees_log2().into_iter().flatten().fold(0.0, f64::max);
     let points = f64::from(report.points);
     let bounds_error = |bits: u64| points * (degree_log2 - bits as f64) * LOG10_2 <= ACCEPTED_LOG10;
     let always = |_: u64| true;
     // Where no prime is long enough to bound the error, the shortest may still show a mistake.
-    let tested = by_shortest(model, module, &statements, report.points, &bounds_error)
-        .or_else(|| by_shortest(model, module, &statements, report.points, &always));
+    let tested = by_shortest(model, module, &statements, &report, &bounds_error)
+        .or_else(|| by_shortest(model, module, &statements, &report, &always));
     let Some(tested) = tested else {
         report.undecided.push("the square roots of the constants need too long a prime".to_owned());
         return report;
@@ -70,6 +114,11 @@ fn prove(model: &Model, module: &Module, report: Report) -> Report {
     }
     report.prime_bits = tested.prime.bits();
     report.is_mersenne = tested.prime.count_ones() == report.prime_bits;
+    if sheet::proof(module).is_some_and(|section| section != report.section()) {
+        report
+            .flaws
+            .push("the data sheet's section on the proof says something else than was proved".to_owned());
+    }
     report
 }
 
@@ -85,12 +134,12 @@ fn by_shortest(
     model: &Model,
     module: &Module,
     statements: &Statements<'_>,
-    points: u32,
+    report: &Report,
     is_long_enough: &dyn Fn(u64) -> bool,
 ) -> Option<Tested> {
-    modulo::<9>(model, module, statements, points, is_long_enough)
-        .or_else(|| modulo::<36>(model, module, statements, points, is_long_enough))
-        .or_else(|| modulo::<70>(model, module, statements, points, is_long_enough))
+    modulo::<9>(model, module, statements, report, is_long_enough)
+        .or_else(|| modulo::<36>(model, module, statements, report, is_long_enough))
+        .or_else(|| modulo::<70>(model, module, statements, report, is_long_enough))
 }
 
 /// Tests modulo a prime of this many limbs; `None` if it is too short.
@@ -98,20 +147,20 @@ fn modulo<const L: usize>(
     model: &Model,
     module: &Module,
     statements: &Statements<'_>,
-    points: u32,
+    report: &Report,
     is_long_enough: &dyn Fn(u64) -> bool,
 ) -> Option<Tested> {
     if !is_long_enough(64 * L as u64) {
         return None;
     }
-    let prime = statements.prime::<L>(SEED).ok()?;
+    let prime = statements.prime::<L>(report.seed).ok()?;
     if !is_long_enough(prime.value().bits() - 1) {
         return None;
     }
     let decider = Decider::<L>::new(model, prime);
     Some(Tested {
-        verdicts: decider.decide_all(statements, points, SEED),
-        sparsity: decider.sparsity(module, SEED),
+        verdicts: decider.decide_all(statements, report.points, report.seed),
+        sparsity: decider.sparsity(module, report.seed),
         prime: decider.prime().value().clone(),
     })
 }

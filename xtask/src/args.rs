@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use gyro_model::{Method, Rational, parse_decimal};
 use gyro_runner::{Coordinates, Correction, Integrator, When};
+use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -80,6 +81,9 @@ pub(crate) struct VerifyArgs {
     /// One point for each claim instead of two
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Test at the points of this seed, as another run has printed it; otherwise they are drawn anew
+    #[arg(long, value_name = "HEX", conflicts_with_all = ["rounding", "stability"])]
+    pub(crate) seed: Option<Seed>,
     /// Print one JSON array and nothing else
     #[arg(long)]
     pub(crate) json: bool,

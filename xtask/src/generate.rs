@@ -2,7 +2,7 @@
 
 use crate::args::GenerateArgs;
 use crate::failure::Failure;
-use crate::verify::verify_quickly;
+use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
 use crate::{files, remarks, scene};
@@ -92,26 +92,11 @@ fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let model = scene::read(page)?;
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
-        let mut module = gyro_codegen::generate_model(&files::shown(page), &model)
+        let module = gyro_codegen::generate_model(&files::shown(page), &model)
             .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
-        let report = verify_quickly(&model, &module)?;
-        module.code = with_sheet(&module.code, &report.sheet());
-        Ok(module)
+        proved(&model, module)
     };
     pages.par_iter().map(module).collect()
-}
-
-/// A module with more lines at the end of its data sheet.
-fn with_sheet(code: &str, lines: &[String]) -> String {
-    let is_sheet = |line: &str| line.starts_with("//!");
-    let head: usize = code
-        .split_inclusive('\n')
-        .take_while(|line| is_sheet(line) || !line.starts_with("///"))
-        .map(str::len)
-        .sum();
-    let (head, rest) = code.split_at(head);
-    let lines: String = lines.iter().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect();
-    format!("{}\n//!\n{lines}\n{rest}", head.trim_end())
 }
 
 /// How a generated module begins.

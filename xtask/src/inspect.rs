@@ -142,7 +142,7 @@ impl Inspection {
             ("non-zeros of (Φ_r, Φ_π')", format!("{} of {}", sheet.phi_pi, rows * 6 * sheet.bodies.len())),
         ]);
         text += "\nleft out\n";
-        sheet.left_out.iter().for_each(|what| text += &format!("  {what}\n"));
+        sheet.left_out.iter().chain(&sheet.spared).for_each(|what| text += &format!("  {what}\n"));
         text += "\noperations (+ − × ÷) of each function after each pass: every expression written out where it is used, equal ones\n\
                  computed once, products with reciprocals as quotients (what is emitted); its results that are always zero";
         text += if self.bytes.is_some() { "; bytes of machine code\n" } else { "\n" };
@@ -236,7 +236,7 @@ impl Inspection {
                 "phi_pi": [sheet.phi_pi, sheet.rows * 6 * sheet.bodies.len()],
             },
             "redundant": json::redundant(&self.model),
-            "left_out": sheet.left_out,
+            "left_out": sheet.left_out.iter().chain(&sheet.spared).collect::<Vec<_>>(),
             "functions": functions,
             "saddle": self.saddle,
             "elements": self.elements.iter().map(|element| element.to_json(sheet)).collect::<Vec<_>>(),

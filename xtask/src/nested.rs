@@ -410,5 +410,8 @@ mod tests {
         assert_ne!(name("a", Precision::F64), name("b", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("a", Precision::F32));
         assert!(name("a", Precision::F64).starts_with("top-"));
+        // A mechanism may have the name of whatever could be imported.
+        let text = main(&module("a"), Precision::F64);
+        assert!(text.lines().all(|line| !line.starts_with("use ")), "{text}");
     }
 }

@@ -8,7 +8,7 @@ use crate::words::count;
 use crate::{files, remarks, rounding, scene, stability};
 use gyro_codegen::Module;
 use gyro_model::Model;
-use gyro_verifier::{Depth, Report, verify};
+use gyro_verifier::{Depth, Report, Seed, verify, verify_at, with_proof};
 use rayon::prelude::*;
 use std::io::Write;
 use std::path::Path;
@@ -26,14 +26,15 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     if let Some(configurations) = args.stability {
         return say(&stability::report(&args.models, configurations.get())?);
     }
+    let seed = args.seed.unwrap_or_else(Seed::fresh);
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =
-        pages.par_iter().map(|page| verify_page(&places, page, depth)).collect();
+        pages.par_iter().map(|page| verify_page(&places, page, depth, seed)).collect();
     let reports = reports?;
     let text = if args.json {
         format!("{}\n", serde_json::Value::Array(reports.iter().map(Report::to_json).collect()))
     } else {
-        in_words(&reports)
+        in_words(&reports, seed)
     };
     say(&text)?;
     let n_unproved = reports.iter().filter(|report| !report.is_proved()).count();
@@ -43,9 +44,9 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     Err(Failure::Run(format!("{} not proved", count(n_unproved as u64, "module"))))
 }
 
-fn verify_page(places: &[Places], page: &Path, depth: Depth) -> Result<Report, Failure> {
+fn verify_page(places: &[Places], page: &Path, depth: Depth, seed: Seed) -> Result<Report, Failure> {
     let (model, [code, constants]) = read_page(places, page)?;
-    Ok(verify(&model, &code, &constants, depth))
+    Ok(verify_at(&model, &code, &constants, depth, seed))
 }
 
 fn rounding_of(places: &[Places], page: &Path) -> Result<rounding::Table, Failure> {
@@ -73,10 +74,23 @@ fn say(text: &str) -> Result<(), Failure> {
 
 /// Proves a module that was just made, for the commands that make one. What is refuted is refused; what is undecided is right as far as
 /// anybody knows, and said.
-pub(crate) fn verify_quickly(model: &Model, module: &Module) -> Result<Report, Failure> {
+pub(crate) fn verify_quickly(model: &Model, module: &Module) -> Result<(), Failure> {
     let spinner = Spinner::new(format!("proving {}", module.name));
     let report = verify(model, &module.code, &module.constants, Depth::Quick);
     drop(spinner);
+    judge(&report)
+}
+
+/// The same; gives the module with what was proved on its data sheet, which is the text that was proved.
+pub(crate) fn proved(model: &Model, module: Module) -> Result<Module, Failure> {
+    let spinner = Spinner::new(format!("proving {}", module.name));
+    let (code, report) = with_proof(model, &module.code, &module.constants, Depth::Quick);
+    drop(spinner);
+    judge(&report)?;
+    Ok(Module { code, ..module })
+}
+
+fn judge(report: &Report) -> Result<(), Failure> {
     if report.is_refuted() {
         let cure = "this is a mistake of the generator: please report it with the page";
         return Err(Failure::Run(format!(
@@ -86,20 +100,18 @@ pub(crate) fn verify_quickly(model: &Model, module: &Module) -> Result<Report, F
     if !report.is_proved() {
         remarks::warn(&format!(
             "nothing wrong was found in {}, but not all is as it should be\n{report}",
-            module.name
+            report.mechanism
         ));
     }
-    Ok(report)
+    Ok(())
 }
 
-fn in_words(reports: &[Report]) -> String {
+fn in_words(reports: &[Report], seed: Seed) -> String {
     let mut text: String = reports.iter().map(|report| format!("{report}\n")).collect();
-    let n_proved = reports.iter().filter(|report| report.is_proved()).count();
-    let worst = reports.iter().map(Report::error_log10).fold(f64::NEG_INFINITY, f64::max);
-    text += &format!(
-        "{n_proved} of {} proved; each is false with a probability below 1e{:.0}\n",
-        count(reports.len() as u64, "module"),
-        worst.ceil()
-    );
-    text
+    let proved: Vec<&Report> = reports.iter().filter(|report| report.is_proved()).collect();
+    text += &format!("{} of {} proved", proved.len(), count(reports.len() as u64, "module"));
+    if let Some(worst) = proved.iter().map(|report| report.error_log10()).reduce(f64::max) {
+        text += &format!("; each is false with a probability below 1e{:.0}", worst.ceil());
+    }
+    text + &format!("\nto repeat this: --seed {seed}\n")
 }

@@ -154,9 +154,9 @@ fn the_summary_stands_beside_linear_theory_and_files_are_written() {
     assert_eq!(table.lines().count(), 1 + 1001);
 }
 
-/// A disc on a shaft that a motor turns, J = 0.5 kg·m², with a sledge that slides on a table beside it.
+/// The name is that of something which programs around a mechanism use. A disc on a shaft that a motor turns, J = 0.5 kg·m², with a sledge that slides on a table beside it.
 const MOTOR: &str = r#"format = 1
-name = "motor"
+name = "tree_with_jacobian"
 [simulation]
 t_end = 2
 step = 1e-3

@@ -12,7 +12,7 @@ mod layout;
 mod maps;
 mod multipliers;
 
-pub use jacobian::{Jacobian, MAX_RATES};
+pub use jacobian::Jacobian;
 pub use layout::Layout;
 
 use crate::closing::closing_rows;

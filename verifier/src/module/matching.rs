@@ -23,8 +23,14 @@ pub struct Matched {
     pub holes: BTreeMap<String, Hole>,
     /// Numbers by name, where the expected text has `INT_name`: the same number everywhere.
     pub numbers: BTreeMap<String, usize>,
+    /// The documentation of the file, a line each.
+    pub sheet: Vec<String>,
+    /// All other documentation, with its line.
+    pub docs: Vec<(usize, String)>,
     arguments: Vec<String>,
     doc: String,
+    /// How many groups the walk is in.
+    depth: usize,
 }
 
 impl Matched {
@@ -64,7 +70,12 @@ impl Matched {
                         self.hole(name, group);
                         Ok(())
                     }
-                    None => self.walk(expected.stream(), group.stream(), group.span_close().end().line),
+                    None => {
+                        self.depth += 1;
+                        self.walk(expected.stream(), group.stream(), group.span_close().end().line)?;
+                        self.depth -= 1;
+                        Ok(())
+                    }
                 }
             }
             (TokenTree::Ident(open), _) if open.to_string().starts_with("INT_") => {
@@ -118,7 +129,7 @@ impl Matched {
         Ok(())
     }
 
-    /// Passes over `#[doc = "..."]`, in either form, and remembers the last one.
+    /// Passes over `#[doc = "..."]`, and over that of the file, and remembers them.
     fn skip_docs(&mut self, found: &mut Peekable<impl Iterator<Item = TokenTree> + Clone>) {
         // A copy of what is to come is taken only where a `#` stands: one for each token would take a square of them.
         while found
@@ -126,13 +137,19 @@ impl Matched {
             .is_some_and(|token| matches!(token, TokenTree::Punct(mark) if mark.as_char() == '#'))
         {
             let mut ahead = found.clone();
-            if ahead.next_if(|token| token.to_string() == "#").is_none() {
+            let Some(sign) = ahead.next_if(|token| token.to_string() == "#") else { return };
+            let is_of_file = ahead.next_if(|token| token.to_string() == "!").is_some();
+            if is_of_file && self.depth > 0 {
                 return;
             }
-            ahead.next_if(|token| token.to_string() == "!");
             let Some(TokenTree::Group(attribute)) = ahead.next() else { return };
             let Some(text) = documentation(&attribute) else { return };
-            self.doc = text;
+            if is_of_file {
+                self.sheet.push(text.trim().to_owned());
+            } else {
+                self.docs.push((sign.span().start().line, text.clone()));
+                self.doc = text;
+            }
             *found = ahead;
         }
     }

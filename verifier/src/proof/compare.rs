@@ -8,8 +8,7 @@ use crate::interpreter::{self, DivisionByZero, Given};
 use crate::joints::JointLayout;
 use crate::module::{Module, is_on_constraints, source_of_accelerations};
 use crate::program::Node;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
+use crate::seed::Seed;
 use std::collections::HashMap;
 
 /// An operation whose result is known without it.
@@ -24,8 +23,9 @@ pub struct Needless {
 impl<const L: usize> Decider<'_, L> {
     /// Whether a function of one module gives the same numbers as that of another one at a random point; `None` if one of them exists at
     /// no point. Functions that read accelerations are given those of the first module.
-    pub fn agree(&self, modules: [&Module; 2], function: &str, seed: u64) -> Option<bool> {
+    pub fn agree(&self, modules: [&Module; 2], function: &str, seed: impl Into<Seed>) -> Option<bool> {
         let same_places = modules[0].programs[function].places == modules[1].programs[function].places;
+        let seed = seed.into();
         let of_any_length = self.of_any_length(modules[0], function);
         let agree = self.at_point(modules[0], seed, |draw, atoms| {
             let [a, b] = both(modules, function, draw, atoms)?;
@@ -51,11 +51,11 @@ impl<const L: usize> Decider<'_, L> {
     }
 
     /// The same in 384 bits, where the angle of a point is known to be that of any positive multiple of it.
-    fn agree_in_floats(&self, modules: [&Module; 2], function: &str, seed: u64) -> bool {
+    fn agree_in_floats(&self, modules: [&Module; 2], function: &str, seed: Seed) -> bool {
         let turns = |module: &Module| {
             module.programs[function].nodes.iter().any(|node| matches!(node, Node::Atan2(..)))
         };
-        let (precision, mut random) = (Precision::new(), ChaCha8Rng::seed_from_u64(seed));
+        let (precision, mut random) = (Precision::new(), seed.numbers(0));
         let draw = point::real(self.model, modules[0], &precision, &mut random);
         let Some(draw) = draw.filter(|_| modules.into_iter().all(turns)) else { return false };
         let Ok([a, b]) = both(modules, function, &draw, &Elementary) else { return false };
@@ -65,8 +65,8 @@ impl<const L: usize> Decider<'_, L> {
 
     /// Operations whose value, up to its sign, is zero or one that is known before, wherever |p| = 1: what a cleverer generator could
     /// leave out. They are no fault. `None` if the function exists at no point.
-    pub fn needless(&self, module: &Module, function: &str, seed: u64) -> Option<Vec<Needless>> {
-        self.at_point(module, seed, |draw, atoms| {
+    pub fn needless(&self, module: &Module, function: &str, seed: impl Into<Seed>) -> Option<Vec<Needless>> {
+        self.at_point(module, seed.into(), |draw, atoms| {
             let (draw, accelerations) = suited(module, function, draw, atoms)?;
             let constants = interpreter::constants(self.prime(), module);
             let program = &module.programs[function];
@@ -93,7 +93,8 @@ impl<const L: usize> Decider<'_, L> {
     ///
     /// # Errors
     /// [`Verdict::Undecided`] if no point has all roots.
-    pub fn sparsity(&self, module: &Module, seed: u64) -> Result<Vec<String>, Verdict> {
+    pub fn sparsity(&self, module: &Module, seed: impl Into<Seed>) -> Result<Vec<String>, Verdict> {
+        let seed = seed.into();
         let patterns = [("phi_q", &module.phi_q_pattern), ("phi_pi", &module.phi_pi_pattern)];
         let mut problems = Vec::new();
         for (matrix, pattern) in patterns {

@@ -16,6 +16,7 @@ use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
 use crate::interpreter::DivisionByZero;
 use crate::module::Module;
 use crate::program::{Function, Id, Node, Source};
+use crate::seed::Seed;
 use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
 use gyro_model::{Model, Rational};
@@ -136,7 +137,7 @@ impl<'a> Statements<'a> {
     ///
     /// # Errors
     /// The number of bits that the roots take, if they are too many.
-    pub fn prime<const L: usize>(&self, seed: u64) -> Result<Prime<L>, u64> {
+    pub fn prime<const L: usize>(&self, seed: Seed) -> Result<Prime<L>, u64> {
         let constants = self.formulas.constants.iter();
         let radicands: Vec<_> = constants.filter_map(|constant| constant.radicand.as_ref()).collect();
         let mersenne = Prime::mersenne();
@@ -146,7 +147,7 @@ impl<'a> Statements<'a> {
         let product = |r: &Rational| r.numer().magnitude() * r.denom().magnitude();
         let squares =
             radicands.iter().fold(BigUint::from(1_u32), |squares, r| squares.lcm(&radical(product(r))));
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut random = seed.numbers(0);
         Prime::with_roots(&squares, &mut random).ok_or(squares.bits())
     }
 
@@ -231,16 +232,16 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// Tests a claim at some points; `seed` makes them other points.
-    pub fn decide(&self, module: &Module, claim: Claim, points: u32, seed: u64) -> Verdict {
+    pub fn decide(&self, module: &Module, claim: Claim, points: u32, seed: impl Into<Seed>) -> Verdict {
         let statements = Statements::new(self.model, module, &[claim]);
-        self.decide_all(&statements, points, seed).pop().expect("a verdict for each claim")
+        self.decide_all(&statements, points, seed.into()).pop().expect("a verdict for each claim")
     }
 
     /// Tests some claims together, which share what they have in common.
-    pub fn decide_all(&self, statements: &Statements<'_>, points: u32, seed: u64) -> Vec<Verdict> {
+    pub fn decide_all(&self, statements: &Statements<'_>, points: u32, seed: Seed) -> Vec<Verdict> {
         let mut refutations: Vec<Option<Verdict>> = vec![None; statements.claims.len()];
         for point in 0..u64::from(points) {
-            self.test(statements, seed.wrapping_add(point << 32), &mut refutations);
+            self.test(statements, seed.of_point(point), &mut refutations);
         }
         if refutations.iter().all(Option::is_some) {
             return refutations.into_iter().flatten().collect();
@@ -258,7 +259,7 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// Tests the claims that are open at one point.
-    fn test(&self, statements: &Statements<'_>, seed: u64, refutations: &mut [Option<Verdict>]) {
+    fn test(&self, statements: &Statements<'_>, seed: Seed, refutations: &mut [Option<Verdict>]) {
         let is_open = |(residuals, refutation): (_, &Option<Verdict>)| {
             if refutation.is_none() { residuals } else { None }
         };
@@ -281,7 +282,7 @@ impl<'a, const L: usize> Decider<'a, L> {
         &self,
         statements: &Statements<'_>,
         needed: &[bool],
-        seed: u64,
+        seed: Seed,
         number: u64,
     ) -> Option<Vec<Option<Modular<'_, L>>>> {
         let (draw, atoms) = self.draw(statements.module, seed, number)?;
@@ -289,15 +290,15 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// A point.
-    fn draw(&self, module: &Module, seed: u64, number: u64) -> Option<(Draw<Modular<'_, L>>, Drawn<'_, L>)> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(number));
+    fn draw(&self, module: &Module, seed: Seed, number: u64) -> Option<(Draw<Modular<'_, L>>, Drawn<'_, L>)> {
+        let mut random = seed.numbers(number);
         let atoms = Drawn::new(&self.prime, ChaCha8Rng::from_rng(&mut random));
         Some((point::modular(self.model, module, &self.prime, &mut random)?, atoms))
     }
 
     /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been missed. `None` if they
     /// are all zero where all roots exist.
-    fn look_closer(&self, statements: &Statements<'_>, residuals: &[Id], seed: u64) -> Option<Verdict> {
+    fn look_closer(&self, statements: &Statements<'_>, residuals: &[Id], seed: Seed) -> Option<Verdict> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let roots = statements.roots(&reach);
         let roots_reach = statements.formulas.reach(roots.iter().map(|&(root, _)| root));
@@ -341,7 +342,7 @@ impl<'a, const L: usize> Decider<'a, L> {
         statements: &Statements<'_>,
         residuals: &[Id],
         values: &[Option<Modular<'_, L>>],
-        seed: u64,
+        seed: Seed,
     ) -> Option<Verdict> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let nodes = statements.formulas.program.nodes.iter().zip(&reach);
@@ -355,7 +356,7 @@ impl<'a, const L: usize> Decider<'a, L> {
             return None;
         }
         let precision = Precision::new();
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut random = seed.numbers(DRAWS);
         let draw = point::real(self.model, statements.module, &precision, &mut random);
         let Some(draw) = draw else { return Some(Verdict::Undecided) };
         let needed = statements.formulas.reach(on_line.iter().copied());
@@ -371,10 +372,10 @@ impl<'a, const L: usize> Decider<'a, L> {
         statements: &Statements<'_>,
         residuals: &[Id],
         reach: &[bool],
-        seed: u64,
+        seed: Seed,
     ) -> Verdict {
         let precision = Precision::new();
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut random = seed.numbers(DRAWS);
         let Some(draw) = point::real(self.model, statements.module, &precision, &mut random) else {
             return Verdict::Undecided;
         };
@@ -394,7 +395,7 @@ impl<'a, const L: usize> Decider<'a, L> {
     pub(super) fn at_point<'p, R>(
         &'p self,
         module: &Module,
-        seed: u64,
+        seed: Seed,
         evaluate: impl Fn(&Draw<Modular<'p, L>>, &Drawn<'p, L>) -> Result<R, DivisionByZero>,
     ) -> Option<R> {
         let mut zeros = 0;
@@ -426,8 +427,8 @@ const ROUNDING_LOG2: f64 = 1e-3;
 ///
 /// # Errors
 /// The number of bits that the roots take, if they are too many.
-pub fn prime<const L: usize>(model: &Model, module: &Module, seed: u64) -> Result<Prime<L>, u64> {
-    Statements::new(model, module, &Claim::all(module)).prime(seed)
+pub fn prime<const L: usize>(model: &Model, module: &Module, seed: impl Into<Seed>) -> Result<Prime<L>, u64> {
+    Statements::new(model, module, &Claim::all(module)).prime(seed.into())
 }
 
 /// The number with small primes taken once: it has the same prime factors.

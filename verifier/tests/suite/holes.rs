@@ -3,9 +3,10 @@
 use crate::support::Page;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::{Module, is_on_constraints};
-use gyro_verifier::program::{Id, Node, Program, Source};
+use gyro_verifier::program::{Function, Id, Node, Program, Source};
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
-use gyro_verifier::{Depth, verify};
+use gyro_verifier::structure::problems;
+use gyro_verifier::{Depth, Report, Seed, verify, verify_at, with_proof};
 
 const SEED: u64 = 17;
 
@@ -298,4 +299,169 @@ fn what_no_module_has_is_refused() {
         }
     }
     assert!(accepted.is_empty(), "{} were read:\n{}", accepted.len(), accepted.join("\n"));
+}
+
+/// `x w / w` is x but where w is zero: at the start, at rest, where an angle is a half turn.
+#[test]
+fn removable_singularities_are_found() {
+    let page = crate::support::page("gyroscope");
+    let spin = 7 * 3 + 4;
+    // A function, and what is zero somewhere. (A cosine is nowhere zero in `f64`, and x w / w is x there.)
+    let removable = [
+        ("applied_force", format!("y[{spin}]")),
+        ("accelerations", format!("y[{spin}]")),
+        ("project", "y[3]".to_owned()),
+        ("joint_accelerations", "x[3]".to_owned()),
+        ("joint_accelerations", "x[1].sin()".to_owned()),
+        ("to_maximal", "x[4]".to_owned()),
+        ("corrected_solution", format!("y[{spin}]")),
+        ("newton_step", "y[3]".to_owned()),
+        ("solve_velocities", format!("y[{spin}]")),
+    ];
+    for (function, zero) in removable {
+        let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
+        let source = |text: &str| {
+            let (array, rest) = text.split_once('[').expect("an element");
+            let place: usize = rest.split(']').next().and_then(|k| k.parse().ok()).expect("an index");
+            if array == "x" { Source::Joint(place) } else { Source::State(place) }
+        };
+        let mut mutant = module.clone();
+        let program = mutant.programs.get_mut(function).expect("a function");
+        let mut divisor = program.push(Node::Read(source(&zero)), 1);
+        for (call, known) in [(".sin()", Function::Sin)] {
+            if zero.ends_with(call) {
+                divisor = program.push(Node::Call(known, divisor), 1);
+            }
+        }
+        let last = program.results.len() - 1;
+        let product = program.push(Node::Mul(program.results[last], divisor), 1);
+        program.results[last] = program.push(Node::Div(product, divisor), 77);
+        let prime: Prime<9> = prime(&page.model, &mutant, SEED).expect("room for all roots");
+        let decider = Decider::new(&page.model, prime);
+        let claims = Claim::all(&mutant).into_iter().filter(|claim| claim.functions().contains(&function));
+        for claim in claims {
+            let verdict = decider.decide(&mutant, claim, 1, SEED);
+            assert!(matches!(verdict, Verdict::Proved { .. }), "the identity holds: {claim:?}, {verdict:?}");
+        }
+        let found = gyro_verifier::not_finite(&page.model, &mutant, Seed::FIXED);
+        let about =
+            |problem: &&String| problem.starts_with(&format!("`{function}`")) && problem.contains("line 77");
+        let problem = found.iter().find(about);
+        assert!(problem.is_some(), "{function}, {zero}: {found:?}");
+    }
+}
+
+/// What may be zero is in the list, as the new divisor is.
+#[test]
+fn divisors_that_may_vanish_are_listed() {
+    let page = crate::support::page("gyroscope");
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    let listed = |report: &Report| {
+        report.divisors.iter().filter(|divisor| !divisor.is_never_zero).map(|d| d.line).collect::<Vec<_>>()
+    };
+    let divisions = page.code.matches(" / ").count() + page.code.matches("\n        / ").count();
+    assert!(report.divisors.len() >= 5 && !listed(&report).contains(&1), "{divisions}");
+    let place = "let t0 = ";
+    let wrong = page.code.replacen(place, "let t0 = outer_ring_e0 / outer_ring_e0 * ", 1);
+    assert_ne!(wrong, page.code);
+    let line =
+        1 + wrong[..wrong.find("outer_ring_e0 / outer_ring_e0").expect("it is there")].matches('\n').count();
+    let report = verify(&page.model, &wrong, &page.constants, Depth::Quick);
+    assert!(report.divisors.is_empty() || listed(&report).contains(&line), "{report}");
+}
+
+/// Each line of words is known to be true or is not proved: that it is not what another mechanism would have, too.
+#[test]
+fn words_are_proved_too() {
+    let mut accepted = Vec::new();
+    for name in ["spinning-top", "cam"] {
+        let page = crate::support::page(name);
+        let (text, report) = with_proof(&page.model, &page.code, &page.constants, Depth::Quick);
+        assert!(report.is_proved(), "{report}");
+        assert!(
+            text.contains("//! # Proof")
+                && verify_at(&page.model, &text, &page.constants, Depth::Full, Seed::fresh()).is_proved()
+        );
+        let lines: Vec<&str> = text.lines().collect();
+        let proof = lines.iter().position(|line| line.contains("# Proof")).expect("a section");
+        for (place, line) in lines.iter().enumerate().skip(1) {
+            let is_of_words = line.trim_start().starts_with("//") && line.trim_start().len() > 4;
+            if !is_of_words {
+                continue;
+            }
+            for changed in [format!("{line} Not."), with_another_digit(line), String::new()] {
+                let is_documented = changed.is_empty()
+                    && line.trim_start().starts_with("///")
+                    && !line.contains(" operations (");
+                if changed == *line || is_documented {
+                    continue;
+                }
+                let mut lines = lines.clone();
+                lines[place] = &changed;
+                if is_right(&page, &(lines.join("\n") + "\n"), place > proof) {
+                    accepted.push(format!("{name}: `{line}` became `{changed}`"));
+                }
+            }
+        }
+    }
+    assert!(accepted.is_empty(), "{} were proved:\n{}", accepted.len(), accepted.join("\n"));
+}
+
+/// Whether the words of a module are right; what is said of the proof is known when there is one.
+fn is_right(page: &Page, code: &str, is_on_proof: bool) -> bool {
+    if is_on_proof && page.name.starts_with("spinning") {
+        return verify(&page.model, code, &page.constants, Depth::Quick).is_proved();
+    }
+    let module = Module::read(&page.model, code, &page.constants);
+    !is_on_proof && module.is_ok_and(|module| problems(&page.model, &module).is_empty())
+}
+
+/// The last digit of a line is another one.
+fn with_another_digit(line: &str) -> String {
+    match line.rfind(|c: char| c.is_ascii_digit()) {
+        Some(place) => {
+            let digit = if &line[place..=place] == "7" { "8" } else { "7" };
+            format!("{}{digit}{}", &line[..place], &line[place + 1..])
+        }
+        None => line.to_owned(),
+    }
+}
+
+/// Nothing was tested of what was not read: no prime, no probability.
+#[test]
+fn a_refusal_claims_nothing() {
+    let page = crate::support::page("spinning-top");
+    let report = verify(&page.model, "", &page.constants, Depth::Quick);
+    assert!(report.is_refuted() && report.error_log10() == 0.0);
+    let words = report.to_string();
+    assert!(!words.contains("prime") && !words.contains("inf"), "{words}");
+    assert!(report.to_json()["prime"].is_null() && report.to_json()["error_log10"] == 0.0);
+}
+
+/// Points of another seed are other points, and the proof holds at all of them.
+#[test]
+fn seeds_make_other_points() {
+    let page = crate::support::page("spinning-top");
+    for seed in [Seed::fresh(), Seed::fresh(), Seed::from(1)] {
+        let report = verify_at(&page.model, &page.code, &page.constants, Depth::Quick, seed);
+        assert!(report.is_proved() && report.to_string().contains(&format!("seed: {seed}")), "{report}");
+        let wrong = page.code.replacen(" - ", " + ", 1);
+        assert!(!verify_at(&page.model, &wrong, &page.constants, Depth::Quick, seed).is_proved());
+    }
+}
+
+/// Names of files have any characters; what they are named in is one line of a comment.
+#[test]
+fn names_of_files_end_no_line() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
+    let read = |file: &str| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string());
+    let page = read("cam.toml").expect("a page");
+    let odd = page.replace("\"cam.csv\"", "\"c\\nfn\\r\\u2028\\u202eam*/.csv\"");
+    assert_ne!(page, odd);
+    let model = gyro_model::read_with("cam.toml", &odd, &mut |_| read("cam.csv")).expect("a good page");
+    let module = gyro_codegen::generate_model("ca\nm\u{2028}\u{202e}.toml", &model).expect("a module");
+    let (text, report) = with_proof(&model, &module.code, &module.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+    assert!(text.lines().next().is_some_and(|line| line.ends_with("Do not edit.")));
+    assert!(!text.contains(['\r', '\u{2028}', '\u{202e}']));
 }

@@ -1,0 +1,312 @@
+//! What identities do not show: `x w / w` is x, and not a number where w is zero.
+//!
+//! Every function is run in `f64` where a mechanism starts, rests, is stretched out and folded, spins fast or is torn apart. What is not finite there is a mistake,
+//! unless the textbook's is not either: where eq. (17) has no solution, where a link has no length.
+
+use crate::atoms::Elementary;
+use crate::interpreter::{self, Given};
+use crate::joints::{Freedom, JointLayout};
+use crate::module::{Module, is_on_constraints, source_of_accelerations};
+use crate::numeric;
+use crate::point::Point;
+use crate::program::{Id, Node, Program, Source};
+use crate::proof::point_of_terms;
+use crate::seed::Seed;
+use crate::tape::{Formulas, Tape, Term, Written};
+use crate::textbook::Textbook;
+use gyro_model::Model;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Angles at which sines and cosines vanish.
+const ALIGNED: [f64; 4] = [0.0, FRAC_PI_2, -FRAC_PI_2, PI];
+
+/// Half turns, and none.
+const HALF_TURNS: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+/// States of random combinations of these.
+const COMBINATIONS: usize = 12;
+
+/// How fast the last coordinate of an extreme state moves, rad/s.
+const FAST: f64 = 1e6;
+
+/// How far joints of an extreme state are torn.
+const TORN: f64 = 1e-2;
+
+/// Eq. (17), its rows and columns brought to size one, can be solved if no pivot is smaller than this.
+const REGULAR: f64 = 1e-9;
+
+/// Where functions are run.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// In words.
+    what: &'static str,
+    /// A maximal state.
+    pub state: Vec<f64>,
+    /// The joint state that it is of, if it is of one.
+    joints: Option<Vec<f64>>,
+}
+
+/// All that is not finite and should be.
+pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
+    let textbook = Dense::new(model);
+    let constants: Vec<f64> = interpreter::constants((), module);
+    let (places, mut problems) = (places(model, module, seed), Vec::new());
+    for function in module.programs.keys() {
+        let broken = places.iter().find_map(|place| {
+            let line = not_finite(model, module, &constants, function, place)?;
+            // Every joint state has its maximal state.
+            let must_be_finite = function == "to_maximal" || textbook.is_regular(model, &place.state);
+            must_be_finite.then_some((place.what, line))
+        });
+        problems.extend(broken.map(|(what, line)| {
+            format!("`{function}` is not finite {what}: line {line} is the first that is not")
+        }));
+    }
+    problems
+}
+
+/// Where mechanisms are likely to divide by zero.
+pub fn places(model: &Model, module: &Module, seed: Seed) -> Vec<Place> {
+    let mut random = seed.numbers(1);
+    let mut places = match &module.joints {
+        Some(layout) => of_joints(model, module, layout, &mut random),
+        None => vec![Place { what: "at the start", state: module.start.clone(), joints: None }],
+    };
+    places.extend(torn(model, &module.start, &mut random));
+    places
+}
+
+/// States of joint states.
+fn of_joints(model: &Model, module: &Module, layout: &JointLayout, random: &mut ChaCha8Rng) -> Vec<Place> {
+    let start = &module.joint_start;
+    let rates = layout.n_coordinates..layout.n_motion();
+    let resting = |joints: &[f64]| {
+        let mut joints = joints.to_vec();
+        joints[rates.clone()].fill(0.0);
+        joints
+    };
+    let mut states = vec![("at the start", start.clone()), ("at rest", resting(start))];
+    for (k, &angle) in ALIGNED.iter().enumerate() {
+        let aligned = turned(layout, start, || (angle, HALF_TURNS[k]));
+        states.push(("at rest, all angles 0, ±90 or 180 degrees", resting(&aligned)));
+        states.push(("with all angles 0, ±90 or 180 degrees", aligned));
+    }
+    for _ in 0..COMBINATIONS {
+        let mut mixed = turned(layout, start, || {
+            (ALIGNED[random.random_range(0..4)], HALF_TURNS[random.random_range(0..4)])
+        });
+        states.push(("at rest, each angle 0, ±90 or 180 degrees", resting(&mixed)));
+        mixed[rates.clone()].iter_mut().for_each(|rate| *rate = random.random_range(-100.0..100.0));
+        states.push(("with each angle 0, ±90 or 180 degrees", mixed));
+    }
+    let mut fast = start.clone();
+    fast[rates.clone()].iter_mut().next_back().into_iter().for_each(|rate| *rate = FAST);
+    states.push(("with the last body at 1e6 rad/s", fast));
+    let constants: Vec<f64> = interpreter::constants((), module);
+    let point = numeric::point(model, (), &module.start, 0.0, |x| x);
+    let place = |(what, joints): (&'static str, Vec<f64>)| {
+        let given = Given { point: &point, accelerations: &[], charts: &[], changes: &[], joints: &joints };
+        let state = interpreter::run(module, &module.programs["to_maximal"], &constants, &Elementary, &given);
+        Some(Place { what, state: state.ok()?, joints: Some(joints) })
+    };
+    states.into_iter().filter_map(place).collect()
+}
+
+/// A joint state with other angles and orientations.
+fn turned(layout: &JointLayout, start: &[f64], mut turn: impl FnMut() -> (f64, [f64; 4])) -> Vec<f64> {
+    let mut joints = start.to_vec();
+    for place in &layout.places {
+        let (angle, half) = turn();
+        match (place.of, place.of.euler()) {
+            (Freedom::Scalar(_), _) => joints[place.x] = angle,
+            (_, Some(euler)) => joints[place.x + euler..][..4].copy_from_slice(&half),
+            (_, None) => {}
+        }
+    }
+    joints
+}
+
+/// States that satisfy no constraint: bodies at rest in any half turn, and joints torn a little.
+fn torn(model: &Model, start: &[f64], random: &mut ChaCha8Rng) -> Vec<Place> {
+    let n = model.coordinate_bodies().len();
+    let mut places = Vec::new();
+    let mut add = |what, state| places.push(Place { what, state, joints: None });
+    let mut rest = start.to_vec();
+    rest[7 * n..13 * n].fill(0.0);
+    add("at rest", rest.clone());
+    for half in HALF_TURNS {
+        let mut state = rest.clone();
+        state[..7 * n].chunks_mut(7).for_each(|position| position[3..].copy_from_slice(&half));
+        add("at rest, all bodies turned by half a turn", state);
+    }
+    let mut state = start.to_vec();
+    for position in state[..7 * n].chunks_mut(7) {
+        position.iter_mut().for_each(|x| *x += random.random_range(-TORN..TORN));
+        let length = position[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
+        position[3..].iter_mut().for_each(|e| *e /= length);
+    }
+    add("with joints torn by 1e-2", state);
+    add("at a random state", numeric::random_state(model, random));
+    places
+}
+
+/// The first line of a function whose value is not finite, if any of its results is not.
+fn not_finite(
+    model: &Model,
+    module: &Module,
+    constants: &[f64],
+    function: &str,
+    place: &Place,
+) -> Option<usize> {
+    let program = &module.programs[function];
+    let reads = |is: fn(Source) -> bool| {
+        program.nodes.iter().any(|node| matches!(node, Node::Read(source) if is(*source)))
+    };
+    // The buffer of `to_joints` may hold anything.
+    let needs_joints = reads(|source| matches!(source, Source::Joint(_))) && function != "to_joints";
+    if place.joints.is_none() && (is_on_constraints(function) || needs_joints) {
+        return None;
+    }
+    let joints = place.joints.as_ref().unwrap_or(&module.joint_start);
+    let point = numeric::point(model, (), &place.state, 0.0, |x| x);
+    let run = |function: &str, accelerations: &[f64], charts: &[[f64; 4]]| {
+        let changes = vec![1.0; model.rows().len()];
+        let given = Given { point: &point, accelerations, charts, changes: &changes, joints };
+        let program = module.programs.get(function)?;
+        interpreter::values(module, program, constants, &Elementary, &given)
+            .ok()
+            .map(|values| (program, values))
+    };
+    let results = |(program, values): (&Program, Vec<f64>)| -> Vec<f64> {
+        program.results.iter().map(|&id| values[id]).collect()
+    };
+    let accelerations = if reads(|source| matches!(source, Source::Acceleration(_))) {
+        let found = run(source_of_accelerations(function), &[], &[]).map(results)?;
+        found.into_iter().map(|x| if x.is_finite() { x } else { 0.0 }).collect()
+    } else {
+        Vec::new()
+    };
+    let charts = if reads(|source| matches!(source, Source::Chart(..))) {
+        run("chart_vectors", &[], &[]).map(results)?.chunks(4).map(largest).collect()
+    } else {
+        Vec::new()
+    };
+    let (program, values) = run(function, &accelerations, &charts)?;
+    let is_finite = |id: Id| values[id].is_finite();
+    let vanishes = |vector: &&[Id]| vector.iter().all(|&id| values[id] == 0.0);
+    if function == "chart_vectors"
+        && let Some(vector) = program.results.chunks(4).find(vanishes)
+    {
+        return Some(program.lines[vector[0]]);
+    }
+    if program.results.iter().all(|&id| is_finite(id)) {
+        return None;
+    }
+    let first = (0..values.len()).find(|&id| !is_finite(id))?;
+    Some(program.lines[first])
+}
+
+/// The chart that a run takes: one at the largest component, in its direction.
+fn largest(vector: &[f64]) -> [f64; 4] {
+    let place = (0..4).max_by(|&a, &b| vector[a].abs().total_cmp(&vector[b].abs())).unwrap_or(0);
+    [0, 1, 2, 3].map(|k| f64::from(u8::from(k == place)))
+}
+
+/// Eq. (17) of the textbook, written out to be run in `f64`.
+struct Dense {
+    formulas: Formulas,
+    /// The matrix `(M, Φ_π'ᵀ; Φ_π', 0)` by rows; `None` is zero.
+    matrix: Vec<Vec<Option<Id>>>,
+    /// All else that must be finite.
+    others: Vec<Id>,
+    is_written: bool,
+}
+
+impl Dense {
+    fn new(model: &Model) -> Self {
+        let (tape, textbook) = (Tape::new(), Textbook::new(model));
+        let written = {
+            let point = point_of_terms(model, &tape);
+            let evaluation = textbook.at(&point, &Written);
+            evaluation.and_then(|e| {
+                let others =
+                    [e.phi()?, e.velocity_residual()?, e.gamma()?, e.applied_force()?, e.energy()?.to_vec()];
+                let ids = |row: Vec<Term<'_>>| row.into_iter().map(Term::id).collect::<Vec<Id>>();
+                let [mass, phi_pi] =
+                    [e.mass_matrix(), e.phi_pi()?].map(|m| m.into_iter().map(ids).collect::<Vec<_>>());
+                Some((mass, phi_pi, ids(others.concat())))
+            })
+        };
+        let formulas = tape.finish();
+        let Some((mass, phi_pi, others)) = written else {
+            return Self { formulas, matrix: Vec::new(), others: Vec::new(), is_written: false };
+        };
+        let (n, rows) = (mass.len(), phi_pi.len());
+        let entry = |i: usize, k: usize| match (i < n, k < n) {
+            (true, true) => Some(mass[i][k]),
+            (true, false) => Some(phi_pi[k - n][i]),
+            (false, true) => Some(phi_pi[i - n][k]),
+            (false, false) => None,
+        };
+        let matrix = (0..n + rows).map(|i| (0..n + rows).map(|k| entry(i, k)).collect()).collect();
+        Self { formulas, matrix, others, is_written: true }
+    }
+
+    /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there.
+    fn is_regular(&self, model: &Model, state: &[f64]) -> bool {
+        if !self.is_written || state.iter().any(|x| !x.is_finite()) {
+            return false;
+        }
+        let point: Point<f64> = numeric::point(model, (), state, 0.0, |x| x);
+        let entries = self.matrix.iter().flatten().flatten();
+        let reach = self.formulas.reach(entries.chain(&self.others).copied());
+        let read = |source| *point.given(source).expect("the textbook reads what the model says there is");
+        let values = self.formulas.evaluate(&reach, (), &Elementary, &read);
+        let value = |id: &Id| values[*id].unwrap_or(f64::NAN);
+        let matrix: Vec<Vec<f64>> = self
+            .matrix
+            .iter()
+            .map(|row| row.iter().map(|id| id.as_ref().map_or(0.0, value)).collect())
+            .collect();
+        let is_finite = self.others.iter().all(|id| value(id).is_finite())
+            && matrix.iter().flatten().all(|x| x.is_finite());
+        is_finite && smallest_pivot(matrix) > REGULAR
+    }
+}
+
+/// The smallest pivot of Gaussian elimination with full pivoting, of a symmetric matrix whose rows and columns are first brought to size one.
+fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
+    let n = matrix.len();
+    for _ in 0..4 {
+        let scales: Vec<f64> = matrix
+            .iter()
+            .map(|row| row.iter().fold(0.0, |largest: f64, x| largest.max(x.abs())).sqrt())
+            .map(|size| if size > 0.0 { 1.0 / size } else { 1.0 })
+            .collect();
+        for (row, by) in matrix.iter_mut().zip(&scales) {
+            row.iter_mut().zip(&scales).for_each(|(x, also_by)| *x *= by * also_by);
+        }
+    }
+    let mut smallest = f64::INFINITY;
+    for step in 0..n {
+        let places = (step..n).flat_map(|i| (step..n).map(move |k| (i, k)));
+        let size = |&(i, k): &(usize, usize)| matrix[i][k].abs();
+        let Some((i, k)) = places.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
+        smallest = smallest.min(matrix[i][k].abs());
+        if smallest <= REGULAR {
+            return smallest;
+        }
+        matrix.swap(step, i);
+        matrix.iter_mut().for_each(|row| row.swap(step, k));
+        let (done, rest) = matrix.split_at_mut(step + 1);
+        let pivot = &done[step];
+        for row in rest {
+            let factor = row[step] / pivot[step];
+            row[step..].iter_mut().zip(&pivot[step..]).for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+    smallest
+}

@@ -1,0 +1,292 @@
+//! What the words of a module must say: its data sheet, line by line, and the documentation of its parts.
+//!
+//! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
+
+use crate::module::{Module, type_name};
+use crate::program::{Node, Program};
+use crate::refusal::Refusal;
+use crate::structure::Operations;
+use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
+use std::collections::BTreeSet;
+
+/// Of each function its name on the data sheet, what it computes, and how its documentation begins.
+const WORDS: [(&str, &str, &str); 28] = [
+    ("set_up", "what depends on parameters alone", "What depends on parameters alone"),
+    ("phi", "Φ", "Writes Φ"),
+    ("phi_q", "Φ_q, non-zeros in (r, p)", "Writes the non-zeros of Φ_q"),
+    ("phi_pi", "(Φ_r, Φ_π'), non-zeros", "Writes the non-zeros of (Φ_r, Φ_π')"),
+    ("nu", "ν", "Writes ν"),
+    ("gamma", "γ", "Writes γ"),
+    ("velocity_residual", "Φ_r s + Φ_π' w' − ν", "Writes Φ_r s + Φ_π' w' − ν"),
+    ("applied_force", "(f, n' − w̃'J'w')", "Writes (f, n' − w̃'J'w')"),
+    ("accelerations", "(s̈, ẇ'), eq. (17)", "Solves eq. (17)"),
+    ("multipliers", "λ, the accelerations being known", "Writes λ"),
+    (
+        "project",
+        "(δr, δπ') that changes the rows as given",
+        "Solves eq. (17) without forces, the changes of the rows for γ",
+    ),
+    (
+        "derivative",
+        "ẏ but for the accelerations: eqs. (14), (16)",
+        "Writes ẏ; beyond what [`Equations::accelerations`] takes",
+    ),
+    ("energy", "T and V", "Kinetic and potential energy"),
+    ("read_joints", "joint coordinates and rates", "Writes the joint readings"),
+    ("outputs", "outputs, the accelerations being known", "Writes the outputs"),
+    (
+        "chart_vectors",
+        "for the choice of independent coordinates",
+        "The four-vectors whose largest components are the special Euler parameters",
+    ),
+    ("newton_step", "dependent positions, one Newton step", "One Newton step of the dependent positions"),
+    ("solve_velocities", "dependent velocities, eq. (19)", "Solves eq. (19) for the dependent velocities"),
+    ("joint_accelerations", "u̇ in joint coordinates", "Writes u̇"),
+    (
+        "joint_derivative",
+        "ẋ but for u̇",
+        "Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes",
+    ),
+    ("to_maximal", "(q, v) of a joint state", "Writes the maximal state of a joint state"),
+    ("to_joints", "(x, u) of a maximal state", "Writes the joint state of a maximal state"),
+    (
+        "joint_accelerations_at",
+        "u̇ at a corrected maximal state",
+        "Writes u̇ at a state that satisfies the constraints",
+    ),
+    (
+        "corrected_accelerations",
+        "(s̈, ẇ') at a corrected state",
+        "Writes (s̈, ẇ') at a state that satisfies the constraints",
+    ),
+    ("corrected_multipliers", "λ at such a state and these accelerations", "Writes λ"),
+    ("corrected_solution", "both", "Writes (s̈, ẇ') and λ at a state that satisfies the constraints"),
+    ("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
+    ("joint_input_jacobian", "∂f/∂(inputs)", "Writes ∂f/∂(inputs)"),
+];
+
+/// What goes on from other accelerations in the same way has no row of its own.
+const WITHOUT_ROW: (&str, &str) =
+    ("corrected_derivative", "Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes");
+
+/// Where the section on the proof begins.
+pub const PROOF: &str = "# Proof";
+
+/// All that the words of a module say otherwise than it is; the section on the proof is for who has proved it.
+pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
+    let mut problems = undocumented(module);
+    problems.extend(unfounded(model, module));
+    let (head, rows, other) = lines(module);
+    let expected = expected_head(model, module);
+    if let Some(place) = (0..expected.len().max(head.len())).find(|&k| expected.get(k) != head.get(k)) {
+        let [expected, found] = [&expected, &head].map(|lines| lines.get(place).map_or("", String::as_str));
+        problems.push(Refusal::new(1, format!("the data sheet says `{found}` instead of `{expected}`")));
+    }
+    let expected: Vec<String> =
+        module.written.iter().filter_map(|(name, program)| row(model, module, name, program)).collect();
+    for row in &expected {
+        let found = rows.iter().filter(|line| *line == row).count();
+        if found != 1 {
+            problems.push(Refusal::new(1, format!("the data sheet has {found} rows `{row}`")));
+        }
+    }
+    if rows.len() != expected.len() {
+        let (found, expected) = (rows.len(), expected.len());
+        let words = format!("the data sheet has {found} functions instead of {expected}");
+        problems.push(Refusal::new(1, words));
+    }
+    if let Some(line) = other.first().filter(|line| *line != PROOF) {
+        problems.push(Refusal::new(1, format!("the data sheet says `{line}`, which nobody knows")));
+    }
+    problems
+}
+
+/// The section on the proof, if there is one.
+pub fn proof(module: &Module) -> Option<Vec<String>> {
+    let (_, _, other) = lines(module);
+    (!other.is_empty()).then_some(other)
+}
+
+/// The lines before the rows of functions, these rows, and the lines after them.
+fn lines(module: &Module) -> (Vec<String>, Vec<String>, Vec<String>) {
+    let is_row = |line: &&String| line.starts_with('|');
+    let sheet = &module.sheet;
+    // Two rows are the table's head.
+    let first = sheet.iter().position(|line| is_row(&line)).map_or(sheet.len(), |first| first + 2);
+    let (head, rest) = sheet.split_at(first.min(sheet.len()));
+    let n_rows = rest.iter().take_while(is_row).count();
+    let other = rest[n_rows..].iter().skip_while(|line| line.is_empty());
+    (head.to_vec(), rest[..n_rows].to_vec(), other.cloned().collect())
+}
+
+fn expected_head(model: &Model, module: &Module) -> Vec<String> {
+    let slots = model.coordinate_bodies();
+    let bodies: Vec<&str> = slots.iter().map(|&body| model.bodies[body].name.as_str()).collect();
+    let (n, rows) = (slots.len(), model.rows().len());
+    let mut lines = vec![
+        format!("The mechanism `{}`.", model.name),
+        String::new(),
+        format!("* bodies with coordinates: {}", bodies.join(", ")),
+        format!(
+            "* coordinates: {}, constraint equations: {} ({rows} joint rows, {n} normalisations)",
+            7 * n,
+            rows + n
+        ),
+        format!("* degrees of freedom: {}", (6 * n).saturating_sub(rows)),
+        format!("* unknowns of eq. (17): {}", 6 * n + rows),
+        format!(
+            "* non-zeros: Φ_q {} of {}, (Φ_r, Φ_π') {} of {}",
+            module.phi_q_pattern.len(),
+            (rows + n) * 7 * n,
+            module.phi_pi_pattern.len(),
+            rows * 6 * n
+        ),
+    ];
+    lines.extend(left_out(model, module).into_iter().map(|what| format!("* left out: {what}")));
+    let table =
+        ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"];
+    lines.extend(table.map(str::to_owned));
+    lines.into_iter().map(|line| line.trim_end().to_owned()).collect()
+}
+
+/// What the mechanism could have had and has not.
+fn left_out(model: &Model, module: &Module) -> Vec<String> {
+    let mut left_out = Vec::new();
+    for body in &model.bodies {
+        let why = match body.support {
+            Support::Fixed => "fixed: folded into constants",
+            Support::Driven => "driven: a function of time",
+            Support::Moving | Support::Free | Support::Constrained => continue,
+        };
+        left_out.push(format!("coordinates of `{}` ({why})", body.name));
+    }
+    for redundant in &model.redundant {
+        let (kind, name) = match redundant.row.owner {
+            RowOwner::Body(body) => ("body", &model.bodies[body].name),
+            RowOwner::Joint(joint) => ("joint", &model.joints[joint].name),
+            RowOwner::Coupler(coupler) => ("coupler", &model.couplers[coupler].name),
+            RowOwner::Driver(driver) => ("driver", &model.drivers[driver].name),
+        };
+        left_out.push(format!("row {} of {kind} `{name}` (redundant)", redundant.row.index + 1));
+    }
+    let has_jacobian = module.programs.contains_key("joint_jacobian");
+    let missing = [
+        (module.joints.is_none(), "joint coordinates (for trees without couplers and drivers)"),
+        (
+            module.joints.is_some() && !has_jacobian,
+            "the Jacobian of the joint form (too many rates, or third derivatives of tables)",
+        ),
+        (
+            module.n_charts.is_none(),
+            "charts (for trees of revolute, spherical and fixed joints: the run time pivots)",
+        ),
+        (model.gravity.iter().all(Number::is_zero), "gravity"),
+        (!model.has_work(), "the work of non-conservative forces (there are none)"),
+        (model.parameters.is_empty(), "parameters (all numbers are folded)"),
+        (model.outputs.is_empty(), "outputs (the page asks for none)"),
+    ];
+    left_out
+        .extend(missing.into_iter().filter(|(is_missing, _)| *is_missing).map(|(_, what)| what.to_owned()));
+    left_out
+}
+
+/// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`; what gives no numbers has no row.
+fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<String> {
+    let (_, computes, _) = WORDS.iter().find(|(known, ..)| *known == name)?;
+    let operations = Operations::of(program);
+    let is_zero = |id: usize| match program.nodes[id] {
+        Node::Constant(place) => module.constants.values[place].literal == 0.0,
+        _ => false,
+    };
+    let zeros = program.results.iter().filter(|&&id| is_zero(id)).count();
+    let (n, work) = (model.coordinate_bodies().len(), usize::from(model.has_work()));
+    let n_rates = module.joints.as_ref().map_or(0, |joints| joints.n_rates);
+    let (name, results) = match name {
+        "newton_step" => (name, 7 * n),
+        "solve_velocities" => (name, 6 * n),
+        "derivative" => (name, program.results.len() - 6 * n),
+        "joint_derivative" => (name, program.results.len() - n_rates),
+        // Work goes through.
+        "to_maximal" | "to_joints" => (name, program.results.len() - work),
+        "chart_vectors" => ("chart vectors", program.results.len()),
+        _ => (name, program.results.len()),
+    };
+    let Operations { additions, multiplications, divisions, .. } = operations;
+    let total = operations.total();
+    (results > 0).then(|| {
+        format!("| {name} | {computes} | {additions} | {multiplications} | {divisions} | {total} | {zeros} of {results} |")
+    })
+}
+
+/// Functions whose documentation does not say what they compute and with how many operations.
+fn undocumented(module: &Module) -> Vec<Refusal> {
+    let of_function = |(name, program): (&String, &Program)| {
+        let (found, expected) = (module.docs.get(name)?, documentation(name, program)?);
+        let is_right = program.results.is_empty() || *found == expected;
+        let line = program.lines.first().copied().unwrap_or(0);
+        let words =
+            format!("the documentation of `{name}` says `{}` instead of `{}`", found.trim(), expected.trim());
+        (!is_right).then(|| Refusal::new(line, words))
+    };
+    module.written.iter().filter_map(of_function).collect()
+}
+
+/// ` Writes ν: 3 operations (1 ±, 2 ×, 0 ÷).`
+fn documentation(name: &str, program: &Program) -> Option<String> {
+    let words = WORDS.iter().map(|&(name, _, words)| (name, words)).chain([WITHOUT_ROW]);
+    let (_, words) = words.into_iter().find(|(known, _)| *known == name)?;
+    let operations = Operations::of(program);
+    let Operations { additions, multiplications, divisions, functions } = operations;
+    let calls = if functions > 0 { format!(" and {functions} functions") } else { String::new() };
+    let total = operations.total();
+    Some(format!(" {words}: {total} operations ({additions} ±, {multiplications} ×, {divisions} ÷){calls}."))
+}
+
+/// Documentation that nothing in the model is a reason for.
+fn unfounded(model: &Model, module: &Module) -> Vec<Refusal> {
+    let of_functions = module.written.iter().filter_map(|(name, program)| documentation(name, program));
+    let known: BTreeSet<String> = of_functions.chain(of_items(model, module)).collect();
+    let unknown = module.all_docs.iter().filter(|(_, text)| !known.contains(text));
+    unknown.map(|(line, text)| Refusal::new(*line, format!("`///{text}` is not what is here"))).collect()
+}
+
+/// The documentation of what is no function.
+fn of_items(model: &Model, module: &Module) -> Vec<String> {
+    let plain = [
+        " The model has neither parameters nor inputs.",
+        " What depends on parameters alone.",
+        " Names of the parameters.",
+        " Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.",
+        " The mechanism with these parameters.",
+        " The parameters.",
+        " Sets all parameters, and computes what depends on them alone.",
+        " The assembled start, with all parameters at their defaults.",
+        " Polynomials between them, from each point's own time.",
+    ];
+    let mut docs: Vec<String> = plain.map(str::to_owned).to_vec();
+    let default = |p: &Parameter| to_f64(&p.value);
+    docs.push(format!(" The mechanism `{}`.", model.name));
+    docs.push(format!(" Parameters of [`{}`].", type_name(&model.name)));
+    docs.extend(model.parameters.iter().map(|p| format!(" Default {:?}.", default(p))));
+    docs.extend(
+        model.inputs.iter().map(|p| format!(" Input, set at every step; until then {:?}.", default(p))),
+    );
+    docs.extend(
+        module
+            .tables
+            .iter()
+            .map(|table| format!(" Times of the points of `{}`, s.", printable(&table.source))),
+    );
+    let n_closing = module.n_accelerations - 6 * model.coordinate_bodies().len();
+    docs.push(match n_closing {
+        0 => " (s̈, ẇ') of each body.".to_owned(),
+        n => format!(" (s̈, ẇ') of each body, then {n} multipliers of the rows that close loops."),
+    });
+    docs
+}
+
+/// The name of a file with what cannot stand in a line of a comment escaped.
+fn printable(name: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_graphic() || c == ' ' || c.is_alphanumeric();
+    name.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_default().to_string() }).collect()
+}
