@@ -243,7 +243,8 @@ impl From<MethodName> for Method {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask import arm.urdf                    writes arm.toml beside it
-  cargo xtask import arm.urdf --out models/arm.toml")]
+  cargo xtask import arm.urdf --out models/arm.toml
+  cargo xtask import quadruped.urdf --floating   its trunk floats")]
 pub(crate) struct ImportArgs {
     /// Robot in the Unified Robot Description Format
     #[arg(value_name = "FILE.urdf")]
@@ -251,6 +252,9 @@ pub(crate) struct ImportArgs {
     /// Where to write the page [default: beside the robot, with the extension toml]
     #[arg(long, value_name = "MODEL.toml")]
     pub(crate) out: Option<PathBuf>,
+    /// Let the root link float in place of fixing it to the ground
+    #[arg(long)]
+    pub(crate) floating: bool,
     /// Replace a page that is there already
     #[arg(long)]
     pub(crate) force: bool,

@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::words::count;
 use gyro_model::Model;
+use merge::Root;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -32,8 +33,9 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let file = args.file.display().to_string();
     let text =
         fs::read_to_string(&args.file).map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
+    let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let (page, remarks) = convert(&file, &shown, &text).map_err(Failure::Usage)?;
+    let (page, remarks) = convert(&file, &shown, &text, root).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::Page)?;
     files::write(&out, &page)?;
     // What was said is only about a file that is there already.
@@ -42,13 +44,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
 }
 
 /// The page of a robot and what is not on it; or every mistake of the file, a line for each.
-fn convert(file: &str, shown: &str, text: &str) -> Result<(String, Vec<String>), String> {
+fn convert(file: &str, shown: &str, text: &str, root: Root) -> Result<(String, Vec<String>), String> {
     let joined = |problems: Vec<String>| problems.join("\n");
     let robot = robot::read(file, text).map_err(joined)?;
-    let merged = merge::merge(file, &robot).map_err(joined)?;
+    let merged = merge::merge(file, &robot, root).map_err(joined)?;
     let mut remarks = robot.remarks.clone();
     remarks.extend(merged.remarks.iter().cloned());
-    let page = page::write(shown, &robot, &merged, &mut remarks);
+    let page = page::write(shown, &robot, (&merged, root), &mut remarks);
     Ok((page, remarks))
 }
 
