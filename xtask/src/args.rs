@@ -175,7 +175,7 @@ pub(crate) struct SimulateArgs {
     /// Folder for the CSV file and the plots [default: out/NAME; none with --json]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Print one JSON object on standard output and nothing else
+    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files with all samples
     #[arg(long)]
     pub(crate) json: bool,
 }

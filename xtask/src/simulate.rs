@@ -7,7 +7,6 @@ use crate::scene::Scene;
 use crate::verdict::{self, Outcome};
 use crate::{columns, files, json, linearization, nested, plot, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
-use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
 use std::fs;
 use std::io::Write;
@@ -19,7 +18,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let folder = folder(args, &scene.model.name)?;
     let mut outcome = Outcome::default();
     if let Err(failure) = run(&scene, &mut outcome) {
-        return Err(keep_what_there_is(&scene.model, &outcome.samples, folder.as_deref(), failure));
+        return Err(keep_what_there_is(&scene, &outcome.samples, folder.as_deref(), failure));
     }
     if args.linearize.is_some() && outcome.linear.is_none() {
         let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
@@ -33,12 +32,12 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         false => None,
     };
     let written = match &folder {
-        Some(folder) => write_files(&scene.model, &outcome.samples, folder)?,
+        Some(folder) => write_files(&scene, &outcome.samples, folder)?,
         None => Vec::new(),
     };
     let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());
     let text = if args.json {
-        format!("{}\n", json::object(&scene, &outcome, verdict.as_ref(), linear))
+        format!("{}\n", json::object(&scene, &outcome, (verdict.as_ref(), linear), &written))
     } else {
         let linear = linear.map_or(String::new(), |linear| linearization::text(&scene.model, linear));
         let verdict = verdict.map_or(String::new(), |verdict| verdict::text(&verdict, &outcome));
@@ -104,8 +103,9 @@ fn folder(args: &SimulateArgs, name: &str) -> Result<Option<PathBuf>, Failure> {
     Ok(Some(folder))
 }
 
-fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let mut written = vec![write_table(model, samples, folder)?];
+fn write_files(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let mut written = vec![write_table(scene, samples, folder)?];
+    let model = &scene.model;
     for (name, svg) in plot::pages(model, samples).map_err(Failure::Run)? {
         let path = folder.join(format!("{}-{name}.svg", model.name));
         files::write(&path, &svg)?;
@@ -114,22 +114,23 @@ fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<P
     Ok(written)
 }
 
-fn write_table(model: &Model, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
-    let path = folder.join(format!("{}.csv", model.name));
-    files::write(&path, &columns::text(&columns::columns(model, samples)))?;
+fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
+    let path = folder.join(format!("{}.csv", scene.model.name));
+    let columns = columns::columns(&scene.model, &scene.start.inputs, samples);
+    files::write(&path, &columns::text(&columns))?;
     Ok(path)
 }
 
 /// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie them.
-fn keep_what_there_is(model: &Model, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
+fn keep_what_there_is(scene: &Scene, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
     let (Failure::Run(words), Some(folder), Some(last)) = (&failure, folder, samples.last()) else {
         return failure;
     };
     for name in plot::NAMES {
         // There may be none.
-        let _ = fs::remove_file(folder.join(format!("{}-{name}.svg", model.name)));
+        let _ = fs::remove_file(folder.join(format!("{}-{name}.svg", scene.model.name)));
     }
-    match write_table(model, samples, folder) {
+    match write_table(scene, samples, folder) {
         Ok(path) => Failure::Run(format!(
             "{words}\nThe run is incomplete; its {} up to t = {} s are in {}.",
             words::count(samples.len() as u64, "sample"),
