@@ -190,7 +190,7 @@ pub(crate) struct SimulateArgs {
     /// Folder for the CSV file and the plots [default: out/NAME; none with --json]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Print one JSON object on standard output and nothing else
+    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files with all samples
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -258,7 +258,8 @@ impl From<MethodName> for Method {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask import arm.urdf                    writes arm.toml beside it
-  cargo xtask import arm.urdf --out models/arm.toml")]
+  cargo xtask import arm.urdf --out models/arm.toml
+  cargo xtask import quadruped.urdf --floating   its trunk floats")]
 pub(crate) struct ImportArgs {
     /// Robot in the Unified Robot Description Format
     #[arg(value_name = "FILE.urdf")]
@@ -266,6 +267,9 @@ pub(crate) struct ImportArgs {
     /// Where to write the page [default: beside the robot, with the extension toml]
     #[arg(long, value_name = "MODEL.toml")]
     pub(crate) out: Option<PathBuf>,
+    /// Let the root link float in place of fixing it to the ground
+    #[arg(long)]
+    pub(crate) floating: bool,
     /// Replace a page that an import has written
     #[arg(long)]
     pub(crate) force: bool,

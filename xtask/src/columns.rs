@@ -1,8 +1,10 @@
 //! Samples as a table of named columns with units.
 
 use crate::scene::observed;
-use gyro_model::{CoordinateKind, JointKind, Model, Output, OutputKind};
-use gyro_runner::{JointSample, Sample, energy_error};
+use gyro_model::{
+    CoordinateKind, ForceKind, JointCoordinate, JointKind, Model, Number, Output, OutputKind, Parameter,
+};
+use gyro_runner::{Input, JointSample, Sample, energy_error};
 use std::fmt::Write as _;
 
 /// A quantity that every sample has.
@@ -72,10 +74,40 @@ pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static st
     }
 }
 
-/// The table of a run, in a fixed order: time, joints, outputs, free bodies, energy, violations, charts.
-pub(crate) fn columns(model: &Model, samples: &[Sample]) -> Vec<Column> {
+/// The value of each input at a time: as it was fed in, or else the page's.
+pub(crate) fn inputs_at(model: &Model, fed: &[Input], t: f64) -> Vec<f64> {
+    let value = |(index, input): (usize, &Parameter)| {
+        let fed = fed.iter().find(|fed| fed.index == index);
+        fed.map_or_else(|| gyro_model::to_f64(&input.value), |fed| fed.at(t))
+    };
+    model.inputs.iter().enumerate().map(value).collect()
+}
+
+/// Unit of an input, from the first force whose strength it is; none is told of one that nothing uses.
+pub(crate) fn input_unit(model: &Model, input: usize) -> &'static str {
+    let is_it = |number: &Number| matches!(number, Number::Input { index, .. } if *index == input);
+    let along = |on: &JointCoordinate, angle, length| {
+        if model.coordinate_kind(*on).is_angle() { angle } else { length }
+    };
+    let unit = |kind: &ForceKind| match kind {
+        ForceKind::Motor { on, value } if is_it(value) => Some(along(on, "N*m", "N")),
+        ForceKind::Coulomb { on, level, .. } if is_it(level) => Some(along(on, "N*m", "N")),
+        ForceKind::Damper { on, damping } | ForceKind::Stop { on, damping, .. } if is_it(damping) => {
+            Some(along(on, "N*m*s/rad", "N*s/m"))
+        }
+        ForceKind::Link { damping, .. } if is_it(damping) => Some("N*s/m"),
+        ForceKind::Load { force, .. } if force.iter().any(is_it) => Some("N"),
+        ForceKind::Load { torque, .. } if torque.iter().any(is_it) => Some("N*m"),
+        _ => None,
+    };
+    model.forces.iter().find_map(|force| unit(&force.kind)).unwrap_or("1")
+}
+
+/// The table of a run, in a fixed order: time, inputs, joints, outputs, free bodies, energy, violations, charts.
+pub(crate) fn columns(model: &Model, fed: &[Input], samples: &[Sample]) -> Vec<Column> {
     let mut table = Table { samples, columns: Vec::new() };
     table.add("t", "s", |s| s.t);
+    table.add_inputs(model, fed);
     for (index, coordinate) in coordinates(model).iter().enumerate() {
         table.add_coordinate(index, coordinate);
     }
@@ -124,6 +156,17 @@ impl Table<'_> {
     fn add(&mut self, name: &str, unit: &'static str, value: impl Fn(&Sample) -> f64) {
         let values = self.samples.iter().map(value).collect();
         self.columns.push(Column { name: name.to_owned(), unit, values });
+    }
+
+    /// By their names; what has the name of a joint, an output or a body is called an input.
+    fn add_inputs(&mut self, model: &Model, fed: &[Input]) {
+        let joints = model.joints.iter().map(|joint| &joint.name);
+        let taken: Vec<&String> = joints.chain(model.outputs.iter().map(|output| &output.name)).collect();
+        for (index, input) in model.inputs.iter().enumerate() {
+            let name = &input.name;
+            let name = if taken.contains(&name) { format!("input {name}") } else { name.clone() };
+            self.add(&name, input_unit(model, index), |s| inputs_at(model, fed, s.t)[index]);
+        }
     }
 
     fn add_coordinate(&mut self, index: usize, shown: &Shown) {

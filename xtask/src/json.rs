@@ -7,13 +7,14 @@ use gyro_model::Model;
 use gyro_runner::motion::Linear;
 use gyro_runner::{Advice, Difference, JointSample};
 use serde_json::{Map, Value, json};
+use std::path::PathBuf;
 
 /// The object: see the documentation of `simulate --json`.
 pub(crate) fn object(
     scene: &Scene,
     outcome: &Outcome,
-    verdict: Option<&Verdict>,
-    linear: Option<&Linear>,
+    (verdict, linear): (Option<&Verdict>, Option<&Linear>),
+    written: &[PathBuf],
 ) -> Value {
     let (summary, last) = (&outcome.summary, outcome.samples.last().expect("the start is a sample"));
     let mut object = json!({
@@ -29,7 +30,10 @@ pub(crate) fn object(
         "degrees_of_freedom": scene.model.degrees_of_freedom(),
         "redundant": redundant(&scene.model),
         "joints": joints(&scene.model, &last.coordinates),
+        "inputs": inputs(scene, last.t),
         "outputs": outputs(&scene.model, &last.outputs),
+        "components": components(&scene.model),
+        "files": files(written),
         "constraint_violation": summary.position_violation,
         "velocity_violation": summary.velocity_violation,
         "energy": last.energy(),
@@ -100,6 +104,49 @@ fn outputs(model: &Model, values: &[f64]) -> Map<String, Value> {
         object.insert(output.name.clone(), value);
     }
     object
+}
+
+/// For each input its value at a time.
+fn inputs(scene: &Scene, t: f64) -> Map<String, Value> {
+    let values = columns::inputs_at(&scene.model, &scene.start.inputs, t);
+    scene.model.inputs.iter().zip(values).map(|(input, value)| (input.name.clone(), json!(value))).collect()
+}
+
+/// What the numbers of each joint, input and output are, with their units, in their order.
+fn components(model: &Model) -> Value {
+    let named =
+        |name: &str, unit: &str| json!({ "name": name, "unit": if unit.is_empty() { "1" } else { unit } });
+    let joints = model.joints.iter().enumerate().map(|(index, joint)| {
+        let coordinates = columns::coordinates(model).into_iter().filter(|shown| shown.joint == index);
+        let parts = coordinates.flat_map(|shown| match shown.kind {
+            Some(kind) => vec![named(kind.name(), shown.unit())],
+            None => ["e0", "e1", "e2", "e3"].map(|name| named(name, "1")).to_vec(),
+        });
+        (joint.name.clone(), json!(parts.collect::<Vec<_>>()))
+    });
+    let inputs = model.inputs.iter().enumerate();
+    let inputs = inputs.map(|(index, input)| (input.name.clone(), json!(columns::input_unit(model, index))));
+    let outputs = model.outputs.iter().map(|output| {
+        let parts = columns::output_columns(model, output);
+        (output.name.clone(), json!(parts.iter().map(|(name, unit)| named(name, unit)).collect::<Vec<_>>()))
+    });
+    json!({
+        "joints": joints.collect::<Map<_, _>>(),
+        "inputs": inputs.collect::<Map<_, _>>(),
+        "outputs": outputs.collect::<Map<_, _>>(),
+    })
+}
+
+/// Where the time series is, and the plots; with `--json` they are written only where `--out` says.
+fn files(written: &[PathBuf]) -> Value {
+    let is_table = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "csv");
+    let (tables, plots): (Vec<&PathBuf>, Vec<&PathBuf>) = written.iter().partition(is_table);
+    let note = "give --out FOLDER to have every sample as a CSV file";
+    json!({
+        "time_series": tables.first(),
+        "plots": plots,
+        "note": tables.is_empty().then_some(note),
+    })
 }
 
 /// The rows that were dropped.

@@ -9,7 +9,6 @@ use crate::verdict::{self, Outcome};
 use crate::write::{self, Known};
 use crate::{columns, json, linearization, nested, plot, remarks, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
-use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,10 +20,10 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let folder = opened.as_ref().map(Folder::path);
     let mut outcome = Outcome::default();
     if let Err(failure) = run(&scene, &mut outcome) {
-        return Err(keep_what_there_is(&scene.model, &outcome.samples, folder, failure));
+        return Err(keep_what_there_is(&scene, &outcome.samples, folder, failure));
     }
     let written = match folder {
-        Some(folder) => write_files(&scene.model, &outcome.samples, folder)?,
+        Some(folder) => write_files(&scene, &outcome.samples, folder)?,
         None => Vec::new(),
     };
     let verdict = match args.verify {
@@ -40,7 +39,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let worthless = verdict::worthless(&scene, &outcome, verdict.as_ref());
     let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());
     let text = if args.json {
-        format!("{}\n", json::object(&scene, &outcome, verdict.as_ref(), linear))
+        format!("{}\n", json::object(&scene, &outcome, (verdict.as_ref(), linear), &written))
     } else {
         let linear = linear.map_or(String::new(), |linear| linearization::text(&scene.model, linear));
         let verdict = verdict.map_or(String::new(), |verdict| verdict::text(&verdict, &outcome));
@@ -120,8 +119,9 @@ fn table_path(name: &str, folder: &Path) -> PathBuf {
     folder.join(format!("{name}.csv"))
 }
 
-fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let mut written = vec![write_table(model, samples, folder)?];
+fn write_files(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let mut written = vec![write_table(scene, samples, folder)?];
+    let model = &scene.model;
     for (name, svg) in plot::pages(model, samples).map_err(Failure::Run)? {
         let path = plot_path(&model.name, name, folder);
         write::write(&path, &svg, Known::Record)?;
@@ -130,21 +130,22 @@ fn write_files(model: &Model, samples: &[Sample], folder: &Path) -> Result<Vec<P
     Ok(written)
 }
 
-fn write_table(model: &Model, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
-    let path = table_path(&model.name, folder);
-    write::write(&path, &columns::text(&columns::columns(model, samples)), Known::Record)?;
+fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
+    let path = table_path(&scene.model.name, folder);
+    let columns = columns::columns(&scene.model, &scene.start.inputs, samples);
+    write::write(&path, &columns::text(&columns), Known::Record)?;
     Ok(path)
 }
 
 /// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie them.
-fn keep_what_there_is(model: &Model, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
+fn keep_what_there_is(scene: &Scene, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
     let (Failure::Run(words), Some(folder), Some(last)) = (&failure, folder, samples.last()) else {
         return failure;
     };
     for name in plot::NAMES {
-        write::remove(&plot_path(&model.name, name, folder));
+        write::remove(&plot_path(&scene.model.name, name, folder));
     }
-    match write_table(model, samples, folder) {
+    match write_table(scene, samples, folder) {
         Ok(path) => Failure::Run(format!(
             "{words}\nThe run is incomplete; its {} up to t = {} s are in {}.",
             words::count(samples.len() as u64, "sample"),

@@ -16,6 +16,7 @@ use crate::files;
 use crate::words::count;
 use crate::write::{self, Known};
 use gyro_model::Model;
+use merge::Root;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -36,8 +37,9 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let text = files::input(&args.file, files::LARGEST_PAGE)
         .map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
     write::check(&out, Known::Mark(MARK))?;
+    let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let (page, remarks) = convert(&file, &shown, &text).map_err(Failure::Usage)?;
+    let (page, remarks) = convert(&file, &shown, &text, root).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::Page)?;
     write::write(&out, &page, Known::Mark(MARK))?;
     // What was said is only about a file that is there already.
@@ -46,13 +48,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
 }
 
 /// The page of a robot and what is not on it; or every mistake of the file, a line for each.
-fn convert(file: &str, shown: &str, text: &str) -> Result<(String, Vec<String>), String> {
+fn convert(file: &str, shown: &str, text: &str, root: Root) -> Result<(String, Vec<String>), String> {
     let joined = |problems: Vec<String>| problems.join("\n");
     let robot = robot::read(file, text).map_err(joined)?;
-    let merged = merge::merge(file, &robot).map_err(joined)?;
+    let merged = merge::merge(file, &robot, root).map_err(joined)?;
     let mut remarks = robot.remarks.clone();
     remarks.extend(merged.remarks.iter().cloned());
-    let page = page::write(shown, &robot, &merged, &mut remarks);
+    let page = page::write(shown, &robot, (&merged, root), &mut remarks);
     Ok((page, remarks))
 }
 

@@ -102,9 +102,14 @@ fn xtask(args: &[&str]) -> Output {
 
 /// Imports one of the robots; its page's path, its model and what was said.
 fn import(folder: &Folder, robot: &str) -> (PathBuf, Model, String) {
+    import_with(folder, robot, &[])
+}
+
+fn import_with(folder: &Folder, robot: &str, options: &[&str]) -> (PathBuf, Model, String) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/robots").join(format!("{robot}.urdf"));
     let page = folder.0.join(format!("{robot}.toml"));
-    let output = xtask(&["import", file.to_str().unwrap(), "--out", page.to_str().unwrap()]);
+    let plain = ["import", file.to_str().unwrap(), "--out", page.to_str().unwrap()];
+    let output = xtask(&[&plain, options].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = fs::read_to_string(&page).unwrap();
     let model = gyro_model::read(robot, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
@@ -259,3 +264,54 @@ fn nothing_is_overwritten_or_written_for_a_bad_robot() {
     );
     assert!(!folder.0.join("bad.toml").exists());
 }
+
+/// Where all bodies stand as an independent forward kinematics has it, and how they accelerate as Pinocchio 3 has it (free-flyer root, ABA).
+#[test]
+fn a_trunk_that_floats() {
+    let folder = Folder::new("walker");
+    let (page, model, said) = import_with(&folder, "walker", &["--floating"]);
+    assert!(said.contains("the root link's body `trunk` floats"), "{said}");
+    let (left, knee, right) = (0.3, -0.5, 0.2);
+    let start = posed(&model, &[("left_hip", left), ("left_knee", knee), ("right_hip", right)]);
+    let trunk = Pose::origin([0.01, 0.02, 0.3], [0.1, 0.0, 0.4]);
+    let thigh = trunk * Pose::origin([0.15, 0.1, -0.02], [0.1, 0.2, 0.0]) * Pose::turn([0.0, 1.0, 0.2], left);
+    let shank = thigh * Pose::shift([0.0, 0.04, -0.2]) * Pose::turn([0.0, 1.0, 0.0], knee);
+    // This one hangs on the link without mass that the trunk took in.
+    let other = Pose::origin([0.16, -0.1, 0.28], [-0.1, 0.2, 0.4]) * Pose::turn([1.0, 0.0, 0.0], right);
+    stands(&model, &start, "trunk", trunk * Pose::origin([0.04, -0.02, 0.03], [0.2, -0.1, 0.3]));
+    let battery = trunk * Pose::origin([-0.1, 0.0, 0.05], [0.0, 0.0, 0.5]);
+    stands(&model, &start, "battery", battery * Pose::shift([0.01, 0.0, 0.02]));
+    stands(&model, &start, "left_thigh", thigh * Pose::origin([0.01, 0.03, -0.1], [0.0, 0.1, 0.0]));
+    stands(&model, &start, "left_shank", shank * Pose::shift([0.0, 0.01, -0.12]));
+    stands(&model, &start, "right_thigh", other * Pose::shift([0.01, -0.03, -0.1]));
+
+    let mut text = fs::read_to_string(&page).unwrap();
+    let mut after = |line: &str, more: &str| {
+        assert!(text.contains(line), "{line}");
+        text = text.replacen(line, &format!("{line}{more}"), 1);
+    };
+    after("free = true\n", "velocity = [0.3, -0.2, 0.5]\nangular_velocity = [0.4, -0.7, 1.1]\n");
+    for (name, angle, rate) in [("left_hip", left, 2.0), ("left_knee", knee, -3.0), ("right_hip", right, 1.5)]
+    {
+        let joint = format!("name = \"{name}\"\nkind = \"revolute\"\n");
+        after(&joint, &format!("angle = {angle:?}\nrate = {rate:?}\n"));
+    }
+    for body in ["trunk", "left_shank", "battery"] {
+        text += &format!("\n[[output]]\nname = \"a_{body}\"\nkind = \"acceleration\"\nbody = \"{body}\"\n");
+    }
+    fs::write(&page, text).unwrap();
+    let run = simulate(&page, "1e-9");
+    for (body, expected) in [
+        ("trunk", [-0.0371990093993, 0.0470144473643, -9.8917708345016]),
+        ("left_shank", [0.1826109383078, -0.1028040669640, -9.3159342966884]),
+        ("battery", [0.2258363196947, -0.0037940934491, -9.9156684675826]),
+    ] {
+        for (found, expected) in run["outputs"][format!("a_{body}")].as_array().unwrap().iter().zip(expected)
+        {
+            assert!((found.as_f64().unwrap() - expected).abs() < PINOCCHIO_S, "{body}: {run}");
+        }
+    }
+}
+
+/// A jerk of less than a hundred m/s3 over the nanosecond of the run, and the printed digits.
+const PINOCCHIO_S: f64 = 1e-7;

@@ -69,6 +69,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
         keys,
         [
             "chart_switches",
+            "components",
             "constraint_violation",
             "coordinates",
             "correction",
@@ -78,6 +79,8 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "energy_drift",
             "engine",
             "evaluations",
+            "files",
+            "inputs",
             "integrator",
             "jacobians",
             "joints",
@@ -529,4 +532,42 @@ fn what_has_no_joint_coordinates_is_said_and_a_tree_is_called_a_tree() {
     check("compound-pendulum.toml", "assembled", "leave out --engine");
     check("four-bar.toml", "generated", "has a loop, which is closed by joint `knee`");
     check("four-bar.toml", "recursive", "has a loop");
+}
+
+/// What was fed in is in the table beside what came of it, and the object says what its numbers are and where the table is.
+#[test]
+fn the_table_has_the_inputs_and_the_object_names_components_and_files() {
+    let folder = Folder::new("inputs");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models/motor.toml");
+    let text = fs::read_to_string(page).unwrap();
+    let more = "\n[[output]]\nname = \"felt\"\nkind = \"acceleration\"\nbody = \"disc\"\n\
+                [[output]]\nname = \"torque\"\nkind = \"power\"\n";
+    let page = folder.0.join("motor.toml");
+    fs::write(&page, text.replacen("torque = 0\n", "torque = 0\nspare = 2\n", 1) + more).unwrap();
+    fs::write(folder.0.join("ramp.csv"), "t,torque\n0,0\n1,0.5\n").unwrap();
+    let page = page.to_str().unwrap();
+    let run =
+        [page, "--engine", "assembled", "--t-end", "0.1", "--every", "0.05", "--input", "torque=ramp.csv"];
+    let run = json(&folder, &[&run[..], &["--out", "here"]].concat());
+    assert_eq!(run["inputs"]["spare"], 2.0);
+    assert!((run["inputs"]["torque"].as_f64().unwrap() - 0.05).abs() < 1e-12, "{run}");
+    assert_eq!(run["components"]["inputs"]["torque"], "N*m");
+    assert_eq!(run["components"]["outputs"]["felt"][3]["name"], "dwx");
+    assert_eq!(run["components"]["outputs"]["felt"][3]["unit"], "rad/s2");
+    assert_eq!(run["components"]["outputs"]["felt"].as_array().unwrap().len(), 6);
+    assert_eq!(run["components"]["joints"]["bearing"][0]["unit"], "rad");
+    let table = fs::read_to_string(folder.0.join(run["files"]["time_series"].as_str().unwrap())).unwrap();
+    let mut lines = table.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    // An output has the input's name.
+    let column =
+        |name: &str| head.iter().position(|other| *other == name).unwrap_or_else(|| panic!("{head:?}"));
+    let (t, torque, spare) = (column("t [s]"), column("input torque [N*m]"), column("spare [1]"));
+    for line in lines {
+        let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!((row[torque] - 0.5 * row[t]).abs() < 1e-12 && row[spare] == 2.0, "{line}");
+    }
+    let nowhere = json(&folder, &[page, "--engine", "assembled", "--t-end", "0.01"]);
+    assert!(nowhere["files"]["time_series"].is_null(), "{nowhere}");
+    assert!(nowhere["files"]["note"].as_str().unwrap().contains("--out"), "{nowhere}");
 }

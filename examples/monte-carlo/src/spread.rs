@@ -47,7 +47,7 @@ impl Spread {
     pub(crate) fn svg(&self) -> Result<String, Box<dyn Error>> {
         let mut text = String::new();
         {
-            let area = SVGBackend::with_string(&mut text, (840, 560)).into_drawing_area();
+            let area = SVGBackend::with_string(&mut text, (840, 600)).into_drawing_area();
             area.fill(&WHITE)?;
             for ((panel, name), rows) in area.split_evenly((2, 1)).iter().zip(ANGLES).zip(&self.0) {
                 draw(panel, name, rows)?;
@@ -69,7 +69,7 @@ fn draw<B: DrawingBackend<ErrorType: 'static>>(
     let mut chart = ChartBuilder::on(panel)
         .caption(format!("{name}: 5, 25, 50, 75, 95 % of the scenarios"), ("sans-serif", 16))
         .margin(8)
-        .x_label_area_size(28)
+        .x_label_area_size(44)
         .y_label_area_size(72)
         .build_cartesian_2d(0.0..time(SAMPLES - 1), low - margin..high + margin)?;
     let axis = |value: &f64| format!("{value:.1e}");
@@ -123,6 +123,36 @@ fn quantiles(mut values: Vec<f64>) -> [f64; QUANTILES.len()] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The name of the time axis stands clear below the numbers of its ticks.
+    #[test]
+    fn no_label_lies_on_another() {
+        let svg = Spread([[[0.0, 1.0, 2.0, 3.0, 4.0]; SAMPLES]; ANGLES.len()]).svg().expect("a drawing");
+        let attribute = |text: &str, name: &str| {
+            let (_, value) = text.split_once(&format!(" {name}=\"")).expect("an attribute");
+            value.split('"').next().expect("a value").to_owned()
+        };
+        // Where the letters stand: plotters shifts them by parts of the font's size.
+        let baseline = |text: &str| {
+            let [y, size] =
+                ["y", "font-size"].map(|name| attribute(text, name).parse::<f64>().expect("a number"));
+            let shift = attribute(text, "dy");
+            let (number, unit) = shift.split_at(shift.len() - 2);
+            y + number.parse::<f64>().expect("a number") * size * if unit == "em" { 1.0 } else { 0.5 }
+        };
+        let words = |text: &str| {
+            text.split_once(">\n").and_then(|(_, words)| words.lines().next().map(str::to_owned))
+        };
+        let texts = svg.split("<text").skip(1);
+        let texts: Vec<(f64, String)> =
+            texts.map(|text| (baseline(text), words(text).expect("words"))).collect();
+        let names: Vec<f64> = texts.iter().filter(|(_, words)| *words == "t, s").map(|(y, _)| *y).collect();
+        assert_eq!(names.len(), ANGLES.len());
+        for name in names {
+            let near = texts.iter().filter(|(y, words)| (y - name).abs() < 12.0 && *words != "t, s");
+            assert_eq!(near.count(), 0, "{texts:?}");
+        }
+    }
 
     #[test]
     fn quantiles_are_between_order_statistics() {

@@ -1,12 +1,21 @@
-//! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to the root is ground.
+//! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to a root that does not float is ground.
 
 use super::robot::{Joint, Kind, Link, Robot};
 use nalgebra::IsometryMatrix3;
 
+/// What the root link is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Root {
+    /// The ground.
+    Fixed,
+    /// A body that floats.
+    Floating,
+}
+
 /// Which body each link is part of.
 #[derive(Debug)]
 pub(super) struct Merged {
-    /// The link that each body takes name, mass and inertia from; the first body is the ground, the others
+    /// The link that each body takes name, mass and inertia from; the first body is the root's, the others
     /// have the order of the file.
     pub(super) bodies: Vec<usize>,
     /// For each link its place.
@@ -30,17 +39,18 @@ pub(super) struct Place {
 ///
 /// # Errors
 /// Links that do not make a tree, and links that move without mass.
-pub(super) fn merge(file: &str, robot: &Robot) -> Result<Merged, Vec<String>> {
+pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec<String>> {
     let order = order(file, robot)?;
-    let ground = Place { body: 0, pose: IsometryMatrix3::identity(), zero: IsometryMatrix3::identity() };
+    let at_origin = Place { body: 0, pose: IsometryMatrix3::identity(), zero: IsometryMatrix3::identity() };
     let mut merging = Merging {
         robot,
+        root,
         places: vec![None; robot.links.len()],
-        bodies: vec![order[0].1],
+        bodies: Vec::new(),
         remarks: Vec::new(),
         problems: Vec::new(),
     };
-    merging.places[order[0].1] = Some(ground);
+    merging.place_root(order[0].1, at_origin, file);
     for (joint, link) in order.iter().skip(1) {
         merging.place(&robot.joints[*joint], *link, file);
     }
@@ -49,7 +59,9 @@ pub(super) fn merge(file: &str, robot: &Robot) -> Result<Merged, Vec<String>> {
         return Err(problems);
     }
     let mut sorted = bodies.clone();
-    sorted[1..].sort_unstable();
+    if let Some(others) = sorted.get_mut(1..) {
+        others.sort_unstable();
+    }
     let renumbered = |place: Place| {
         let link = bodies[place.body];
         Place { body: sorted.iter().position(|other| *other == link).unwrap_or(0), ..place }
@@ -103,6 +115,7 @@ fn order(file: &str, robot: &Robot) -> Result<Vec<(usize, usize)>, Vec<String>> 
 
 struct Merging<'r> {
     robot: &'r Robot,
+    root: Root,
     places: Vec<Option<Place>>,
     bodies: Vec<usize>,
     remarks: Vec<String>,
@@ -110,6 +123,19 @@ struct Merging<'r> {
 }
 
 impl Merging<'_> {
+    /// Places the root: the ground, or a body with its own mass or that of what is fixed to it, its link's frame at the origin.
+    fn place_root(&mut self, link: usize, at_origin: Place, file: &str) {
+        self.places[link] = match self.root {
+            Root::Fixed => {
+                self.bodies.push(link);
+                Some(at_origin)
+            }
+            Root::Floating => {
+                self.first_of_body(link, file).map(|(body, pose)| Place { body, pose, ..at_origin })
+            }
+        };
+    }
+
     /// Places a link whose parent has been placed.
     fn place(&mut self, joint: &Joint, link: usize, file: &str) {
         let Some(parent) = self.places[joint.parent] else { return };
@@ -117,7 +143,7 @@ impl Merging<'_> {
         let (is_fixed, has_mass) = (joint.kind == Kind::Fixed, self.robot.links[link].inertial.is_some());
         let name = &self.robot.links[link].name;
         let merged = Place { body: parent.body, pose: parent.pose * joint.origin, zero };
-        self.places[link] = if is_fixed && (parent.body == 0 || !has_mass) {
+        self.places[link] = if is_fixed && (self.is_ground(parent) || !has_mass) {
             let carrier = &self.robot.links[self.bodies[parent.body]].name;
             let mass = if has_mass { ", its mass with it" } else { "" };
             self.remarks.push(format!("link `{name}` is fixed to `{carrier}` and became a part of it{mass}"));
@@ -128,6 +154,10 @@ impl Merging<'_> {
         } else {
             self.first_of_body(link, file).map(|(body, pose)| Place { body, pose, zero })
         };
+    }
+
+    fn is_ground(&self, place: Place) -> bool {
+        place.body == 0 && self.root == Root::Fixed
     }
 
     /// A new body for a link and what is fixed to it; the body's frame is at the mass centre.

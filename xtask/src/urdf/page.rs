@@ -1,9 +1,9 @@
 //! The page of a robot as text.
 
 use super::MARK;
-use super::merge::{Merged, Place};
+use super::merge::{Merged, Place, Root};
 use super::names::{Names, snake_case};
-use super::robot::{Inertial, Joint, Kind, Robot};
+use super::robot::{Inertial, Joint, Kind, Link, Robot};
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
 
@@ -14,7 +14,12 @@ const COULOMB_RATE: f64 = 0.01;
 const ROUNDING: f64 = 1e-15;
 
 /// Writes the page; adds what is worth knowing about it to the remarks.
-pub(super) fn write(file: &str, robot: &Robot, merged: &Merged, remarks: &mut Vec<String>) -> String {
+pub(super) fn write(
+    file: &str,
+    robot: &Robot,
+    (merged, root): (&Merged, Root),
+    remarks: &mut Vec<String>,
+) -> String {
     let (mut body_names, mut joint_names) = (Names::default(), Names::default());
     let bodies: Vec<String> =
         merged.bodies.iter().map(|link| body_names.name(&robot.links[*link].name)).collect();
@@ -22,11 +27,8 @@ pub(super) fn write(file: &str, robot: &Robot, merged: &Merged, remarks: &mut Ve
     for (was, is) in body_names.changed.iter().chain(&joint_names.changed) {
         remarks.push(format!("`{was}` is called `{is}`"));
     }
-    let page = Page { robot, merged, bodies, joints };
-    remarks.push(format!(
-        "the root link `{}` is fixed; write `free = true`, its mass and its inertia on the page to let it move",
-        robot.links[merged.bodies[0]].name
-    ));
+    let page = Page { robot, merged, root, bodies, joints };
+    remarks.push(of_root(&robot.links[merged.bodies[0]], root));
     remarks.push("gravity is taken to be 9.81 m/s2 along -z: URDF does not say".to_owned());
     if robot.joints.iter().any(|joint| joint.friction > 0.0) {
         remarks.push(format!("Coulomb friction sets in at {COULOMB_RATE} rad/s or m/s: URDF does not say"));
@@ -39,9 +41,23 @@ pub(super) fn write(file: &str, robot: &Robot, merged: &Merged, remarks: &mut Ve
     text
 }
 
+/// What became of the root. A fixed one has its frame where its link's is, a free one at its mass centre, so that the one cannot be
+/// made of the other by a word on the page.
+fn of_root(link: &Link, root: Root) -> String {
+    let mass = if link.inertial.is_some() { ", its own mass left out" } else { "" };
+    match root {
+        Root::Fixed => format!("the root link `{}` is fixed{mass}; --floating lets it move", link.name),
+        Root::Floating => format!(
+            "the root link's body `{}` floats; it starts at rest, with the root's frame at the origin",
+            link.name
+        ),
+    }
+}
+
 struct Page<'a> {
     robot: &'a Robot,
     merged: &'a Merged,
+    root: Root,
     /// Names on the page.
     bodies: Vec<String>,
     joints: Vec<String>,
@@ -66,7 +82,7 @@ impl Page<'_> {
         let link = self.merged.bodies[body];
         let _ = write!(text, "\n[[body]]\nname = \"{}\"\n", self.bodies[body]);
         match &self.robot.links[link].inertial {
-            Some(inertial) if body > 0 => {
+            Some(inertial) if body > 0 || self.root == Root::Floating => {
                 self.moving(text, link, inertial);
             }
             _ => text.push_str("fixed = true\n"),
@@ -85,7 +101,8 @@ impl Page<'_> {
 
     fn moving(&self, text: &mut String, link: usize, inertial: &Inertial) {
         let carrier = self.robot.joints.iter().find(|j| self.is_carried_by(link, j));
-        if carrier.is_some_and(|joint| joint.kind == Kind::Floating) {
+        // The root's body is carried by none, and it is written only where it moves.
+        if carrier.is_none_or(|joint| joint.kind == Kind::Floating) {
             let pose = self.merged.places[link].zero * inertial.origin;
             let _ = writeln!(text, "free = true\nposition = {}", vector(&pose.translation.vector));
             let _ = writeln!(text, "orientation = {}", euler_parameters(&pose));

@@ -78,10 +78,10 @@ fn mistakes_are_told_by_line_and_element() {
             "the largest exceeds the sum of the others",
         ),
     ] {
-        let found = convert("r.urdf", "r.urdf", &robot(rest)).unwrap_err();
+        let found = convert("r.urdf", "r.urdf", &robot(rest), Root::Fixed).unwrap_err();
         assert!(found.contains(message), "{rest}\n{found}");
     }
-    let found = convert("r.urdf", "r.urdf", "<arm/>").unwrap_err();
+    let found = convert("r.urdf", "r.urdf", "<arm/>", Root::Fixed).unwrap_err();
     assert_eq!(found, "r.urdf:1: <arm>: a URDF file has one <robot>");
 }
 
@@ -90,7 +90,7 @@ fn a_moving_link_without_mass_is_refused_and_all_mistakes_come_at_once() {
     let rest = r#"<link name="a"/><link name="b"/>
 <joint name="ja" type="revolute"><parent link="arm"/><child link="a"/></joint>
 <joint name="jb" type="revolute"><parent link="arm"/><child link="b"/></joint>"#;
-    let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}"))).unwrap_err();
+    let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), Root::Fixed).unwrap_err();
     let lines: Vec<&str> = found.lines().collect();
     assert_eq!(lines.len(), 2, "{found}");
     assert!(lines[0].starts_with("r.urdf:4: link `a` moves and has no mass"), "{found}");
@@ -100,7 +100,8 @@ fn a_moving_link_without_mass_is_refused_and_all_mistakes_come_at_once() {
 fn what_has_no_counterpart_is_listed() {
     let rest = r#"<material name="m"/><link name="frame"><visual/><visual/><sensor/></link>
 <joint name="f" type="fixed"><parent link="arm"/><child link="frame"/><calibration rising="0"/></joint>"#;
-    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}"))).unwrap();
+    let (page, remarks) =
+        convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), Root::Fixed).unwrap();
     for words in [
         "line 4: <material name=\"m\">: has no counterpart",
         "line 4: <sensor> of link `frame`: has no counterpart",
@@ -113,4 +114,14 @@ fn what_has_no_counterpart_is_listed() {
         assert!(page.contains(words), "{words} is missing in\n{page}");
     }
     assert!(page.contains("# Link frame: its frame is at [0.0, 0.0, 0.0] in the body's"), "{page}");
+}
+
+/// The advice of earlier versions, to write `free = true` on the page, was wrong: points on a fixed root are in its link's frame.
+#[test]
+fn a_root_without_mass_cannot_float_and_a_fixed_one_is_not_called_free() {
+    let found = convert("r.urdf", "r.urdf", &robot(JOINT), Root::Floating).unwrap_err();
+    assert!(found.contains("r.urdf:2: link `base` moves and has no mass"), "{found}");
+    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(JOINT), Root::Fixed).unwrap();
+    let said = format!("{page}{}", remarks.join("\n"));
+    assert!(said.contains("--floating lets it move") && !said.contains("free = true"), "{said}");
 }
