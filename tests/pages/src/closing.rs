@@ -77,8 +77,8 @@ impl Closing {
         Self { kind, length, ends: ends.map(|(body, point, frame)| End { body, point, frame }) }
     }
 
-    /// The joint for the page.
-    pub fn joint(&self) -> Joint {
+    /// The joint for the page, the bodies being where they are.
+    pub fn joint(&self, places: &[Place]) -> Joint {
         let mut text = format!("kind = {:?}\n", self.kind.name);
         if self.kind.name == "rod" {
             text += &format!("length = {:?}\n", self.length);
@@ -88,7 +88,12 @@ impl Closing {
             let frame = frame.map_or(String::new(), |[axis, zero]| format!(", axis = {axis}, zero = {zero}"));
             text += &format!("{key} = {{ body = \"b{body}\", point = {}{frame} }}\n", list(&printed(point)));
         }
-        Joint { kind: self.kind, text, starts: Vec::new(), taken: Vec::new(), following: Vec::new() }
+        // Bodies may be placed along this joint as well as along those of the tree.
+        let [a, b] = self.ends.map(|end| places[end.body]);
+        let relative = a.relative(&b).map(|e| format!("{e:?}"));
+        let starts =
+            if self.kind.name == "spherical" { vec![("orientation", list(&relative))] } else { Vec::new() };
+        Joint { kind: self.kind, text, starts, taken: Vec::new(), following: Vec::new() }
     }
 
     /// What the joint holds at zero, or at its length.

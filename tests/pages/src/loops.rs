@@ -88,7 +88,7 @@ impl Page {
             });
             if let Some(closing) = closed {
                 self.freedoms -= 6 - closing.kind.freedoms;
-                self.joints.push(closing.joint());
+                self.joints.push(closing.joint(&places));
             }
         }
     }

@@ -1,0 +1,280 @@
+//! One page in every engine and in all coordinates: generated formulas as they were emitted, read back and run in `f64`, beside the
+//! forms of the assembled twin, all held against the same formulas in 384 bits.
+
+use gyro_assembled::{Careful, Dense, Recursive};
+use gyro_model::{Model, to_f64};
+use gyro_sim::{Equations, Mechanism, Ode};
+use gyro_verifier::atoms::{Atoms, Elementary};
+use gyro_verifier::field::{Field, Precision, Real};
+use gyro_verifier::interpreter::{self, Given};
+use gyro_verifier::module::Module;
+use gyro_verifier::point::Point;
+
+/// What any engine may be off by, relative to the largest number of its kind, where nothing cancels.
+const ROUNDING: f64 = 1e-12;
+
+/// A relative change of the state, to see by how much more results change: rounding is amplified likewise.
+const NUDGE: f64 = 1e-9;
+
+/// Rounding in terms of the nudge's effect: a few hundred units in the last place.
+const ULPS: f64 = 300.0 * f64::EPSILON;
+
+/// A trajectory, s, and its steps; again with twice as many, to see how much the method is off by.
+const T_END: f64 = 0.005;
+const STEPS: u32 = 20;
+
+/// The worst difference of each comparison in terms of what is allowed.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// What was compared, and how it differs.
+    pub found: Vec<(String, f64)>,
+    /// Forms that do not do this model.
+    pub n_forms: usize,
+}
+
+impl Comparison {
+    /// What differs by more than it may.
+    pub fn wrong(&self) -> Vec<&(String, f64)> {
+        self.found.iter().filter(|(_, ratio)| !(*ratio <= 1.0)).collect()
+    }
+}
+
+/// Generates, builds and compares; `None` where the page is refused.
+pub fn compare(text: &str) -> Option<Comparison> {
+    let model = gyro_model::read_with("page.toml", text, &mut gyro_pages::load).ok()?;
+    let module = gyro_codegen::generate_model("page.toml", &model).ok()?;
+    let module = Module::read(&model, &module.code, &module.constants).ok()?;
+    let generated = Generated::new(&model, &module, (), |x| x);
+    let forms = Forms::of(&model);
+    let mut comparison = Comparison {
+        n_forms: forms.list().len() + 1 + usize::from(module.joints.is_some()),
+        ..Comparison::default()
+    };
+    let end = accelerations_agree(&model, &module, &generated, &forms, &mut comparison);
+    trajectories_agree(&module, &generated, &forms, &mut comparison);
+    accelerations_at(&model, &module, (T_END, &end), &generated, &forms, &mut comparison);
+    Some(comparison)
+}
+
+/// A derivative of the state.
+type Derivative<'a> = Box<dyn Fn(f64, &Vec<f64>) -> Vec<f64> + 'a>;
+
+struct Forms {
+    dense: Dense<f64>,
+    careful: Option<Careful<f64>>,
+    recursive: Option<Recursive<f64>>,
+}
+
+impl Forms {
+    fn of(model: &Model) -> Self {
+        let careful = Careful::<f64>::supports(model).is_ok();
+        let recursive = Recursive::<f64>::supports(model).is_ok();
+        let message = "it is supported and can be assembled";
+        Self {
+            dense: Dense::new(model).expect("it does every model"),
+            careful: careful.then(|| Careful::new(model).expect(message)),
+            recursive: recursive.then(|| Recursive::new(model).expect(message)),
+        }
+    }
+
+    /// Name, accelerations and derivative of each form that there is.
+    fn list(&self) -> Vec<(&'static str, Derivative<'_>, Derivative<'_>)> {
+        let mut list = vec![("dense", accelerations(&self.dense), derivative(&self.dense))];
+        list.extend(self.careful.as_ref().map(|form| ("careful", accelerations(form), derivative(form))));
+        list.extend(self.recursive.as_ref().map(|form| ("recursive", accelerations(form), derivative(form))));
+        list
+    }
+}
+
+fn accelerations<M: Equations<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
+    Box::new(|t, y| {
+        let mut out = form.accelerations_buffer();
+        form.accelerations(t, y, &mut out);
+        out.as_ref()[..6 * form.n_bodies()].to_vec()
+    })
+}
+
+fn derivative<M: Mechanism<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
+    Box::new(|t, y| {
+        let mut dy = form.start();
+        Ode::derivative(form, t, y, &mut dy);
+        dy
+    })
+}
+
+/// A module's functions over any numbers.
+struct Generated<'a, F: Field> {
+    module: &'a Module,
+    context: F::Context,
+    constants: Vec<F>,
+    parameters: Vec<F>,
+    inputs: Vec<F>,
+    number: Box<dyn Fn(f64) -> F + 'a>,
+}
+
+impl<'a, F: Field> Generated<'a, F>
+where
+    Elementary: Atoms<F>,
+{
+    fn new(model: &Model, module: &'a Module, context: F::Context, number: impl Fn(f64) -> F + 'a) -> Self {
+        let values = |of: &[gyro_model::Parameter]| of.iter().map(|p| number(to_f64(&p.value))).collect();
+        let (parameters, inputs) = (values(&model.parameters), values(&model.inputs));
+        let constants = interpreter::constants(context, module);
+        Self { module, context, constants, parameters, inputs, number: Box::new(number) }
+    }
+
+    fn run(&self, function: &str, t: f64, [y, x]: [&[f64]; 2], accelerations: &[F]) -> Vec<F> {
+        let numbers = |values: &[f64]| values.iter().map(|&value| (self.number)(value)).collect::<Vec<F>>();
+        let (t, state, joints) = ((self.number)(t), numbers(y), numbers(x));
+        let (parameters, inputs) = (self.parameters.clone(), self.inputs.clone());
+        let point = Point { context: self.context, t, state, parameters, inputs };
+        let given = Given { point: &point, accelerations, charts: &[], changes: &[], joints: &joints };
+        let program = &self.module.programs[function];
+        interpreter::run(self.module, program, &self.constants, &Elementary, &given)
+            .expect("no divisor is zero")
+    }
+
+    /// (s̈, ẇ') and what closes loops.
+    fn accelerations(&self, t: f64, y: &[f64]) -> Vec<F> {
+        self.run("accelerations", t, [y, &[]], &[])
+    }
+}
+
+impl Generated<'_, f64> {
+    fn derivative(&self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.run("derivative", t, [y, &[]], &self.accelerations(t, y))
+    }
+
+    fn joint_derivative(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let rates = self.run("joint_accelerations", t, [&[], x], &[]);
+        self.run("joint_derivative", t, [&[], x], &rates)
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| if (a - b).abs() <= worst { worst } else { (a - b).abs() })
+}
+
+/// Every component moved a little, one up, the next one down.
+fn nudged(y: &[f64]) -> Vec<f64> {
+    let scale = largest(y).max(1.0);
+    let sign = |k: usize| if (k * 7) % 3 == 0 { NUDGE } else { -NUDGE };
+    y.iter().enumerate().map(|(k, value)| value + sign(k) * scale).collect()
+}
+
+/// At the start, and half a step on; gives where the generated formulas have come to in the end.
+fn accelerations_agree(
+    model: &Model,
+    module: &Module,
+    generated: &Generated<f64>,
+    forms: &Forms,
+    comparison: &mut Comparison,
+) -> Vec<f64> {
+    let start = &module.start;
+    accelerations_at(model, module, (0.0, start), generated, forms, comparison);
+    integrated(&|t, y| generated.derivative(t, y), start, STEPS)
+}
+
+fn accelerations_at(
+    model: &Model,
+    module: &Module,
+    (t, y): (f64, &Vec<f64>),
+    generated: &Generated<f64>,
+    forms: &Forms,
+    comparison: &mut Comparison,
+) {
+    let n = 6 * model.coordinate_bodies().len();
+    let precision = Precision::new();
+    let exactly = Generated::new(model, module, &precision, |x| Real::new(&precision, x));
+    let exact = |y: &[f64]| exactly.accelerations(t, y)[..n].iter().map(Real::to_f64).collect::<Vec<f64>>();
+    let expected = exact(y);
+    let scale = largest(&expected).max(unrestrained(model, generated, t, y)).max(f64::MIN_POSITIVE);
+    let allowed = ROUNDING * scale + ULPS / NUDGE * difference(&exact(&nudged(y)), &expected);
+    let mut note = |name: &str, found: &[f64]| {
+        let ratio = difference(found, &expected) / allowed;
+        comparison.found.push((format!("{name}: accelerations at t = {t}"), ratio));
+    };
+    note("generated", &generated.accelerations(t, y)[..n]);
+    // The others take the constraints for granted, which hold to the end no better than the method keeps them.
+    let is_start = t == 0.0;
+    forms.list().iter().filter(|(name, ..)| is_start || *name == "dense").for_each(
+        |(name, accelerations, _)| {
+            note(name, &accelerations(t, y));
+        },
+    );
+    if is_start && module.joints.is_some() {
+        note("generated, corrected", &generated.run("corrected_accelerations", t, [y, &[]], &[]));
+    }
+}
+
+/// The largest acceleration that forces would give the bodies without their joints: what cancels where joints hold them.
+fn unrestrained(model: &Model, generated: &Generated<f64>, t: f64, y: &[f64]) -> f64 {
+    let forces = generated.run("applied_force", t, [y, &[]], &[]);
+    let bodies = model.coordinate_bodies().into_iter().map(|body| &model.bodies[body]);
+    let accelerations = bodies.zip(forces.chunks_exact(6)).map(|(body, force)| {
+        let moments = body.inertia[..3].iter().map(|moment| model.value(moment));
+        let smallest = moments.fold(f64::INFINITY, f64::min);
+        (largest(&force[..3]) / model.value(&body.mass)).max(largest(&force[3..]) / smallest)
+    });
+    accelerations.fold(0.0, f64::max)
+}
+
+/// Runge and Kutta's method.
+fn integrated(derivative: &dyn Fn(f64, &Vec<f64>) -> Vec<f64>, start: &[f64], steps: u32) -> Vec<f64> {
+    let (h, mut y) = (T_END / f64::from(steps), start.to_vec());
+    for step in 0..steps {
+        let t = h * f64::from(step);
+        let on = |h: f64, k: &[f64]| y.iter().zip(k).map(|(y, k)| y + h * k).collect::<Vec<f64>>();
+        let first = derivative(t, &y);
+        let second = derivative(t + h / 2.0, &on(h / 2.0, &first));
+        let third = derivative(t + h / 2.0, &on(h / 2.0, &second));
+        let fourth = derivative(t + h, &on(h, &third));
+        let slopes = (0..y.len()).map(|k| (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]) / 6.0);
+        y = on(h, &slopes.collect::<Vec<f64>>());
+    }
+    y
+}
+
+fn trajectories_agree(
+    module: &Module,
+    generated: &Generated<f64>,
+    forms: &Forms,
+    comparison: &mut Comparison,
+) {
+    let start = &module.start;
+    let maximal = |t: f64, y: &Vec<f64>| generated.derivative(t, y);
+    let (end, finer) = (integrated(&maximal, start, STEPS), integrated(&maximal, start, 2 * STEPS));
+    let scale = largest(&end).max(1.0);
+    let amplified = difference(&integrated(&maximal, &nudged(start), STEPS), &end);
+    let method = difference(&finer, &end);
+    let rounding = f64::from(STEPS) * (ROUNDING * scale + ULPS / NUDGE * amplified);
+    let mut note = |name: &str, found: &[f64], allowed: f64| {
+        comparison.found.push((format!("{name}: after {T_END} s"), difference(found, &end) / allowed));
+    };
+    for (name, _, derivative) in forms.list() {
+        let allowed = if name == "recursive" { rounding + 3.0 * method } else { rounding };
+        note(name, &integrated(&*derivative, start, STEPS), allowed);
+    }
+    if module.joints.is_some() {
+        let joint = |t: f64, x: &Vec<f64>| generated.joint_derivative(t, x);
+        let [x, finer] = [STEPS, 2 * STEPS].map(|steps| integrated(&joint, &module.joint_start, steps));
+        let to_maximal = |x: &[f64]| generated.run("to_maximal", T_END, [&[], x], &[]);
+        let (mut found, finer) = (to_maximal(&x), to_maximal(&finer));
+        let method = 3.0 * (method + difference(&finer, &found));
+        // Euler parameters of both signs are one orientation.
+        for (k, body) in found[..7 * comparison_bodies(&end)].chunks_mut(7).enumerate() {
+            let same: f64 = body[3..].iter().zip(&end[7 * k + 3..]).map(|(a, b)| a * b).sum();
+            body[3..].iter_mut().for_each(|e| *e *= same.signum());
+        }
+        note("generated, joint coordinates", &found, rounding + method);
+    }
+}
+
+/// Bodies of a state of 13 numbers a body; the few beyond are work and turns.
+fn comparison_bodies(y: &[f64]) -> usize {
+    y.len() / 13
+}
