@@ -3,7 +3,7 @@
 //! Advice is a value, not a sentence: it prints as the options of the command line, and it can be followed by a program
 //! ([`Advice::follow`]). None is given that the run's mechanism, engine and precision would refuse.
 
-use crate::{Approach, Coordinates, Correction, Integrator, Offers, Settings, When};
+use crate::{Approach, Coordinates, Correction, Integrator, Offers, Schedule, Settings, When};
 use gyro_sim::{Error, Statistics};
 use std::fmt;
 
@@ -233,7 +233,7 @@ impl Plan<'_> {
     fn beyond(&self, t: f64, steps: u64, met: &Statistics, fastest: Option<f64>) -> Vec<Advice> {
         #[expect(clippy::cast_precision_loss, reason = "steps that were counted")]
         let needed = match self.approach.tolerance {
-            None => (self.settings.t_end / self.settings.step).ceil() + 1.0,
+            None => Schedule::steps(self.settings),
             Some(_) => (SPARE * steps as f64 * self.settings.t_end / t).ceil(),
         };
         let mut advice = Vec::new();

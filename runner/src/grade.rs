@@ -411,6 +411,23 @@ mod tests {
     }
 
     #[test]
+    fn free_bodies_are_judged_too() {
+        let at = |x: f64, turn: f64| {
+            let mut sample = samples(0.0, 0.0, 0.0).swap_remove(0);
+            let (sin, cos) = (0.5 * turn).sin_cos();
+            sample.coordinates.clear();
+            sample.bodies = vec![BodySample { pose: [x, 0.0, 0.0, cos, sin, 0.0, 0.0], velocity: [0.0; 6] }];
+            sample
+        };
+        let truth = [at(0.0, 0.0), at(1.0, 2.0)];
+        let fine = Summary::default();
+        assert_eq!(graded(&truth, &truth, &fine).grade, Grade::Good);
+        assert_eq!(graded(&[at(0.0, 0.0), at(3.0, 2.0)], &truth, &fine).grade, Grade::Worthless);
+        assert_eq!(graded(&[at(0.0, 0.0), at(1.0, 1.0)], &truth, &fine).grade, Grade::Worthless);
+        assert_eq!(graded(&[at(0.0, 0.0), at(1.01, 2.0)], &truth, &fine).grade, Grade::Usable);
+    }
+
+    #[test]
     fn no_small_motion_is_good_because_a_large_one_is() {
         let truth = samples(1e-5, 20.0, 100.0);
         let found = graded(&samples(2e-5, 20.0, 100.0), &truth, &Summary::default());

@@ -74,7 +74,7 @@ impl Plan<'_> {
             self.on_errors(judged, summary),
             self.on_stability(summary, fastest),
             on_rejections(summary),
-            self.on_violation(summary),
+            self.on_violation(judged, summary),
         ];
         let mut remarks: Vec<Remark> = said.into_iter().flatten().collect();
         remarks.extend(judged.reasons.iter().filter_map(on_reason));
@@ -168,29 +168,28 @@ impl Plan<'_> {
         Some(Remark { words, advice, promise: Promise::Stability })
     }
 
-    /// Only what has corrections can be corrected more often.
-    fn on_violation(&self, summary: &Summary) -> Option<Remark> {
+    /// Only what has corrections can be corrected more often, and only a motion that is there is worth it.
+    fn on_violation(&self, judged: &Judgement, summary: &Summary) -> Option<Remark> {
         let violation = summary.position_violation;
         let visible = VISIBLE_VIOLATION.max(VIOLATION_ULPS * self.offers.epsilon);
         if violation <= visible || self.approach.coordinates == Coordinates::Joint {
             return None;
         }
         let words = format!("Constraints were violated by up to {violation:.1e} of the mechanism's size.");
-        let (step, every) = (self.settings.step, self.settings.correct_every);
-        let change = match (self.approach.correction, self.approach.when) {
+        if judged.relative > SMOOTH {
+            return Some(Remark::words(words));
+        }
+        let often = Change::When(When::Steps(1));
+        let changes = match (self.approach.correction, self.approach.when) {
             (Correction::None | Correction::Baumgarte(_), _) => {
-                Some(Change::Correction(Correction::Partition))
+                vec![Change::Correction(Correction::Partition), often]
             }
-            (_, Some(When::Steps(steps))) => (steps > 1).then_some(Change::When(When::Steps(1))),
-            (_, Some(When::Violation(limit))) => (limit > visible).then_some(Change::When(When::Steps(1))),
-            (_, None)
-                if self.approach.tolerance.is_none() && every.is_some_and(|every| every > 1.5 * step) =>
-            {
-                Some(Change::CorrectEvery(step))
-            }
-            (_, None) => None,
+            (_, Some(When::Steps(1))) => Vec::new(),
+            (_, None) if self.approach.tolerance.is_some() => Vec::new(),
+            _ => vec![often],
         };
-        Some(Remark { words, advice: change.map(Advice::to), promise: Promise::Violation(2.0) })
+        let advice = (!changes.is_empty()).then_some(Advice { changes });
+        Some(Remark { words, advice, promise: Promise::Violation(2.0) })
     }
 }
 

@@ -160,7 +160,7 @@ fn foretell<M: Partition + Ports + 'static, F: FnMut(Event<'_>) -> io::Result<()
 ) -> Result<(), Failure> {
     #[expect(clippy::cast_precision_loss, reason = "a number of steps to be told")]
     let budget = approach.budget.map_or(f64::INFINITY, |budget| budget as f64);
-    let steps = (settings.t_end / settings.step).min(budget);
+    let steps = Schedule::steps(settings).min(budget);
     if approach.tolerance.is_some() || !forecast::is_long(steps) {
         return Ok(());
     }
@@ -175,7 +175,7 @@ fn foretell<M: Partition + Ports + 'static, F: FnMut(Event<'_>) -> io::Result<()
                 forecast.steps,
                 settings.step,
                 forecast::duration_words(forecast.seconds),
-                forecast.steps.ceil() + 1.0
+                forecast.steps
             )))
         }
         _ => Ok(()),

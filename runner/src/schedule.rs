@@ -66,6 +66,9 @@ const MOST_STEPS: f64 = 1e13;
 /// Samples are kept in memory: ten million take a few gigabytes.
 const MOST_SAMPLES: f64 = 1e7;
 
+/// Events of a run that are gone through to count its steps.
+const MOST_COUNTED: f64 = 1e6;
+
 /// Times closer than this part of a step are one; an interval that is longer by this part of a step than whole steps
 /// takes no further step.
 const COINCIDENT: f64 = 1e-9;
@@ -91,6 +94,17 @@ impl Schedule {
     /// The schedule of checked settings.
     pub fn new(settings: &Settings) -> Self {
         Self { settings: *settings, now: 0.0, next_sample: 1, next_correction: 1 }
+    }
+
+    /// Steps of a whole run: counted where there are few events, and at most so many where there are more.
+    #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
+    pub fn steps(settings: &Settings) -> f64 {
+        let Settings { t_end, step, correct_every, sample_every } = *settings;
+        let events = t_end / sample_every + correct_every.map_or(0.0, |every| t_end / every) + 1.0;
+        if events > MOST_COUNTED {
+            return (t_end / step).ceil() + events.ceil();
+        }
+        Self::new(settings).map(|segment| segment.n_steps as f64).sum()
     }
 
     /// How near two times count as one: part of a step, or what rounding makes of `k · interval` late in a long run.
@@ -208,6 +222,17 @@ mod tests {
     fn the_end_is_corrected_only_if_its_turn_has_come() {
         let last = *segments(1.0, 0.1, Some(0.4), 10.0).last().unwrap();
         assert!(last.samples && !last.corrects && last.to == 1.0 && last.n_steps == 2, "{last:?}");
+    }
+
+    #[test]
+    fn steps_are_counted() {
+        for (step, sample_every, steps) in
+            [(0.4, 0.3, 5.0), (1e-3, 0.1, 1000.0), (1e-9, 1e-7, 1e9 + 1e7 + 5.0)]
+        {
+            let settings = Settings { t_end: 1.0, step, correct_every: None, sample_every };
+            let found = Schedule::steps(&settings);
+            assert!(found >= steps - 5.0 && found <= steps + 5.0, "{found} for {steps}");
+        }
     }
 
     #[test]

@@ -112,10 +112,12 @@ pub(crate) struct InspectArgs {
 
 /// Simulate a model
 ///
-/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own table `simulation` says. All
-/// times are in seconds.
+/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own table `simulation` says. Of an option
+/// that is given twice the last one counts. All times are in seconds.
 #[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:
+#[command(
+    args_override_self = true,
+    after_help = "Examples:
   cargo xtask simulate models/gyroscope.toml
   cargo xtask simulate models/gyroscope.toml --engine assembled --t-end 10
   cargo xtask simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
@@ -125,7 +127,8 @@ pub(crate) struct InspectArgs {
   cargo xtask simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
 
 Exit codes: 0 done; 1 the run has failed; 2 it cannot be made as it was asked for; 3 it has come to its end, and the result is
-worthless")]
+worthless"
+)]
 pub(crate) struct SimulateArgs {
     /// Model page, anywhere on disk
     #[arg(value_name = "MODEL")]
@@ -143,7 +146,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) correct_every: Option<f64>,
     /// Integration alone, or with coordinate partitioning
-    #[arg(long, value_enum, conflicts_with = "correction")]
+    #[arg(long, value_enum, overrides_with = "correction")]
     pub(crate) method: Option<MethodName>,
     /// The integrator: rk4 (fixed steps), tsit5, dop853, or rodas4 for stiff scenes
     #[arg(long, value_name = "NAME", value_parser = integrator, default_value = "rk4")]
@@ -158,7 +161,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "NAME", value_parser = correction)]
     pub(crate) correction: Option<Correction>,
     /// When they are corrected: steps=K or violation=SIZE [default: --correct-every; every step with --tolerance]
-    #[arg(long, value_name = "WHEN", value_parser = when, conflicts_with = "correct_every")]
+    #[arg(long, value_name = "WHEN", value_parser = when, overrides_with = "correct_every")]
     pub(crate) correct_when: Option<When>,
     /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more than an hour
     /// are made only with a budget
@@ -490,6 +493,20 @@ mod tests {
             let found = simulate(args).unwrap_err();
             assert!(found.contains(message), "{args:?}: {found}");
         }
+    }
+
+    #[test]
+    fn advice_can_be_appended_to_any_command() {
+        let given =
+            ["--step=1e-3", "--correct-every=5e-3", "--method=direct", "--input", "a=1", "--input", "b=2"];
+        let advice = ["--step", "1e-4", "--correct-when", "steps=1", "--correction", "partition"];
+        let args = simulate(&[&given[..], &advice].concat()).unwrap();
+        assert_eq!(
+            (args.step, args.correct_every, args.correct_when),
+            (Some(1e-4), None, Some(When::Steps(1)))
+        );
+        assert_eq!((args.method, args.correction), (None, Some(Correction::Partition)));
+        assert_eq!(args.input.len(), 2);
     }
 
     #[test]
