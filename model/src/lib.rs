@@ -10,6 +10,7 @@
 
 mod assemble;
 mod diagnostics;
+mod directions;
 mod elements;
 mod kinematics;
 mod motion;
@@ -64,6 +65,9 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// Constraint rows that depend on others and were dropped: found by rank when the page was read.
     pub redundant: Vec<RedundantRow>,
+    /// What the page writes nearly, but not exactly, as a coordinate direction or a right angle, and what to write if that is meant: a
+    /// sentence for each. Formulas are shorter where it is.
+    pub nearly_exact: Vec<String>,
     /// How the page asks to be simulated.
     pub simulation: Simulation,
 }

@@ -60,6 +60,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         forces,
         outputs,
         redundant,
+        nearly_exact: Vec::new(),
         simulation,
     }
 }
