@@ -10,6 +10,7 @@
 
 mod assemble;
 mod diagnostics;
+mod directions;
 mod elements;
 mod kinematics;
 mod motion;
@@ -66,6 +67,9 @@ pub struct Model {
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].
     pub counts_work: bool,
+    /// What the page writes nearly, but not exactly, as a coordinate direction or a right angle, and what to write if that is meant: a
+    /// sentence for each. Formulas are shorter where it is.
+    pub nearly_exact: Vec<String>,
     /// How the page asks to be simulated.
     pub simulation: Simulation,
 }

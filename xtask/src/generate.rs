@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
-use crate::{files, remarks, scene};
+use crate::{files, progress, remarks, scene};
 use gyro_codegen::Module;
 use gyro_verifier::constants::Constants;
 use rayon::prelude::*;
@@ -92,8 +92,10 @@ fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let model = scene::read(page)?;
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
+        let spinner = progress::deriving(&model);
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
             .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
+        drop(spinner);
         proved(&model, module)
     };
     pages.par_iter().map(module).collect()

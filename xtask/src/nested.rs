@@ -6,7 +6,7 @@
 
 use crate::args::Precision;
 use crate::failure::Failure;
-use crate::progress::Spinner;
+use crate::progress::{self, Spinner};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
 use crate::{files, machine_code, remarks};
@@ -23,8 +23,10 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// Generates, compiles and runs; `tell` hears of samples and progress.
 pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
+    let spinner = progress::deriving(&scene.page);
     let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
         .map_err(|e| Failure::Usage(e.to_string()))?;
+    drop(spinner);
     let program = program(&scene.page, &module, scene.precision)?;
     let request = Request {
         settings: scene.settings,

@@ -1,8 +1,12 @@
 //! A progress bar on standard error, for long runs and for terminals only.
 
+use crate::remarks;
+use gyro_model::Model;
 use gyro_runner::{Forecast, duration_words};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::Write as _;
+use std::io::{IsTerminal, Write as _};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// Shows how far a run is once it has taken a while.
@@ -61,22 +65,67 @@ fn bar() -> ProgressBar {
     ProgressBar::new(DIVISIONS).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// Says what is under way until it is dropped.
+/// Says what is under way until it is dropped: at once on a terminal, elsewhere in lines, and only if it takes a while.
 #[derive(Debug)]
-pub(crate) struct Spinner(ProgressBar);
+pub(crate) struct Spinner {
+    bar: ProgressBar,
+    /// Dropped at the end, which the thread that writes lines hears.
+    _end: Option<Sender<()>>,
+}
+
+/// Before the first line that says what is under way, and between later ones.
+const FIRST_LINE: Duration = Duration::from_secs(1);
+const NEXT_LINES: Duration = Duration::from_secs(30);
 
 impl Spinner {
     pub(crate) fn new(message: String) -> Self {
-        let spinner = ProgressBar::new_spinner().with_message(message);
-        spinner.enable_steady_tick(Duration::from_millis(100));
-        Self(spinner)
+        let is_terminal = std::io::stderr().is_terminal();
+        let end = (!is_terminal).then(|| in_lines(message.clone(), remarks::note));
+        let bar = ProgressBar::new_spinner().with_message(message);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self { bar, _end: end }
     }
 }
 
 impl Drop for Spinner {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
+}
+
+/// Says that a model is being derived; and, before that begins, what it takes to derive a large one.
+pub(crate) fn deriving(model: &Model) -> Spinner {
+    let bodies = model.coordinate_bodies().len();
+    if bodies > LARGE {
+        remarks::note(&format!(
+            "`{}` has {bodies} moving bodies: deriving and proving its formulas takes minutes, and compiling them longer; the time grows with the square of \
+             the bodies. `simulate --engine recursive` (trees) and `--engine assembled` begin at once",
+            model.name
+        ));
+    }
+    Spinner::new(format!("deriving {}", model.name))
+}
+
+/// Bodies of a model that takes minutes.
+const LARGE: usize = 64;
+
+/// Says what is under way, until what is returned is dropped.
+fn in_lines(message: String, say: impl Fn(&str) + Send + 'static) -> Sender<()> {
+    let (end, ended) = mpsc::channel();
+    thread::spawn(move || {
+        let began = Instant::now();
+        let mut wait = FIRST_LINE;
+        while ended.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
+            let seconds = began.elapsed().as_secs();
+            if wait == FIRST_LINE {
+                say(&message)
+            } else {
+                say(&format!("{message} ({seconds} s)"))
+            }
+            wait = NEXT_LINES;
+        }
+    });
+    end
 }
 
 /// Shows how much of a list is done, one list after the other.
@@ -112,5 +161,22 @@ impl Count {
 impl Drop for Count {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_a_while_is_said_and_what_does_not_is_not() {
+        let (sender, heard) = mpsc::channel();
+        let quick = sender.clone();
+        drop(in_lines("quick".to_owned(), move |words| quick.send(words.to_owned()).expect("it is heard")));
+        let slow =
+            in_lines("slow".to_owned(), move |words| sender.send(words.to_owned()).expect("it is heard"));
+        assert_eq!(heard.recv().as_deref(), Ok("slow"));
+        drop(slow);
+        assert!(heard.recv().is_err(), "nothing more is said at the end");
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
+use crate::progress::Spinner;
 use crate::{files, inputs, remarks};
 use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support, Tree};
 use gyro_runner::{Approach, Coordinates, Correction, Input, Offers, Settings, Start, any_varies};
@@ -81,6 +82,7 @@ impl Scene {
 /// Reads and checks a model page; tables of motions are beside it.
 pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
     let text = files::read_page(path)?;
+    let _spinner = Spinner::new(format!("reading {}", path.display()));
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut load = |table: &str| {
         let path = folder.join(table);

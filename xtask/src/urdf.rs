@@ -39,9 +39,10 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     write::check(&out, Known::Mark(MARK))?;
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let (page, remarks) = convert(&file, &shown, &text, root).map_err(Failure::Usage)?;
+    let (page, mut remarks) = convert(&file, &shown, &text, root).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::Page)?;
     write::write(&out, &page, Known::Mark(MARK))?;
+    remarks.extend(model.nearly_exact.iter().cloned());
     // What was said is only about a file that is there already.
     let _ = std::io::stdout().write_all(report(&out, &model, &remarks).as_bytes());
     Ok(())

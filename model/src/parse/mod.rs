@@ -27,6 +27,7 @@ use toml::de::DeTable;
 
 use crate::Model;
 use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::directions;
 use crate::validate::{coordinate_problems, number_problems, topology_problems};
 use reader::Reader;
 
@@ -98,6 +99,7 @@ pub fn read_with(
     let (document, syntax) = DeTable::parse_recoverable(text);
     let mut reader = Reader::new(text, load);
     let mut model = page::read(&mut reader, document.get_ref());
+    directions::settle(&mut model);
     check(&mut reader, &mut model);
     let mistakes = if syntax.is_empty() {
         reader.into_mistakes()

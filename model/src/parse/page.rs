@@ -63,6 +63,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         outputs,
         redundant,
         counts_work,
+        nearly_exact: Vec::new(),
         simulation,
     }
 }

@@ -214,3 +214,60 @@ fn all_joints_has_every_kind_and_starts_where_its_points_were_chosen() {
         }
     }
 }
+
+#[test]
+fn shipped_pages_write_exactly_what_they_mean() {
+    for (path, text) in [crate::support::pages("models"), crate::support::pages("tests/models")].concat() {
+        let mut table = |_: &str| Ok("t,angle\n0,0\n1,0.5\n2,1\n".to_owned());
+        if let Ok(model) = gyro_model::read_with("page.toml", &text, &mut table) {
+            assert!(model.nearly_exact.is_empty(), "{path:?}: {:?}", model.nearly_exact);
+        }
+    }
+}
+
+/// A page on which everything is nearly a right angle.
+const ROUGH: &str = r#"
+format = 1
+name = "rough"
+[[body]]
+name = "base"
+driven = { rotations = [
+    { axis = [0, 1, 0], angle = 1.5708 },
+    { axis = [0, 0, 1], angle = { sinusoid = { amplitude = 0.1, frequency_hz = 1, phase = 1.571 } } },
+] }
+orientation = [0.7071068, 0.7071067, 0, 0]
+[[body]]
+name = "plate"
+mass = 0.1
+inertia = [1e-4, 1e-4, 2e-4]
+[[joint]]
+name = "pin"
+kind = "revolute"
+axis = [1, 0, 1e-76]
+zero = [0, 1, 3e-6]
+angle = 1.5708
+first = { body = "base" }
+second = { body = "plate", point = [0, 0.1, 0] }
+"#;
+
+#[test]
+fn what_is_nearly_exact_is_remarked_upon_and_costs_nothing() {
+    let rough = read("rough.toml", ROUGH).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let offered = [
+        "`axis = [1, 0, 0]`",
+        "`zero = [0, 1, 0]`",
+        "`angle_deg = 90`",
+        "`orientation = [1, 1, 0, 0]`",
+        "no decimal is exact",
+        "`phase_deg = 90`",
+    ];
+    for words in offered {
+        assert!(
+            rough.nearly_exact.iter().any(|remark| remark.contains(words)),
+            "{words}: {:?}",
+            rough.nearly_exact
+        );
+    }
+    let exact = read("exact.toml", &ROUGH.replace("1e-76", "0")).unwrap_or_else(|m| panic!("{m}"));
+    assert_eq!(rough.joints[0].first.axis, exact.joints[0].first.axis, "32 digits of a direction count");
+}

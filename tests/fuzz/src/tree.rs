@@ -4,6 +4,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use toml::Value;
 
+#[expect(clippy::approx_constant, reason = "people write it so")]
 /// Numbers that people, programs and mischief write.
 const NUMBERS: [f64; 22] = [
     0.0,
