@@ -29,3 +29,4 @@ mod scalars;
 mod solved;
 mod sweep;
 mod terms;
+mod turns;
