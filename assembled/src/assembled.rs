@@ -237,6 +237,10 @@ impl<T: Number, S: Solver<T>> Partition for Assembled<T, S> {
         self.solver.newton_step(&self.lowered, t, choice, y).map_err(|pivot| singular(t, pivot))
     }
 
+    fn is_met(&self, t: T, y: &Vec<T>, phi: &Vec<T>) -> bool {
+        self.lowered.is_met(Moment { t, y }, phi)
+    }
+
     fn solve_velocities(&self, t: T, choice: &S::Independent, y: &mut Vec<T>) -> Result<(), Error> {
         self.solver.solve_velocities(&self.lowered, t, choice, y).map_err(|pivot| singular(t, pivot))
     }

@@ -77,6 +77,7 @@ mod reactions;
 mod readings;
 mod rebuild;
 mod recursion;
+mod rounding;
 mod rows;
 mod screws;
 mod spatial;

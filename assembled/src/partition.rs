@@ -58,6 +58,7 @@ pub(crate) fn newton_step<T: Number>(
 ) -> Result<(), T> {
     let mut right = DVector::zeros(n_constraints(lowered));
     lowered.phi(Moment { t, y }, right.as_mut_slice());
+    lowered.silence(Moment { t, y }, right.as_mut_slice());
     right.iter_mut().enumerate().for_each(|(row, phi)| *phi = -*phi * row_scale(lowered, row));
     let step = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
     for (column, step) in dependent(lowered, choice).zip(step.iter()) {

@@ -9,7 +9,7 @@ use crate::joint::Joint;
 use crate::lowered::{Constrained, Lowered, Moment};
 use crate::measure::Measure;
 use crate::motion::Motion;
-use crate::number::{Number, number};
+use crate::number::{Number, abs, number};
 use crate::primitives::{Axis, Primitive, Pull, Turning, primitives};
 use crate::textbook::{along_p, along_pi, g_matrix, relative_matrix, tilde};
 use gyro_model::{JointCoordinate, JointKind, Model, RowOwner};
@@ -171,6 +171,21 @@ impl<T: Number> Lowered<T> {
                 Row::Measured { terms, course } => self.measured_jet(terms, course.as_ref(), &mut pairs),
             };
             f(index, jet);
+        }
+    }
+
+    /// Calls `f` with each row that is made of measures, and the size of what it adds up.
+    pub(crate) fn for_each_size(&self, at: Moment<'_, T>, mut f: impl FnMut(usize, T)) {
+        let mut pairs = Pairs::new(self, at);
+        for (index, row) in self.rows.iter().enumerate() {
+            let Row::Measured { terms, course } = row else { continue };
+            let mut size =
+                course.as_ref().map_or(0.0, |course| course.jet(gyro_sim::Real::to_f64(at.t))[0].abs());
+            for term in terms {
+                let [value, ..] = term.measure.jet(&self.joints[term.joint], pairs.of(term.joint), at.y);
+                size += gyro_sim::Real::to_f64(abs(term.factor * value));
+            }
+            f(index, number(size));
         }
     }
 

@@ -92,7 +92,8 @@ impl Default for When {
 pub(crate) const MAX_ITERATIONS: u32 = 10;
 
 /// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in units
-/// of the mechanism's size, because a point row is a difference of positions.
+/// of the mechanism's size, because a point row is a difference of positions. Where that is not enough, each row is judged by what it
+/// subtracts: see [`Partition::is_met`](crate::Partition::is_met).
 pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
 /// The largest coordinate of a mass centre in units of the mechanism's size.
@@ -103,7 +104,15 @@ fn reach<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
     coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
 }
 
-fn check_finite<T: Real>(t: T, state: &[T]) -> Result<(), Error> {
+/// Refuses a time to go from, or to, that is not finite: a mechanism that time does not enter would not notice.
+pub(crate) fn check_time<T: Real>(t: T, t_end: T) -> Result<(), Error> {
+    if t.is_finite() && t_end.is_finite() {
+        return Ok(());
+    }
+    Err(Error::NoEnd { t: t.to_f64(), t_end: t_end.to_f64() })
+}
+
+pub(crate) fn check_finite<T: Real>(t: T, state: &[T]) -> Result<(), Error> {
     match (0u16..).zip(state).find(|(_, x)| !x.is_finite()) {
         Some((index, _)) => Err(Error::NotFinite { t: t.to_f64(), index }),
         None => Ok(()),

@@ -69,14 +69,14 @@ pub enum Error {
         /// The step that stability allows, s.
         step: f64,
     },
-    /// A setting of the solver that is no length of a step.
+    /// A setting of the solver, or a step, that is no length of a step.
     Setting {
         /// Its name.
         setting: &'static str,
         /// Its value, s.
         value: f64,
     },
-    /// The time to go to is not finite, or the time to interpolate at not within the last step.
+    /// The time to start from or to go to is not finite, or the time to interpolate at not within the last step.
     NoEnd {
         /// Time, s.
         t: f64,

@@ -67,6 +67,7 @@ pub mod integrate;
 pub mod lanes;
 mod mechanism;
 pub mod pivoting;
+mod rounding;
 mod scalar;
 mod solver;
 pub mod spline;

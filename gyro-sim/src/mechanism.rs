@@ -106,6 +106,12 @@ pub trait Partition: Mechanism<Scalar: Real> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
+    /// Whether rounding lets no row of Φ come nearer to zero, though one exceeds what is granted to rows of poses near the origin: Newton's
+    /// iteration then ends. Angles of many turns are known less well than angles of a few, and a mechanism that has such
+    /// rows judges each by what it subtracts ([`pivoting::is_met`](crate::pivoting::is_met)).
+    fn is_met(&self, _t: Self::Scalar, _y: &Self::State, _phi: &Self::Constraints) -> bool {
+        false
+    }
     /// Solves eq. (19) for the dependent velocities, at corrected positions; the independent ones (components of ṙ and ṗ, or
     /// the rate about a joint's axis) keep the values that they have in `y`.
     ///

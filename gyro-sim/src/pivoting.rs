@@ -46,6 +46,9 @@ mod elimination;
 #[cfg(test)]
 mod four_bar;
 
+pub use crate::rounding::is_met;
+use crate::rounding::silence;
+
 use crate::violation::constraint_violation;
 use crate::{Equations, Error, Mechanism, Owner, Real, Scalar, Storage};
 use elimination::Elimination;
@@ -153,6 +156,7 @@ where
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
     let mut phi = mechanism.constraints();
     mechanism.phi(t, y, &mut phi);
+    silence(mechanism, t, y, &mut phi);
     elimination.set_right(mechanism, phi.as_ref());
     let least = elimination.reduce(NC);
     refuse_singular(mechanism, t, least)?;

@@ -1,5 +1,6 @@
 //! From a method and a correction to a motion.
 
+use crate::correct::{check_finite, check_time};
 use crate::integrate::{Embedded, Method, Work};
 use crate::{Correction, Error, Ode, Real, Storage, When};
 use core::cmp::Ordering;
@@ -96,6 +97,8 @@ pub struct Solver<S, T, M, C> {
     is_prepared: bool,
     /// Whether the state is where the method left it.
     is_untouched: bool,
+    /// Whether time and state are known to be finite.
+    is_checked: bool,
     resumes: bool,
     statistics: Statistics,
 }
@@ -113,7 +116,7 @@ const STIFF_STEPS: u32 = 15;
 const OTHER_STEPS: u32 = 6;
 
 impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
-    /// A motion that starts at `y` at time `t`.
+    /// A motion that starts at `y` at time `t`. Where these are not finite the first step is an [`Error`].
     pub fn new(method: M, correction: C, t: T, y: &S) -> Self {
         let zero = T::constant(0.0);
         Self {
@@ -134,6 +137,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             is_kept: false,
             is_prepared: false,
             is_untouched: false,
+            is_checked: false,
             resumes: false,
             statistics: Statistics { shortest_step: f64::INFINITY, ..Statistics::default() },
         }
@@ -170,7 +174,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     /// Replaces the state, as after an impact or a new measurement.
     pub fn set_state(&mut self, y: &S) {
         self.y.as_mut().copy_from_slice(y.as_ref());
-        self.is_untouched = false;
+        (self.is_untouched, self.is_checked) = (false, false);
     }
 
     /// The system has changed, as by a new value of an input: nothing that was found out about it holds any longer.
@@ -189,6 +193,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         M: Method<O>,
         C: Correction<O>,
     {
+        self.check_start()?;
+        if !h.is_finite() {
+            return Err(Error::Setting { setting: "step", value: h.to_f64() });
+        }
         self.attempt(system, h);
         match self.accept(system, self.after(h), h) {
             Ok(()) => Ok(()),
@@ -221,6 +229,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         O: Ode<Scalar = T, State = S>,
         C: Correction<O>,
     {
+        check_time(self.t, self.t)?;
         self.trial.as_mut().copy_from_slice(self.y.as_ref());
         self.correction.correct(system, self.t, &mut self.trial)?;
         core::mem::swap(&mut self.y, &mut self.trial);
@@ -255,6 +264,16 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         }
         self.method.between((t - *start) / *h, out);
         self.correction.correct(system, t, out)
+    }
+
+    /// Time and state as they were given must be finite; later ones are looked at as they come.
+    fn check_start(&mut self) -> Result<(), Error> {
+        if !self.is_checked {
+            check_time(self.t, self.t)?;
+            check_finite(self.t, self.y.as_ref())?;
+            self.is_checked = true;
+        }
+        Ok(())
     }
 
     /// The time after a step, and what rounding takes from it.
@@ -371,9 +390,8 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         C: Correction<O>,
     {
         self.check_control()?;
-        if !t_end.is_finite() {
-            return Err(Error::NoEnd { t: self.t.to_f64(), t_end: t_end.to_f64() });
-        }
+        self.check_start()?;
+        check_time(self.t, t_end)?;
         if t_end <= self.t {
             return Ok(());
         }

@@ -22,7 +22,7 @@ mod spline;
 mod tree;
 mod validate;
 
-pub use assemble::{AssemblyError, JointStart, Move, Start};
+pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
     CoordinateKind, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output, OutputKind,
@@ -284,6 +284,22 @@ impl JointKind {
             Self::Screw => &[Length, Length, Length, Pure, Pure],
             Self::PointOnLine => &[Length, Length],
             Self::Rod => &[Length],
+        }
+    }
+
+    /// What the joint's rows are, in their order, as messages write them.
+    pub fn row_symbols(self) -> &'static [&'static str] {
+        match self {
+            Self::Revolute => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j"],
+            Self::Spherical => &["d x", "d y", "d z"],
+            Self::Fixed => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
+            Self::Universal => &["d x", "d y", "d z", "h_i.h_j"],
+            Self::Cylindrical => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j"],
+            Self::Prismatic => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
+            Self::Planar => &["h_i.d", "f_i.h_j", "g_i.h_j"],
+            Self::Screw => &["f_i.d", "g_i.d", "h_i.d - lead * angle", "f_i.h_j", "g_i.h_j"],
+            Self::PointOnLine => &["f_i.d", "g_i.d"],
+            Self::Rod => &["(d.d / length - length) / 2"],
         }
     }
 

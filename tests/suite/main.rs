@@ -29,4 +29,5 @@ mod scalars;
 mod solved;
 mod sweep;
 mod terms;
+mod turns;
 mod verdict;

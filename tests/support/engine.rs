@@ -137,6 +137,7 @@ trait Erased<T>: Any + Debug {
     fn independent(&self, t: T, y: &[T]) -> Choice;
     fn follow(&self, t: T, y: &[T], choice: &mut Choice) -> u32;
     fn newton_step(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error>;
+    fn is_met(&self, t: T, y: &[T], phi: &[T]) -> bool;
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error>;
     fn phi_q_pattern(&self) -> &[(u16, u16)];
     fn phi_pi_pattern(&self) -> &[(u16, u16)];
@@ -277,6 +278,9 @@ where
         let outcome = Partition::newton_step(self, t, choice.of(), &mut stepped);
         y.copy_from_slice(stepped.as_ref());
         outcome
+    }
+    fn is_met(&self, t: T, y: &[T], phi: &[T]) -> bool {
+        Partition::is_met(self, t, &filled(self.start(), y), &filled(self.constraints(), phi))
     }
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error> {
         let mut solved = filled(self.start(), y);
@@ -495,6 +499,9 @@ impl<T: Real + 'static> Partition for Engine<T> {
     }
     fn newton_step(&self, t: T, choice: &Choice, y: &mut Vec<T>) -> Result<(), Error> {
         self.mechanism.newton_step(t, choice, y)
+    }
+    fn is_met(&self, t: T, y: &Vec<T>, phi: &Vec<T>) -> bool {
+        self.mechanism.is_met(t, y, phi)
     }
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut Vec<T>) -> Result<(), Error> {
         self.mechanism.solve_velocities(t, choice, y)

@@ -12,12 +12,9 @@ use crate::proof::point_of_terms;
 use crate::seed::Seed;
 use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Reading, Textbook};
-use gyro_model::{Model, RowUnit, to_f64};
+use gyro_model::{Model, START_TOLERANCE, to_f64};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-
-/// What a start may violate rows by, relative to the mechanism's size and largest velocity: the roundings of an assembly in `f64`.
-const START_TOLERANCE: f64 = 1e-12;
 
 /// Sine and cosine of an angle that is none.
 const VANISHING: f64 = 1e-6;
@@ -63,21 +60,26 @@ fn start_violates(model: &Model, module: &Module) -> Option<String> {
     let point = point(model, &precision, &module.start, 0.0, |x| Real::new(&precision, x));
     let reach = formulas.reach(phi.iter().chain(&rates).copied());
     let values = formulas.evaluate(&reach, &precision, &Elementary, &|source| read(&point, source));
-    let fastest =
-        module.start[7 * model.coordinate_bodies().len()..].iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+    let start = model.assemble().ok()?;
+    let tolerances = model.start_tolerances(&start);
     let rows = model.rows();
-    let size = |row: usize| {
-        if rows.get(row).is_some_and(|r| r.unit == RowUnit::Length) { model.size() } else { 1.0 }
+    // Normalisations follow the rows.
+    let of_normalisation = std::iter::repeat(&START_TOLERANCE);
+    let violated = |ids: &[Id], tolerances: &[f64], what: &str| {
+        let mut tolerated = ids.iter().zip(tolerances.iter().chain(of_normalisation.clone())).enumerate();
+        tolerated.find_map(|(row, (id, tolerance))| {
+            let value = values[*id].as_ref().map_or(f64::NAN, Real::to_f64);
+            let name = rows.get(row).map_or_else(
+                || format!("the normalisation of coordinate body {}", row + 1 - rows.len()),
+                |row| model.row_named(*row),
+            );
+            // Beyond any tolerance are also numbers that are none.
+            (!(value.abs() <= *tolerance)).then(|| {
+                format!("the start violates {name}{what} by {value:e} where {tolerance:e} is rounding")
+            })
+        })
     };
-    let violated = |ids: &[Id], scale: f64| {
-        let is_within = |(row, id): (usize, &Id)| {
-            let value = values[*id].as_ref();
-            value.is_some_and(|value| value.to_f64().abs() <= START_TOLERANCE * scale * size(row))
-        };
-        ids.iter().enumerate().position(|row| !is_within(row))
-    };
-    let row = violated(&phi, 1.0).or_else(|| violated(&rates, fastest));
-    row.map(|row| format!("the start violates row {row}"))
+    violated(&phi, &tolerances.phi, "").or_else(|| violated(&rates, &tolerances.rates, ", its rate,"))
 }
 
 /// The start in joint coordinates must be the assembled one too: as turned, and leading to the same state but for the sign of

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::words::count;
-use gyro_model::{JointKind, Model, OutputKind, RedundantRow, RowOwner};
+use gyro_model::{Model, OutputKind, RedundantRow, RowOwner};
 use std::io::Write as _;
 
 /// Remarks of one kind that are made of a page.
@@ -38,15 +38,10 @@ pub(crate) fn note(words: &str) {
 /// A dropped row in words: whose it is, what it says, and whose multipliers are not unique without it.
 pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
     let row = dropped.row;
-    let symbol = symbols(model, row.owner).get(row.index).copied().unwrap_or_default();
     let shared: Vec<String> =
         dropped.shared_with.iter().filter(|other| **other != row.owner).map(|o| owner(model, *o)).collect();
     let with = if shared.is_empty() { "its other rows".to_owned() } else { shared.join(", ") };
-    format!(
-        "row {} ({symbol}) of {} depends on {with} and is dropped; how these share a load is not unique",
-        row.index + 1,
-        owner(model, row.owner)
-    )
+    format!("{} depends on {with} and is dropped; how these share a load is not unique", model.row_named(row))
 }
 
 /// Whether an output is made of multipliers that are not unique.
@@ -72,26 +67,5 @@ pub(crate) fn kind_and_name(model: &Model, owner: RowOwner) -> (&'static str, &s
         RowOwner::Joint(index) => ("joint", &model.joints[index].name),
         RowOwner::Coupler(index) => ("coupler", &model.couplers[index].name),
         RowOwner::Driver(index) => ("driver", &model.drivers[index].name),
-    }
-}
-
-/// What each row of an owner is: see [`Model::rows`].
-fn symbols(model: &Model, owner: RowOwner) -> &'static [&'static str] {
-    match owner {
-        RowOwner::Body(_) => &["r x", "r y", "r z", "p x", "p y", "p z"],
-        RowOwner::Coupler(_) => &["second - ratio * first - offset"],
-        RowOwner::Driver(_) => &["coordinate - motion"],
-        RowOwner::Joint(index) => match model.joints[index].kind {
-            JointKind::Revolute => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j"],
-            JointKind::Spherical => &["d x", "d y", "d z"],
-            JointKind::Fixed => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
-            JointKind::Universal => &["d x", "d y", "d z", "h_i.h_j"],
-            JointKind::Cylindrical => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j"],
-            JointKind::Prismatic => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
-            JointKind::Planar => &["h_i.d", "f_i.h_j", "g_i.h_j"],
-            JointKind::Screw => &["f_i.d", "g_i.d", "h_i.d - lead * angle", "f_i.h_j", "g_i.h_j"],
-            JointKind::PointOnLine => &["f_i.d", "g_i.d"],
-            JointKind::Rod => &["(d.d / length - length) / 2"],
-        },
     }
 }

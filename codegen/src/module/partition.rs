@@ -27,6 +27,9 @@ impl ModuleWriter<'_> {
                 fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
                     gyro_sim::pivoting::follow(self, t, y, choice)
                 }
+                fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+                    gyro_sim::pivoting::is_met(self, t, y, phi)
+                }
                 fn newton_step(
                     &self, t: T, choice: &Self::Independent, y: &mut Self::State,
                 ) -> ::core::result::Result<(), gyro_sim::Error> {

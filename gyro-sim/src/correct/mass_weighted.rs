@@ -1,6 +1,7 @@
 //! Projection onto the constraints in the metric of the masses.
 
 use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, reach};
+use crate::rounding::{is_met, silence};
 use crate::violation::{Violation, constraint_violation};
 use crate::{Error, Owner, Projection, Real, Scalar};
 
@@ -44,6 +45,7 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
     fn correct_positions(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
         let mut worst = Violation { value: tolerance, owner: None };
+        let mut is_corrected = false;
         for _ in 0..=MAX_ITERATIONS {
             normalise(&mut y.as_mut()[..7 * mechanism.n_bodies()]);
             mechanism.phi(t, y, &mut self.phi);
@@ -51,6 +53,11 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
             if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
                 return Ok(());
             }
+            if is_corrected && is_met(mechanism, t, y, &self.phi) {
+                return Ok(());
+            }
+            is_corrected = true;
+            silence(mechanism, t, y, &mut self.phi);
             self.rows.as_mut().iter_mut().zip(self.phi.as_ref()).for_each(|(row, phi)| *row = -*phi);
             mechanism.project(t, y, &self.rows, &mut self.change);
             self.refuse_jump(mechanism, t, worst.owner)?;

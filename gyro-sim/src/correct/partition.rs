@@ -1,6 +1,6 @@
 //! The paper's two algorithms: direct integration and coordinate partitioning.
 
-use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, reach};
+use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, check_time, reach};
 use crate::violation::{Violation, constraint_violation};
 use crate::{Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
 
@@ -19,7 +19,7 @@ impl<S: Clone> Direct<S> {
     /// Advances `y` from `t` by `n_steps` steps of length `h`.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the state is not finite afterwards.
+    /// [`Error::NotFinite`] if the state is not finite afterwards, [`Error::NoEnd`] if time or step are not finite.
     pub fn advance<O>(
         &mut self,
         system: &O,
@@ -32,10 +32,12 @@ impl<S: Clone> Direct<S> {
         O: Ode<State = S, Scalar: Real>,
         S: Storage<O::Scalar>,
     {
+        let end = t + h * O::Scalar::constant(f64::from(n_steps));
+        check_time(t, end)?;
         for step in 0..n_steps {
             self.rk4.step(system, t + h * O::Scalar::constant(f64::from(step)), h, y);
         }
-        check_finite(t + h * O::Scalar::constant(f64::from(n_steps)), y.as_ref())
+        check_finite(end, y.as_ref())
     }
 }
 
@@ -118,6 +120,9 @@ impl<M: Partition> Partitioning<M> {
             mechanism.phi(t, y, &mut self.phi);
             worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
             if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
+                return Ok(());
+            }
+            if mechanism.is_met(t, y, &self.phi) {
                 return Ok(());
             }
         }

@@ -35,6 +35,13 @@ impl Failures {
         failed.for_each(|(lane, entry)| *entry = Some(error(lane)));
     }
 
+    /// Notes the running lanes whose time does not stay finite: a system that time does not enter would not notice.
+    pub(super) fn note_no_end<T: Lanes>(&mut self, t: T, t_end: T) {
+        let failed = self.running::<T>() & !T::bits(are_finite(&[t, t_end]));
+        let to_f64 = |time: T, lane: usize| time.lane(lane).to_f64();
+        self.note(failed, |lane| Error::NoEnd { t: to_f64(t, lane), t_end: to_f64(t_end, lane) });
+    }
+
     /// Notes the running lanes whose state is no longer finite.
     pub(super) fn note_not_finite<T: Lanes>(&mut self, t: T, state: &[T]) {
         let failed = self.running::<T>() & !T::bits(are_finite(state));

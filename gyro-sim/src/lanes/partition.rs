@@ -31,7 +31,9 @@ impl<S: Clone> Direct<S> {
             self.rk4.step(system, t + h * O::Scalar::constant(f64::from(step)), h, y);
         }
         keep(self.failures.running::<O::Scalar>(), y.as_mut(), self.before.as_ref());
-        self.failures.note_not_finite(t + h * O::Scalar::constant(f64::from(n_steps)), y.as_ref());
+        let end = t + h * O::Scalar::constant(f64::from(n_steps));
+        self.failures.note_no_end(t, end);
+        self.failures.note_not_finite(end, y.as_ref());
     }
 
     /// What has gone wrong so far.

@@ -94,6 +94,13 @@ pub enum AssemblyError {
         /// Whether a rate that the page gives is at fault, rather than the constraints themselves.
         is_given: bool,
     },
+    /// The two ends of a link coincide, so that its force has no direction.
+    Link {
+        /// Index into [`crate::Model::forces`].
+        force: usize,
+        /// Name of the force.
+        name: String,
+    },
     /// Nothing is left to move, and nothing drives it.
     OverConstrained {
         /// The last of what closes its loops.
@@ -134,6 +141,7 @@ impl AssemblyError {
                 Some(Place::body(*body, ""))
             }
             Self::Held { joint, .. } => Some(Place::joint(*joint, "")),
+            Self::Link { force, .. } => Some(Place::force(*force, "")),
             Self::Flipped { joint, direction, .. } => Some(Place::joint(*joint, direction)),
             Self::Impossible { owner, .. }
             | Self::Contradiction { owner, .. }
@@ -169,6 +177,9 @@ impl AssemblyError {
             }
             Self::Rate { is_given: true, .. } => "correct the rate, or leave it out".to_owned(),
             Self::Rate { .. } => "start the mechanism elsewhere: from this pose it cannot follow".to_owned(),
+            Self::Link { .. } => "start the mechanism where the ends are apart, or move one of them; where they stay together, write a \
+                                  force along the joint's coordinate (\"spring\" or \"damper\") instead"
+                .to_owned(),
             Self::OverConstrained { .. } => {
                 "use joints with more freedom, or check that axes and lengths agree exactly".to_owned()
             }
@@ -240,6 +251,9 @@ impl fmt::Display for AssemblyError {
                 let what =
                     if *is_given { "the start does not allow the rate of" } else { "no velocity satisfies" };
                 write!(f, "{what} {name}: it is missed by {:.3e} {unit}", residual.abs())
+            }
+            Self::Link { name, .. } => {
+                write!(f, "the two ends of link `{name}` coincide at the start: its force has no direction")
             }
             Self::OverConstrained { closing, .. } => write!(
                 f,

@@ -7,11 +7,14 @@ mod branch;
 mod closing;
 mod error;
 mod guess;
+mod links;
 pub(crate) mod projection;
+mod tolerance;
 mod velocity;
 mod walk;
 
 pub use error::AssemblyError;
+pub use tolerance::{START_TOLERANCE, StartTolerances};
 
 pub(crate) use crate::kinematics::cross;
 
@@ -71,18 +74,21 @@ impl Model {
     ///
     /// # Errors
     /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a pose on the
-    /// wrong branch (opposite axes) or a quarter turn away from the guess; a start beyond `f64`.
+    /// wrong branch (opposite axes) or a quarter turn away from the guess; a link whose ends coincide; a start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {
         let tree = Tree::of(self);
         if let Some(&body) = tree.unreached.first() {
             return Err(AssemblyError::Unconnected { body, name: self.bodies[body].name.clone() });
         }
-        if !self.is_open(&tree) {
-            return closing::assemble(self);
-        }
+        let start = if self.is_open(&tree) { self.walked(&tree)? } else { closing::assemble(self)? };
+        links::check(self, &start).map(|()| start)
+    }
+
+    /// The start of open trees.
+    fn walked(&self, tree: &Tree) -> Result<Start, AssemblyError> {
         let kinematics = Kinematics::at(self, 0.0);
         let guesses = guesses(self);
-        let walk = Walk::of(self, &tree, kinematics.joints(), &guesses, roots(self, &tree));
+        let walk = Walk::of(self, tree, kinematics.joints(), &guesses, roots(self, tree));
         walk.finish(&tree.links)
     }
 

@@ -5,6 +5,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::START_TOLERANCE;
 use crate::kinematics::{Equation, Kinematics, turned};
 use crate::{Model, Quaternion, RowUnit};
 
@@ -43,9 +44,8 @@ const LARGEST_TURN: f64 = 0.2;
 /// Steps after which a projection has failed: rough guesses take some ten.
 const MAX_STEPS: usize = 200;
 
-/// Largest scaled residual of equations that are met, for positions of the mechanism's size: far above rounding, far below
-/// any number that one writes on purpose.
-const MET: f64 = 1e-11;
+/// The part of what it adds up that rounding leaves of an equation, at most: steps go on until then, if they still gain.
+const ROUNDING: f64 = 1e-14;
 
 impl Scales {
     /// Weights and size of a model.
@@ -124,11 +124,15 @@ impl<'k> System<'k> {
         jacobian
     }
 
-    /// Whether the equations are met as well as the size of the positions allows.
+    /// Whether the equations are met, each as well as the size of what it adds up allows.
     pub(crate) fn is_met(&self, at: &Configuration) -> bool {
-        let reach = at.q.chunks_exact(7).flat_map(|pose| &pose[..3]).fold(0.0_f64, |m, x| m.max(x.abs()));
-        let met = MET * (1.0 + reach / self.scales.size);
-        self.residual(at).iter().all(|left| left.abs() <= met)
+        self.is_within(START_TOLERANCE, at)
+    }
+
+    /// Whether no equation is more than a part of what it adds up.
+    fn is_within(&self, part: f64, at: &Configuration) -> bool {
+        let sizes = self.kinematics.sizes(&self.equations, &at.q, &at.near).component_mul(&self.row_scale);
+        self.residual(at).iter().zip(&sizes).all(|(left, size)| left.abs() <= part * (1.0 + size))
     }
 
     /// Meets the equations by small steps of least change, as nearly as that can be done from here.
@@ -144,7 +148,7 @@ impl<'k> System<'k> {
             let (before, after) = (residual.norm(), left.norm());
             (at, residual) = (next, left);
             // At rounding a step no longer gains digits.
-            if after < MET && after > 0.5 * before {
+            if after > 0.5 * before && self.is_within(ROUNDING, &at) {
                 break;
             }
         }
@@ -252,16 +256,22 @@ fn least_change(jacobian: &DMatrix<f64>, b: &DVector<f64>, damping: f64) -> Opti
     change.iter().all(|x| x.is_finite()).then_some(change)
 }
 
-/// The x nearest to another with J x = b, as nearly as that can be.
+/// The x nearest to another with J x = b, as nearly as that can be: refined until that gains no more digits.
 pub(crate) fn nearest_solution(
     jacobian: &DMatrix<f64>,
     b: &DVector<f64>,
     from: &DVector<f64>,
 ) -> DVector<f64> {
     let mut x = from.clone();
-    for _ in 0..REFINEMENTS {
-        let Some(change) = least_change(jacobian, &(b - jacobian * &x), DAMPING[1]) else { break };
-        x += change;
+    let mut left = b - jacobian * &x;
+    for refinement in 0..MAX_STEPS {
+        let Some(change) = least_change(jacobian, &left, DAMPING[1]) else { break };
+        let next = &x + change;
+        let after = b - jacobian * &next;
+        if refinement >= REFINEMENTS && after.norm() > 0.99 * left.norm() {
+            break;
+        }
+        (x, left) = (next, after);
     }
     x
 }

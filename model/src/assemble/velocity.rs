@@ -2,14 +2,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::START_TOLERANCE;
 use super::error::AssemblyError;
 use super::guess::Guess;
 use super::projection::{Configuration, Scales, nearest_solution, scale_rows_and_columns};
 use crate::kinematics::{Equation, Kinematics};
 use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, RowUnit, Support};
 
-/// Largest part of the velocities that a row may miss: far above rounding, far below what one writes on purpose.
-const TOLERANCE: f64 = 1e-9;
+/// What a rate that the page gives may be missed by, as a part of what its equation adds up: a page rounds its numbers. The rows of Φ
+/// are met to [`START_TOLERANCE`].
+const GIVEN_TOLERANCE: f64 = 1e-9;
 
 /// Linear equations among the velocities.
 struct Rates {
@@ -32,16 +34,20 @@ pub(super) fn velocities(
     let n_rows = rows.owners.len();
     let all = rows.and(given(model, kinematics, guesses, at)).scaled(scales);
     let from = DVector::from_column_slice(from).component_div(&scales.columns);
-    let found = nearest_solution(&all.matrix, &all.right, &from);
-    if all.missed(&found).is_none() {
+    let (rows, given) = (all.first(n_rows), all.after(n_rows));
+    let mut found = nearest_solution(&all.matrix, &all.right, &from);
+    if rows.missed(&found, START_TOLERANCE).is_some() {
+        // Rates that the page rounds may be off a little: then they give way.
+        found = nearest_solution(&rows.matrix, &rows.right, &found);
+    }
+    if rows.missed(&found, START_TOLERANCE).is_none() && given.missed(&found, GIVEN_TOLERANCE).is_none() {
         return Ok(found.component_mul(&scales.columns).as_slice().to_vec());
     }
     // Whether the rows themselves are at fault, or what the page wants besides.
-    let rows = all.first(n_rows);
     let alone = nearest_solution(&rows.matrix, &rows.right, &from);
-    let (missed, is_given) = match rows.missed(&alone) {
+    let (missed, is_given) = match rows.missed(&alone, START_TOLERANCE) {
         Some(missed) => (missed, false),
-        None => (all.after(n_rows).farthest(&alone), true),
+        None => (given.farthest(&alone), true),
     };
     let ((owner, unit), residual) = missed;
     let residual = if unit == RowUnit::Length { residual * scales.size } else { residual };
@@ -145,13 +151,17 @@ impl Rates {
         }
     }
 
-    /// The row that is violated most if that is more than rounding, and by how much.
-    fn missed(&self, x: &DVector<f64>) -> Option<((RowOwner, RowUnit), f64)> {
-        if self.owners.is_empty() {
-            return None;
-        }
-        let scale = self.right.amax().max(x.amax());
-        Some(self.farthest(x)).filter(|(_, residual)| residual.abs() > TOLERANCE * scale)
+    /// The row that is violated most as a part of what it adds up, if that is more than tolerated, and by how much.
+    fn missed(&self, x: &DVector<f64>, tolerance: f64) -> Option<((RowOwner, RowUnit), f64)> {
+        let left = &self.matrix * x - &self.right;
+        let fastest = x.amax().max(self.right.amax());
+        let part = |row: usize| {
+            let slopes: f64 = self.matrix.row(row).iter().map(|slope| slope.abs()).sum();
+            let size = (1.0 + slopes) * fastest + self.right[row].abs();
+            if left[row] == 0.0 { 0.0 } else { left[row].abs() / size }
+        };
+        let worst = (0..self.owners.len()).max_by(|&a, &b| part(a).total_cmp(&part(b)))?;
+        (part(worst) > tolerance).then(|| (self.owners[worst], left[worst]))
     }
 
     fn farthest(&self, x: &DVector<f64>) -> ((RowOwner, RowUnit), f64) {

@@ -7,6 +7,7 @@ mod equation;
 mod exact;
 mod geometry;
 mod joint;
+mod size;
 
 pub(crate) use equation::Equation;
 pub(crate) use exact::{cross, exact};

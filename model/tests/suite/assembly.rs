@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use gyro_model::{
     CoordinateKind, Joint, JointEnd, JointKind, JointStart, Kinematics, Model, RowOwner, Start, Support, read,
 };
+use nalgebra::DVector;
 use proptest::prelude::*;
 
 type V3 = [f64; 3];
@@ -407,5 +408,121 @@ proptest! {
             }
             prop_assert!((a - b).abs() <= TREE_TOLERANCE, "{} {}", a, b);
         }
+    }
+}
+
+/// A slider-crank whose rod is a constraint, with numbers of ten digits: position and both rates.
+const TYPED: &str = r#"
+    format = 1
+    name = "typed"
+    [[body]]
+    name = "ground"
+    fixed = true
+    [[body]]
+    name = "crank"
+    mass = 1
+    inertia = [0.1, 0.1, 0.1]
+    [[body]]
+    name = "slider"
+    mass = 1
+    inertia = [0.1, 0.1, 0.1]
+    [[joint]]
+    name = "pivot"
+    kind = "revolute"
+    axis = [0, 0, 1]
+    zero = [1, 0, 0]
+    first = { body = "ground" }
+    second = { body = "crank" }
+    angle = 0.5
+    rate = 100
+    [[joint]]
+    name = "rail"
+    kind = "prismatic"
+    axis = [1, 0, 0]
+    zero = [0, 1, 0]
+    first = { body = "ground" }
+    second = { body = "slider" }
+    displacement = 0.6662364387
+    rough = true
+    rate = -13.01804742
+    [[joint]]
+    name = "rod"
+    kind = "rod"
+    length = 0.5
+    first = { body = "crank", point = [0.2, 0, 0] }
+    second = { body = "slider" }
+"#;
+
+/// The largest part of its tolerance that a row of the start takes.
+fn part_of_tolerance(model: &Model) -> f64 {
+    let (start, kinematics) = (model.assemble().unwrap(), Kinematics::at(model, 0.0));
+    let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
+    let v = DVector::from_column_slice(&start.v);
+    let rates = kinematics.jacobian(&start.q, &near) * v - kinematics.nu(&start.q, &near);
+    let (phi, tolerances) = (kinematics.phi(&start.q, &near), model.start_tolerances(&start));
+    assert!(model.redundant.is_empty(), "rows are compared with all");
+    let parts = phi.iter().zip(&tolerances.phi).chain(rates.iter().zip(&tolerances.rates));
+    parts.map(|(row, tolerance)| (row / tolerance).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn typed_rates_give_way_to_the_constraints() {
+    let part = part_of_tolerance(&read("typed.toml", TYPED).unwrap());
+    assert!(part < 1.0, "a row takes {part} of its tolerance");
+}
+
+#[test]
+fn rates_that_are_off_by_more_than_digits_are_refused() {
+    let wrong = TYPED.replace("rate = -13.01804742", "rate = -13.01804872");
+    let said = read("typed.toml", &wrong).unwrap_err().render();
+    assert!(said.contains("the start does not allow the rate of joint `"), "{said}");
+}
+
+#[test]
+fn angles_of_any_number_of_turns_are_assembled() {
+    for angle in [0.1, 1e3, 62831.9, 1e6, 1e9] {
+        let page = format!(
+            r#"
+            format = 1
+            name = "gears"
+            [[body]]
+            name = "ground"
+            fixed = true
+            [[body]]
+            name = "one"
+            mass = 1
+            inertia = [0.1, 0.1, 0.1]
+            [[body]]
+            name = "other"
+            mass = 1
+            inertia = [0.1, 0.1, 0.1]
+            [[joint]]
+            name = "a"
+            kind = "revolute"
+            axis = [0, 0, 1]
+            zero = [1, 0, 0]
+            first = {{ body = "ground" }}
+            second = {{ body = "one" }}
+            angle = {angle:.1}
+            rate = 100000
+            [[joint]]
+            name = "b"
+            kind = "revolute"
+            axis = [0, 0, 1]
+            zero = [1, 0, 0]
+            first = {{ body = "ground", point = [1000, 0, 0] }}
+            second = {{ body = "other" }}
+            [[coupler]]
+            name = "teeth"
+            first = {{ joint = "a" }}
+            second = {{ joint = "b" }}
+            ratio = -1.7
+        "#
+        );
+        let model = read("gears.toml", &page).unwrap_or_else(|said| panic!("{}", said.render()));
+        let part = part_of_tolerance(&model);
+        assert!(part < 1.0, "from {angle} rad a row takes {part} of its tolerance");
+        let wheel = model.assemble().unwrap().joints[1].position[0];
+        assert!((wheel + 1.7 * angle).abs() <= 1e-15 * angle + 1e-12, "{wheel}");
     }
 }

@@ -17,11 +17,17 @@ pub mod carried_block;
 #[rustfmt::skip]
 pub mod cylindrical;
 #[rustfmt::skip]
+pub mod differential;
+#[rustfmt::skip]
 pub mod driven_four_bar;
+#[rustfmt::skip]
+pub mod driven_shaft;
 #[rustfmt::skip]
 pub mod friction;
 #[rustfmt::skip]
 pub mod gear;
+#[rustfmt::skip]
+pub mod gear_pair;
 #[rustfmt::skip]
 pub mod gyroscope_bearings;
 #[rustfmt::skip]
@@ -37,9 +43,13 @@ pub mod pitching_bearings;
 #[rustfmt::skip]
 pub mod planar;
 #[rustfmt::skip]
+pub mod planetary;
+#[rustfmt::skip]
 pub mod point_on_line;
 #[rustfmt::skip]
 pub mod prismatic;
+#[rustfmt::skip]
+pub mod rack_and_screw;
 #[rustfmt::skip]
 pub mod rod;
 #[rustfmt::skip]

@@ -403,6 +403,9 @@ fn by_pivoting(model: &Model, name: &str) -> String {
             fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
                 gyro_sim::pivoting::follow(self, t, y, choice)
             }}
+            fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {{
+                gyro_sim::pivoting::is_met(self, t, y, phi)
+            }}
             {solves}
         }}",
         model.rows().len() + n,

@@ -1,0 +1,263 @@
+//! Gears, driven shafts, differentials, planetary trains, racks and screws after ten thousand turns, and pairs at random: a row is met when it is
+//! as small as the rounding of what it subtracts, and an angle of 1e5 rad is known to 1e-11.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
+
+use gyro_assembled::Dense;
+use gyro_model::Model;
+use gyro_runner::motion::Kit;
+use gyro_runner::{Approach, Correction, Integrator, Sample, Settings, Start};
+use gyro_sim::{Real, Scalar};
+use gyro_sim_suite::generated as own;
+use gyro_sim_suite::{Duals, Engine, Random, coordinate, dense, moved, page, start_of};
+use std::f64::consts::TAU;
+
+/// Turns before the run, and during it.
+const BEFORE: f64 = 10_000.0;
+const DURING: f64 = 100.0;
+
+/// Steps a turn; a correction is due every so many, at fixed steps.
+const STEPS: f64 = 30.0;
+const STEPS_PER_CORRECTION: f64 = 3.0;
+
+/// Of Baumgarte's stabilisation, parts of the speed.
+const RATE: f64 = 2.0;
+
+/// What turns may change of a motion, rad, m and their rates: at 1e5 rad an angle is known to 1.5e-11, which steps and corrections add up to this in
+/// a hundred turns.
+const TURNED: f64 = 1e-6;
+
+/// What the engines may differ by, which are on other independent coordinates: truncation of the steps in ten turns.
+const ENGINES: f64 = 1e-3;
+
+/// The same in single precision, in which an angle of 1e5 rad is known to 0.008 rad.
+const TURNED_F32: f64 = 0.3;
+
+/// A page, where it says at which angle it starts, and its speed there, rad/s.
+struct Train {
+    page: &'static str,
+    start: &'static str,
+    from: f64,
+    speed: f64,
+}
+
+const TRAINS: [Train; 5] = [
+    Train { page: "gear-pair", start: "angle = 0.1", from: 0.1, speed: 10.0 },
+    Train { page: "driven-shaft", start: "from = 0.1", from: 0.1, speed: 31.4 },
+    Train { page: "differential", start: "angle = 0.1", from: 0.1, speed: 40.0 },
+    Train { page: "planetary", start: "angle = 0.1", from: 0.1, speed: 20.0 },
+    Train { page: "rack-and-screw", start: "angle = 0.4", from: 0.4, speed: 15.0 },
+];
+
+impl Train {
+    /// The page as it is after so many turns.
+    fn after(&self, turns: f64) -> Model {
+        let text = page(self.page);
+        assert!(text.contains(self.start), "{}", self.page);
+        let key = self.start.split('=').next().unwrap();
+        let mut turned = text.replacen(self.start, &format!("{key}= {}", self.angle(turns)), 1);
+        if self.page == "rack-and-screw" {
+            // The screw turns back as far as the spindle turns, so that the nut does not.
+            let back = 1.25 * (self.from - self.angle(turns)) - 0.5;
+            turned = turned.replacen("angle = -0.5", &format!("angle = {back}"), 1);
+        }
+        gyro_model::read(self.page, &turned).unwrap_or_else(|problems| panic!("{}: {problems:?}", self.page))
+    }
+
+    fn angle(&self, turns: f64) -> f64 {
+        self.from + turns * TAU
+    }
+
+    fn settings(&self, turns: f64) -> Settings {
+        let turn = TAU / self.speed;
+        let step = turn / STEPS;
+        let correct_every = Some(STEPS_PER_CORRECTION * step);
+        Settings { t_end: turns * turn, step, correct_every, sample_every: turns * turn / 10.0 }
+    }
+
+    /// The generated mechanism in any precision, after so many turns.
+    fn generated<T: Real + 'static>(&self, turns: f64) -> (Engine<T>, Duals<T>) {
+        macro_rules! both {
+            ($type:path) => {
+                (Engine::new(<$type>::default()), Duals::new(<$type>::default()))
+            };
+        }
+        match self.page {
+            "gear-pair" => both!(own::gear_pair::GearPair<_>),
+            "planetary" => both!(own::planetary::Planetary<_>),
+            "differential" => both!(own::differential::Differential<_>),
+            "rack-and-screw" => both!(own::rack_and_screw::RackAndScrew<_>),
+            _ => {
+                let from = self.angle(turns);
+                let parameters = own::driven_shaft::Parameters { from: T::constant(from) };
+                let in_duals = own::driven_shaft::Parameters { from: Scalar::constant(from) };
+                let new = own::driven_shaft::DrivenShaft::new;
+                (Engine::new(new(parameters)), Duals::new(own::driven_shaft::DrivenShaft::new(in_duals)))
+            }
+        }
+    }
+}
+
+/// Every correction with every integrator that holds it at steps of this length.
+fn approaches(speed: f64) -> Vec<Approach> {
+    let corrections = [
+        Correction::Partition,
+        Correction::MassWeighted,
+        Correction::Baumgarte(RATE * speed),
+        Correction::None,
+    ];
+    let integrators = [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853, Integrator::Rodas4];
+    let of_both =
+        |correction| integrators.map(|integrator| Approach { integrator, correction, ..Approach::default() });
+    corrections.into_iter().flat_map(of_both).collect()
+}
+
+/// What a run has come to, or why it has not.
+fn end<T: Real + 'static>(
+    (engine, kit): (&Engine<T>, &dyn Kit<Engine<T>>),
+    settings: &Settings,
+    approach: &Approach,
+    start: &Start,
+) -> Result<Sample, String> {
+    let (samples, outcome) = moved(engine, kit, (settings, approach), start);
+    outcome.map_err(|failure| failure.to_string())?;
+    Ok(samples.last().unwrap().clone())
+}
+
+/// The largest difference of all that two motions have come to, less what they differed by at their starts.
+fn difference(ends: [&Sample; 2], starts: [&Start; 2]) -> f64 {
+    let of = |k: usize| {
+        let [(x, x_rate), (y, y_rate)] = ends.map(|end| coordinate(end, k));
+        let moved = (x - starts[0].angles[k]) - (y - starts[1].angles[k]);
+        moved.abs().max((x_rate - y_rate).abs())
+    };
+    (0..ends[0].coordinates.len()).map(of).fold(0.0, f64::max)
+}
+
+/// Runs a train from its first turn and after ten thousand, by each approach.
+fn compare<T: Real + 'static>(train: &Train, turns: f64, approaches: &[Approach], tolerance: f64) {
+    let starts = [0.0, BEFORE].map(|before| start_of(&train.after(before)));
+    let engines = [0.0, BEFORE].map(|before| train.generated::<T>(before));
+    let kits = engines.each_ref().map(|(engine, duals)| engine.kit(duals.clone()));
+    for approach in approaches {
+        let said = format!("{} by {} with {}", train.page, approach.integrator, approach.correction);
+        let end_of = |k: usize| {
+            end((&engines[k].0, &*kits[k]), &train.settings(turns), approach, &starts[k])
+                .unwrap_or_else(|failure| panic!("{said}: {failure}"))
+        };
+        // Where nothing is corrected errors of the steps grow: such a run must only arrive.
+        let turned = end_of(1);
+        if !matches!(approach.correction, Correction::Partition | Correction::MassWeighted) {
+            continue;
+        }
+        let ends = [end_of(0), turned];
+        let difference = difference([&ends[0], &ends[1]], [&starts[0], &starts[1]]);
+        println!("{said}: {difference:e}");
+        assert!(difference <= tolerance, "{said}: ten thousand turns make a difference of {difference:e}");
+    }
+}
+
+#[test]
+fn ten_thousand_turns_make_no_difference() {
+    for train in &TRAINS {
+        compare::<f64>(train, DURING, &approaches(train.speed), TURNED);
+    }
+}
+
+#[test]
+fn in_single_precision_they_make_as_much_as_an_angle_is_known() {
+    for train in &TRAINS[..4] {
+        let approaches: Vec<_> =
+            approaches(train.speed).into_iter().filter(|a| a.correction == Correction::Partition).collect();
+        compare::<f32>(train, 5.0, &approaches[..3], TURNED_F32);
+    }
+}
+
+#[test]
+fn the_twin_turns_on_too() {
+    for train in &TRAINS {
+        let model = train.after(BEFORE);
+        let (start, approach) = (start_of(&model), Approach::default());
+        let engines = [dense(&model), train.generated(BEFORE).0];
+        let ends = engines.map(|engine| {
+            let kit = engine.kit(Duals::none());
+            end((&engine, &*kit), &train.settings(10.0), &approach, &start).unwrap()
+        });
+        let difference = difference([&ends[0], &ends[1]], [&start, &start]);
+        println!("{}: {difference:e}", train.page);
+        assert!(difference <= ENGINES, "{}: the engines differ by {difference:e}", train.page);
+    }
+}
+
+/// Two shafts, or a shaft and a rack, at random.
+struct Pair {
+    text: String,
+    angle: f64,
+    /// Of the faster of the two, and of the first.
+    fastest: f64,
+    speed: f64,
+    /// What the coupler subtracts, as an angle of the first shaft.
+    subtracted: f64,
+}
+
+impl Pair {
+    /// Angles and offsets up to ten to the given power.
+    fn at_random(random: &mut Random, power: f64) -> Self {
+        let mut between = |low: f64, high: f64| low + (high - low) * 0.5 * (random.signed() + 1.0);
+        let ratio = between(-1.0, 1.0).signum() * 10_f64.powf(between(-2.0, 2.0));
+        let (angle, speed) = (10_f64.powf(between(-1.0, power)), 10_f64.powf(between(-1.0, 2.0)));
+        let offset = between(-1.0, 1.0) * 10_f64.powf(between(-1.0, power));
+        let kind = if between(-1.0, 1.0) > 0.0 { "prismatic" } else { "revolute" };
+        let place = between(-1.0, 1.0);
+        let text = format!(
+            "format = 1\nname = \"pair\"\n[[body]]\nname = \"frame\"\nfixed = true\n\
+             [[body]]\nname = \"one\"\nmass = 1\ninertia = [1, 1, 1]\n\
+             [[body]]\nname = \"other\"\nmass = 1\ninertia = [1, 1, 1]\n\
+             [[joint]]\nname = \"a\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nangle = {angle}\n\
+             rate = {speed}\nfirst = {{ body = \"frame\" }}\nsecond = {{ body = \"one\" }}\n\
+             [[joint]]\nname = \"b\"\nkind = \"{kind}\"\naxis = [0, 1, 0]\nzero = [0, 0, 1]\n\
+             first = {{ body = \"frame\", point = [{place}, 0, 0] }}\nsecond = {{ body = \"other\" }}\n\
+             [[coupler]]\nname = \"teeth\"\nfirst = {{ joint = \"a\" }}\nsecond = {{ joint = \"b\" }}\n\
+             ratio = {ratio}\noffset = {offset}\n"
+        );
+        let subtracted = angle + (angle * ratio).abs().max(offset.abs()).max(1.0) / ratio.abs();
+        Self { text, angle, fastest: speed * ratio.abs().max(1.0), speed, subtracted }
+    }
+
+    fn model(&self) -> Model {
+        gyro_model::read("pair.toml", &self.text)
+            .unwrap_or_else(|problems| panic!("{problems:?}\n{}", self.text))
+    }
+
+    /// Turns by fifty steps in which the faster one turns by a fiftieth of a radian; nothing brakes it, so it keeps its speed.
+    fn check<T: Real + 'static>(&self, engine: &Engine<T>, correction: Correction) {
+        let (start, step) = (start_of(&self.model()), 0.02 / self.fastest);
+        let settings =
+            Settings { t_end: 50.0 * step, step, correct_every: Some(5.0 * step), sample_every: 50.0 * step };
+        let approach = Approach { correction, ..Approach::default() };
+        let end = end((engine, &*engine.kit(Duals::none())), &settings, &approach, &start)
+            .unwrap_or_else(|failure| panic!("{failure}\n{}", self.text));
+        let (angle, rate) = coordinate(&end, 0);
+        let known = 1e-6 + 100.0 * T::EPSILON.to_f64() * self.subtracted;
+        assert!(
+            (angle - self.angle - self.speed / self.fastest).abs() <= known,
+            "{angle}, known to {known:e}\n{}",
+            self.text
+        );
+        assert!((rate / self.speed - 1.0).abs() <= 1e-6 + 1e3 * T::EPSILON.to_f64(), "{rate}\n{}", self.text);
+    }
+}
+
+#[test]
+fn pairs_at_random_turn_from_any_angle() {
+    let mut random = Random::new(17);
+    for _ in 0..60 {
+        let (far, near) = (Pair::at_random(&mut random, 6.0), Pair::at_random(&mut random, 3.0));
+        let double = Engine::new(Dense::<f64>::new(&far.model()).unwrap());
+        let single = Engine::new(Dense::<f32>::new(&near.model()).unwrap());
+        for correction in [Correction::Partition, Correction::MassWeighted] {
+            far.check(&double, correction);
+            near.check(&single, correction);
+        }
+    }
+}
