@@ -3,8 +3,8 @@
 
 use gyro_runner::motion::{COLUMNS, Feed, Kit, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Dual, Energy, Equations, Error, JointInfo, JointJacobian, JointSpace, Mechanism, Ode, OutputInfo,
-    Partition, Ports, Projection, Real, RowInfo, Storage,
+    Clearance, Dual, Energy, Equations, Error, JointInfo, JointJacobian, JointSpace, Mechanism, Ode,
+    OutputInfo, Partition, Ports, Projection, Real, RowInfo, Storage,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -138,6 +138,7 @@ trait Erased<T>: Any + Debug {
     fn follow(&self, t: T, y: &[T], choice: &mut Choice) -> u32;
     fn newton_step(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error>;
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error>;
+    fn clearance(&self, t: T, y: &[T]) -> Option<Clearance<T>>;
     fn phi_q_pattern(&self) -> &[(u16, u16)];
     fn phi_pi_pattern(&self) -> &[(u16, u16)];
     fn n_bodies(&self) -> usize;
@@ -283,6 +284,9 @@ where
         let outcome = Partition::solve_velocities(self, t, choice.of(), &mut solved);
         y.copy_from_slice(solved.as_ref());
         outcome
+    }
+    fn clearance(&self, t: T, y: &[T]) -> Option<Clearance<T>> {
+        Partition::clearance(self, t, &filled(self.start(), y))
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         Equations::phi_q_pattern(self)
@@ -498,6 +502,9 @@ impl<T: Real + 'static> Partition for Engine<T> {
     }
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut Vec<T>) -> Result<(), Error> {
         self.mechanism.solve_velocities(t, choice, y)
+    }
+    fn clearance(&self, t: T, y: &Vec<T>) -> Option<Clearance<T>> {
+        self.mechanism.clearance(t, y)
     }
 }
 
