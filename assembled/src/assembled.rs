@@ -6,7 +6,7 @@ use crate::number::{Number, number};
 use crate::outputs::Solution;
 use crate::textbook::p_dot;
 use gyro_model::Model;
-use gyro_sim::{Energy, Error, JointInfo, Mechanism, Ode, Partition, RowInfo};
+use gyro_sim::{Clearance, Energy, Error, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo};
 use nalgebra::Vector4;
 use std::cell::{RefCell, RefMut};
 use std::fmt::Debug;
@@ -57,14 +57,14 @@ pub trait Solver<T: Number>: Clone + Debug {
     /// One Newton step of the dependent positions.
     ///
     /// # Errors
-    /// The pivot that vanished.
+    /// The pivot that vanished, or a change too large for it.
     fn newton_step(
         &self,
         lowered: &Lowered<T>,
         t: T,
         choice: &Self::Independent,
         y: &mut [T],
-    ) -> Result<(), T>;
+    ) -> Result<(), Refusal<T>>;
     /// Solves eq. (19) for the dependent velocities. Which velocities are held is the solver's: see its own documentation.
     ///
     /// # Errors
@@ -76,6 +76,25 @@ pub trait Solver<T: Number>: Clone + Debug {
         choice: &Self::Independent,
         y: &mut [T],
     ) -> Result<(), T>;
+    /// How clear a state is of singular poses: a pivot, and the constraint row that is left with it. `None` where there are none.
+    fn clearance(&self, _lowered: &Lowered<T>, _t: T, _y: &[T]) -> Option<(T, usize)> {
+        None
+    }
+}
+
+/// Why a Newton step is not made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refusal<T> {
+    /// This pivot vanishes.
+    Singular(T),
+    /// The change, the largest one that is safe, and the row that is violated most.
+    Jump(T, T, usize),
+}
+
+impl<T> From<T> for Refusal<T> {
+    fn from(pivot: T) -> Self {
+        Self::Singular(pivot)
+    }
 }
 
 impl<T: Number, S: Solver<T>> Assembled<T, S> {
@@ -97,6 +116,12 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             projection: Vec::new(),
         };
         Ok(Self { lowered, solver, phi_q_pattern, phi_pi_pattern, space: RefCell::new(space) })
+    }
+
+    /// The owner of a constraint row, normalisations included.
+    fn owner(&self, row: usize) -> Owner {
+        let body = || u16::try_from(row - self.lowered.n_rows()).expect("as many bodies as patterns hold");
+        self.lowered.row_infos.get(row).map_or_else(|| Owner::Body(body()), |row| row.owner)
     }
 
     /// Work space of a projection.
@@ -234,7 +259,13 @@ impl<T: Number, S: Solver<T>> Partition for Assembled<T, S> {
     }
 
     fn newton_step(&self, t: T, choice: &S::Independent, y: &mut Vec<T>) -> Result<(), Error> {
-        self.solver.newton_step(&self.lowered, t, choice, y).map_err(|pivot| singular(t, pivot))
+        self.solver.newton_step(&self.lowered, t, choice, y).map_err(|refusal| match refusal {
+            Refusal::Singular(pivot) => singular(t, pivot),
+            Refusal::Jump(change, limit, row) => {
+                let [t, change, limit] = [t, change, limit].map(gyro_sim::Real::to_f64);
+                Error::Jump { t, change, limit, owner: self.owner(row) }
+            }
+        })
     }
 
     fn is_met(&self, t: T, y: &Vec<T>, phi: &Vec<T>) -> bool {
@@ -243,6 +274,11 @@ impl<T: Number, S: Solver<T>> Partition for Assembled<T, S> {
 
     fn solve_velocities(&self, t: T, choice: &S::Independent, y: &mut Vec<T>) -> Result<(), Error> {
         self.solver.solve_velocities(&self.lowered, t, choice, y).map_err(|pivot| singular(t, pivot))
+    }
+
+    fn clearance(&self, t: T, y: &Vec<T>) -> Option<Clearance<T>> {
+        let (pivot, row) = self.solver.clearance(&self.lowered, t, y)?;
+        Some(Clearance { pivot, owner: Some(self.owner(row)) })
     }
 }
 

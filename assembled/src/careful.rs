@@ -1,7 +1,7 @@
 //! The careful form: eq. (17) eliminated body by body, with every buffer allocated once.
 
 use crate::articulated::{self, Node};
-use crate::assembled::{Assembled, Solver};
+use crate::assembled::{Assembled, Refusal, Solver};
 use crate::charts;
 use crate::error::Unsupported;
 use crate::joint::{End, Joint};
@@ -167,8 +167,14 @@ impl<T: Number> Solver<T> for Elimination<T> {
         charts::follow(lowered, &self.links, y, choice)
     }
 
-    fn newton_step(&self, lowered: &Lowered<T>, t: T, choice: &Vec<u8>, y: &mut [T]) -> Result<(), T> {
-        charts::newton_step(lowered, &self.links, t, choice, y)
+    fn newton_step(
+        &self,
+        lowered: &Lowered<T>,
+        t: T,
+        choice: &Vec<u8>,
+        y: &mut [T],
+    ) -> Result<(), Refusal<T>> {
+        Ok(charts::newton_step(lowered, &self.links, t, choice, y)?)
     }
 
     fn solve_velocities(&self, lowered: &Lowered<T>, t: T, _: &Vec<u8>, y: &mut [T]) -> Result<(), T> {

@@ -1,11 +1,11 @@
 //! The paper's plain form: eq. (17) built whole and solved by dense LU.
 
-use crate::assembled::Solver;
+use crate::assembled::{Refusal, Solver};
 use crate::error::Unsupported;
 use crate::lowered::{Lowered, Moment};
 use crate::number::Number;
 use crate::partition;
-use gyro_model::Model;
+use gyro_model::{Model, Tree};
 use nalgebra::{DMatrix, DVector};
 
 /// Builds the dense matrix of eq. (17) and solves it by LU with partial pivoting, on the heap, at every evaluation.
@@ -17,14 +17,17 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// It does every model.
 #[derive(Clone, Copy, Debug)]
-pub struct Saddle;
+pub struct Saddle {
+    /// Only loops have singular poses.
+    has_loops: bool,
+}
 
 impl<T: Number> Solver<T> for Saddle {
     /// Columns of Φ_q, ascending.
     type Independent = Vec<usize>;
 
-    fn new(_: &Model, _: &Lowered<T>) -> Result<Self, Unsupported> {
-        Ok(Self)
+    fn new(model: &Model, _: &Lowered<T>) -> Result<Self, Unsupported> {
+        Ok(Self { has_loops: !Tree::of(model).loop_joints.is_empty() })
     }
 
     /// The whole solution of eq. (17).
@@ -48,7 +51,13 @@ impl<T: Number> Solver<T> for Saddle {
         partition::follow(lowered, Moment { t, y }, choice)
     }
 
-    fn newton_step(&self, lowered: &Lowered<T>, t: T, choice: &Vec<usize>, y: &mut [T]) -> Result<(), T> {
+    fn newton_step(
+        &self,
+        lowered: &Lowered<T>,
+        t: T,
+        choice: &Vec<usize>,
+        y: &mut [T],
+    ) -> Result<(), Refusal<T>> {
         partition::newton_step(lowered, t, choice, y)
     }
 
@@ -60,6 +69,10 @@ impl<T: Number> Solver<T> for Saddle {
         y: &mut [T],
     ) -> Result<(), T> {
         partition::solve_velocities(lowered, t, choice, y)
+    }
+
+    fn clearance(&self, lowered: &Lowered<T>, t: T, y: &[T]) -> Option<(T, usize)> {
+        self.has_loops.then(|| partition::clearance(lowered, Moment { t, y }))
     }
 }
 

@@ -85,7 +85,7 @@ mod sweeps;
 mod textbook;
 mod turns;
 
-pub use assembled::{Assembled, Solver};
+pub use assembled::{Assembled, Refusal, Solver};
 pub use careful::Elimination;
 pub use dense::Saddle;
 pub use error::{BuildError, Unsupported};

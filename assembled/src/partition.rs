@@ -2,6 +2,7 @@
 //!
 //! Lengths are measured in units of the mechanism's size, in rows and columns alike, so that pivots compare.
 
+use crate::assembled::Refusal;
 use crate::lowered::{Lowered, Moment};
 use crate::number::{Number, abs, number, resolvable};
 use crate::textbook::angular_velocity;
@@ -49,18 +50,41 @@ pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, choice:
     u32::try_from(exchanged).unwrap_or(u32::MAX)
 }
 
+/// The smallest pivot of full pivoting, and of the joints' rows the one that is left last.
+pub(crate) fn clearance<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> (T, usize) {
+    let lu = jacobian(lowered, at).full_piv_lu();
+    let mut rows = DVector::from_iterator(n_constraints(lowered), 0..n_constraints(lowered));
+    lu.p().permute_rows(&mut rows);
+    let pivot = pivots(lu.lu_internal()).map(abs).fold(T::one(), |least, pivot| least.min(pivot));
+    let last = rows.iter().rev().copied().find(|&row| row < lowered.n_rows());
+    (pivot, last.unwrap_or(0))
+}
+
+/// A change of the dependent positions is trusted up to this part of the smallest pivot: a larger one may lead to another way to put the
+/// mechanism together.
+const TRUSTED: f64 = 0.125;
+
+/// Changes of velocities by less than so many roundings, over a pivot below [`NEAR`] and over its square, are noise: positions are known to a rounding
+/// over the pivot.
+const ROUNDINGS: f64 = 16.0;
+const NEAR: f64 = 0.02;
+
 /// `Φ_u Δu = −Φ`.
 pub(crate) fn newton_step<T: Number>(
     lowered: &Lowered<T>,
     t: T,
     choice: &[usize],
     y: &mut [T],
-) -> Result<(), T> {
+) -> Result<(), Refusal<T>> {
     let mut right = DVector::zeros(n_constraints(lowered));
     lowered.phi(Moment { t, y }, right.as_mut_slice());
     lowered.silence(Moment { t, y }, right.as_mut_slice());
     right.iter_mut().enumerate().for_each(|(row, phi)| *phi = -*phi * row_scale(lowered, row));
-    let step = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
+    let (step, pivot) = solve(&jacobian(lowered, Moment { t, y }), choice, right.clone())?;
+    let (change, limit) = (step.amax(), pivot * number(TRUSTED));
+    if change > limit {
+        return Err(Refusal::Jump(change, limit, right.iamax()));
+    }
     for (column, step) in dependent(lowered, choice).zip(step.iter()) {
         y[column] += *step * column_scale(lowered, column);
     }
@@ -79,7 +103,12 @@ pub(crate) fn solve_velocities<T: Number>(
     let mut right = DVector::zeros(n_constraints(lowered));
     lowered.velocity_residual(Moment { t, y }, &mut right.as_mut_slice()[..lowered.n_rows()]);
     right.iter_mut().enumerate().for_each(|(row, rate)| *rate = -*rate * row_scale(lowered, row));
-    let solution = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
+    let residual = right.amax();
+    let (solution, pivot) = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
+    let speed = y[lowered.n_q()..lowered.n_q() + lowered.n_v()].iter().fold(T::zero(), |m, v| abs(*v).max(m));
+    if pivot < number(NEAR) && residual * pivot <= T::EPSILON * number(ROUNDINGS) * speed {
+        return Ok(());
+    }
     let mut change = DVector::zeros(lowered.n_q());
     dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| change[column] = *value);
     for slot in 0..lowered.n_bodies() {
@@ -125,14 +154,18 @@ fn factorise<T: Number>(jacobian: &DMatrix<T>, choice: &[usize]) -> LU<T, Dyn, D
     jacobian.select_columns(&columns).lu()
 }
 
-/// Solves with Φ_u; fails with its smallest pivot, or zero if there are more constraints than coordinates.
-fn solve<T: Number>(jacobian: &DMatrix<T>, choice: &[usize], right: DVector<T>) -> Result<DVector<T>, T> {
+/// Solves with Φ_u, and gives its smallest pivot; fails with it, or with zero if there are more constraints than coordinates.
+fn solve<T: Number>(
+    jacobian: &DMatrix<T>,
+    choice: &[usize],
+    right: DVector<T>,
+) -> Result<(DVector<T>, T), T> {
     let lu = factorise(jacobian, choice);
     if !lu.lu_internal().is_square() {
         return Err(T::zero());
     }
     let pivot = resolvable(pivots(lu.lu_internal()))?;
-    lu.solve(&right).ok_or(pivot)
+    lu.solve(&right).map(|solution| (solution, pivot)).ok_or(pivot)
 }
 
 /// The logarithm of the product of all pivots.

@@ -1,6 +1,6 @@
 //! The recursive form: eq. (17) in joint coordinates, in three sweeps over the tree.
 
-use crate::assembled::{Assembled, Solver};
+use crate::assembled::{Assembled, Refusal, Solver};
 use crate::balance;
 use crate::error::Unsupported;
 use crate::joint::{End as JointEnd, Joint};
@@ -157,8 +157,8 @@ impl<T: Number> Solver<T> for Recursion<T> {
         0
     }
 
-    fn newton_step(&self, lowered: &Lowered<T>, t: T, (): &(), y: &mut [T]) -> Result<(), T> {
-        rebuild::positions(self, lowered, t, y)
+    fn newton_step(&self, lowered: &Lowered<T>, t: T, (): &(), y: &mut [T]) -> Result<(), Refusal<T>> {
+        Ok(rebuild::positions(self, lowered, t, y)?)
     }
 
     fn solve_velocities(&self, lowered: &Lowered<T>, t: T, (): &(), y: &mut [T]) -> Result<(), T> {

@@ -18,7 +18,8 @@ pub use closed_form::ClosedForm;
 pub use mass_weighted::MassWeighted;
 pub use partition::{Corrected, Direct, Partitioned, Partitioning};
 
-use crate::{Error, Mechanism, Ode, Real, Scalar};
+use crate::violation::constraint_violation;
+use crate::{Clearance, Error, Mechanism, Ode, Partition, Real, Scalar};
 
 /// A system that integrates the maximal state of a mechanism.
 pub trait Maximal: Ode {
@@ -58,6 +59,10 @@ pub trait Correction<O: Ode> {
     fn switches(&self) -> u64 {
         0
     }
+    /// How clear a state is of singular poses; `None` where there are none, or nobody can tell.
+    fn clearance(&self, _system: &O, _t: O::Scalar, _y: &O::State) -> Option<Clearance<O::Scalar>> {
+        None
+    }
 }
 
 /// No correction.
@@ -70,6 +75,35 @@ impl<O: Ode> Correction<O> for Uncorrected {
     }
     fn violation(&mut self, _: &O, _: O::Scalar, _: &O::State) -> O::Scalar {
         O::Scalar::constant(0.0)
+    }
+}
+
+/// No correction of a mechanism, but what it loses is seen, and singular poses are. A library's [`Uncorrected`] knows of no mechanism.
+#[derive(Clone, Debug)]
+pub struct Watched<M: Mechanism> {
+    phi: M::Constraints,
+}
+
+impl<M: Mechanism> Watched<M> {
+    /// Work space for a mechanism.
+    pub fn new(mechanism: &M) -> Self {
+        Self { phi: mechanism.constraints() }
+    }
+}
+
+impl<O: Maximal<Mechanism = M, Scalar: Real>, M> Correction<O> for Watched<M>
+where
+    M: Partition<Scalar = O::Scalar, State = O::State>,
+{
+    fn correct(&mut self, _: &O, _: O::Scalar, _: &mut O::State) -> Result<(), Error> {
+        Ok(())
+    }
+    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
+        system.mechanism().phi(t, y, &mut self.phi);
+        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    }
+    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
+        system.mechanism().clearance(t, y)
     }
 }
 

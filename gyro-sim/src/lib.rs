@@ -77,14 +77,14 @@ mod violation;
 pub use apart::apart;
 pub use correct::{
     Baumgarte, ClosedForm, Corrected, Correction, Direct, MassWeighted, Maximal, Partitioned, Partitioning,
-    Uncorrected, When,
+    Uncorrected, Watched, When,
 };
 pub use dual::{ByDuals, Dual};
 pub use error::Error;
 pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
 pub use mechanism::{
-    Charted, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian, JointSpace,
-    Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
+    Charted, Clearance, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian,
+    JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
 };
 pub use scalar::{Real, Scalar};
 pub use solver::{Control, Solver, Statistics};

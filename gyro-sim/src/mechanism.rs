@@ -123,6 +123,19 @@ pub trait Partition: Mechanism<Scalar: Real> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
+    /// How clear a state is of singular poses; `None` for mechanisms that have none, like trees.
+    fn clearance(&self, _t: Self::Scalar, _y: &Self::State) -> Option<Clearance<Self::Scalar>> {
+        None
+    }
+}
+
+/// How clear a state is of singular poses, where a mechanism has more freedoms than elsewhere and could go on in more ways than one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance<T> {
+    /// A pure number, of order one far from singular poses and zero in them.
+    pub pivot: T,
+    /// Whose constraint depends on others there, where that is known.
+    pub owner: Option<Owner>,
 }
 
 /// A tree whose partition is unrolled: the solves behind its [`Partition`], for any scalar. They are free of branches, so that each

@@ -50,7 +50,7 @@ pub use crate::rounding::is_met;
 use crate::rounding::silence;
 
 use crate::violation::constraint_violation;
-use crate::{Equations, Error, Mechanism, Owner, Real, Scalar, Storage};
+use crate::{Clearance, Equations, Error, Mechanism, Owner, Real, Scalar, Storage};
 use elimination::Elimination;
 
 /// Which `NC` of the `NQ` coordinates are dependent.
@@ -72,6 +72,20 @@ pub const POOR: f64 = 2.0;
 /// at most two rotation matrices and lengths of at most the size, so K is about 4, and the smallest pivot stands for
 /// `1 / |Φ_u⁻¹|`.
 const TRUSTED: f64 = 0.125;
+
+/// Whether near a singular pose what is left of a row's rate is no more than rounding.
+///
+/// Corrected positions are known to a rounding over the pivot, and the rows' rates at this speed no better. Divided by the pivot once more that
+/// would be a change of velocities by noise; what was integrated is better.
+pub(crate) fn is_noise<T: Real>(rate: T, pivot: T, speed: T) -> bool {
+    pivot < T::constant(SMALL) && rate * pivot <= T::EPSILON * T::constant(ROUNDINGS) * speed
+}
+
+/// A pivot below this is small: singular poses are near. Elsewhere corrections are exact.
+const SMALL: f64 = 0.02;
+
+/// Rounding errors that add up in a row.
+const ROUNDINGS: f64 = 16.0;
 
 /// A pivot below this many roundings counts as zero: entries are of order one.
 const SINGULAR_EPSILONS: f64 = 16.0;
@@ -107,6 +121,23 @@ where
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
     elimination.reduce(NQ);
     Pivots::new(elimination.columns)
+}
+
+/// How clear a state is of singular poses: the smallest pivot of full pivoting, and whose row is left with it.
+///
+/// Along a motion through a singular pose it falls to zero and rises again in proportion to the distance, to within what exchanges of
+/// pivots change.
+pub fn clearance<M, const NC: usize, const NQ: usize>(
+    mechanism: &M,
+    t: M::Scalar,
+    y: &M::State,
+) -> Clearance<M::Scalar>
+where
+    M: Equations<Scalar: Real>,
+{
+    let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
+    let least = elimination.reduce(NQ);
+    Clearance { pivot: least.value, owner: Some(owner(mechanism, least.row)) }
 }
 
 /// Exchanges coordinates until no dependent one changes more than [`POOR`] times as fast as an independent one; returns the number
@@ -195,12 +226,23 @@ where
     // The normalisations' rates 2 pᵀṗ = pᵀGᵀw' are zero for any w'.
     elimination.set_right(mechanism, residual.as_ref());
     refuse_singular(mechanism, t, elimination.reduce(NC))?;
+    elimination.leave_noise(fastest(mechanism, y));
     let mut q_dot = [M::Scalar::constant(0.0); NQ];
     for (column, change) in elimination.dependent().zip(elimination.solution()) {
         q_dot[column] = -change;
     }
     add_velocities(&q_dot, mechanism.size(), y);
     Ok(())
+}
+
+/// The fastest rate of a coordinate, lengths in units of the size.
+pub(crate) fn fastest<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
+    let velocities = y.as_ref().iter().skip(7 * mechanism.n_bodies()).take(6 * mechanism.n_bodies());
+    let rates = velocities.enumerate().map(|(k, v)| if k % 6 < 3 { *v / mechanism.size() } else { *v });
+    rates.fold(
+        M::Scalar::constant(0.0),
+        |fastest, rate| if rate.abs() > fastest { rate.abs() } else { fastest },
+    )
 }
 
 /// Adds a change of `q̇ = (ṙ, ṗ)`, lengths in units of the size, to the velocities `(s, w')` of the state.

@@ -1,9 +1,12 @@
 //! From a method and a correction to a motion.
 
+mod past;
+
 use crate::correct::{check_finite, check_time};
 use crate::integrate::{Embedded, Method, Work};
-use crate::{Correction, Error, Ode, Real, Storage, When};
+use crate::{Clearance, Correction, Error, Ode, Owner, Real, Storage, When};
 use core::cmp::Ordering;
+use past::Past;
 
 /// What a solver is to keep to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +68,8 @@ pub struct Statistics {
     pub shortest_step: f64,
     /// The longest accepted step, s.
     pub longest_step: f64,
+    /// Accepted steps that were extrapolated over a singular pose.
+    pub leaps: u64,
 }
 
 /// A motion under way: a method, a correction, the time and the state.
@@ -99,9 +104,60 @@ pub struct Solver<S, T, M, C> {
     is_untouched: bool,
     /// Whether time and state are known to be finite.
     is_checked: bool,
+    /// Where there are singular poses: the states that the last steps have led to.
+    past: Past<S, T>,
+    /// The state before it was corrected.
+    raw: S,
+    /// The degree of the polynomial that the last step was extrapolated by, if it was.
+    leap: Option<usize>,
+    /// Where there is a singular pose ahead that must be stepped over.
+    approach: Option<Approach>,
+    watch: Watch,
     resumes: bool,
     statistics: Statistics,
 }
+
+/// The way to a singular pose.
+#[derive(Clone, Copy, Debug)]
+struct Approach {
+    attempts: u32,
+    /// What the last leap that was refused would have been off by.
+    error: f64,
+}
+
+impl Default for Approach {
+    fn default() -> Self {
+        Self { attempts: 0, error: f64::INFINITY }
+    }
+}
+
+/// Whether a system has singular poses that can be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Watch {
+    Unknown,
+    Needless,
+    Needed,
+}
+
+/// The nearer a pose the less extrapolation is off, until rounding makes it worse again: then as much as this is tolerated of the last chance.
+const WORST: f64 = 100.0;
+/// Steps towards a pose go this part of the way, so that states lie close enough together to extrapolate them.
+const APPROACH: f64 = 0.35;
+/// So many steps lead to any pose that can be passed: each goes the same part of the way.
+const LONGEST_APPROACH: u32 = 300;
+/// With a pivot below this whatever fails does so because of the pose.
+const IN_POSE: f64 = 1e-3;
+/// A leap ends as clear of the pose as it began, to within this factor: where a pivot vanishes linearly, on the other side.
+const BEYOND: f64 = 0.25;
+/// A correction may change a step's result by so many times what is tolerated: by more, and the step was not what its error estimate says.
+const AGREEMENT: f64 = 10.0;
+
+/// What rounding makes of velocities near a pose, see [`Solver::rounding`], is so many times larger after a correction: an allowance.
+const ROUNDINGS: f64 = 64.0;
+/// And in states that are extrapolated.
+const NOISE: f64 = 4.0;
+/// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through a pose are apart.
+const FLOOR: f64 = 100.0;
 
 /// What of the best next step is taken.
 const SAFETY: f64 = 0.9;
@@ -138,6 +194,11 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             is_prepared: false,
             is_untouched: false,
             is_checked: false,
+            past: Past::new(t, y),
+            raw: y.clone(),
+            leap: None,
+            approach: None,
+            watch: Watch::Unknown,
             resumes: false,
             statistics: Statistics { shortest_step: f64::INFINITY, ..Statistics::default() },
         }
@@ -175,12 +236,14 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     pub fn set_state(&mut self, y: &S) {
         self.y.as_mut().copy_from_slice(y.as_ref());
         (self.is_untouched, self.is_checked) = (false, false);
+        self.past.forget();
     }
 
     /// The system has changed, as by a new value of an input: nothing that was found out about it holds any longer.
     pub fn system_has_changed(&mut self) {
         self.is_untouched = false;
         self.resumes = false;
+        self.past.forget();
     }
 
     /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again.
@@ -198,8 +261,13 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             return Err(Error::Setting { setting: "step", value: h.to_f64() });
         }
         self.attempt(system, h);
-        match self.accept(system, self.after(h), h) {
-            Ok(()) => Ok(()),
+        let after = self.after(h);
+        self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
+        match self.correct_trial(system, after.0) {
+            Ok(is_corrected) => {
+                self.keep::<O>(after, h, (is_corrected, None));
+                Ok(())
+            }
             Err(error) => {
                 self.resumes = false;
                 Err(error)
@@ -255,15 +323,37 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             return Ok(());
         }
         // What the method holds are the slopes of its last attempt.
-        if !self.is_kept || !(*start..=self.t).contains(&t) {
+        if !(self.is_kept || self.leap.is_some()) || !(*start..=self.t).contains(&t) {
             return Err(Error::NoEnd { t: self.t.to_f64(), t_end: t.to_f64() });
         }
-        if !self.is_prepared {
+        if !(self.is_prepared || self.leap.is_some()) {
             self.method.prepare(system, *start, *h, y, &mut self.statistics.work);
             self.is_prepared = true;
         }
-        self.method.between((t - *start) / *h, out);
-        self.correction.correct(system, t, out)
+        self.between(t, out);
+        match self.correction.correct(system, t, out) {
+            // Too near a singular pose for a correction the motion between steps is no less smooth.
+            Err(Error::Jump { .. } | Error::Singular { .. } | Error::NoConvergence { .. })
+                if self.watch == Watch::Needed =>
+            {
+                self.between(t, out);
+                Ok(())
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// The state within the last step as the method has it, or the polynomial that has led to its end.
+    fn between<O>(&self, t: T, out: &mut S)
+    where
+        O: Ode<Scalar = T, State = S>,
+        M: Method<O>,
+    {
+        let (start, _, h) = &self.before;
+        match self.leap {
+            Some(degree) => self.past.at(t, degree + 1, out),
+            None => self.method.between((t - *start) / *h, out),
+        }
     }
 
     /// Time and state as they were given must be finite; later ones are looked at as they come.
@@ -297,14 +387,12 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         self.resumes = true;
     }
 
-    /// Corrects where the last attempt has led, if that is due, and goes on from there.
-    fn accept<O>(&mut self, system: &O, (t, t_rest): (T, T), h: T) -> Result<(), Error>
+    /// Corrects the trial if that is due; returns whether it was.
+    fn correct_trial<O>(&mut self, system: &O, t: T) -> Result<bool, Error>
     where
         O: Ode<Scalar = T, State = S>,
-        M: Method<O>,
         C: Correction<O>,
     {
-        self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
         let is_due = match self.control.when {
             When::Steps(steps) => self.since_correction + 1 >= steps,
             When::Violation(limit) => {
@@ -317,18 +405,36 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             self.correction.correct(system, t, &mut self.trial)?;
             self.statistics.corrections += 1;
         }
-        if let Some((index, _)) = (0u16..).zip(self.trial.as_ref()).find(|(_, x)| !x.is_finite()) {
-            return Err(Error::NotFinite { t: t.to_f64(), index });
+        match (0u16..).zip(self.trial.as_ref()).find(|(_, x)| !x.is_finite()) {
+            Some((index, _)) => Err(Error::NotFinite { t: t.to_f64(), index }),
+            None => Ok(is_due),
         }
-        self.since_correction = if is_due { 0 } else { self.since_correction + 1 };
-        self.is_untouched = !is_due || self.trial.as_ref() == self.method.end().as_ref();
+    }
+
+    /// Goes on from the trial, where the last attempt has led.
+    fn keep<O>(&mut self, after: (T, T), h: T, settled: (bool, Option<T>))
+    where
+        O: Ode<Scalar = T, State = S>,
+        M: Method<O>,
+    {
+        self.is_untouched = !settled.0 || self.trial.as_ref() == self.method.end().as_ref();
+        self.go_on(after, h, settled);
+        (self.is_kept, self.is_prepared, self.leap) = (true, false, None);
+        self.note::<O>(h.to_f64());
+    }
+
+    fn go_on(&mut self, (t, t_rest): (T, T), h: T, (is_corrected, pivot): (bool, Option<T>)) {
+        self.since_correction = if is_corrected { 0 } else { self.since_correction + 1 };
         (self.before.0, self.before.2) = (self.t, h);
         core::mem::swap(&mut self.before.1, &mut self.y);
         core::mem::swap(&mut self.y, &mut self.trial);
         (self.t, self.t_rest) = (t, t_rest);
-        (self.is_kept, self.is_prepared) = (true, false);
-        self.note::<O>(h.to_f64());
-        Ok(())
+        match pivot {
+            Some(pivot) => self.past.push(t, pivot, &self.y),
+            None => self.past.forget(),
+        }
+        self.statistics.accepted += 1;
+        self.statistics.longest_step = self.statistics.longest_step.max(h.to_f64());
     }
 
     fn note<O>(&mut self, h: f64)
@@ -337,8 +443,6 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         M: Method<O>,
     {
         let statistics = &mut self.statistics;
-        statistics.accepted += 1;
-        statistics.longest_step = statistics.longest_step.max(h);
         let [slope, state] = self.method.rate().map(Real::to_f64);
         let size = self.y.as_ref().iter().fold(0.0, |sum: f64, y| sum + y.to_f64() * y.to_f64());
         let rounding = 100.0 * T::EPSILON.to_f64();
@@ -389,6 +493,39 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         M: Embedded<O>,
         C: Correction<O>,
     {
+        self.try_towards(system, t_end).map_err(|error| self.blame(system, error))
+    }
+
+    /// In a singular pose there are many ways to fail, for this one reason.
+    fn blame<O>(&self, system: &O, error: Error) -> Error
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        let is_symptom = matches!(
+            error,
+            Error::NotFinite { .. }
+                | Error::StepTooShort { .. }
+                | Error::TooManySteps { .. }
+                | Error::Stiff { .. }
+        );
+        let clearance = (is_symptom && self.watch == Watch::Needed)
+            .then(|| self.correction.clearance(system, self.t, &self.y))
+            .flatten();
+        match clearance {
+            Some(Clearance { pivot, owner }) if pivot < T::constant(IN_POSE) => {
+                Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner }
+            }
+            _ => error,
+        }
+    }
+
+    fn try_towards<O>(&mut self, system: &O, t_end: T) -> Result<(), Error>
+    where
+        O: Ode<Scalar = T, State = S>,
+        M: Embedded<O>,
+        C: Correction<O>,
+    {
         self.check_control()?;
         self.check_start()?;
         check_time(self.t, t_end)?;
@@ -398,8 +535,12 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         if self.next_step == T::constant(0.0) {
             self.next_step = self.guess_first_step(system, t_end);
         }
+        self.watch(system);
         let mut has_failed = false;
         loop {
+            if self.approach(system, t_end)? {
+                return Ok(());
+            }
             let (h, is_last) = self.length(t_end);
             self.check_budget(t_end, h)?;
             self.attempt(system, h);
@@ -408,8 +549,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             let error = error.to_f64();
             let failure = if error <= 1.0 {
                 let after = if is_last { (t_end, T::constant(0.0)) } else { self.after(h) };
-                match self.accept(system, after, h) {
-                    Ok(()) => {
+                self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
+                match self.settle(system, after.0) {
+                    Ok(settled) => {
+                        self.keep::<O>(after, h, settled);
                         self.grow::<O>(h, error, has_failed, is_last);
                         return Ok(());
                     }
@@ -421,6 +564,9 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
                 Some(Error::NotFinite { t: self.t.to_f64(), index: short(index) })
             };
             self.statistics.rejected += 1;
+            if self.approach.is_none() && self.beyond_pose().is_some() {
+                self.approach = Some(Approach::default());
+            }
             let factor = if failure.is_some() { SHRINKAGE } else { self.factor::<O>(error, 0.0).min(1.0) };
             self.next_step = h * T::constant(factor);
             has_failed = true;
@@ -432,6 +578,158 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
                 }));
             }
         }
+    }
+
+    /// Begins to remember states where there are singular poses.
+    fn watch<O>(&mut self, system: &O)
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        if self.watch == Watch::Needless || self.past.len() > 0 {
+            return;
+        }
+        self.watch = match self.correction.clearance(system, self.t, &self.y) {
+            Some(clearance) => {
+                self.past.push(self.t, clearance.pivot, &self.y);
+                Watch::Needed
+            }
+            None => Watch::Needless,
+        };
+    }
+
+    /// Corrects the trial if that is due; returns whether it was, and how clear it is of singular poses where there are any.
+    ///
+    /// There it must not be changed by much more than the weights allow: else it was not near the motion, whatever its error estimate says, but
+    /// perhaps near another one. And the pose must be farther away than what the constraints are off: else nothing tells the ways
+    /// on from each other.
+    fn settle<O>(&mut self, system: &O, t: T) -> Result<(bool, Option<T>), Error>
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        if self.watch != Watch::Needed {
+            return Ok((self.correct_trial(system, t)?, None));
+        }
+        self.raw.as_mut().copy_from_slice(self.trial.as_ref());
+        let is_corrected = self.correct_trial(system, t)?;
+        let Some(Clearance { pivot, owner }) = self.correction.clearance(system, t, &self.trial) else {
+            return Ok((is_corrected, None));
+        };
+        let owner = owner.unwrap_or(Owner::Body(0));
+        let drift = self.correction.violation(system, t, &self.trial) + T::EPSILON;
+        if pivot * pivot <= T::constant(FLOOR) * drift {
+            return Err(Error::Singular { t: t.to_f64(), pivot: pivot.to_f64(), owner: Some(owner) });
+        }
+        let found = self.change_beyond(self.rounding(pivot) * T::constant(ROUNDINGS));
+        if is_corrected && found > AGREEMENT {
+            let differences =
+                self.raw.as_ref().iter().zip(self.trial.as_ref()).map(|(a, b)| (*a - *b).abs().to_f64());
+            let change = differences.fold(0.0, f64::max);
+            return Err(Error::Jump { t: t.to_f64(), change, limit: change * AGREEMENT / found, owner });
+        }
+        Ok((is_corrected, Some(pivot)))
+    }
+
+    /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the pivot, and so
+    /// velocities, along what the pivot belongs to, to one over its square.
+    fn rounding(&self, pivot: T) -> T {
+        let zero = T::constant(0.0);
+        let size = self.y.as_ref().iter().fold(zero, |size, y| if y.abs() > size { y.abs() } else { size });
+        T::EPSILON * size / (pivot * pivot)
+    }
+
+    /// By how much a correction has changed the trial, not counting so much of each element: the root mean square in units of the weights.
+    fn change_beyond(&self, rounding: T) -> f64 {
+        let (mut sum, mut n) = (0.0, 0.0);
+        let ends = self.raw.as_ref().iter().zip(self.trial.as_ref()).zip(self.weights.as_ref());
+        for ((raw, corrected), weight) in ends {
+            let change = ((*corrected - *raw).abs() - rounding) / *weight;
+            let part = change.to_f64().max(0.0);
+            (sum, n) = (sum + part * part, n + 1.0);
+        }
+        libm::sqrt(sum / n)
+    }
+
+    /// Where a singular pose lies within the next step, or ahead of one that has failed: steps over it, and returns so, or shortens the next
+    /// step to a part of the way there.
+    fn approach<O>(&mut self, system: &O, t_end: T) -> Result<bool, Error>
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        let Some((length, pivot)) = self.beyond_pose() else {
+            self.approach = None;
+            return Ok(false);
+        };
+        if self.approach.is_none() && length < self.next_step + self.next_step {
+            self.approach = Some(Approach::default());
+        }
+        let Some(approach) = &mut self.approach else { return Ok(false) };
+        approach.attempts += 1;
+        if approach.attempts > LONGEST_APPROACH {
+            let owner =
+                self.correction.clearance(system, self.t, &self.y).and_then(|clearance| clearance.owner);
+            return Err(Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner });
+        }
+        if self.leap(system, t_end) {
+            self.approach = None;
+            return Ok(true);
+        }
+        let longest = length * T::constant(0.5 * APPROACH);
+        if self.next_step > longest {
+            self.next_step = longest;
+        }
+        Ok(false)
+    }
+
+    /// Steps over a singular pose that lies within a step that has failed; returns whether it has come through.
+    ///
+    /// A motion through such a pose is as smooth as elsewhere, but its accelerations are quotients of numbers that vanish there: the nearer, the
+    /// fewer digits they have, and off the constraints they are of any size. So the last states are extrapolated to about as far behind the
+    /// pose as the motion is before it, and what two polynomials differ by must be within the tolerance, as must be what the
+    /// correction changes: the constraints have not been asked so far, and have to agree.
+    fn leap<O>(&mut self, system: &O, t_end: T) -> bool
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        let Some((length, pivot)) = self.beyond_pose() else { return false };
+        let left = t_end - self.t;
+        let (length, after) =
+            if length < left { (length, self.after(length)) } else { (left, (t_end, T::constant(0.0))) };
+        let Some((degree, error)) =
+            self.past.best_fit(after.0, &self.weights, self.rounding(pivot) * T::constant(NOISE))
+        else {
+            return false;
+        };
+        let before =
+            self.approach.as_mut().map_or(0.0, |approach| core::mem::replace(&mut approach.error, error));
+        let allowed = if error > before { WORST } else { 1.0 };
+        if error.is_nan() || error > allowed {
+            return false;
+        }
+        self.past.at(after.0, degree, &mut self.trial);
+        let Ok(settled) = self.settle(system, after.0) else { return false };
+        if !settled.1.is_some_and(|landing| landing > pivot * T::constant(BEYOND)) {
+            return false;
+        }
+        self.is_untouched = false;
+        self.go_on(after, length, settled);
+        (self.is_kept, self.resumes, self.leap) = (false, false, Some(degree));
+        self.statistics.leaps += 1;
+        self.next_step = length;
+        true
+    }
+
+    /// The length of a step to behind the pose ahead, if there is one, and how clear of it the state is.
+    fn beyond_pose(&self) -> Option<(T, T)> {
+        let [now, before] = self.past.last_two()?;
+        if now.pivot >= before.pivot {
+            return None;
+        }
+        let distance = (now.t - before.t) * now.pivot / (before.pivot - now.pivot);
+        Some((distance + distance, now.pivot))
     }
 
     fn check_control(&self) -> Result<(), Error> {

@@ -126,6 +126,9 @@ const COARSEST: f64 = 1e-3;
 /// A tolerance of so many units in the last place is as fine as rounding of a long run allows.
 const FINEST_ULPS: f64 = 100.0;
 
+/// A tolerance at which singular poses are passed.
+const PASSING: f64 = 1e-9;
+
 /// More steps than this nobody waits for.
 const MOST_STEPS: f64 = 1e10;
 
@@ -208,10 +211,11 @@ impl Plan<'_> {
             Error::NotFinite { .. } if self.approach.tolerance.is_some() => {
                 self.double().into_iter().collect()
             }
-            Error::NotFinite { t, .. }
-            | Error::NoConvergence { t, .. }
-            | Error::Singular { t, .. }
-            | Error::Jump { t, .. } => self.past(t),
+            Error::NotFinite { t, .. } | Error::NoConvergence { t, .. } => self.past(t),
+            Error::Singular { t, .. } | Error::Jump { t, .. } => {
+                let over = self.over_poses().filter(|over| t > 0.0 && self.accepts(over));
+                over.map_or_else(|| self.past(t), |over| vec![over])
+            }
             Error::StepTooShort { .. } => self.double().or_else(|| self.coarser()).into_iter().collect(),
             Error::TooManySteps { t, steps } => self.beyond(t, steps, met, fastest),
             Error::Stiff { t, .. } => self.beyond(t, met.accepted + met.rejected, met, fastest),
@@ -227,6 +231,18 @@ impl Plan<'_> {
             Some(_) if t > 0.0 => self.double().or_else(|| self.finer()).into_iter().collect(),
             _ => Vec::new(),
         }
+    }
+
+    /// Error control looks ahead for singular poses and steps over them, and corrections keep drift from hiding which way goes on. A pose
+    /// that is not passed at one tolerance may be at another, where steps end elsewhere.
+    fn over_poses(&self) -> Option<Advice> {
+        let is_controlled = self.approach.tolerance.is_some() && self.is_corrected();
+        let changes = [
+            Change::Integrator(Integrator::Dop853),
+            Change::Tolerance(PASSING.max(rounded(self.finest()))),
+            Change::Correction(Correction::Partition),
+        ];
+        (!is_controlled).then(|| Advice { changes: changes.into() })
     }
 
     /// Steps that would do at the pace so far, or another way.

@@ -5,10 +5,10 @@ use crate::offers::Offers;
 use crate::pivots;
 use gyro_sim::integrate::{Embedded, Method};
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Control, Coordinate, Correction, Differentiable, Dop853, Dual, Error,
-    JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
+    Baumgarte, ByDuals, Clearance, ClosedForm, Control, Coordinate, Correction, Differentiable, Dop853, Dual,
+    Error, JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
     Partitioning, Ports, Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected,
-    When,
+    Watched, When,
 };
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
@@ -149,7 +149,9 @@ impl<M: Partition + Ports + 'static> Kit<M> for Any {
         only_explicit(approach)?;
         match approach.correction {
             Keeping::Partition => Ok(explicit(Slopes::corrected(), partitioning(mechanism, y), approach, y)),
-            Keeping::None => Ok(explicit(Slopes::exact(), Boxed(Box::new(Uncorrected)), approach, y)),
+            Keeping::None => {
+                Ok(explicit(Slopes::exact(), Boxed(Box::new(Watched::new(mechanism))), approach, y))
+            }
             other => {
                 Err(format!("the correction {other} needs a projection, which this mechanism does not have"))
             }
@@ -560,7 +562,7 @@ impl<M: Mechanism, C: Correction<M>> Keeps<M> for C {
 
 struct Boxed<M: Mechanism>(Box<dyn Keeps<M>>);
 
-impl<M: Mechanism, O: Maximal<Mechanism = M, Scalar = M::Scalar, State = M::State>> Correction<O>
+impl<M: Partition, O: Maximal<Mechanism = M, Scalar = M::Scalar, State = M::State>> Correction<O>
     for Boxed<M>
 {
     fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
@@ -572,6 +574,9 @@ impl<M: Mechanism, O: Maximal<Mechanism = M, Scalar = M::Scalar, State = M::Stat
     fn switches(&self) -> u64 {
         self.0.switches()
     }
+    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
+        system.mechanism().clearance(t, y)
+    }
 }
 
 fn keeping<M>(mechanism: &M, approach: &Approach, y: &M::State) -> Result<Boxed<M>, String>
@@ -581,7 +586,7 @@ where
     Ok(Boxed(match approach.correction {
         Keeping::Partition => return Ok(partitioning(mechanism, y)),
         Keeping::MassWeighted => Box::new(MassWeighted::new(mechanism)),
-        Keeping::None | Keeping::Baumgarte(_) => Box::new(Uncorrected),
+        Keeping::None | Keeping::Baumgarte(_) => Box::new(Watched::new(mechanism)),
         Keeping::ClosedForm => return Err("the closed form is for generated code of trees".to_owned()),
     }))
 }

@@ -262,6 +262,7 @@ impl Words<'_> {
             fastest_rate: self.next()?,
             shortest_step: self.next()?,
             longest_step: self.next()?,
+            leaps: self.next()?,
         })
     }
 
@@ -307,6 +308,7 @@ fn statistics(text: &mut String, s: &Statistics) {
     words(text, "", &counts);
     words(text, "", &[s.limited_by_stability]);
     words(text, "", &[s.fastest_rate, s.shortest_step, s.longest_step]);
+    words(text, "", &[s.leaps]);
 }
 
 /// One sample as a reply line, without its end.

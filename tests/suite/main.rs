@@ -21,6 +21,7 @@ mod long_run;
 mod moving_base;
 mod no_std_probe;
 mod paper_scenes;
+mod poses;
 mod reactions;
 mod recursive_twin;
 mod references;

@@ -3,8 +3,8 @@
 
 use gyro_runner::motion::{COLUMNS, Feed, Kit, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Dual, Energy, Equations, Error, JointInfo, JointJacobian, JointSpace, Mechanism, Ode, OutputInfo,
-    Partition, Ports, Projection, Real, RowInfo, Storage,
+    Clearance, Dual, Energy, Equations, Error, JointInfo, JointJacobian, JointSpace, Mechanism, Ode,
+    OutputInfo, Partition, Ports, Projection, Real, RowInfo, Storage,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -139,6 +139,7 @@ trait Erased<T>: Any + Debug {
     fn newton_step(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error>;
     fn is_met(&self, t: T, y: &[T], phi: &[T]) -> bool;
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error>;
+    fn clearance(&self, t: T, y: &[T]) -> Option<Clearance<T>>;
     fn phi_q_pattern(&self) -> &[(u16, u16)];
     fn phi_pi_pattern(&self) -> &[(u16, u16)];
     fn n_bodies(&self) -> usize;
@@ -287,6 +288,9 @@ where
         let outcome = Partition::solve_velocities(self, t, choice.of(), &mut solved);
         y.copy_from_slice(solved.as_ref());
         outcome
+    }
+    fn clearance(&self, t: T, y: &[T]) -> Option<Clearance<T>> {
+        Partition::clearance(self, t, &filled(self.start(), y))
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         Equations::phi_q_pattern(self)
@@ -505,6 +509,9 @@ impl<T: Real + 'static> Partition for Engine<T> {
     }
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut Vec<T>) -> Result<(), Error> {
         self.mechanism.solve_velocities(t, choice, y)
+    }
+    fn clearance(&self, t: T, y: &Vec<T>) -> Option<Clearance<T>> {
+        self.mechanism.clearance(t, y)
     }
 }
 

@@ -17,6 +17,16 @@ impl ModuleWriter<'_> {
         let name = ident(self.type_name);
         let [n_constraints, n_positions] =
             [self.equations.phi.len(), 7 * self.equations.n_slots()].map(index);
+        // Trees have no singular poses.
+        let clearance = self.equations.joint_space.is_none().then(|| {
+            quote! {
+                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+                    ::core::option::Option::Some(
+                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
+                    )
+                }
+            }
+        });
         quote! {
             impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
                 type Independent = gyro_sim::pivoting::Pivots<#n_constraints, #n_positions>;
@@ -40,6 +50,7 @@ impl ModuleWriter<'_> {
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
                     gyro_sim::pivoting::solve_velocities(self, t, choice, y)
                 }
+                #clearance
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Projection onto the constraints in the metric of the masses.
 
 use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, reach};
+use crate::pivoting;
 use crate::rounding::{is_met, silence};
-use crate::violation::{Violation, constraint_violation};
-use crate::{Error, Owner, Projection, Real, Scalar};
+use crate::violation::{Violation, constraint_violation, violation};
+use crate::{Clearance, Error, Owner, Partition, Projection, Real, Scalar};
 
 /// The nearest state that satisfies the constraints: of all changes that do, the smallest as the masses weigh it, δᵀ M δ, first of the
 /// positions, then of the velocities. What is integrated well, because it moves much mass, is changed least.
@@ -12,6 +13,8 @@ use crate::{Error, Owner, Projection, Real, Scalar};
 /// the mechanism itself, exact off the constraints, rather than [`Corrected`](crate::Corrected): only then are errors as small as this correction can make them.
 #[derive(Clone, Debug)]
 pub struct MassWeighted<M: Projection> {
+    /// Where singular poses divide by small numbers what the iteration leaves, it takes a step more.
+    has_poses: bool,
     phi: M::Constraints,
     rows: M::Rows,
     change: M::Velocities,
@@ -20,10 +23,16 @@ pub struct MassWeighted<M: Projection> {
 /// Farther than so many radians, or lengths of the mechanism's size, is no correction but another pose.
 const FARTHEST: f64 = 0.5;
 
-impl<M: Projection<Scalar: Real>> MassWeighted<M> {
+impl<M: Partition + Projection> MassWeighted<M> {
     /// Work space for a mechanism.
     pub fn new(mechanism: &M) -> Self {
-        Self { phi: mechanism.constraints(), rows: mechanism.rows(), change: mechanism.velocities() }
+        let has_poses = mechanism.clearance(M::Scalar::constant(0.0), &mechanism.start()).is_some();
+        Self {
+            has_poses,
+            phi: mechanism.constraints(),
+            rows: mechanism.rows(),
+            change: mechanism.velocities(),
+        }
     }
 
     /// Corrects positions and velocities.
@@ -33,6 +42,9 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
     pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         self.correct_positions(mechanism, t, y)?;
         mechanism.velocity_residual(t, y, &mut self.rows);
+        if self.is_noise(mechanism, t, y) {
+            return check_finite(t, y.as_ref());
+        }
         negate(self.rows.as_mut());
         mechanism.project(t, y, &self.rows, &mut self.change);
         let velocities = y.as_mut().iter_mut().skip(7 * mechanism.n_bodies());
@@ -42,21 +54,30 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
         check_finite(t, y.as_ref())
     }
 
+    /// Whether a singular pose is so near that rounding is all that the rows' rates can say.
+    fn is_noise(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> bool {
+        if !self.has_poses {
+            return false;
+        }
+        let rate = violation(mechanism, self.rows.as_ref()).value;
+        let speed = pivoting::fastest(mechanism, y);
+        mechanism.clearance(t, y).is_some_and(|clearance| pivoting::is_noise(rate, clearance.pivot, speed))
+    }
+
     fn correct_positions(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
         let mut worst = Violation { value: tolerance, owner: None };
-        let mut is_corrected = false;
-        for _ in 0..=MAX_ITERATIONS {
+        for iteration in 0..=MAX_ITERATIONS {
             normalise(&mut y.as_mut()[..7 * mechanism.n_bodies()]);
             mechanism.phi(t, y, &mut self.phi);
             worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
-            if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
+            let is_small = worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y);
+            if is_small && !(self.has_poses && iteration == 0) {
                 return Ok(());
             }
-            if is_corrected && is_met(mechanism, t, y, &self.phi) {
+            if iteration > 0 && is_met(mechanism, t, y, &self.phi) {
                 return Ok(());
             }
-            is_corrected = true;
             silence(mechanism, t, y, &mut self.phi);
             self.rows.as_mut().iter_mut().zip(self.phi.as_ref()).for_each(|(row, phi)| *row = -*phi);
             mechanism.project(t, y, &self.rows, &mut self.change);
@@ -88,7 +109,7 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
 
 impl<O: Maximal<Mechanism = M>, M> Correction<O> for MassWeighted<M>
 where
-    M: Projection<Scalar = O::Scalar, State = O::State>,
+    M: Partition + Projection<Scalar = O::Scalar, State = O::State>,
     O::Scalar: Real,
 {
     fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
@@ -97,6 +118,9 @@ where
     fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
         system.mechanism().phi(t, y, &mut self.phi);
         constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    }
+    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
+        system.mechanism().clearance(t, y)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, check_time, reach};
 use crate::violation::{Violation, constraint_violation};
-use crate::{Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
+use crate::{Clearance, Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
 
 /// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
 #[derive(Clone, Debug)]
@@ -143,6 +143,9 @@ impl<O: Maximal<Mechanism = M>, M: Partition<Scalar = O::Scalar, State = O::Stat
     }
     fn switches(&self) -> u64 {
         self.switches
+    }
+    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
+        system.mechanism().clearance(t, y)
     }
 }
 

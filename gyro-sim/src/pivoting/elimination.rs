@@ -1,6 +1,6 @@
 //! Gaussian elimination with full pivoting in arrays of fixed size.
 
-use super::Pivot;
+use super::{Pivot, is_noise};
 use crate::{Equations, Mechanism, Real};
 
 /// The scaled Jacobian with a right side, on its way to an upper triangle.
@@ -101,6 +101,15 @@ impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
                     row[column] = row[column] - factor * upper[column];
                 }
                 *right = *right - factor * solved[k];
+            }
+        }
+    }
+
+    /// Takes from the right what is no more than rounding where pivots are small.
+    pub(super) fn leave_noise(&mut self, speed: T) {
+        for k in 0..NC {
+            if is_noise(self.right[k].abs(), self.entry(k, k).abs(), speed) {
+                self.right[k] = T::constant(0.0);
             }
         }
     }

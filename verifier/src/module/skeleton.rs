@@ -40,7 +40,7 @@ pub fn text(
         definition(model, type_name, has.set_up),
         ode(model, type_name),
         mechanism(model, type_name, joints.is_some()),
-        partition(model, type_name, has.choice),
+        partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         projection(type_name),
         joints.map(|joints| joint_space(model, type_name, joints)).unwrap_or_default(),
@@ -342,10 +342,10 @@ fn descriptions(model: &Model) -> String {
     )
 }
 
-fn partition(model: &Model, name: &str, choice: Choice) -> String {
+fn partition(model: &Model, name: &str, choice: Choice, joints: Option<&JointLayout>) -> String {
     match choice {
         Choice::Charts => by_charts(name),
-        Choice::Pivoting => by_pivoting(model, name),
+        Choice::Pivoting => by_pivoting(model, name, joints),
     }
 }
 
@@ -385,8 +385,9 @@ fn by_charts(name: &str) -> String {
     )
 }
 
-fn by_pivoting(model: &Model, name: &str) -> String {
+fn by_pivoting(model: &Model, name: &str, joints: Option<&JointLayout>) -> String {
     let n = model.coordinate_bodies().len();
+    let (n_constraints, n_positions) = (model.rows().len() + n, 7 * n);
     let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
         format!(
             "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
@@ -394,9 +395,21 @@ fn by_pivoting(model: &Model, name: &str) -> String {
             }}"
         )
     }));
+    // Trees have no singular poses.
+    let clearance = if joints.is_some() {
+        String::new()
+    } else {
+        format!(
+            "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
+                ::core::option::Option::Some(
+                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
+                )
+            }}"
+        )
+    };
     format!(
         "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
-            type Independent = gyro_sim::pivoting::Pivots<{}, {}>;
+            type Independent = gyro_sim::pivoting::Pivots<{n_constraints}, {n_positions}>;
             fn independent(&self, t: T, y: &Self::State) -> Self::Independent {{
                 gyro_sim::pivoting::independent(self, t, y)
             }}
@@ -407,9 +420,8 @@ fn by_pivoting(model: &Model, name: &str) -> String {
                 gyro_sim::pivoting::is_met(self, t, y, phi)
             }}
             {solves}
-        }}",
-        model.rows().len() + n,
-        7 * n
+            {clearance}
+        }}"
     )
 }
 

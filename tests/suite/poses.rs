@@ -1,0 +1,287 @@
+//! Singular poses, in which a linkage could go on in more ways than one: passed on the right way under error control, at coarse and fine
+//! tolerances alike, or named.
+#![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
+
+use gyro_model::Model;
+use gyro_reference::Pendulum;
+use gyro_runner::motion::{Kit, Projecting};
+use gyro_runner::{Approach, Coordinates, Correction, Failure, Integrator, Sample, Settings, Summary};
+use gyro_sim_suite::{Engine, coordinate, dense, duals, generated, model, moved, start_of, worst};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt::Write as _;
+
+/// Errors of single steps add up over some ten poses, each of which is passed with an error of some ten tolerances, and a linkage that almost
+/// comes to rest upright enlarges them: so many tolerances are allowed.
+const ADDED_UP: f64 = 2e4;
+
+/// Rounding is enlarged near poses.
+const ROUNDING: f64 = 1e-7;
+
+/// Crank and rocker of a parallelogram, rad: equal on its own way, far apart within a tenth of a second on the other.
+const BRANCH: f64 = 1e-2;
+
+/// A planar revolute joint of bars that lie along their own x axis.
+fn hinge(name: &str, first: (&str, f64), second: (&str, f64), angle: &str) -> String {
+    let [first, second] =
+        [first, second].map(|(body, x)| format!("{{ body = \"{body}\", point = [{x:?}, 0, 0] }}"));
+    format!(
+        "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = {first}\nsecond = {second}\n\
+         {angle}\n"
+    )
+}
+
+fn rod(name: &str, length: f64, mass: f64) -> String {
+    let inertia = mass * length * length / 12.0;
+    format!("[[body]]\nname = \"{name}\"\nmass = {mass:?}\ninertia = [1e-3, {inertia:.9}, {inertia:.9}]\n")
+}
+
+const HEAD: &str =
+    "format = 1\nname = \"linkage\"\ngravity = [0, -9.81, 0]\n[[body]]\nname = \"ground\"\nfixed = true\n";
+
+fn read(page: &str) -> Model {
+    gyro_model::read("linkage.toml", page).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+/// A row of parallelograms, benchmark A02 of the IFToMM technical committee for multibody dynamics (*N-four-bar mechanism*): bars of 1 m and
+/// 1 kg, thrown from upright. The first coupler may be longer or shorter by a little.
+fn cells(n: usize, speed: f64, excess: f64) -> Model {
+    let mut page = HEAD.to_owned();
+    for k in 0..=n {
+        page += &rod(&format!("bar{k}"), 1.0, 1.0);
+        let angle = if k == 0 { format!("angle_deg = 90\nrate = {:?}", -speed) } else { ROUGH_UP.to_owned() };
+        page += &hinge(&format!("pivot{k}"), ("ground", k as f64), (&format!("bar{k}"), -0.5), &angle);
+    }
+    for k in 0..n {
+        let length = if k == 0 { 1.0 + excess } else { 1.0 };
+        let coupler = format!("coupler{k}");
+        page += &rod(&coupler, length, 1.0);
+        for (bar, end) in [(k, -0.5), (k + 1, 0.5)] {
+            let name = format!("joint{k}_{bar}");
+            page += &hinge(&name, (&format!("bar{bar}"), 0.5), (&coupler, end * length), ROUGH_ACROSS);
+        }
+    }
+    read(&page)
+}
+
+const ROUGH_UP: &str = "angle_deg = 90\nrough = true";
+const ROUGH_ACROSS: &str = "angle_deg = -90\nrough = true";
+
+/// As parallelograms all bars turn as one, couplers not at all.
+fn as_pendulum(n: usize, speed: f64) -> Pendulum {
+    let n = n as f64;
+    let (mass, moment, inertia) = (2.0 * n + 1.0, (n + 1.0) / 2.0 + n, (n + 1.0) / 3.0 + n);
+    let distance = moment / mass;
+    Pendulum { mass, inertia: inertia - moment * distance, distance, gravity: 9.81, start: PI, rate: speed }
+}
+
+fn approach(integrator: Integrator, tolerance: f64, correction: Correction) -> Approach {
+    let (coordinates, budget) = (Coordinates::Maximal, Some(20_000));
+    Approach {
+        integrator,
+        tolerance: Some(tolerance),
+        coordinates,
+        correction,
+        budget,
+        ..Approach::default()
+    }
+}
+
+fn run(
+    engine: &Engine,
+    kit: &dyn Kit<Engine>,
+    (model, t_end): (&Model, f64),
+    approach: &Approach,
+) -> (Vec<Sample>, Result<Summary, Failure>) {
+    let settings = Settings { t_end, step: 1e-3, correct_every: None, sample_every: t_end / 50.0 };
+    moved(engine, kit, (&settings, approach), &start_of(model))
+}
+
+/// The worst error of the bars' angles, which must not be those of another way on.
+fn off_by(samples: &[Sample], n_bars: usize, pendulum: &Pendulum, angle: impl Fn(f64) -> f64) -> f64 {
+    let times: Vec<f64> = samples.iter().map(|sample| sample.t).collect();
+    let errors = samples.iter().zip(pendulum.solve(&times)).map(|(sample, expected)| {
+        let found: Vec<f64> = (0..n_bars).map(|bar| coordinate(sample, bar).0).collect();
+        let spread = worst(&found, &vec![found[0]; n_bars]);
+        assert!(spread < BRANCH, "at {} s the bars go different ways: {found:?}", sample.t);
+        worst(&found, &vec![angle(expected.angle); n_bars])
+    });
+    errors.fold(0.0, f64::max)
+}
+
+fn pivot_angle(from_gravity: f64) -> f64 {
+    FRAC_PI_2 - (from_gravity - PI)
+}
+
+#[test]
+fn rows_of_parallelograms_pass_at_every_tolerance() {
+    use Correction::{MassWeighted, Partition};
+    for (n, speed, tolerance, correction) in [
+        (1, 0.3, 1e-9, MassWeighted),
+        (2, 1.0, 1e-6, Partition),
+        (2, 1.0, 1e-9, MassWeighted),
+        (2, 1.0, 1e-11, Partition),
+        (2, 1.0, 1e-12, Partition),
+        (2, 1.0, 1e-12, MassWeighted),
+        (3, 2.0, 1e-10, Partition),
+    ] {
+        let (model, approach) = (cells(n, speed, 0.0), approach(Integrator::Dop853, tolerance, correction));
+        let (samples, outcome) = run(&dense(&model), &Projecting, (&model, 3.0), &approach);
+        let summary = outcome.unwrap_or_else(|failure| panic!("{n} cells, {approach}: {failure}"));
+        let error = off_by(&samples, n + 1, &as_pendulum(n, speed), pivot_angle);
+        println!("{n} cells, {approach}: off by {error:.1e}, {:?}", summary.statistics);
+        assert!(error < ADDED_UP * tolerance + ROUNDING, "{n} cells, {approach}: {error:e}");
+        assert!(summary.statistics.leaps > 0 && summary.statistics.accepted < 1000, "{summary:?}");
+    }
+}
+
+#[test]
+fn the_published_position_is_met() {
+    let model = cells(2, 1.0, 0.0);
+    let approach = approach(Integrator::Dop853, 1e-9, Correction::Partition);
+    let (samples, outcome) = run(&dense(&model), &Projecting, (&model, 10.0), &approach);
+    assert!(outcome.is_ok(), "{outcome:?}");
+    let (sin, cos) = coordinate(samples.last().expect("it has samples"), 0).0.sin_cos();
+    println!("tip at {cos}, {sin}");
+    // A02 at 10 s; the last digits are those of the tolerance after 10 poses.
+    assert!(worst(&[cos, sin], &[0.328_458_11, 0.944_518_54]) < 1e-6, "{cos} {sin}");
+}
+
+#[test]
+fn generated_code_passes_by_every_integrator() {
+    let model = model("four-bar-in-line");
+    let (engine, kit) =
+        (generated("four-bar-in-line"), generated("four-bar-in-line").kit(duals("four-bar-in-line")));
+    // The head of the page: I = 0.0507 kg.m2, G = 2.7468 N.m, from -60 degrees with 12 rad/s.
+    let pendulum = Pendulum {
+        mass: 1.4,
+        inertia: 0.0507 - 1.4 * 0.2 * 0.2,
+        distance: 0.2,
+        gravity: 9.81,
+        start: FRAC_PI_2 - PI / 3.0,
+        rate: 12.0,
+    };
+    for (integrator, tolerance, correction) in [
+        (Integrator::Dop853, 1e-6, Correction::Partition),
+        (Integrator::Dop853, 1e-9, Correction::MassWeighted),
+        (Integrator::Dop853, 1e-12, Correction::Partition),
+        (Integrator::Dop853, 1e-12, Correction::MassWeighted),
+        (Integrator::Tsit5, 1e-6, Correction::MassWeighted),
+        (Integrator::Tsit5, 1e-10, Correction::Partition),
+        (Integrator::Rodas4, 1e-6, Correction::Partition),
+        (Integrator::Rodas4, 1e-7, Correction::MassWeighted),
+    ] {
+        let approach = approach(integrator, tolerance, correction);
+        let (samples, outcome) = run(&engine, &*kit, (&model, 2.0), &approach);
+        let summary = outcome.unwrap_or_else(|failure| panic!("{approach}: {failure}"));
+        let error = off_by(&samples, 2, &pendulum, |from_gravity| from_gravity - FRAC_PI_2);
+        println!("in line, {approach}: off by {error:.1e}, {:?}", summary.statistics);
+        assert!(error < ADDED_UP * tolerance + ROUNDING, "{approach}: {error:e}");
+    }
+}
+
+#[test]
+fn without_a_correction_the_pose_is_named() {
+    let model = cells(2, 1.0, 0.0);
+    for tolerance in [1e-6, 1e-9, 1e-12] {
+        let approach = approach(Integrator::Dop853, tolerance, Correction::None);
+        let (samples, outcome) = run(&dense(&model), &Projecting, (&model, 5.0), &approach);
+        // As far as it comes it is right.
+        let error = off_by(&samples, 3, &as_pendulum(2, 1.0), pivot_angle);
+        println!("uncorrected, {tolerance:e}: off by {error:.1e}, {outcome:?}");
+        assert!(error < ADDED_UP * tolerance + ROUNDING, "{tolerance:e}: {error:e}");
+        if let Err(failure) = outcome {
+            let words = failure.to_string();
+            assert!(words.contains("in a singular pose, where the constraints of joint"), "{words}");
+            assert!(words.contains("--correction partition"), "{words}");
+        }
+    }
+}
+
+#[test]
+fn what_is_not_quite_a_parallelogram_turns_before_the_pose() {
+    for excess in [1e-3, -1e-3, 1e-6] {
+        let model = cells(1, 1.0, excess);
+        let of = |integrator, tolerance| {
+            let approach = approach(integrator, tolerance, Correction::Partition);
+            let (samples, outcome) = run(&dense(&model), &Projecting, (&model, 1.0), &approach);
+            assert!(outcome.is_ok(), "{excess:e}: {outcome:?}");
+            samples
+        };
+        let (one, other) = (of(Integrator::Dop853, 1e-10), of(Integrator::Tsit5, 1e-8));
+        let bars = |sample: &Sample| [0, 1].map(|bar| coordinate(sample, bar).0);
+        let apart = one.iter().zip(&other).map(|(a, b)| worst(&bars(a), &bars(b))).fold(0.0, f64::max);
+        let [first, second] = bars(one.last().expect("it has samples"));
+        println!("{excess:e}: by two methods {apart:.1e} apart, bars at {first} and {second}");
+        assert!(apart < 1e-4, "{excess:e}: {apart:e}");
+        // Its two ways through the pose have become two ways past it: it goes over from one to the other.
+        assert!((first - second).abs() > 0.1, "{excess:e}: {first} {second}");
+    }
+}
+
+/// Peaucellier's linkage: long bars of 1 m on the origin, a rhombus of 0.4 m, a crank of 0.35 m. Near one end of its stroke the rhombus
+/// folds flat.
+fn peaucellier(rate: f64) -> Model {
+    let half = 0.95_f64.acos();
+    let (far, near) = ((0.25_f64).atan2(half.sin()), half);
+    // Along the sides of the rhombus, from its outer corners.
+    let (to_near, to_far) = (-FRAC_PI_2 - far, -FRAC_PI_2 + far);
+    let bars = [
+        ("crank", 0.35, 0.0),
+        ("upper", 1.0, near),
+        ("lower", 1.0, -near),
+        ("upper_in", 0.4, to_near),
+        ("upper_out", 0.4, to_far),
+        ("lower_in", 0.4, -to_near),
+        ("lower_out", 0.4, -to_far),
+    ];
+    let mut page = HEAD.to_owned();
+    bars.iter().for_each(|(name, length, _)| page += &rod(name, *length, *length));
+    let bar = |name: &str| *bars.iter().find(|bar| bar.0 == name).expect("a bar of the list");
+    for (x, name) in [(0.35, "crank"), (0.0, "upper"), (0.0, "lower")] {
+        let (_, length, angle) = bar(name);
+        let how = if name == "crank" { format!("angle_deg = 0\nrate = {rate:?}") } else { rough(angle) };
+        page += &hinge(&format!("of_{name}"), ("ground", x), (name, -0.5 * length), &how);
+    }
+    for (first, second, end) in [
+        ("upper", "upper_in", -0.5),
+        ("upper", "upper_out", -0.5),
+        ("lower", "lower_in", -0.5),
+        ("lower", "lower_out", -0.5),
+        ("crank", "upper_in", 0.5),
+        ("crank", "lower_in", 0.5),
+        ("upper_out", "lower_out", 0.5),
+    ] {
+        let ((_, long, a), (_, length, b)) = (bar(first), bar(second));
+        let name = format!("{first}_{second}");
+        page += &hinge(&name, (first, 0.5 * long), (second, end * length), &rough(b - a));
+    }
+    read(&page)
+}
+
+fn rough(angle: f64) -> String {
+    let mut text = String::new();
+    let _ = write!(text, "angle_deg = {:.6}\nrough = true", angle.to_degrees());
+    text
+}
+
+#[test]
+fn peaucelliers_linkage_passes_its_fold() {
+    let model = peaucellier(8.0);
+    for (tolerance, correction) in [(1e-6, Correction::MassWeighted), (1e-10, Correction::Partition)] {
+        let approach = approach(Integrator::Dop853, tolerance, correction);
+        let (samples, outcome) = run(&dense(&model), &Projecting, (&model, 0.3), &approach);
+        let summary = outcome.unwrap_or_else(|failure| panic!("{approach}: {failure}"));
+        for sample in &samples {
+            // The end of `upper_out` draws the line at (1 - 0.4²)/0.7 m. Folded into one bar, the other way on, the two would swing about.
+            let [x, _, _, e0, _, _, e3] = sample.bodies[4].pose;
+            let drawn = x + 0.2 * (e0 * e0 - e3 * e3);
+            assert!((drawn - 1.2).abs() < 1e-6, "{approach}: at {} s the line is left: {drawn}", sample.t);
+        }
+        let long = |sample: &Sample| coordinate(sample, 1).0 - coordinate(sample, 2).0;
+        let ends = [&samples[0], samples.last().expect("it has samples")].map(long);
+        println!("Peaucellier, {approach}: long bars {ends:?} apart, {:?}", summary.statistics);
+        // It has folded and opened the other way round.
+        assert!(ends[0] > 0.6 && ends[1] < -0.1 && summary.statistics.leaps > 0, "{ends:?}");
+        assert!(summary.energy_drift < 1e3 * tolerance, "{:e}", summary.energy_drift);
+    }
+}
