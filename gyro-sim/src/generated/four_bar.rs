@@ -13,37 +13,32 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1177 operations by rotations of the bodies, doubled; 1177 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 993 operations by rotations of the bodies, doubled; 993 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 58 | 50 | 0 | 108 | 0 of 20 | 174 | 108 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 64 | 0 | 84 | 0 of 114 | 244 | 84 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 37 | 72 | 0 | 109 | 0 of 66 | 420 | 109 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 | 0 | 0 |
-//! | gamma | γ | 95 | 148 | 0 | 243 | 0 of 17 | 998 | 243 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 77 | 93 | 0 | 170 | 0 of 17 | 499 | 170 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 491 | 677 | 9 | 1177 | 0 of 21 | 1.6e10 | 1178 |
-//! | multipliers | λ, the accelerations being known | 98 | 154 | 3 | 255 | 0 of 17 | 1936 | 255 |
-//! | project | (δr, δπ') that changes the rows as given | 415 | 569 | 9 | 993 | 0 of 18 | 1.5e10 | 994 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 58 | 50 | 0 | 108 | 0 of 20 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 64 | 0 | 84 | 0 of 114 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 37 | 72 | 0 | 109 | 0 of 66 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 |
+//! | gamma | γ | 95 | 148 | 0 | 243 | 0 of 17 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 77 | 93 | 0 | 170 | 0 of 17 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 491 | 677 | 9 | 1177 | 0 of 21 |
+//! | multipliers | λ, the accelerations being known | 98 | 154 | 3 | 255 | 0 of 17 |
+//! | project | (δr, δπ') that changes the rows as given | 415 | 569 | 9 | 993 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-143.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar`.
@@ -879,6 +874,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FourBar<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -894,6 +892,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FourBar<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 20, 21>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {

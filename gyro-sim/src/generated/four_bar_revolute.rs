@@ -16,37 +16,32 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 794 operations by rotations of the bodies, doubled; 794 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 607 operations by rotations of the bodies, doubled; 607 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 59 | 58 | 0 | 117 | 0 of 20 | 194 | 117 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 35 | 84 | 0 | 119 | 0 of 112 | 396 | 119 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 43 | 81 | 0 | 124 | 0 of 64 | 542 | 124 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 | 0 | 0 |
-//! | gamma | γ | 103 | 159 | 0 | 262 | 0 of 17 | 1345 | 262 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 106 | 0 | 189 | 0 of 17 | 621 | 189 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 464 | 6 | 794 | 0 of 20 | 2.3e7 | 795 |
-//! | multipliers | λ, the accelerations being known | 90 | 149 | 3 | 242 | 0 of 17 | 2255 | 242 |
-//! | project | (δr, δπ') that changes the rows as given | 248 | 353 | 6 | 607 | 0 of 18 | 1.2e7 | 608 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 44 | 55 | 0 | 99 | 0 of 12 | 234 | 99 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 59 | 58 | 0 | 117 | 0 of 20 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 35 | 84 | 0 | 119 | 0 of 112 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 43 | 81 | 0 | 124 | 0 of 64 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 |
+//! | gamma | γ | 103 | 159 | 0 | 262 | 0 of 17 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 106 | 0 | 189 | 0 of 17 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 464 | 6 | 794 | 0 of 20 |
+//! | multipliers | λ, the accelerations being known | 90 | 149 | 3 | 242 | 0 of 17 |
+//! | project | (δr, δπ') that changes the rows as given | 248 | 353 | 6 | 607 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 44 | 55 | 0 | 99 | 0 of 12 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-145.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar_revolute`.
@@ -797,6 +792,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FourBarRevolute<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -812,6 +810,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FourBarRevolute<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 20, 21>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {

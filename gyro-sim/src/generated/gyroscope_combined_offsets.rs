@@ -11,46 +11,38 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 760 operations by relative Euler parameters, doubled; 781 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 635 operations by rotations of the bodies, doubled; 641 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 138 operations by normal form; 285 operations by orthogonal motions; 1 more compared
-//! * joint_accelerations_at: 178 operations by normal form; 325 operations by orthogonal motions; 3 more compared
-//! * corrected_accelerations: 323 operations by normal form in the bodies' frames; 423 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 425 operations by derivatives of u̇, from its leaves; 425 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 71 | 66 | 0 | 137 | 0 of 18 | 238 | 137 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 102 | 152 | 0 | 254 | 0 of 91 | 754 | 254 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 120 | 0 | 196 | 0 of 53 | 860 | 196 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 163 | 234 | 0 | 397 | 6 of 15 | 1567 | 397 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 152 | 0 | 266 | 0 of 15 | 670 | 266 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 318 | 437 | 5 | 760 | 6 of 18 | 6.6e7 | 764 |
-//! | multipliers | λ, the accelerations being known | 138 | 200 | 3 | 341 | 0 of 15 | 5270 | 341 |
-//! | project | (δr, δπ') that changes the rows as given | 261 | 368 | 6 | 635 | 0 of 18 | 1.8e7 | 636 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
-//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 220 | 322 | 3 | 545 | 6 of 21 | 9.4e9 | 545 |
-//! | solve_velocities | dependent velocities, eq. (19) | 126 | 176 | 3 | 305 | 6 of 18 | 45397 | 305 |
-//! | joint_accelerations | u̇ in joint coordinates | 57 | 79 | 2 | 138 | 0 of 3 | 2690 | 139 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 71 | 96 | 0 | 167 | 16 of 39 | 1738 | 167 |
-//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 75 | 101 | 2 | 178 | 0 of 3 | 33041 | 179 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 134 | 187 | 2 | 323 | 6 of 18 | 645988 | 324 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 103 | 131 | 0 | 234 | 0 of 15 | 1754 | 234 |
-//! | corrected_solution | both | 201 | 280 | 2 | 483 | 6 of 33 | 2.0e7 | 484 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 170 | 253 | 2 | 425 | 24 of 42 | 27498 | 425 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 71 | 66 | 0 | 137 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 102 | 152 | 0 | 254 | 0 of 91 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 120 | 0 | 196 | 0 of 53 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
+//! | gamma | γ | 163 | 234 | 0 | 397 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 152 | 0 | 266 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 318 | 437 | 5 | 760 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 138 | 200 | 3 | 341 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 261 | 368 | 6 | 635 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 220 | 322 | 3 | 545 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 126 | 176 | 3 | 305 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 57 | 79 | 2 | 138 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 71 | 96 | 0 | 167 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 75 | 101 | 2 | 178 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 134 | 187 | 2 | 323 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 103 | 131 | 0 | 234 | 0 of 15 |
+//! | corrected_solution | both | 201 | 280 | 2 | 483 | 6 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 170 | 253 | 2 | 425 | 24 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-143.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `gyroscope_combined_offsets`.

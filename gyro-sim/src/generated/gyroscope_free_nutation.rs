@@ -8,51 +8,42 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 67 of 378, (Φ_r, Φ_π') 35 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
-//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: gravity
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 330 operations by relative Euler parameters, doubled; 335 operations by relative Euler parameters; 2 more compared
-//! * project: 271 operations by relative Euler parameters, doubled; 274 operations by relative Euler parameters; 2 more compared
-//! * joint_accelerations: 18 operations by normal form; 26 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 38 operations by normal form; 49 operations by recursion; 3 more compared
-//! * corrected_accelerations: 82 operations by normal form in the bodies' frames; 82 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 55 operations by normal form of that; 56 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 43 | 46 | 0 | 89 | 0 of 18 | 142 | 89 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 116 | 0 | 182 | 0 of 67 | 660 | 182 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 84 | 0 | 142 | 0 of 35 | 614 | 142 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 109 | 160 | 0 | 269 | 9 of 15 | 1174 | 269 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 78 | 98 | 0 | 176 | 0 of 15 | 460 | 176 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 12 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 134 | 191 | 5 | 330 | 10 of 18 | 303876 | 334 |
-//! | multipliers | λ, the accelerations being known | 99 | 155 | 3 | 257 | 0 of 15 | 2930 | 257 |
-//! | project | (δr, δπ') that changes the rows as given | 104 | 162 | 5 | 271 | 1 of 18 | 190146 | 272 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 17 | 27 | 0 | 44 | 1 of 2 | 44 | 44 |
-//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 189 | 293 | 3 | 485 | 9 of 21 | 9.4e8 | 485 |
-//! | solve_velocities | dependent velocities, eq. (19) | 93 | 122 | 3 | 218 | 9 of 18 | 6574 | 218 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 13 | 1 | 18 | 0 of 3 | 30 | 19 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 11 | 27 | 0 | 38 | 22 of 39 | 121 | 38 |
-//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 | 344 | 39 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 32 | 49 | 1 | 82 | 9 of 18 | 1458 | 83 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 40 | 59 | 0 | 99 | 0 of 15 | 739 | 99 |
-//! | corrected_solution | both | 48 | 75 | 1 | 124 | 18 of 33 | 9674 | 125 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 39 | 1 | 55 | 28 of 42 | 151 | 55 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 43 | 46 | 0 | 89 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 116 | 0 | 182 | 0 of 67 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 84 | 0 | 142 | 0 of 35 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
+//! | gamma | γ | 109 | 160 | 0 | 269 | 9 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 78 | 98 | 0 | 176 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 12 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 134 | 191 | 5 | 330 | 10 of 18 |
+//! | multipliers | λ, the accelerations being known | 99 | 155 | 3 | 257 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 104 | 162 | 5 | 271 | 1 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 17 | 27 | 0 | 44 | 1 of 2 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 189 | 293 | 3 | 485 | 9 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 93 | 122 | 3 | 218 | 9 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 13 | 1 | 18 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 11 | 27 | 0 | 38 | 22 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 23 | 1 | 38 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 32 | 49 | 1 | 82 | 9 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 40 | 59 | 0 | 99 | 0 of 15 |
+//! | corrected_solution | both | 48 | 75 | 1 | 124 | 18 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 39 | 1 | 55 | 28 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -68,7 +59,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `gyroscope_free_nutation`.

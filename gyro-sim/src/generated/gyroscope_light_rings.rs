@@ -8,50 +8,41 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
-//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 475 operations by relative Euler parameters, doubled; 481 operations by relative Euler parameters; 2 more compared
-//! * project: 355 operations by relative Euler parameters, doubled; 357 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 19 operations by normal form; 31 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 39 operations by normal form; 54 operations by recursion; 2 more compared
-//! * corrected_accelerations: 139 operations by normal form in the global frame; 141 operations by normal form in the bodies' frames; 7 more compared
-//! * joint_jacobian: 58 operations by derivatives of u̇, from its leaves; 58 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 50 | 49 | 0 | 99 | 0 of 18 | 158 | 99 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 670 | 188 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 116 | 172 | 0 | 288 | 6 of 15 | 1237 | 288 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 | 495 | 191 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 202 | 268 | 5 | 475 | 6 of 18 | 2.6e6 | 479 |
-//! | multipliers | λ, the accelerations being known | 108 | 161 | 3 | 272 | 0 of 15 | 3106 | 272 |
-//! | project | (δr, δπ') that changes the rows as given | 141 | 209 | 5 | 355 | 1 of 18 | 399191 | 356 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
-//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 6 of 21 | 9.5e8 | 493 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 | 8661 | 230 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 13 | 1 | 19 | 0 of 3 | 31 | 20 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 | 298 | 75 |
-//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 | 345 | 40 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 80 | 1 | 139 | 6 of 18 | 2221 | 140 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 | 883 | 137 |
-//! | corrected_solution | both | 83 | 125 | 1 | 209 | 6 of 33 | 17482 | 210 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 | 153 | 58 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 50 | 49 | 0 | 99 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
+//! | gamma | γ | 116 | 172 | 0 | 288 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 202 | 268 | 5 | 475 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 108 | 161 | 3 | 272 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 141 | 209 | 5 | 355 | 1 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 13 | 1 | 19 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 80 | 1 | 139 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 |
+//! | corrected_solution | both | 83 | 125 | 1 | 209 | 6 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -67,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `gyroscope_light_rings`.

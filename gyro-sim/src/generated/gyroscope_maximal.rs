@@ -7,50 +7,41 @@
 //! * degrees of freedom: 3
 //! * unknowns of eq. (17): 45
 //! * non-zeros: Φ_q 98 of 700, (Φ_r, Φ_π') 60 of 504
-//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 577 operations by relative Euler parameters, doubled; 585 operations by relative Euler parameters; 2 more compared
-//! * project: 460 operations by rotations of the bodies, doubled; 464 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 19 operations by normal form; 31 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 40 operations by normal form; 55 operations by recursion; 3 more compared
-//! * corrected_accelerations: 140 operations by normal form in the global frame; 142 operations by normal form in the bodies' frames; 9 more compared
-//! * joint_jacobian: 58 operations by derivatives of u̇, from its leaves; 58 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 68 | 65 | 0 | 133 | 0 of 25 | 213 | 133 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 97 | 174 | 0 | 271 | 0 of 98 | 986 | 271 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 82 | 129 | 0 | 211 | 0 of 60 | 935 | 211 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 21 of 21 | 0 | 0 |
-//! | gamma | γ | 173 | 257 | 0 | 430 | 9 of 21 | 1824 | 430 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 121 | 154 | 0 | 275 | 0 of 21 | 710 | 275 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 14 of 24 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 232 | 339 | 6 | 577 | 10 of 24 | 608717 | 581 |
-//! | multipliers | λ, the accelerations being known | 166 | 248 | 4 | 418 | 0 of 21 | 14808 | 418 |
-//! | project | (δr, δπ') that changes the rows as given | 184 | 270 | 6 | 460 | 1 of 24 | 365069 | 461 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 | 96 | 96 |
-//! | energy | T and V | 26 | 38 | 0 | 64 | 0 of 2 | 64 | 64 |
-//! | read_joints | joint coordinates and rates | 73 | 67 | 0 | 140 | 0 of 9 | 281 | 140 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 12 of 28 | 9.5e8 | 493 |
-//! | solve_velocities | dependent velocities, eq. (19) | 112 | 152 | 3 | 267 | 12 of 24 | 19196 | 267 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 13 | 1 | 19 | 0 of 3 | 31 | 20 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 28 of 52 | 298 | 75 |
-//! | to_joints | (x, u) of a maximal state | 82 | 79 | 0 | 161 | 0 of 6 | 574 | 161 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 23 | 1 | 40 | 0 of 3 | 350 | 41 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 59 | 80 | 1 | 140 | 12 of 24 | 2260 | 141 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 89 | 125 | 1 | 215 | 0 of 21 | 3221 | 216 |
-//! | corrected_solution | both | 112 | 171 | 2 | 285 | 12 of 45 | 49978 | 287 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 | 153 | 58 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 68 | 65 | 0 | 133 | 0 of 25 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 97 | 174 | 0 | 271 | 0 of 98 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 82 | 129 | 0 | 211 | 0 of 60 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 21 of 21 |
+//! | gamma | γ | 173 | 257 | 0 | 430 | 9 of 21 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 121 | 154 | 0 | 275 | 0 of 21 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 14 of 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 232 | 339 | 6 | 577 | 10 of 24 |
+//! | multipliers | λ, the accelerations being known | 166 | 248 | 4 | 418 | 0 of 21 |
+//! | project | (δr, δπ') that changes the rows as given | 184 | 270 | 6 | 460 | 1 of 24 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 |
+//! | energy | T and V | 26 | 38 | 0 | 64 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 73 | 67 | 0 | 140 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 12 of 28 |
+//! | solve_velocities | dependent velocities, eq. (19) | 112 | 152 | 3 | 267 | 12 of 24 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 13 | 1 | 19 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 28 of 52 |
+//! | to_joints | (x, u) of a maximal state | 82 | 79 | 0 | 161 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 23 | 1 | 40 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 59 | 80 | 1 | 140 | 12 of 24 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 89 | 125 | 1 | 215 | 0 of 21 |
+//! | corrected_solution | both | 112 | 171 | 2 | 285 | 12 of 45 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +57,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `gyroscope_maximal`.

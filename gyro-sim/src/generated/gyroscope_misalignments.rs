@@ -10,47 +10,39 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 767 operations by relative Euler parameters, doubled; 788 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 742 operations by rotations of the bodies, doubled; 763 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 165 operations by normal form; 326 operations by orthogonal motions; 1 more compared
-//! * joint_accelerations_at: 205 operations by normal form; 366 operations by orthogonal motions; 3 more compared
-//! * corrected_accelerations: 342 operations by normal form in the bodies' frames; 434 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 492 operations by derivatives of u̇, from its leaves; 492 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | set_up | what depends on parameters alone | 16 | 62 | 2 | 80 | 0 of 53 | 185 | 80 |
-//! | phi | Φ | 68 | 63 | 0 | 131 | 0 of 18 | 222 | 131 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 92 | 146 | 0 | 238 | 0 of 91 | 783 | 238 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 70 | 114 | 0 | 184 | 0 of 53 | 816 | 184 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 154 | 222 | 0 | 376 | 6 of 15 | 1501 | 376 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 108 | 149 | 0 | 257 | 0 of 15 | 889 | 257 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 8 of 18 | 32 | 26 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 320 | 435 | 5 | 760 | 6 of 18 | 6.0e7 | 764 |
-//! | multipliers | λ, the accelerations being known | 144 | 223 | 3 | 370 | 0 of 15 | 7425 | 370 |
-//! | project | (δr, δπ') that changes the rows as given | 310 | 427 | 5 | 742 | 0 of 18 | 2.0e7 | 743 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 23 | 33 | 0 | 56 | 0 of 2 | 56 | 56 |
-//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 213 | 318 | 3 | 534 | 6 of 21 | 6.6e9 | 534 |
-//! | solve_velocities | dependent velocities, eq. (19) | 120 | 167 | 3 | 290 | 6 of 18 | 30164 | 290 |
-//! | joint_accelerations | u̇ in joint coordinates | 69 | 93 | 2 | 164 | 0 of 3 | 4084 | 165 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 66 | 93 | 0 | 159 | 16 of 39 | 1458 | 159 |
-//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 87 | 115 | 2 | 204 | 0 of 3 | 45178 | 205 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 142 | 197 | 2 | 341 | 6 of 18 | 752072 | 342 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 109 | 154 | 0 | 263 | 0 of 15 | 1979 | 263 |
-//! | corrected_solution | both | 215 | 308 | 2 | 525 | 6 of 33 | 2.3e7 | 526 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 198 | 292 | 2 | 492 | 24 of 42 | 44042 | 492 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | set_up | what depends on parameters alone | 16 | 62 | 2 | 80 | 0 of 53 |
+//! | phi | Φ | 68 | 63 | 0 | 131 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 92 | 146 | 0 | 238 | 0 of 91 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 70 | 114 | 0 | 184 | 0 of 53 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
+//! | gamma | γ | 154 | 222 | 0 | 376 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 108 | 149 | 0 | 257 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 8 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 320 | 435 | 5 | 760 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 144 | 223 | 3 | 370 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 310 | 427 | 5 | 742 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 23 | 33 | 0 | 56 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 213 | 318 | 3 | 534 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 120 | 167 | 3 | 290 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 69 | 93 | 2 | 164 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 66 | 93 | 0 | 159 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 87 | 115 | 2 | 204 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 142 | 197 | 2 | 341 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 109 | 154 | 0 | 263 | 0 of 15 |
+//! | corrected_solution | both | 215 | 308 | 2 | 525 | 6 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 198 | 292 | 2 | 492 | 24 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// Parameters of [`GyroscopeMisalignments`].

@@ -8,50 +8,41 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
-//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 413 operations by relative Euler parameters, doubled; 429 operations by relative Euler parameters; 2 more compared
-//! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 22 operations by normal form; 47 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 43 operations by normal form; 68 operations by recursion; 2 more compared
-//! * corrected_accelerations: 152 operations by normal form in the global frame; 154 operations by normal form in the bodies' frames; 7 more compared
-//! * joint_jacobian: 64 operations by derivatives of u̇, from its leaves; 64 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | set_up | what depends on parameters alone | 12 | 24 | 2 | 38 | 0 of 25 | 101 | 38 |
-//! | phi | Φ | 50 | 49 | 0 | 99 | 0 of 18 | 158 | 99 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 679 | 188 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 116 | 172 | 0 | 288 | 6 of 15 | 1237 | 288 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 | 495 | 191 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 11 | 0 | 11 | 9 of 18 | 12 | 11 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 166 | 242 | 5 | 413 | 7 of 18 | 524250 | 417 |
-//! | multipliers | λ, the accelerations being known | 108 | 175 | 3 | 286 | 0 of 15 | 4511 | 286 |
-//! | project | (δr, δπ') that changes the rows as given | 144 | 232 | 5 | 381 | 1 of 18 | 475097 | 382 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 6 of 21 | 9.5e8 | 493 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 | 8661 | 230 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 35 | 21 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 26 | 51 | 0 | 77 | 16 of 39 | 304 | 77 |
-//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 353 | 42 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 90 | 1 | 149 | 6 of 18 | 2249 | 150 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 83 | 0 | 140 | 0 of 15 | 891 | 140 |
-//! | corrected_solution | both | 85 | 134 | 1 | 220 | 6 of 33 | 18103 | 221 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 49 | 1 | 62 | 28 of 42 | 178 | 62 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | set_up | what depends on parameters alone | 12 | 24 | 2 | 38 | 0 of 25 |
+//! | phi | Φ | 50 | 49 | 0 | 99 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
+//! | gamma | γ | 116 | 172 | 0 | 288 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 11 | 0 | 11 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 166 | 242 | 5 | 413 | 7 of 18 |
+//! | multipliers | λ, the accelerations being known | 108 | 175 | 3 | 286 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 144 | 232 | 5 | 381 | 1 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 193 | 297 | 3 | 493 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 26 | 51 | 0 | 77 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 90 | 1 | 149 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 83 | 0 | 140 | 0 of 15 |
+//! | corrected_solution | both | 85 | 134 | 1 | 220 | 6 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 49 | 1 | 62 | 28 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -67,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// Parameters of [`GyroscopeParameters`].

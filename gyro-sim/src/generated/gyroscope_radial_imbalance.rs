@@ -11,46 +11,38 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 389 operations by relative Euler parameters, doubled; 397 operations by relative Euler parameters; 2 more compared
-//! * project: 381 operations by relative Euler parameters; 388 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 61 operations by normal form; 85 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 101 operations by normal form; 128 operations by recursion; 3 more compared
-//! * corrected_accelerations: 176 operations by normal form in the bodies' frames; 186 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 236 operations by derivatives of u̇, from its leaves; 236 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 50 | 51 | 0 | 101 | 0 of 18 | 158 | 101 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 670 | 188 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 116 | 174 | 0 | 290 | 6 of 15 | 1237 | 290 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 | 495 | 191 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 156 | 228 | 5 | 389 | 6 of 18 | 588476 | 393 |
-//! | multipliers | λ, the accelerations being known | 108 | 163 | 3 | 274 | 0 of 15 | 3550 | 274 |
-//! | project | (δr, δπ') that changes the rows as given | 147 | 229 | 5 | 381 | 0 of 18 | 477519 | 382 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
-//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 | 207 | 104 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 302 | 3 | 498 | 6 of 21 | 3.7e9 | 498 |
-//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 | 14205 | 230 |
-//! | joint_accelerations | u̇ in joint coordinates | 18 | 41 | 2 | 61 | 0 of 3 | 290 | 62 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 | 646 | 75 |
-//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 | 427 | 125 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 36 | 63 | 2 | 101 | 0 of 3 | 3934 | 102 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 67 | 107 | 2 | 176 | 6 of 18 | 27868 | 177 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 | 1021 | 137 |
-//! | corrected_solution | both | 92 | 153 | 2 | 247 | 6 of 33 | 328430 | 248 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 70 | 164 | 2 | 236 | 24 of 42 | 2805 | 236 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 50 | 51 | 0 | 101 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 |
+//! | gamma | γ | 116 | 174 | 0 | 290 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 107 | 0 | 191 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 156 | 228 | 5 | 389 | 6 of 18 |
+//! | multipliers | λ, the accelerations being known | 108 | 163 | 3 | 274 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 229 | 5 | 381 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 54 | 50 | 0 | 104 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 193 | 302 | 3 | 498 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 96 | 131 | 3 | 230 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 41 | 2 | 61 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 26 | 49 | 0 | 75 | 16 of 39 |
+//! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 36 | 63 | 2 | 101 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 67 | 107 | 2 | 176 | 6 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 |
+//! | corrected_solution | both | 92 | 153 | 2 | 247 | 6 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 70 | 164 | 2 | 236 | 24 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `gyroscope_radial_imbalance`.

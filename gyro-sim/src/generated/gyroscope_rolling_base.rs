@@ -8,49 +8,40 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (driven: a function of time)
-//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 455 operations by relative Euler parameters, doubled; 463 operations by relative Euler parameters; 2 more compared
-//! * project: 365 operations by rotations of the bodies, doubled; 369 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 66 operations by normal form; 79 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 98 operations by recursion on the bodies' spins; 98 operations by normal form; 3 more compared
-//! * corrected_accelerations: 455 operations by elimination in maximal coordinates; 189 operations by recursion on the bodies' spins in the global frame; 9 more compared
-//! * joint_jacobian: 1403 operations by derivatives of u̇, from its leaves; 1403 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 51 | 53 | 0 | 104 | 0 of 18 | 169 | 104 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 130 | 0 | 198 | 0 of 77 | 692 | 198 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 60 | 96 | 0 | 156 | 0 of 41 | 676 | 156 |
-//! | nu | ν | 4 | 11 | 0 | 15 | 14 of 15 | 19 | 15 |
-//! | gamma | γ | 129 | 198 | 0 | 327 | 6 of 15 | 1365 | 327 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 119 | 0 | 207 | 0 of 15 | 532 | 207 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 184 | 266 | 5 | 455 | 7 of 18 | 533802 | 459 |
-//! | multipliers | λ, the accelerations being known | 110 | 167 | 3 | 280 | 0 of 15 | 3206 | 280 |
-//! | project | (δr, δπ') that changes the rows as given | 144 | 216 | 5 | 365 | 1 of 18 | 326595 | 366 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 115 | 173 | 1 | 289 | 0 of 22 | 944 | 289 |
-//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
-//! | read_joints | joint coordinates and rates | 56 | 54 | 0 | 110 | 0 of 9 | 217 | 110 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 200 | 306 | 3 | 509 | 6 of 21 | 1.3e9 | 509 |
-//! | solve_velocities | dependent velocities, eq. (19) | 102 | 147 | 3 | 252 | 6 of 18 | 11706 | 252 |
-//! | joint_accelerations | u̇ in joint coordinates | 20 | 45 | 1 | 66 | 0 of 3 | 137 | 67 |
-//! | joint_derivative | ẋ but for u̇ | 162 | 263 | 2 | 427 | 0 of 4 | 23715 | 428 |
-//! | to_maximal | (q, v) of a joint state | 35 | 69 | 0 | 104 | 12 of 39 | 978 | 104 |
-//! | to_joints | (x, u) of a maximal state | 65 | 66 | 0 | 131 | 0 of 6 | 447 | 131 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 62 | 1 | 98 | 0 of 3 | 842 | 99 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 184 | 266 | 5 | 455 | 7 of 18 | 533802 | 459 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 59 | 86 | 0 | 145 | 0 of 15 | 967 | 145 |
-//! | corrected_solution | both | 218 | 319 | 5 | 542 | 7 of 33 | 4.1e6 | 546 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 529 | 872 | 2 | 1403 | 29 of 56 | 9.3e6 | 1403 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 51 | 53 | 0 | 104 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 130 | 0 | 198 | 0 of 77 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 60 | 96 | 0 | 156 | 0 of 41 |
+//! | nu | ν | 4 | 11 | 0 | 15 | 14 of 15 |
+//! | gamma | γ | 129 | 198 | 0 | 327 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 119 | 0 | 207 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 184 | 266 | 5 | 455 | 7 of 18 |
+//! | multipliers | λ, the accelerations being known | 110 | 167 | 3 | 280 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 144 | 216 | 5 | 365 | 1 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 115 | 173 | 1 | 289 | 0 of 22 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 56 | 54 | 0 | 110 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 200 | 306 | 3 | 509 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 102 | 147 | 3 | 252 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 45 | 1 | 66 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 162 | 263 | 2 | 427 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 35 | 69 | 0 | 104 | 12 of 39 |
+//! | to_joints | (x, u) of a maximal state | 65 | 66 | 0 | 131 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 62 | 1 | 98 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 184 | 266 | 5 | 455 | 7 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 59 | 86 | 0 | 145 | 0 of 15 |
+//! | corrected_solution | both | 218 | 319 | 5 | 542 | 7 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 529 | 872 | 2 | 1403 | 29 of 56 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +57,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `gyroscope_rolling_base`.

@@ -11,46 +11,38 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 78 operations by rotations of the bodies, doubled; 78 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 58 operations by rotations of the bodies; 58 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 13 operations by normal form; 18 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 13 operations by normal form; 18 operations by recursion; 3 more compared
-//! * corrected_accelerations: 53 operations by normal form in the bodies' frames; 57 operations by recursion in the bodies' frames; 9 more compared
-//! * joint_jacobian: 14 operations by derivatives of u̇, from its leaves; 14 operations by derivatives of u̇, from its roots; 1 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 10 | 11 | 0 | 21 | 0 of 4 | 24 | 21 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 10 | 0 | 10 | 0 of 17 | 14 | 10 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 7 | 15 | 0 | 22 | 0 of 9 | 26 | 22 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 17 | 26 | 0 | 43 | 0 of 3 | 63 | 43 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 18 | 0 | 31 | 0 of 3 | 35 | 31 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 47 | 0 | 78 | 1 of 6 | 764 | 78 |
-//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 24 | 34 | 0 | 58 | 1 of 6 | 218 | 58 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
-//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 | 333 | 39 |
-//! | solve_velocities | dependent velocities, eq. (19) | 11 | 18 | 0 | 29 | 0 of 6 | 32 | 29 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 9 | 0 | 13 | 1 of 3 | 14 | 13 |
-//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 | 24 | 24 |
-//! | to_maximal | (q, v) of a joint state | 15 | 22 | 0 | 37 | 0 of 13 | 45 | 37 |
-//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 | 14 | 13 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 30 | 0 | 53 | 1 of 6 | 125 | 53 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | corrected_solution | both | 24 | 33 | 0 | 57 | 1 of 9 | 237 | 57 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 14 | 0 | 14 | 20 of 56 | 36 | 14 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 10 | 11 | 0 | 21 | 0 of 4 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 10 | 0 | 10 | 0 of 17 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 7 | 15 | 0 | 22 | 0 of 9 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 |
+//! | gamma | γ | 17 | 26 | 0 | 43 | 0 of 3 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 18 | 0 | 31 | 0 of 3 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 47 | 0 | 78 | 1 of 6 |
+//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 |
+//! | project | (δr, δπ') that changes the rows as given | 24 | 34 | 0 | 58 | 1 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 |
+//! | solve_velocities | dependent velocities, eq. (19) | 11 | 18 | 0 | 29 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 9 | 0 | 13 | 1 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 15 | 22 | 0 | 37 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 30 | 0 | 53 | 1 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
+//! | corrected_solution | both | 24 | 33 | 0 | 57 | 1 of 9 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 14 | 0 | 14 | 20 of 56 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-150.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `heavy_top`.

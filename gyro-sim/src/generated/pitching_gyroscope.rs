@@ -8,49 +8,40 @@
 //! * unknowns of eq. (17): 33
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (driven: a function of time)
-//! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 523 operations by relative Euler parameters, doubled; 533 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 379 operations by rotations of the bodies, doubled; 383 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 113 operations by recursion; 123 operations by normal form; 1 more compared
-//! * joint_accelerations_at: 141 operations by recursion on the bodies' spins; 152 operations by orthogonal motions on the bodies' spins; 3 more compared
-//! * corrected_accelerations: 523 operations by elimination in maximal coordinates; 229 operations by recursion on the bodies' spins in the global frame; 9 more compared
-//! * joint_jacobian: 1760 operations by derivatives of u̇, from its leaves; 1760 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 53 | 60 | 0 | 113 | 0 of 18 | 193 | 113 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 74 | 144 | 0 | 218 | 0 of 77 | 752 | 218 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 106 | 0 | 170 | 0 of 41 | 731 | 170 |
-//! | nu | ν | 9 | 26 | 0 | 35 | 13 of 15 | 71 | 35 |
-//! | gamma | γ | 151 | 234 | 0 | 385 | 6 of 15 | 2294 | 385 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 95 | 139 | 0 | 234 | 0 of 15 | 623 | 234 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 208 | 310 | 5 | 523 | 7 of 18 | 611110 | 527 |
-//! | multipliers | λ, the accelerations being known | 114 | 177 | 3 | 294 | 0 of 15 | 3441 | 294 |
-//! | project | (δr, δπ') that changes the rows as given | 148 | 226 | 5 | 379 | 1 of 18 | 336935 | 380 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 126 | 199 | 1 | 326 | 0 of 22 | 2105 | 326 |
-//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 | 48 | 48 |
-//! | read_joints | joint coordinates and rates | 59 | 64 | 0 | 123 | 0 of 9 | 258 | 123 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 206 | 319 | 3 | 528 | 6 of 21 | 2.1e9 | 528 |
-//! | solve_velocities | dependent velocities, eq. (19) | 113 | 171 | 3 | 287 | 6 of 18 | 19009 | 287 |
-//! | joint_accelerations | u̇ in joint coordinates | 35 | 77 | 1 | 113 | 0 of 3 | 755 | 114 |
-//! | joint_derivative | ẋ but for u̇ | 191 | 326 | 2 | 519 | 0 of 4 | 130027 | 520 |
-//! | to_maximal | (q, v) of a joint state | 42 | 88 | 0 | 130 | 12 of 39 | 2351 | 130 |
-//! | to_joints | (x, u) of a maximal state | 68 | 76 | 0 | 144 | 0 of 6 | 522 | 144 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 93 | 1 | 141 | 0 of 3 | 1943 | 142 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 208 | 310 | 5 | 523 | 7 of 18 | 611110 | 527 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 63 | 96 | 0 | 159 | 0 of 15 | 1207 | 159 |
-//! | corrected_solution | both | 252 | 375 | 5 | 632 | 7 of 33 | 5.0e6 | 636 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 687 | 1071 | 2 | 1760 | 29 of 56 | 1.2e8 | 1760 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 53 | 60 | 0 | 113 | 0 of 18 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 74 | 144 | 0 | 218 | 0 of 77 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 106 | 0 | 170 | 0 of 41 |
+//! | nu | ν | 9 | 26 | 0 | 35 | 13 of 15 |
+//! | gamma | γ | 151 | 234 | 0 | 385 | 6 of 15 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 95 | 139 | 0 | 234 | 0 of 15 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 208 | 310 | 5 | 523 | 7 of 18 |
+//! | multipliers | λ, the accelerations being known | 114 | 177 | 3 | 294 | 0 of 15 |
+//! | project | (δr, δπ') that changes the rows as given | 148 | 226 | 5 | 379 | 1 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 126 | 199 | 1 | 326 | 0 of 22 |
+//! | energy | T and V | 19 | 29 | 0 | 48 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 59 | 64 | 0 | 123 | 0 of 9 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 |
+//! | newton_step | dependent positions, one Newton step | 206 | 319 | 3 | 528 | 6 of 21 |
+//! | solve_velocities | dependent velocities, eq. (19) | 113 | 171 | 3 | 287 | 6 of 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 35 | 77 | 1 | 113 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 191 | 326 | 2 | 519 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 42 | 88 | 0 | 130 | 12 of 39 |
+//! | to_joints | (x, u) of a maximal state | 68 | 76 | 0 | 144 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 47 | 93 | 1 | 141 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 208 | 310 | 5 | 523 | 7 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 63 | 96 | 0 | 159 | 0 of 15 |
+//! | corrected_solution | both | 252 | 375 | 5 | 632 | 7 of 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 687 | 1071 | 2 | 1760 | 29 of 56 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +57,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `pitching_gyroscope`.

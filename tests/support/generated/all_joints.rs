@@ -10,39 +10,34 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
-//! * accelerations: 10412 operations by rotations of the bodies, doubled; 10412 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 8059 operations by rotations of the bodies, doubled; 8059 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | set_up | what depends on parameters alone | 1 | 25 | 1 | 27 | 0 of 27 | 38 | 27 |
-//! | phi | Φ | 420 | 442 | 0 | 862 | 0 of 47 | 4958 | 862 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 1329 | 1661 | 3 | 2993 | 0 of 375 | 50564 | 2993 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 696 | 998 | 3 | 1697 | 0 of 267 | 42453 | 1697 |
-//! | nu | ν | 0 | 2 | 0 | 2 | 39 of 40 | 2 | 2 |
-//! | gamma | γ | 1078 | 1393 | 3 | 2474 | 0 of 40 | 72583 | 2474 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 665 | 811 | 3 | 1479 | 0 of 40 | 19953 | 1482 |
-//! | applied_force | (f, n' − w̃'J'w') | 294 | 378 | 2 | 674 | 6 of 42 | 45240 | 675 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 4649 | 5701 | 28 | 10378 | 0 of 51 | 1.3e18 | 10380 |
-//! | multipliers | λ, the accelerations being known | 1173 | 1572 | 11 | 2756 | 0 of 40 | 926088 | 2757 |
-//! | project | (δr, δπ') that changes the rows as given | 3595 | 4414 | 26 | 8035 | 0 of 42 | 1.2e18 | 8036 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 265 | 380 | 2 | 647 | 0 of 54 | 5190 | 648 |
-//! | energy | T and V | 106 | 155 | 0 | 261 | 0 of 2 | 1585 | 261 |
-//! | read_joints | joint coordinates and rates | 438 | 543 | 0 | 981 | 0 of 35 | 3846 | 981 |
-//! | outputs | outputs, the accelerations being known | 680 | 878 | 5 | 1563 | 0 of 36 | 8.3e6 | 1564 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | set_up | what depends on parameters alone | 1 | 25 | 1 | 27 | 0 of 27 |
+//! | phi | Φ | 420 | 442 | 0 | 862 | 0 of 47 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 1329 | 1661 | 3 | 2993 | 0 of 375 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 696 | 998 | 3 | 1697 | 0 of 267 |
+//! | nu | ν | 0 | 2 | 0 | 2 | 39 of 40 |
+//! | gamma | γ | 1078 | 1393 | 3 | 2474 | 0 of 40 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 665 | 811 | 3 | 1479 | 0 of 40 |
+//! | applied_force | (f, n' − w̃'J'w') | 294 | 378 | 2 | 674 | 6 of 42 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 4649 | 5701 | 28 | 10378 | 0 of 51 |
+//! | multipliers | λ, the accelerations being known | 1173 | 1572 | 11 | 2756 | 0 of 40 |
+//! | project | (δr, δπ') that changes the rows as given | 3595 | 4414 | 26 | 8035 | 0 of 42 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 265 | 380 | 2 | 647 | 0 of 54 |
+//! | energy | T and V | 106 | 155 | 0 | 261 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 438 | 543 | 0 | 981 | 0 of 35 |
+//! | outputs | outputs, the accelerations being known | 680 | 878 | 5 | 1563 | 0 of 36 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 553 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
-//! All of it holds but with a probability below 1e-140.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// Parameters of [`AllJoints`].
@@ -4554,6 +4549,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for AllJoints<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -4569,6 +4567,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for AllJoints<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 47, 49>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {

@@ -11,38 +11,33 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 160 operations by rotations of the bodies, doubled; 160 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 88 operations by rotations of the bodies, doubled; 88 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 20 | 30 | 0 | 50 | 0 of 14 | 50 | 50 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 38 | 32 | 8 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 12 | 20 | 0 | 32 | 0 of 18 | 66 | 32 |
-//! | nu | ν | 3 | 7 | 0 | 10 | 10 of 12 | 12 | 10 |
-//! | gamma | γ | 35 | 63 | 0 | 98 | 4 of 12 | 179 | 98 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 23 | 39 | 0 | 62 | 0 of 12 | 98 | 62 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 0 | 0 | 0 | 10 of 12 | 0 | 0 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 49 | 109 | 2 | 160 | 4 of 14 | 1112 | 160 |
-//! | multipliers | λ, the accelerations being known | 22 | 74 | 2 | 98 | 0 of 12 | 712 | 98 |
-//! | project | (δr, δπ') that changes the rows as given | 22 | 64 | 2 | 88 | 0 of 12 | 694 | 88 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 20 | 41 | 0 | 61 | 0 of 15 | 63 | 61 |
-//! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 | 35 | 35 |
-//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | outputs | outputs, the accelerations being known | 4 | 9 | 0 | 13 | 1 of 4 | 15 | 13 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 20 | 30 | 0 | 50 | 0 of 14 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 38 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 12 | 20 | 0 | 32 | 0 of 18 |
+//! | nu | ν | 3 | 7 | 0 | 10 | 10 of 12 |
+//! | gamma | γ | 35 | 63 | 0 | 98 | 4 of 12 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 23 | 39 | 0 | 62 | 0 of 12 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 0 | 0 | 0 | 10 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 49 | 109 | 2 | 160 | 4 of 14 |
+//! | multipliers | λ, the accelerations being known | 22 | 74 | 2 | 98 | 0 of 12 |
+//! | project | (δr, δπ') that changes the rows as given | 22 | 64 | 2 | 88 | 0 of 12 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 20 | 41 | 0 | 61 | 0 of 15 |
+//! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | outputs | outputs, the accelerations being known | 4 | 9 | 0 | 13 | 1 of 4 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
-//! All of it holds but with a probability below 1e-150.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// Times of the points of `cam.csv`, s.
@@ -537,6 +532,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Cam<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -552,6 +550,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Cam<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 14, 14>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {

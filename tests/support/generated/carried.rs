@@ -10,44 +10,36 @@
 //! * left out: coordinates of `base` (driven: a function of time)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 1900 operations by relative Euler parameters; 1933 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 977 operations by rotations of the bodies, doubled; 984 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 466 operations by orthogonal motions; 492 operations by normal form; 1 more compared
-//! * joint_accelerations_at: 770 operations by orthogonal motions on the bodies' spins; 774 operations by orthogonal motions; 3 more compared
-//! * corrected_accelerations: 1900 operations by elimination in maximal coordinates; 912 operations by orthogonal motions on the bodies' spins in the bodies' frames; 9 more compared
-//! * joint_jacobian: 4809 operations by derivatives of u̇, from its leaves; 4809 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 144 | 157 | 0 | 301 | 0 of 12 | 1840 | 301 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 464 | 523 | 0 | 987 | 0 of 83 | 6557 | 987 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 214 | 280 | 0 | 494 | 0 of 60 | 5636 | 494 |
-//! | nu | ν | 64 | 85 | 0 | 149 | 5 of 10 | 2061 | 149 |
-//! | gamma | γ | 463 | 528 | 0 | 991 | 0 of 10 | 20394 | 991 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 249 | 313 | 0 | 562 | 0 of 10 | 6459 | 562 |
-//! | applied_force | (f, n' − w̃'J'w') | 210 | 256 | 0 | 466 | 0 of 12 | 13340 | 466 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 842 | 1054 | 4 | 1900 | 0 of 12 | 2.4e8 | 1902 |
-//! | multipliers | λ, the accelerations being known | 386 | 478 | 2 | 866 | 0 of 10 | 163045 | 866 |
-//! | project | (δr, δπ') that changes the rows as given | 401 | 572 | 4 | 977 | 0 of 12 | 2.2e8 | 979 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 411 | 515 | 1 | 927 | 0 of 16 | 124654 | 927 |
-//! | energy | T and V | 116 | 138 | 0 | 254 | 0 of 2 | 3969 | 254 |
-//! | read_joints | joint coordinates and rates | 145 | 156 | 0 | 301 | 0 of 5 | 1647 | 301 |
-//! | outputs | outputs, the accelerations being known | 575 | 748 | 2 | 1325 | 0 of 20 | 4.7e6 | 1325 |
-//! | joint_accelerations | u̇ in joint coordinates | 205 | 260 | 1 | 466 | 0 of 2 | 70057 | 467 |
-//! | joint_derivative | ẋ but for u̇ | 771 | 951 | 2 | 1724 | 0 of 3 | 4.4e7 | 1725 |
-//! | to_maximal | (q, v) of a joint state | 131 | 178 | 0 | 309 | 0 of 27 | 20073 | 309 |
-//! | to_joints | (x, u) of a maximal state | 148 | 160 | 0 | 308 | 0 of 4 | 2741 | 308 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 342 | 427 | 1 | 770 | 0 of 2 | 477920 | 771 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 842 | 1054 | 4 | 1900 | 0 of 12 | 2.4e8 | 1902 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 337 | 403 | 0 | 740 | 0 of 10 | 233223 | 740 |
-//! | corrected_solution | both | 956 | 1211 | 4 | 2171 | 0 of 22 | 1.2e10 | 2173 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2093 | 2649 | 2 | 4744 | 13 of 30 | 2.8e11 | 4744 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 144 | 157 | 0 | 301 | 0 of 12 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 464 | 523 | 0 | 987 | 0 of 83 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 214 | 280 | 0 | 494 | 0 of 60 |
+//! | nu | ν | 64 | 85 | 0 | 149 | 5 of 10 |
+//! | gamma | γ | 463 | 528 | 0 | 991 | 0 of 10 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 249 | 313 | 0 | 562 | 0 of 10 |
+//! | applied_force | (f, n' − w̃'J'w') | 210 | 256 | 0 | 466 | 0 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 842 | 1054 | 4 | 1900 | 0 of 12 |
+//! | multipliers | λ, the accelerations being known | 386 | 478 | 2 | 866 | 0 of 10 |
+//! | project | (δr, δπ') that changes the rows as given | 401 | 572 | 4 | 977 | 0 of 12 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 411 | 515 | 1 | 927 | 0 of 16 |
+//! | energy | T and V | 116 | 138 | 0 | 254 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 145 | 156 | 0 | 301 | 0 of 5 |
+//! | outputs | outputs, the accelerations being known | 575 | 748 | 2 | 1325 | 0 of 20 |
+//! | joint_accelerations | u̇ in joint coordinates | 205 | 260 | 1 | 466 | 0 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 771 | 951 | 2 | 1724 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 131 | 178 | 0 | 309 | 0 of 27 |
+//! | to_joints | (x, u) of a maximal state | 148 | 160 | 0 | 308 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 342 | 427 | 1 | 770 | 0 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 842 | 1054 | 4 | 1900 | 0 of 12 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 337 | 403 | 0 | 740 | 0 of 10 |
+//! | corrected_solution | both | 956 | 1211 | 4 | 2171 | 0 of 22 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2093 | 2649 | 2 | 4744 | 13 of 30 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 550 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -61,7 +53,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-150.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `carried`.
@@ -2649,6 +2640,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Carried<T> {
     }
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
+    }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
     }
     fn newton_step(
         &self,

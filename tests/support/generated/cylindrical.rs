@@ -11,44 +11,36 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 113 operations by rotations of the bodies, doubled; 113 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 78 operations by rotations of the bodies, doubled; 78 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 0 operations by recursion; 0 operations by normal form; 1 more compared
-//! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 3 more compared
-//! * corrected_accelerations: 59 operations by recursion in the bodies' frames; 59 operations by normal form in the bodies' frames; 9 more compared
-//! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 15 | 16 | 0 | 31 | 0 of 5 | 38 | 31 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 20 | 0 | 26 | 0 of 20 | 30 | 26 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 9 | 21 | 0 | 30 | 0 of 12 | 54 | 30 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
-//! | gamma | γ | 24 | 39 | 0 | 63 | 0 of 4 | 128 | 63 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 27 | 0 | 44 | 0 of 4 | 68 | 44 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 48 | 63 | 2 | 113 | 0 of 6 | 2769 | 115 |
-//! | multipliers | λ, the accelerations being known | 25 | 41 | 1 | 67 | 0 of 4 | 317 | 67 |
-//! | project | (δr, δπ') that changes the rows as given | 30 | 46 | 2 | 78 | 1 of 6 | 2146 | 79 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
-//! | read_joints | joint coordinates and rates | 15 | 18 | 0 | 33 | 0 of 5 | 38 | 33 |
-//! | outputs | outputs, the accelerations being known | 41 | 64 | 1 | 106 | 1 of 6 | 3083 | 106 |
-//! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 1 of 2 | 0 | 0 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 2 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 9 | 24 | 0 | 33 | 1 of 13 | 67 | 33 |
-//! | to_joints | (x, u) of a maximal state | 18 | 22 | 0 | 40 | 0 of 4 | 63 | 40 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 1 of 2 | 0 | 0 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 34 | 0 | 59 | 0 of 6 | 116 | 59 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 25 | 37 | 0 | 62 | 0 of 4 | 150 | 62 |
-//! | corrected_solution | both | 42 | 61 | 0 | 103 | 0 of 10 | 742 | 103 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 18 of 20 | 0 | 0 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 15 | 16 | 0 | 31 | 0 of 5 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 20 | 0 | 26 | 0 of 20 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 9 | 21 | 0 | 30 | 0 of 12 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 |
+//! | gamma | γ | 24 | 39 | 0 | 63 | 0 of 4 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 27 | 0 | 44 | 0 of 4 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 48 | 63 | 2 | 113 | 0 of 6 |
+//! | multipliers | λ, the accelerations being known | 25 | 41 | 1 | 67 | 0 of 4 |
+//! | project | (δr, δπ') that changes the rows as given | 30 | 46 | 2 | 78 | 1 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 15 | 18 | 0 | 33 | 0 of 5 |
+//! | outputs | outputs, the accelerations being known | 41 | 64 | 1 | 106 | 1 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 1 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 2 |
+//! | to_maximal | (q, v) of a joint state | 9 | 24 | 0 | 33 | 1 of 13 |
+//! | to_joints | (x, u) of a maximal state | 18 | 22 | 0 | 40 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 1 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 34 | 0 | 59 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 25 | 37 | 0 | 62 | 0 of 4 |
+//! | corrected_solution | both | 42 | 61 | 0 | 103 | 0 of 10 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 18 of 20 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 547 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -62,7 +54,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-157.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `cylindrical`.
@@ -428,6 +419,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Cylindrical<T> {
     }
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
+    }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
     }
     fn newton_step(
         &self,

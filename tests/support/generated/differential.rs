@@ -13,37 +13,32 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1017 operations by rotations of the bodies, doubled; 1017 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 610 operations by rotations of the bodies, doubled; 610 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 101 | 121 | 0 | 222 | 0 of 26 | 964 | 222 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 222 | 366 | 3 | 591 | 0 of 147 | 9662 | 592 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 103 | 176 | 3 | 282 | 0 of 81 | 5294 | 283 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 22 of 22 | 0 | 0 |
-//! | gamma | γ | 252 | 384 | 3 | 639 | 3 of 22 | 13675 | 639 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 156 | 207 | 3 | 366 | 0 of 22 | 3272 | 369 |
-//! | applied_force | (f, n' − w̃'J'w') | 1 | 13 | 0 | 14 | 14 of 24 | 20 | 14 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 388 | 619 | 10 | 1017 | 3 of 26 | 3.8e6 | 1018 |
-//! | multipliers | λ, the accelerations being known | 172 | 282 | 7 | 461 | 0 of 22 | 19344 | 462 |
-//! | project | (δr, δπ') that changes the rows as given | 232 | 368 | 10 | 610 | 0 of 24 | 2.1e6 | 611 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 35 | 66 | 0 | 101 | 0 of 32 | 103 | 101 |
-//! | energy | T and V | 23 | 41 | 0 | 64 | 1 of 2 | 64 | 64 |
-//! | read_joints | joint coordinates and rates | 59 | 70 | 0 | 129 | 0 of 12 | 315 | 129 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 101 | 121 | 0 | 222 | 0 of 26 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 222 | 366 | 3 | 591 | 0 of 147 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 103 | 176 | 3 | 282 | 0 of 81 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 22 of 22 |
+//! | gamma | γ | 252 | 384 | 3 | 639 | 3 of 22 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 156 | 207 | 3 | 366 | 0 of 22 |
+//! | applied_force | (f, n' − w̃'J'w') | 1 | 13 | 0 | 14 | 14 of 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 388 | 619 | 10 | 1017 | 3 of 26 |
+//! | multipliers | λ, the accelerations being known | 172 | 282 | 7 | 461 | 0 of 22 |
+//! | project | (δr, δπ') that changes the rows as given | 232 | 368 | 10 | 610 | 0 of 24 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 35 | 66 | 0 | 101 | 0 of 32 |
+//! | energy | T and V | 23 | 41 | 0 | 64 | 1 of 2 |
+//! | read_joints | joint coordinates and rates | 59 | 70 | 0 | 129 | 0 of 12 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-146.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `differential`.
@@ -132,7 +127,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Differential<T> {
             k(-0.3499999999999998),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 101 operations (35 ±, 66 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 101 operations (35 ±, 66 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -1051,6 +1046,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Differential<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 26, 28>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Differential<T> {

@@ -11,38 +11,33 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 1319 operations by rotations of the bodies, doubled; 1319 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 1108 operations by rotations of the bodies, doubled; 1108 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 64 | 59 | 0 | 123 | 0 of 21 | 205 | 123 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 25 | 80 | 1 | 106 | 0 of 118 | 400 | 106 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 40 | 80 | 1 | 121 | 0 of 68 | 523 | 121 |
-//! | nu | ν | 1 | 2 | 0 | 3 | 17 of 18 | 3 | 3 |
-//! | gamma | γ | 105 | 168 | 1 | 274 | 0 of 18 | 1291 | 274 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 81 | 99 | 1 | 181 | 0 of 18 | 571 | 182 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 544 | 764 | 11 | 1319 | 0 of 22 | 8.8e10 | 1320 |
-//! | multipliers | λ, the accelerations being known | 101 | 159 | 4 | 264 | 0 of 18 | 2042 | 265 |
-//! | project | (δr, δπ') that changes the rows as given | 459 | 638 | 11 | 1108 | 0 of 18 | 8.0e10 | 1109 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 | 76 | 76 |
-//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
-//! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
-//! | outputs | outputs, the accelerations being known | 112 | 159 | 1 | 272 | 1 of 15 | 10561 | 272 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 64 | 59 | 0 | 123 | 0 of 21 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 25 | 80 | 1 | 106 | 0 of 118 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 40 | 80 | 1 | 121 | 0 of 68 |
+//! | nu | ν | 1 | 2 | 0 | 3 | 17 of 18 |
+//! | gamma | γ | 105 | 168 | 1 | 274 | 0 of 18 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 81 | 99 | 1 | 181 | 0 of 18 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 544 | 764 | 11 | 1319 | 0 of 22 |
+//! | multipliers | λ, the accelerations being known | 101 | 159 | 4 | 264 | 0 of 18 |
+//! | project | (δr, δπ') that changes the rows as given | 459 | 638 | 11 | 1108 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 |
+//! | outputs | outputs, the accelerations being known | 112 | 159 | 1 | 272 | 1 of 15 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
-//! All of it holds but with a probability below 1e-142.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `driven_four_bar`.
@@ -903,6 +898,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenFourBar<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -918,6 +916,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenFourBar<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 21, 21>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {

@@ -13,37 +13,32 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 220 operations by rotations of the bodies, doubled; 220 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 99 operations by rotations of the bodies, doubled; 99 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 26 | 37 | 0 | 63 | 0 of 13 | 86 | 63 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 12 | 44 | 2 | 58 | 0 of 38 | 340 | 59 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 20 | 41 | 2 | 63 | 0 of 18 | 252 | 64 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 | 0 | 0 |
-//! | gamma | γ | 53 | 98 | 2 | 153 | 6 of 11 | 686 | 153 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 27 | 50 | 2 | 79 | 0 of 11 | 194 | 81 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 17 | 0 | 24 | 6 of 12 | 35 | 24 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 72 | 143 | 5 | 220 | 6 of 13 | 4473 | 221 |
-//! | multipliers | λ, the accelerations being known | 30 | 70 | 4 | 104 | 0 of 11 | 516 | 106 |
-//! | project | (δr, δπ') that changes the rows as given | 27 | 67 | 5 | 99 | 0 of 12 | 1298 | 100 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 | 49 | 49 |
-//! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 | 87 | 52 |
-//! | read_joints | joint coordinates and rates | 15 | 16 | 0 | 31 | 0 of 6 | 36 | 31 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 26 | 37 | 0 | 63 | 0 of 13 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 12 | 44 | 2 | 58 | 0 of 38 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 20 | 41 | 2 | 63 | 0 of 18 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 |
+//! | gamma | γ | 53 | 98 | 2 | 153 | 6 of 11 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 27 | 50 | 2 | 79 | 0 of 11 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 17 | 0 | 24 | 6 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 72 | 143 | 5 | 220 | 6 of 13 |
+//! | multipliers | λ, the accelerations being known | 30 | 70 | 4 | 104 | 0 of 11 |
+//! | project | (δr, δπ') that changes the rows as given | 27 | 67 | 5 | 99 | 0 of 12 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 |
+//! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 15 | 16 | 0 | 31 | 0 of 6 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-149.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `gear`.
@@ -552,6 +547,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Gear<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -567,6 +565,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Gear<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 13, 14>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {

@@ -8,52 +8,42 @@
 //! * unknowns of eq. (17): 11
 //! * non-zeros: Φ_q 15 of 42, (Φ_r, Φ_π') 7 of 30
 //! * left out: coordinates of `frame` (fixed: folded into constants)
-//! * left out: the turning of `disc` from u̇ (it looks the same all around its axis)
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 23 operations by rotations of the bodies; 23 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 26 operations by rotations of the bodies, doubled; 26 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 3 operations by recursion; 3 operations by normal form
-//! * joint_accelerations_at: 3 operations by recursion; 3 operations by normal form; 1 more compared
-//! * corrected_accelerations: 5 operations by recursion in the bodies' frames; 5 operations by recursion in the global frame; 5 more compared
-//! * joint_jacobian: 2 operations by normal form of that; 3 operations by derivatives of u̇, from its leaves; 7 more compared
-//! * joint_input_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 6 | 10 | 0 | 16 | 0 of 6 | 16 | 16 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 15 | 12 | 4 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 5 | 8 | 0 | 13 | 0 of 7 | 22 | 13 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 12 | 21 | 0 | 33 | 3 of 5 | 42 | 33 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 7 | 11 | 0 | 18 | 0 of 5 | 22 | 18 |
-//! | applied_force | (f, n' − w̃'J'w') | 1 | 4 | 0 | 5 | 3 of 6 | 6 | 5 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 8 | 14 | 1 | 23 | 3 of 6 | 33 | 24 |
-//! | multipliers | λ, the accelerations being known | 10 | 22 | 1 | 33 | 0 of 5 | 109 | 33 |
-//! | project | (δr, δπ') that changes the rows as given | 8 | 17 | 1 | 26 | 1 of 6 | 98 | 26 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 9 | 19 | 0 | 28 | 0 of 8 | 28 | 28 |
-//! | energy | T and V | 5 | 9 | 0 | 14 | 1 of 2 | 14 | 14 |
-//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 47 | 79 | 1 | 127 | 3 of 7 | 7172 | 127 |
-//! | solve_velocities | dependent velocities, eq. (19) | 13 | 19 | 1 | 33 | 3 of 6 | 138 | 33 |
-//! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
-//! | joint_derivative | ẋ but for u̇ | 1 | 2 | 0 | 3 | 0 of 2 | 3 | 3 |
-//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 13 | 2 | 1 |
-//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 1 | 2 | 0 | 3 | 0 of 1 | 3 | 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 1 | 4 | 0 | 5 | 3 of 6 | 5 | 5 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 14 | 0 | 20 | 0 of 5 | 31 | 20 |
-//! | corrected_solution | both | 5 | 13 | 0 | 18 | 6 of 11 | 29 | 18 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 1 | 1 | 0 | 2 | 9 of 12 | 2 | 2 |
-//! | joint_input_jacobian | ∂f/∂(inputs) | 0 | 0 | 0 | 0 | 1 of 3 | 0 | 0 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 6 | 10 | 0 | 16 | 0 of 6 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 15 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 5 | 8 | 0 | 13 | 0 of 7 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 |
+//! | gamma | γ | 12 | 21 | 0 | 33 | 3 of 5 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 7 | 11 | 0 | 18 | 0 of 5 |
+//! | applied_force | (f, n' − w̃'J'w') | 1 | 4 | 0 | 5 | 3 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 8 | 14 | 1 | 23 | 3 of 6 |
+//! | multipliers | λ, the accelerations being known | 10 | 22 | 1 | 33 | 0 of 5 |
+//! | project | (δr, δπ') that changes the rows as given | 8 | 17 | 1 | 26 | 1 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 9 | 19 | 0 | 28 | 0 of 8 |
+//! | energy | T and V | 5 | 9 | 0 | 14 | 1 of 2 |
+//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | newton_step | dependent positions, one Newton step | 47 | 79 | 1 | 127 | 3 of 7 |
+//! | solve_velocities | dependent velocities, eq. (19) | 13 | 19 | 1 | 33 | 3 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 1 | 2 | 0 | 3 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 1 | 2 | 0 | 3 | 0 of 2 |
+//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 10 of 13 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 1 | 2 | 0 | 3 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 1 | 4 | 0 | 5 | 3 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 6 | 14 | 0 | 20 | 0 of 5 |
+//! | corrected_solution | both | 5 | 13 | 0 | 18 | 6 of 11 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 1 | 1 | 0 | 2 | 9 of 12 |
+//! | joint_input_jacobian | ∂f/∂(inputs) | 0 | 0 | 0 | 0 | 1 of 3 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -69,7 +59,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian, joint_input_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-149.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `motor`.

@@ -13,37 +13,32 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1266 operations by rotations of the bodies, doubled; 1266 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 1082 operations by rotations of the bodies, doubled; 1082 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 58 | 53 | 0 | 111 | 0 of 20 | 174 | 111 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 68 | 0 | 88 | 0 of 114 | 244 | 88 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 37 | 78 | 0 | 115 | 0 of 66 | 420 | 115 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 | 0 | 0 |
-//! | gamma | γ | 95 | 151 | 0 | 246 | 0 of 17 | 998 | 246 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 77 | 96 | 0 | 173 | 0 of 17 | 499 | 173 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 521 | 736 | 9 | 1266 | 0 of 21 | 2.1e10 | 1267 |
-//! | multipliers | λ, the accelerations being known | 98 | 160 | 3 | 261 | 0 of 17 | 1981 | 261 |
-//! | project | (δr, δπ') that changes the rows as given | 447 | 626 | 9 | 1082 | 0 of 18 | 1.9e10 | 1083 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 | 53 | 53 |
-//! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 58 | 53 | 0 | 111 | 0 of 20 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 68 | 0 | 88 | 0 of 114 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 37 | 78 | 0 | 115 | 0 of 66 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 |
+//! | gamma | γ | 95 | 151 | 0 | 246 | 0 of 17 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 77 | 96 | 0 | 173 | 0 of 17 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 521 | 736 | 9 | 1266 | 0 of 21 |
+//! | multipliers | λ, the accelerations being known | 98 | 160 | 3 | 261 | 0 of 17 |
+//! | project | (δr, δπ') that changes the rows as given | 447 | 626 | 9 | 1082 | 0 of 18 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
+//! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-142.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `parallelogram`.
@@ -106,7 +101,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Parallelogram<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            k(1.7714907632921808e-15),
+            k(1.77635683940025e-15),
             k(1.1847364585520033),
             k(0.6472244771156744),
             k(0.0),
@@ -882,6 +877,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Parallelogram<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -897,6 +895,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Parallelogram<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 20, 21>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {

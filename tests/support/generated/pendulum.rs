@@ -10,47 +10,39 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 70 operations by rotations of the bodies, doubled; 70 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 53 operations by rotations of the bodies, doubled; 53 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
-//! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
-//! * corrected_accelerations: 49 operations by recursion in the bodies' frames; 49 operations by normal form in the bodies' frames; 5 more compared
-//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 12 | 12 | 0 | 24 | 0 of 6 | 29 | 24 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 25 | 14 | 4 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 9 | 14 | 0 | 23 | 0 of 13 | 38 | 23 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 22 | 33 | 0 | 55 | 0 of 5 | 102 | 55 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 22 | 0 | 39 | 0 of 5 | 54 | 39 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 30 | 39 | 1 | 70 | 0 of 6 | 507 | 71 |
-//! | multipliers | λ, the accelerations being known | 16 | 32 | 1 | 49 | 0 of 5 | 146 | 49 |
-//! | project | (δr, δπ') that changes the rows as given | 20 | 32 | 1 | 53 | 0 of 6 | 341 | 53 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 | 15 | 15 |
-//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
-//! | outputs | outputs, the accelerations being known | 68 | 98 | 1 | 167 | 0 of 33 | 1481 | 167 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 51 | 86 | 1 | 138 | 0 of 7 | 32010 | 138 |
-//! | solve_velocities | dependent velocities, eq. (19) | 21 | 30 | 1 | 52 | 0 of 6 | 374 | 52 |
-//! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 | 1 | 1 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 3 | 10 | 0 | 13 | 6 of 13 | 52 | 13 |
-//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 | 4 | 4 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 22 | 27 | 0 | 49 | 0 of 6 | 84 | 49 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 15 | 23 | 0 | 38 | 0 of 5 | 82 | 38 |
-//! | corrected_solution | both | 30 | 43 | 0 | 73 | 0 of 11 | 392 | 73 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 | 1 | 1 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 12 | 12 | 0 | 24 | 0 of 6 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 25 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 9 | 14 | 0 | 23 | 0 of 13 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 |
+//! | gamma | γ | 22 | 33 | 0 | 55 | 0 of 5 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 22 | 0 | 39 | 0 of 5 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 30 | 39 | 1 | 70 | 0 of 6 |
+//! | multipliers | λ, the accelerations being known | 16 | 32 | 1 | 49 | 0 of 5 |
+//! | project | (δr, δπ') that changes the rows as given | 20 | 32 | 1 | 53 | 0 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | energy | T and V | 5 | 10 | 0 | 15 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
+//! | outputs | outputs, the accelerations being known | 68 | 98 | 1 | 167 | 0 of 33 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | newton_step | dependent positions, one Newton step | 51 | 86 | 1 | 138 | 0 of 7 |
+//! | solve_velocities | dependent velocities, eq. (19) | 21 | 30 | 1 | 52 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | to_maximal | (q, v) of a joint state | 3 | 10 | 0 | 13 | 6 of 13 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 22 | 27 | 0 | 49 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 15 | 23 | 0 | 38 | 0 of 5 |
+//! | corrected_solution | both | 30 | 43 | 0 | 73 | 0 of 11 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-149.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `pendulum`.

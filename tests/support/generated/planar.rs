@@ -11,44 +11,36 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 126 operations by rotations of the bodies, doubled; 126 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 82 operations by rotations of the bodies, doubled; 82 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 38 operations by normal form; 74 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 42 operations by normal form; 79 operations by recursion; 3 more compared
-//! * corrected_accelerations: 121 operations by normal form in the bodies' frames; 126 operations by elimination in maximal coordinates; 9 more compared
-//! * joint_jacobian: 94 operations by derivatives of u̇, from its leaves; 94 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 12 | 13 | 0 | 25 | 0 of 4 | 32 | 25 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 8 | 0 | 14 | 0 of 17 | 26 | 14 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 20 | 0 | 31 | 0 of 8 | 63 | 31 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 25 | 36 | 0 | 61 | 0 of 3 | 107 | 61 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 25 | 0 | 41 | 0 of 3 | 57 | 41 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 57 | 67 | 2 | 126 | 0 of 6 | 2118 | 128 |
-//! | multipliers | λ, the accelerations being known | 30 | 41 | 1 | 72 | 0 of 3 | 256 | 72 |
-//! | project | (δr, δπ') that changes the rows as given | 33 | 47 | 2 | 82 | 2 of 6 | 689 | 83 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 7 | 13 | 0 | 20 | 0 of 2 | 20 | 20 |
-//! | read_joints | joint coordinates and rates | 30 | 36 | 0 | 66 | 0 of 7 | 120 | 66 |
-//! | outputs | outputs, the accelerations being known | 47 | 68 | 1 | 116 | 2 of 6 | 1777 | 116 |
-//! | joint_accelerations | u̇ in joint coordinates | 14 | 22 | 2 | 38 | 0 of 3 | 351 | 39 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 11 | 15 | 0 | 26 | 5 of 13 | 59 | 26 |
-//! | to_joints | (x, u) of a maximal state | 33 | 40 | 0 | 73 | 0 of 6 | 145 | 73 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 24 | 2 | 42 | 0 of 3 | 674 | 43 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 50 | 69 | 2 | 121 | 0 of 6 | 4600 | 122 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 33 | 37 | 0 | 70 | 0 of 3 | 175 | 70 |
-//! | corrected_solution | both | 67 | 91 | 2 | 160 | 0 of 9 | 23175 | 161 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 35 | 57 | 2 | 94 | 33 of 42 | 3092 | 94 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 12 | 13 | 0 | 25 | 0 of 4 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 8 | 0 | 14 | 0 of 17 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 20 | 0 | 31 | 0 of 8 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 |
+//! | gamma | γ | 25 | 36 | 0 | 61 | 0 of 3 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 25 | 0 | 41 | 0 of 3 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 57 | 67 | 2 | 126 | 0 of 6 |
+//! | multipliers | λ, the accelerations being known | 30 | 41 | 1 | 72 | 0 of 3 |
+//! | project | (δr, δπ') that changes the rows as given | 33 | 47 | 2 | 82 | 2 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | energy | T and V | 7 | 13 | 0 | 20 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 30 | 36 | 0 | 66 | 0 of 7 |
+//! | outputs | outputs, the accelerations being known | 47 | 68 | 1 | 116 | 2 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 14 | 22 | 2 | 38 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 11 | 15 | 0 | 26 | 5 of 13 |
+//! | to_joints | (x, u) of a maximal state | 33 | 40 | 0 | 73 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 24 | 2 | 42 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 50 | 69 | 2 | 121 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 33 | 37 | 0 | 70 | 0 of 3 |
+//! | corrected_solution | both | 67 | 91 | 2 | 160 | 0 of 9 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 35 | 57 | 2 | 94 | 33 of 42 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -62,7 +54,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-148.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `planar`.
@@ -439,6 +430,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Planar<T> {
     }
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
+    }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
     }
     fn newton_step(
         &self,

@@ -18,37 +18,32 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 579 operations by rotations of the bodies, doubled; 579 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 320 operations by rotations of the bodies, doubled; 320 operations by relative Euler parameters, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 65 | 85 | 0 | 150 | 0 of 27 | 357 | 150 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 73 | 154 | 3 | 230 | 0 of 93 | 2768 | 231 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 65 | 110 | 3 | 178 | 0 of 48 | 1573 | 179 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 23 of 23 | 0 | 0 |
-//! | gamma | γ | 157 | 242 | 3 | 402 | 10 of 23 | 4062 | 402 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 131 | 3 | 222 | 0 of 23 | 964 | 225 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 20 of 24 | 8 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 201 | 368 | 10 | 579 | 10 of 27 | 81641 | 580 |
-//! | multipliers | λ, the accelerations being known | 95 | 196 | 7 | 298 | 0 of 23 | 3932 | 301 |
-//! | project | (δr, δπ') that changes the rows as given | 102 | 208 | 10 | 320 | 0 of 24 | 22550 | 322 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 33 | 64 | 0 | 97 | 0 of 31 | 97 | 97 |
-//! | energy | T and V | 23 | 40 | 0 | 63 | 1 of 2 | 63 | 63 |
-//! | read_joints | joint coordinates and rates | 35 | 41 | 0 | 76 | 0 of 13 | 135 | 76 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 65 | 85 | 0 | 150 | 0 of 27 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 73 | 154 | 3 | 230 | 0 of 93 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 65 | 110 | 3 | 178 | 0 of 48 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 23 of 23 |
+//! | gamma | γ | 157 | 242 | 3 | 402 | 10 of 23 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 131 | 3 | 222 | 0 of 23 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 20 of 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 201 | 368 | 10 | 579 | 10 of 27 |
+//! | multipliers | λ, the accelerations being known | 95 | 196 | 7 | 298 | 0 of 23 |
+//! | project | (δr, δπ') that changes the rows as given | 102 | 208 | 10 | 320 | 0 of 24 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 33 | 64 | 0 | 97 | 0 of 31 |
+//! | energy | T and V | 23 | 40 | 0 | 63 | 1 of 2 |
+//! | read_joints | joint coordinates and rates | 35 | 41 | 0 | 76 | 0 of 13 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-148.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `rack_and_screw`.
@@ -136,7 +131,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for RackAndScrew<T> {
             k(-0.49999999999999983),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 97 operations (33 ±, 64 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 97 operations (33 ±, 64 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -993,6 +988,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for RackAndScrew<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 27, 28>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for RackAndScrew<T> {

@@ -12,37 +12,32 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 30 operations by rotations of the bodies; 30 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 15 operations by rotations of the bodies; 15 operations by rotations of the bodies, doubled; 2 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 7 | 9 | 0 | 16 | 0 of 2 | 16 | 16 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 7 | 0 | 7 | 0 of 7 | 7 | 7 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 0 | 3 | 0 | 3 | 0 of 3 | 3 | 3 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 1 of 1 | 0 | 0 |
-//! | gamma | γ | 2 | 4 | 0 | 6 | 0 of 1 | 6 | 6 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 2 | 4 | 0 | 6 | 0 of 1 | 6 | 6 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 2 of 6 | 6 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 6 | 23 | 1 | 30 | 0 of 7 | 97 | 31 |
-//! | multipliers | λ, the accelerations being known | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
-//! | project | (δr, δπ') that changes the rows as given | 2 | 12 | 1 | 15 | 3 of 6 | 45 | 16 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
-//! | outputs | outputs, the accelerations being known | 0 | 6 | 0 | 6 | 3 of 6 | 6 | 6 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 7 | 9 | 0 | 16 | 0 of 2 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 7 | 0 | 7 | 0 of 7 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 0 | 3 | 0 | 3 | 0 of 3 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 1 of 1 |
+//! | gamma | γ | 2 | 4 | 0 | 6 | 0 of 1 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 2 | 4 | 0 | 6 | 0 of 1 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 2 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 6 | 23 | 1 | 30 | 0 of 7 |
+//! | multipliers | λ, the accelerations being known | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | project | (δr, δπ') that changes the rows as given | 2 | 12 | 1 | 15 | 3 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 |
+//! | outputs | outputs, the accelerations being known | 0 | 6 | 0 | 6 | 3 of 6 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
-//! All of it holds but with a probability below 1e-152.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `rod`.
@@ -263,6 +258,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Rod<T> {
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
     }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
+    }
     fn newton_step(
         &self,
         t: T,
@@ -278,6 +276,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Rod<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+    }
+    fn clearance(
+        &self,
+        t: T,
+        y: &Self::State,
+    ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+        ::core::option::Option::Some(
+            gyro_sim::pivoting::clearance::<_, 2, 7>(self, t, y),
+        )
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Rod<T> {

@@ -10,47 +10,39 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 197 operations by rotations of the bodies, doubled; 197 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 84 operations by rotations of the bodies, doubled; 84 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 59 operations by normal form; 94 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 60 operations by normal form; 93 operations by recursion; 3 more compared
-//! * corrected_accelerations: 117 operations by normal form in the bodies' frames; 131 operations by recursion in the bodies' frames; 9 more compared
-//! * joint_jacobian: 100 operations by normal form of that; 157 operations by derivatives of u̇, from its roots; 1 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 23 | 16 | 0 | 39 | 0 of 4 | 53 | 39 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 16 | 0 | 34 | 0 of 19 | 44 | 34 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 19 | 22 | 0 | 41 | 0 of 12 | 81 | 41 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 37 | 49 | 0 | 86 | 0 of 3 | 192 | 86 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 34 | 0 | 62 | 0 of 3 | 102 | 62 |
-//! | applied_force | (f, n' − w̃'J'w') | 12 | 17 | 0 | 29 | 2 of 6 | 36 | 29 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 87 | 110 | 0 | 197 | 0 of 6 | 34668 | 197 |
-//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 36 | 48 | 0 | 84 | 0 of 6 | 2560 | 84 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
-//! | energy | T and V | 11 | 17 | 0 | 28 | 0 of 2 | 28 | 28 |
-//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
-//! | outputs | outputs, the accelerations being known | 44 | 59 | 0 | 103 | 0 of 6 | 444 | 103 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 29 | 29 | 1 | 59 | 0 of 7 | 842 | 60 |
-//! | solve_velocities | dependent velocities, eq. (19) | 27 | 34 | 0 | 61 | 0 of 6 | 99 | 61 |
-//! | joint_accelerations | u̇ in joint coordinates | 25 | 34 | 0 | 59 | 0 of 3 | 463 | 59 |
-//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 | 24 | 24 |
-//! | to_maximal | (q, v) of a joint state | 27 | 30 | 0 | 57 | 0 of 13 | 111 | 57 |
-//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 35 | 0 | 60 | 0 of 3 | 465 | 60 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 64 | 0 | 117 | 0 of 6 | 3390 | 117 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | corrected_solution | both | 54 | 67 | 0 | 121 | 0 of 9 | 6319 | 121 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 36 | 64 | 0 | 100 | 11 of 56 | 117 | 100 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 23 | 16 | 0 | 39 | 0 of 4 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 16 | 0 | 34 | 0 of 19 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 19 | 22 | 0 | 41 | 0 of 12 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 |
+//! | gamma | γ | 37 | 49 | 0 | 86 | 0 of 3 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 34 | 0 | 62 | 0 of 3 |
+//! | applied_force | (f, n' − w̃'J'w') | 12 | 17 | 0 | 29 | 2 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 87 | 110 | 0 | 197 | 0 of 6 |
+//! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 |
+//! | project | (δr, δπ') that changes the rows as given | 36 | 48 | 0 | 84 | 0 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 |
+//! | energy | T and V | 11 | 17 | 0 | 28 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 |
+//! | outputs | outputs, the accelerations being known | 44 | 59 | 0 | 103 | 0 of 6 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | newton_step | dependent positions, one Newton step | 29 | 29 | 1 | 59 | 0 of 7 |
+//! | solve_velocities | dependent velocities, eq. (19) | 27 | 34 | 0 | 61 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 25 | 34 | 0 | 59 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 |
+//! | to_maximal | (q, v) of a joint state | 27 | 30 | 0 | 57 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 25 | 35 | 0 | 60 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 64 | 0 | 117 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
+//! | corrected_solution | both | 54 | 67 | 0 | 121 | 0 of 9 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 36 | 64 | 0 | 100 | 11 of 56 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-148.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `spherical`.

@@ -8,47 +8,38 @@
 //! * unknowns of eq. (17): 22
 //! * non-zeros: Φ_q 33 of 168, (Φ_r, Φ_π') 15 of 120
 //! * left out: coordinates of `frame` (fixed: folded into constants)
-//! * left out: the turning of `disc` from u̇ (it looks the same all around its axis)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 138 operations by rotations of the bodies, doubled; 138 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 70 operations by rotations of the bodies, doubled; 70 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 37 operations by recursion; 37 operations by normal form; 1 more compared
-//! * joint_accelerations_at: 53 operations by recursion; 53 operations by normal form; 3 more compared
-//! * corrected_accelerations: 68 operations by recursion in the bodies' frames; 68 operations by recursion in the global frame; 9 more compared
-//! * joint_jacobian: 83 operations by normal form of that; 123 operations by derivatives of u̇, from its leaves; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 14 | 23 | 0 | 37 | 0 of 12 | 37 | 37 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 33 | 28 | 8 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 18 | 0 | 29 | 0 of 15 | 55 | 29 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 10 of 10 | 0 | 0 |
-//! | gamma | γ | 27 | 48 | 0 | 75 | 5 of 10 | 105 | 75 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 27 | 0 | 43 | 0 of 10 | 55 | 43 |
-//! | applied_force | (f, n' − w̃'J'w') | 26 | 26 | 3 | 55 | 7 of 12 | 286 | 58 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 81 | 5 | 138 | 5 of 12 | 680 | 142 |
-//! | multipliers | λ, the accelerations being known | 22 | 56 | 2 | 80 | 0 of 10 | 360 | 80 |
-//! | project | (δr, δπ') that changes the rows as given | 19 | 49 | 2 | 70 | 2 of 12 | 346 | 70 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 | 334 | 107 |
-//! | energy | T and V | 12 | 20 | 0 | 32 | 0 of 2 | 32 | 32 |
-//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 5 | 18 | 15 |
-//! | joint_accelerations | u̇ in joint coordinates | 20 | 14 | 3 | 37 | 0 of 2 | 58 | 40 |
-//! | joint_derivative | ẋ but for u̇ | 20 | 15 | 3 | 38 | 0 of 3 | 59 | 41 |
-//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 19 of 27 | 2 | 1 |
-//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 4 | 43 | 22 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 26 | 24 | 3 | 53 | 0 of 2 | 265 | 56 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 35 | 3 | 68 | 6 of 12 | 344 | 71 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 7 | 19 | 0 | 26 | 0 of 10 | 37 | 26 |
-//! | corrected_solution | both | 34 | 48 | 3 | 85 | 11 of 22 | 438 | 88 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 33 | 46 | 4 | 83 | 20 of 30 | 310 | 84 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 14 | 23 | 0 | 37 | 0 of 12 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 33 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 18 | 0 | 29 | 0 of 15 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 10 of 10 |
+//! | gamma | γ | 27 | 48 | 0 | 75 | 5 of 10 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 27 | 0 | 43 | 0 of 10 |
+//! | applied_force | (f, n' − w̃'J'w') | 26 | 26 | 3 | 55 | 7 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 81 | 5 | 138 | 5 of 12 |
+//! | multipliers | λ, the accelerations being known | 22 | 56 | 2 | 80 | 0 of 10 |
+//! | project | (δr, δπ') that changes the rows as given | 19 | 49 | 2 | 70 | 2 of 12 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 |
+//! | energy | T and V | 12 | 20 | 0 | 32 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 5 |
+//! | joint_accelerations | u̇ in joint coordinates | 20 | 14 | 3 | 37 | 0 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 20 | 15 | 3 | 38 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 0 | 1 | 0 | 1 | 19 of 27 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 26 | 24 | 3 | 53 | 0 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 35 | 3 | 68 | 6 of 12 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 7 | 19 | 0 | 26 | 0 of 10 |
+//! | corrected_solution | both | 34 | 48 | 3 | 85 | 11 of 22 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 33 | 46 | 4 | 83 | 20 of 30 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -62,7 +53,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-139.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `stops`.
@@ -657,6 +647,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Stops<T> {
     }
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
+    }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
     }
     fn newton_step(
         &self,

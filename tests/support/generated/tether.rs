@@ -10,39 +10,31 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 29 operations by rotations of the bodies; 29 operations by rotations of the bodies, doubled; 2 more compared
-//! * project: 0 operations by rotations of the bodies; 0 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 161 operations by orthogonal motions; 204 operations by recursion
-//! * joint_accelerations_at: 161 operations by orthogonal motions; 161 operations by orthogonal motions on the bodies' spins; 2 more compared
-//! * corrected_accelerations: 29 operations by elimination in maximal coordinates; 191 operations by orthogonal motions in the bodies' frames; 7 more compared
-//! * joint_jacobian: 1046 operations by derivatives of u̇, from its roots; 1315 operations by derivatives of u̇, from its leaves
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 | 8 | 8 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 | 4 | 4 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 1 | 27 | 0 of 6 | 136 | 27 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 21 | 1 | 29 | 0 of 6 | 136 | 29 |
-//! | project | (δr, δπ') that changes the rows as given | 0 | 0 | 0 | 0 | 6 of 6 | 0 | 0 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
-//! | energy | T and V | 9 | 16 | 0 | 25 | 0 of 2 | 31 | 25 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 | 80 | 26 |
-//! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
-//! | joint_accelerations | u̇ in joint coordinates | 63 | 94 | 4 | 161 | 0 of 6 | 75938 | 162 |
-//! | joint_derivative | ẋ but for u̇ | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
-//! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
-//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 63 | 94 | 4 | 161 | 0 of 6 | 75938 | 162 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 21 | 1 | 29 | 0 of 6 | 136 | 29 |
-//! | corrected_solution | both | 7 | 21 | 1 | 29 | 0 of 6 | 136 | 29 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 440 | 602 | 4 | 1046 | 141 of 210 | 4.0e8 | 1046 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 1 | 27 | 0 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 21 | 1 | 29 | 0 of 6 |
+//! | project | (δr, δπ') that changes the rows as given | 0 | 0 | 0 | 0 | 6 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 12 | 27 | 1 | 40 | 0 of 8 |
+//! | energy | T and V | 9 | 16 | 0 | 25 | 0 of 2 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 |
+//! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 63 | 94 | 4 | 161 | 0 of 6 |
+//! | joint_derivative | ẋ but for u̇ | 12 | 27 | 1 | 40 | 0 of 8 |
+//! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 |
+//! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 63 | 94 | 4 | 161 | 0 of 6 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 21 | 1 | 29 | 0 of 6 |
+//! | corrected_solution | both | 7 | 21 | 1 | 29 | 0 of 6 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 440 | 602 | 4 | 1046 | 141 of 210 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -58,7 +50,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-145.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `tether`.

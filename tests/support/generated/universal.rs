@@ -10,44 +10,36 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 280 operations by rotations of the bodies, doubled; 280 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 148 operations by rotations of the bodies, doubled; 148 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 46 operations by normal form; 135 operations by recursion; 1 more compared
-//! * joint_accelerations_at: 76 operations by normal form; 168 operations by recursion; 3 more compared
-//! * corrected_accelerations: 163 operations by normal form in the bodies' frames; 196 operations by normal form in the global frame; 9 more compared
-//! * joint_jacobian: 126 operations by derivatives of u̇, from its leaves; 126 operations by normal form of that; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 23 | 20 | 0 | 43 | 0 of 5 | 60 | 43 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 | 56 | 40 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 19 | 30 | 0 | 49 | 0 of 14 | 96 | 49 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
-//! | gamma | γ | 37 | 53 | 0 | 90 | 0 of 4 | 216 | 90 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 38 | 0 | 66 | 0 of 4 | 116 | 66 |
-//! | applied_force | (f, n' − w̃'J'w') | 26 | 39 | 0 | 65 | 2 of 6 | 153 | 65 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 115 | 162 | 3 | 280 | 0 of 6 | 90421 | 281 |
-//! | multipliers | λ, the accelerations being known | 45 | 64 | 1 | 110 | 0 of 4 | 218 | 110 |
-//! | project | (δr, δπ') that changes the rows as given | 57 | 88 | 3 | 148 | 0 of 6 | 33006 | 149 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 28 | 0 | 42 | 0 of 9 | 42 | 42 |
-//! | energy | T and V | 19 | 28 | 0 | 47 | 0 of 2 | 78 | 47 |
-//! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 | 54 | 32 |
-//! | outputs | outputs, the accelerations being known | 70 | 102 | 1 | 173 | 0 of 6 | 1758 | 173 |
-//! | joint_accelerations | u̇ in joint coordinates | 18 | 27 | 1 | 46 | 0 of 2 | 123 | 47 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 | 2 | 2 |
-//! | to_maximal | (q, v) of a joint state | 29 | 46 | 0 | 75 | 0 of 14 | 427 | 75 |
-//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 | 104 | 46 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 45 | 1 | 76 | 0 of 2 | 490 | 77 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7444 | 164 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 60 | 0 | 106 | 0 of 4 | 180 | 106 |
-//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28934 | 238 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 43 | 82 | 1 | 126 | 19 of 30 | 591 | 126 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 23 | 20 | 0 | 43 | 0 of 5 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 19 | 30 | 0 | 49 | 0 of 14 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 |
+//! | gamma | γ | 37 | 53 | 0 | 90 | 0 of 4 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 38 | 0 | 66 | 0 of 4 |
+//! | applied_force | (f, n' − w̃'J'w') | 26 | 39 | 0 | 65 | 2 of 6 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 115 | 162 | 3 | 280 | 0 of 6 |
+//! | multipliers | λ, the accelerations being known | 45 | 64 | 1 | 110 | 0 of 4 |
+//! | project | (δr, δπ') that changes the rows as given | 57 | 88 | 3 | 148 | 0 of 6 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 28 | 0 | 42 | 0 of 9 |
+//! | energy | T and V | 19 | 28 | 0 | 47 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 |
+//! | outputs | outputs, the accelerations being known | 70 | 102 | 1 | 173 | 0 of 6 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 27 | 1 | 46 | 0 of 2 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 29 | 46 | 0 | 75 | 0 of 14 |
+//! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 45 | 1 | 76 | 0 of 2 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 46 | 60 | 0 | 106 | 0 of 4 |
+//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 43 | 82 | 1 | 126 | 19 of 30 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -61,7 +53,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-148.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `universal`.
@@ -445,6 +436,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Universal<T> {
     }
     fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
         gyro_sim::pivoting::follow(self, t, y, choice)
+    }
+    fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+        gyro_sim::pivoting::is_met(self, t, y, phi)
     }
     fn newton_step(
         &self,

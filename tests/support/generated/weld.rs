@@ -10,47 +10,39 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 444 operations by rotations of the bodies, doubled; 448 operations by rotations of the bodies; 2 more compared
-//! * project: 322 operations by rotations of the bodies, doubled; 323 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
-//! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
-//! * corrected_accelerations: 105 operations by recursion in the bodies' frames; 105 operations by normal form in the bodies' frames; 5 more compared
-//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 7 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 45 | 40 | 0 | 85 | 0 of 13 | 153 | 85 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 50 | 92 | 0 | 142 | 0 of 79 | 512 | 142 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 36 | 64 | 0 | 100 | 0 of 43 | 580 | 100 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 | 0 | 0 |
-//! | gamma | γ | 89 | 131 | 0 | 220 | 0 of 11 | 1080 | 220 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 65 | 83 | 0 | 148 | 0 of 11 | 454 | 148 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 6 of 12 | 8 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 178 | 263 | 3 | 444 | 0 of 12 | 347763 | 446 |
-//! | multipliers | λ, the accelerations being known | 66 | 113 | 2 | 181 | 0 of 11 | 2145 | 181 |
-//! | project | (δr, δπ') that changes the rows as given | 123 | 196 | 3 | 322 | 0 of 12 | 156942 | 323 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 32 | 0 | 48 | 0 of 14 | 48 | 48 |
-//! | energy | T and V | 12 | 18 | 0 | 30 | 0 of 2 | 30 | 30 |
-//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
-//! | outputs | outputs, the accelerations being known | 73 | 117 | 1 | 191 | 0 of 6 | 28074 | 191 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 107 | 177 | 2 | 286 | 0 of 14 | 1.3e7 | 286 |
-//! | solve_velocities | dependent velocities, eq. (19) | 73 | 110 | 2 | 185 | 0 of 12 | 8776 | 185 |
-//! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 | 1 | 1 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 13 | 26 | 0 | 39 | 9 of 26 | 268 | 39 |
-//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 | 4 | 4 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 48 | 57 | 0 | 105 | 0 of 12 | 252 | 105 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 40 | 54 | 0 | 94 | 0 of 11 | 217 | 94 |
-//! | corrected_solution | both | 72 | 92 | 0 | 164 | 0 of 23 | 2266 | 164 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 | 1 | 1 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 45 | 40 | 0 | 85 | 0 of 13 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 50 | 92 | 0 | 142 | 0 of 79 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 36 | 64 | 0 | 100 | 0 of 43 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 |
+//! | gamma | γ | 89 | 131 | 0 | 220 | 0 of 11 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 65 | 83 | 0 | 148 | 0 of 11 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 6 of 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 178 | 263 | 3 | 444 | 0 of 12 |
+//! | multipliers | λ, the accelerations being known | 66 | 113 | 2 | 181 | 0 of 11 |
+//! | project | (δr, δπ') that changes the rows as given | 123 | 196 | 3 | 322 | 0 of 12 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 32 | 0 | 48 | 0 of 14 |
+//! | energy | T and V | 12 | 18 | 0 | 30 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 |
+//! | outputs | outputs, the accelerations being known | 73 | 117 | 1 | 191 | 0 of 6 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
+//! | newton_step | dependent positions, one Newton step | 107 | 177 | 2 | 286 | 0 of 14 |
+//! | solve_velocities | dependent velocities, eq. (19) | 73 | 110 | 2 | 185 | 0 of 12 |
+//! | joint_accelerations | u̇ in joint coordinates | 0 | 1 | 0 | 1 | 0 of 1 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 |
+//! | to_maximal | (q, v) of a joint state | 13 | 26 | 0 | 39 | 9 of 26 |
+//! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 48 | 57 | 0 | 105 | 0 of 12 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 40 | 54 | 0 | 94 | 0 of 11 |
+//! | corrected_solution | both | 72 | 92 | 0 | 164 | 0 of 23 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-146.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `weld`.

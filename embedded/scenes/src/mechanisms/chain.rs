@@ -11,46 +11,38 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 2608 operations by rotations of the bodies, doubled; 2643 operations by relative Euler parameters, doubled; 2 more compared
-//! * project: 2215 operations by rotations of the bodies, doubled; 2254 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 1013 operations by recursion; 1375 operations by orthogonal motions
-//! * joint_accelerations_at: 1213 operations by recursion; 1250 operations by recursion on the bodies' spins; 2 more compared
-//! * corrected_accelerations: 1519 operations by recursion on the bodies' spins in the bodies' frames; 1573 operations by recursion on the bodies' spins in the global frame; 7 more compared
-//! * joint_jacobian: 5652 operations by derivatives of the balance, from its roots, by M⁻¹; 5776 operations by derivatives of the balance, from its leaves, by M⁻¹; 4 more compared
 //!
-//! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
-//!
-//! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
-//! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 134 | 120 | 0 | 254 | 0 of 36 | 507 | 254 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 159 | 308 | 0 | 467 | 0 of 255 | 1742 | 467 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 130 | 225 | 0 | 355 | 0 of 143 | 1920 | 355 |
-//! | nu | ν | 0 | 0 | 0 | 0 | 30 of 30 | 0 | 0 |
-//! | gamma | γ | 302 | 441 | 0 | 743 | 0 of 30 | 3565 | 743 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 228 | 275 | 0 | 503 | 0 of 30 | 1502 | 503 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 36 | 0 | 36 | 12 of 36 | 36 | 36 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 1160 | 1437 | 11 | 2608 | 0 of 36 | 2.7e17 | 2615 |
-//! | multipliers | λ, the accelerations being known | 306 | 460 | 6 | 772 | 0 of 30 | 106894 | 772 |
-//! | project | (δr, δπ') that changes the rows as given | 1013 | 1191 | 11 | 2215 | 0 of 36 | 8.1e16 | 2216 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 48 | 96 | 0 | 144 | 0 of 42 | 144 | 144 |
-//! | energy | T and V | 40 | 56 | 0 | 96 | 0 of 2 | 96 | 96 |
-//! | read_joints | joint coordinates and rates | 99 | 107 | 0 | 206 | 0 of 18 | 486 | 206 |
-//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 24 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 433 | 641 | 6 | 1080 | 0 of 42 | 1.8e17 | 1080 |
-//! | solve_velocities | dependent velocities, eq. (19) | 249 | 326 | 6 | 581 | 0 of 36 | 862644 | 581 |
-//! | joint_accelerations | u̇ in joint coordinates | 464 | 544 | 5 | 1013 | 0 of 6 | 1.5e10 | 1014 |
-//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 164 | 206 | 0 | 370 | 6 of 78 | 25295 | 370 |
-//! | to_joints | (x, u) of a maximal state | 117 | 131 | 0 | 248 | 0 of 12 | 997 | 248 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 545 | 663 | 5 | 1213 | 0 of 6 | 3.5e11 | 1214 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 689 | 825 | 5 | 1519 | 0 of 36 | 5.5e12 | 1520 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 210 | 274 | 0 | 484 | 0 of 30 | 10319 | 484 |
-//! | corrected_solution | both | 811 | 975 | 5 | 1791 | 0 of 66 | 9.6e14 | 1792 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2480 | 3154 | 5 | 5639 | 78 of 156 | 6.1e13 | 5639 |
+//! | function | computes | + − | × | ÷ | total | zeros |
+//! |---|---|---|---|---|---|---|
+//! | phi | Φ | 134 | 120 | 0 | 254 | 0 of 36 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 159 | 308 | 0 | 467 | 0 of 255 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 130 | 225 | 0 | 355 | 0 of 143 |
+//! | nu | ν | 0 | 0 | 0 | 0 | 30 of 30 |
+//! | gamma | γ | 302 | 441 | 0 | 743 | 0 of 30 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 228 | 275 | 0 | 503 | 0 of 30 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 36 | 0 | 36 | 12 of 36 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 1160 | 1437 | 11 | 2608 | 0 of 36 |
+//! | multipliers | λ, the accelerations being known | 306 | 460 | 6 | 772 | 0 of 30 |
+//! | project | (δr, δπ') that changes the rows as given | 1013 | 1191 | 11 | 2215 | 0 of 36 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 48 | 96 | 0 | 144 | 0 of 42 |
+//! | energy | T and V | 40 | 56 | 0 | 96 | 0 of 2 |
+//! | read_joints | joint coordinates and rates | 99 | 107 | 0 | 206 | 0 of 18 |
+//! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 24 |
+//! | newton_step | dependent positions, one Newton step | 433 | 641 | 6 | 1080 | 0 of 42 |
+//! | solve_velocities | dependent velocities, eq. (19) | 249 | 326 | 6 | 581 | 0 of 36 |
+//! | joint_accelerations | u̇ in joint coordinates | 464 | 544 | 5 | 1013 | 0 of 6 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 6 |
+//! | to_maximal | (q, v) of a joint state | 164 | 206 | 0 | 370 | 6 of 78 |
+//! | to_joints | (x, u) of a maximal state | 117 | 131 | 0 | 248 | 0 of 12 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 545 | 663 | 5 | 1213 | 0 of 6 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 689 | 825 | 5 | 1519 | 0 of 36 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 210 | 274 | 0 | 484 | 0 of 30 |
+//! | corrected_solution | both | 811 | 975 | 5 | 1791 | 0 of 66 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2480 | 3154 | 5 | 5639 | 78 of 156 |
 //!
 //! # Proof
 //!
-//! Equal to the textbook's at a random point modulo a prime of 521 bits:
+//! Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
 //! * applied_force, accelerations, multipliers, project: eq. (17)
@@ -66,7 +58,6 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-133.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `chain`.
