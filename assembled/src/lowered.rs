@@ -226,7 +226,7 @@ fn constrained<T: Number>(model: &Model, body: usize, slot: usize) -> Constraine
 }
 
 /// A body that stays where the page puts it.
-fn resting<T: Number>(model: &Model, body: usize) -> Motion<T> {
+pub(crate) fn resting<T: Number>(model: &Model, body: usize) -> Motion<T> {
     let body = &model.bodies[body];
     let (p, zero) = (Vector4::from(model.values(&body.orientation)).normalize(), Vector3::zeros());
     Motion {

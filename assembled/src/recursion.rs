@@ -4,12 +4,13 @@ use crate::assembled::{Assembled, Refusal, Solver};
 use crate::balance;
 use crate::error::Unsupported;
 use crate::joint::{End as JointEnd, Joint};
-use crate::lowered::{Lowered, Moment, Place};
+use crate::lowered::{Lowered, Moment, Place, resting};
+use crate::motion::Motion;
 use crate::number::{Number, number};
 use crate::rebuild;
 use crate::screws::{End, Screw, Six};
 use crate::sweeps::{self, Node};
-use gyro_model::{Attachment, Model, RowOwner, Tree};
+use gyro_model::{Attachment, Model, RowOwner, Support, Tree};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -34,6 +35,8 @@ pub struct Recursion<T: Number> {
     pub(crate) screws: Vec<Screw<T>>,
     /// Slots of constrained bodies, in the order of [`Lowered::constrained`], and their rows.
     pub(crate) held: Vec<(usize, Range<usize>)>,
+    /// Fixed bodies where the page puts them, in the model's order.
+    pub(crate) fixed: Vec<Motion<T>>,
     /// Of each row the slot of the body that it holds.
     pub(crate) children: Vec<usize>,
     /// Work space. A mechanism is constant to its callers, so it is borrowed inside each call and never across.
@@ -43,7 +46,7 @@ pub struct Recursion<T: Number> {
 /// What one evaluation needs.
 #[derive(Clone, Debug)]
 pub(crate) struct Space<T> {
-    /// The ground, driven bodies, constrained bodies; then the limbs.
+    /// The global frame, driven bodies, constrained and fixed bodies; then the limbs.
     pub(crate) nodes: Vec<Node<T>>,
     /// What [`sweeps`] knows of each screw.
     pub(crate) turning: Vec<sweeps::Free<T>>,
@@ -116,6 +119,9 @@ impl<T: Number> Solver<T> for Recursion<T> {
     fn new(model: &Model, lowered: &Lowered<T>) -> Result<Self, Unsupported> {
         Assembled::<T, Self>::supports(model)?;
         let held = held(model, lowered);
+        let is_fixed = |&body: &usize| model.bodies[body].support == Support::Fixed;
+        let fixed: Vec<_> =
+            (0..model.bodies.len()).filter(is_fixed).map(|body| resting(model, body)).collect();
         let (mut limbs, mut screws) = (Vec::new(), Vec::new());
         for link in Tree::of(model).links {
             if let Some(limb) = limb(model, lowered, &held, &limbs, &mut screws, &link) {
@@ -128,14 +134,14 @@ impl<T: Number> Solver<T> for Recursion<T> {
         for (slot, rows) in hinges.chain(held.iter().cloned()) {
             children[rows].fill(slot);
         }
-        let n_nodes = 1 + lowered.driven.len() + held.len() + limbs.len();
+        let n_nodes = 1 + lowered.driven.len() + held.len() + fixed.len() + limbs.len();
         let space = RefCell::new(Space {
             nodes: vec![Node::new(); n_nodes],
             turning: vec![sweeps::Free::new(); screws.len()],
             forces: vec![number(0.0); lowered.n_v()],
             gradients: vec![[[number(0.0); 6]; 2]; lowered.n_rows()],
         });
-        Ok(Self { limbs, screws, held, children, space })
+        Ok(Self { limbs, screws, held, fixed, children, space })
     }
 
     fn accelerations_len(&self, lowered: &Lowered<T>) -> usize {
@@ -197,15 +203,20 @@ fn limb<T: Number>(
         ),
     };
     screws.extend(of_joint);
+    let ends = [&model.joints[joint].first, &model.joints[joint].second];
+    let parent_body = ends[usize::from(reversed)].body;
+    let is_fixed = |body: &gyro_model::Body| body.support == Support::Fixed;
+    let n_fixed = |bodies: &[gyro_model::Body]| bodies.iter().filter(|body| is_fixed(body)).count();
     let first_held = 1 + lowered.driven.len();
+    let first_fixed = first_held + held.len();
     let parent = match hinge.ends(described).0.place {
-        Place::Ground(_) => 0,
+        Place::Ground(_) => first_fixed + n_fixed(&model.bodies[..parent_body]),
         Place::Driven(index) => 1 + index,
         Place::Slot(parent) => match held.iter().position(|(held, _)| *held == parent) {
             Some(index) => first_held + index,
             None => {
                 let of_parent = limbs.iter().position(|limb| limb.slot == parent);
-                first_held + held.len() + of_parent.expect("parents come before children")
+                first_fixed + n_fixed(&model.bodies) + of_parent.expect("parents come before children")
             }
         },
     };

@@ -118,7 +118,7 @@ pub(crate) fn accelerations<T: Number>(
     }
 }
 
-/// The ground, driven bodies, and constrained bodies at rest where the state has them.
+/// The global frame, driven bodies, constrained bodies at rest where the state has them, and fixed ones.
 fn place_roots<T: Number>(
     recursion: &Recursion<T>,
     lowered: &Lowered<T>,
@@ -132,6 +132,10 @@ fn place_roots<T: Number>(
     let first_held = 1 + lowered.driven.len();
     for (index, node) in nodes[1..first_held].iter_mut().enumerate() {
         *node = Node::known(&lowered.driven_motion(at.t, index), origin);
+    }
+    let first_fixed = first_held + recursion.held.len();
+    for (node, motion) in nodes[first_fixed..].iter_mut().zip(&recursion.fixed) {
+        *node = Node::known(motion, origin);
     }
     for (node, &(slot, _)) in nodes[first_held..].iter_mut().zip(&recursion.held) {
         let pose = Motion::new(lowered.r(at.y, slot), lowered.p(at.y, slot), zero, zero);

@@ -91,8 +91,12 @@ impl Closing {
         // Bodies may be placed along this joint as well as along those of the tree.
         let [a, b] = self.ends.map(|end| places[end.body]);
         let relative = a.relative(&b).map(|e| format!("{e:?}"));
-        let starts =
-            if self.kind.name == "spherical" { vec![("orientation", list(&relative))] } else { Vec::new() };
+        let starts = match self.kind.name {
+            "spherical" => vec![("orientation", list(&relative))],
+            // Its second axis was put across the plane of the first body's axis and zero direction.
+            "universal" => vec![("first_angle_deg", "90".to_owned())],
+            _ => Vec::new(),
+        };
         Joint { kind: self.kind, text, starts, taken: Vec::new(), following: Vec::new() }
     }
 

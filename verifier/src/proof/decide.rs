@@ -28,6 +28,9 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::HashSet;
 use std::f64::consts::LOG10_2;
 
+/// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.
+const PRIMES: usize = 64;
+
 /// How a claim was decided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
@@ -140,15 +143,45 @@ impl<'a> Statements<'a> {
     pub fn prime<const L: usize>(&self, seed: Seed) -> Result<Prime<L>, u64> {
         let constants = self.formulas.constants.iter();
         let radicands: Vec<_> = constants.filter_map(|constant| constant.radicand.as_ref()).collect();
-        let mersenne = Prime::mersenne();
-        if radicands.iter().all(|radicand| mersenne.covers(radicand)) {
-            return Ok(mersenne);
-        }
+        let mersenne = Some(Prime::mersenne());
+        let mut mersenne = mersenne.filter(|prime| radicands.iter().all(|radicand| prime.covers(radicand)));
         let product = |r: &Rational| r.numer().magnitude() * r.denom().magnitude();
         let squares =
             radicands.iter().fold(BigUint::from(1_u32), |squares, r| squares.lcm(&radical(product(r))));
         let mut random = seed.numbers(0);
-        Prime::with_roots(&squares, &mut random).ok_or(squares.bits())
+        let draw = || mersenne.take().or_else(|| Prime::with_roots(&squares, &mut random));
+        self.with_nested_roots(seed, draw).ok_or(squares.bits())
+    }
+
+    /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half angles between joint frames
+    /// that are skew to each other: nothing is known of these beforehand, and each exists modulo every other prime. The last prime
+    /// if none has them.
+    fn with_nested_roots<const L: usize>(
+        &self,
+        seed: Seed,
+        mut draw: impl FnMut() -> Option<Prime<L>>,
+    ) -> Option<Prime<L>> {
+        let all = vec![true; self.formulas.program.nodes.len()];
+        let of_constants =
+            |(_, radicand): &(Id, Id)| self.parameters_of(*radicand).is_some_and(|p| p.is_empty());
+        let roots: Vec<Id> =
+            self.roots(&all).into_iter().filter(of_constants).map(|(root, _)| root).collect();
+        let needed = self.formulas.reach(roots.iter().copied());
+        let exist = |prime: &Prime<L>| {
+            let atoms = Drawn::new(prime, seed.numbers(0));
+            let nothing = |_| Modular::zero(prime);
+            roots.is_empty()
+                || !self.formulas.evaluate(&needed, prime, &atoms, &nothing).is_empty()
+                    && !atoms.missed_root()
+        };
+        let mut prime = draw()?;
+        for _ in 1..PRIMES {
+            if exist(&prime) {
+                break;
+            }
+            prime = draw()?;
+        }
+        Some(prime)
     }
 
     /// For each claim the logarithm to base two of the degree that decides it: of the numerator of any residual, of all denominators on

@@ -97,3 +97,15 @@ fn every_parameter_on_every_joint_is_proved_with_and_without_an_input() {
     });
     assert!(refused.is_empty(), "{} refused:\n{}", refused.len(), refused.join("\n"));
 }
+
+/// A body may be the first of its joint as well as the second; of a point on a line the first has the line.
+#[test]
+fn every_joint_is_proved_turned_round() {
+    for (kind, own, coordinate) in KINDS.into_iter().filter(|(kind, ..)| *kind != "point_on_line") {
+        let text = page((kind, own, coordinate), &[], false);
+        let turned = text.replace("first = {", "other = {").replace("second = {", "first = {");
+        let page = generate_text("combined.toml", &turned.replace("other = {", "second = {"));
+        let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+        assert!(report.is_proved(), "{kind}, the first body hangs on it: {}", summary(&report));
+    }
+}
