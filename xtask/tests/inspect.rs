@@ -72,7 +72,8 @@ fn the_paper_s_scene_is_shown_pass_by_pass_and_element_by_element() {
     let left_out: Vec<&str> =
         found["left_out"].as_array().unwrap().iter().map(|words| words.as_str().unwrap()).collect();
     assert!(left_out.iter().any(|what| what.contains("`base`")), "{left_out:?}");
-    assert!(left_out.iter().any(|what| what.contains("`rotor`")), "{left_out:?}");
+    let spared = found["spared"].as_array().unwrap();
+    assert!(spared.iter().any(|what| what.as_str().unwrap().contains("`rotor`")), "{spared:?}");
 }
 
 #[test]
@@ -86,7 +87,6 @@ fn the_head_of_a_generated_file_says_the_same() {
         let row = head.iter().find(|line| line.starts_with(&begin)).unwrap();
         let cells: Vec<&str> = row.split(" | ").collect();
         assert_eq!(cells[5], function["operations"]["total"].to_string());
-        assert_eq!(cells[8].trim_end_matches(" |"), function["passes"]["shared"].to_string());
     }
     for what in found["left_out"].as_array().unwrap() {
         let line = format!("* left out: {}", what.as_str().unwrap());

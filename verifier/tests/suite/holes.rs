@@ -288,10 +288,10 @@ fn what_no_module_has_is_refused() {
             accepted.push(format!("no module has `{place}`"));
             continue;
         };
-        // Everywhere at once, and at the last place alone.
+        // At the first place and at the last.
         let at = page.code.rfind(place).expect("it has one");
         let last = format!("{}{wrong}{}", &page.code[..at], &page.code[at + place.len()..]);
-        for code in [page.code.replace(place, wrong), page.code.replacen(place, wrong, 1), last] {
+        for code in [page.code.replacen(place, wrong, 1), last] {
             let report = verify(&page.model, &code, &page.constants, Depth::Quick);
             if report.refusals.is_empty() {
                 accepted.push(format!("`{place}` became `{wrong}`"));
