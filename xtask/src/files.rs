@@ -53,8 +53,21 @@ pub(crate) fn write_if_changed(path: &Path, text: &str) -> io::Result<bool> {
 
 /// The same; an error is the command's failure.
 pub(crate) fn write(path: &Path, text: &str) -> Result<bool, Failure> {
-    write_if_changed(path, text)
-        .map_err(|e| Failure::Run(format!("{} cannot be written: {e}", path.display())))
+    write_if_changed(path, text).map_err(|e| unwritable(path, "written", &e))
+}
+
+/// A place that cannot be written to was asked for wrongly; a full disk was not.
+pub(crate) fn unwritable(path: &Path, done: &str, error: &io::Error) -> Failure {
+    use io::ErrorKind::{
+        AlreadyExists, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
+    };
+    let words = format!("{} cannot be {done}: {error}", path.display());
+    match error.kind() {
+        AlreadyExists | IsADirectory | NotADirectory | NotFound | PermissionDenied | ReadOnlyFilesystem => {
+            Failure::Usage(words)
+        }
+        _ => Failure::Run(words),
+    }
 }
 
 /// A path as messages and generated files show it: relative to the workspace if inside of it, with slashes.
