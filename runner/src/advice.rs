@@ -138,6 +138,9 @@ const SPARE: f64 = 1.5;
 /// A share of steps at the limit of stability from which on a scene is stiff for a method.
 const STIFF_SHARE: f64 = 0.25;
 
+/// Of a rate and a step, a product that asks for no shorter step.
+const SLOW: f64 = 1e-2;
+
 /// A rate of the linearised motion that is less than this part of the fastest one met does not explain it.
 const TRUE_SHARE: f64 = 0.1;
 
@@ -201,6 +204,10 @@ impl Plan<'_> {
             let can = self.offers.derivatives && self.approach.integrator != Integrator::Rodas4;
             return can.then(|| Advice::to(Change::Integrator(Integrator::Rodas4)));
         }
+        self.joint()
+    }
+
+    fn joint(&self) -> Option<Advice> {
         let can = self.offers.joint_space && self.approach.coordinates == Coordinates::Maximal;
         can.then(|| Advice::to(Change::Coordinates(Coordinates::Joint)))
     }
@@ -257,6 +264,9 @@ impl Plan<'_> {
         let share = met.limited_by_stability as f64 / met.accepted.max(1) as f64;
         if share > STIFF_SHARE {
             advice.extend(self.unlimited(met, fastest));
+        } else if fastest.is_some_and(|rate| rate * t < SLOW * steps as f64) && needed > MOST_STEPS {
+            // Steps follow Euler parameters that turn, not the joints.
+            advice.extend(self.joint());
         }
         if needed <= MOST_STEPS {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1e10")]

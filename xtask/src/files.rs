@@ -82,6 +82,20 @@ pub(crate) fn write(path: &Path, text: &str) -> Result<bool, Failure> {
     write::write(path, text, Known::Place)
 }
 
+/// A place that cannot be written to was asked for wrongly; a full disk was not.
+pub(crate) fn unwritable(path: &Path, done: &str, error: &io::Error) -> Failure {
+    use io::ErrorKind::{
+        AlreadyExists, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
+    };
+    let words = format!("{} cannot be {done}: {error}", path.display());
+    match error.kind() {
+        AlreadyExists | IsADirectory | NotADirectory | NotFound | PermissionDenied | ReadOnlyFilesystem => {
+            Failure::Usage(words)
+        }
+        _ => Failure::Run(words),
+    }
+}
+
 /// A path as messages and generated files show it: relative to the workspace if inside of it, with slashes.
 pub(crate) fn shown(path: &Path) -> String {
     let inside = fs::canonicalize(path)

@@ -142,6 +142,12 @@ fn sentence(judgement: &Judgement) -> String {
     let relative = number(judgement.relative, 2);
     match judgement.grade {
         Grade::Good => format!("good: no error is larger than {relative} of its motion."),
+        Grade::Usable if judgement.relative > 1.0 => {
+            format!(
+                "usable: positions to {position}, rates to {rate}; an angle has lost its phase, or a motion that is small beside the \
+                 others is lost."
+            )
+        }
         Grade::Usable => {
             format!("usable to {relative} of the motion: positions to {position}, rates to {rate}.")
         }

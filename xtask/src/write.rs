@@ -81,7 +81,7 @@ pub(crate) fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failu
     if files::holds(path, text) {
         return Ok(false);
     }
-    let failed = |e: io::Error| Failure::Run(format!("{} cannot be written: {e}", path.display()));
+    let failed = |e: io::Error| files::unwritable(path, "written", &e);
     if known == Known::Record {
         // Before the file: one that is there without its line could never be replaced.
         record(path, text).map_err(failed)?;

@@ -509,6 +509,37 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
 }
 
 #[test]
+fn the_same_mistake_has_the_same_code_in_every_command() {
+    let folder = Folder::new("codes");
+    fs::write(folder.0.join("motor.toml"), MOTOR).unwrap();
+    fs::write(folder.0.join("bad.toml"), "format = 1\nnam = \"x\"\n").unwrap();
+    fs::write(folder.0.join("bytes.toml"), [0xff, 0xfe]).unwrap();
+    let commands: [&[&str]; 7] = [
+        &["simulate"],
+        &["generate", "--out", "x.rs"],
+        &["generate", "--check", "--out", "x.rs"],
+        &["inspect", "--no-compile"],
+        &["verify"],
+        &["verify", "--rounding"],
+        &["report"],
+    ];
+    for command in commands {
+        for page in ["none.toml", "bad.toml", "bytes.toml", "."] {
+            let output = xtask(&folder, &[command, &[page]].concat());
+            assert_eq!(output.status.code(), Some(2), "{command:?} {page}");
+        }
+        let output = xtask(&folder, &[command, &["motor.toml", "--nonsense"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{command:?} --nonsense");
+    }
+    let out: [&[&str]; 3] = [&["simulate", "--engine", "assembled"], &["generate"], &["report", "--quick"]];
+    for command in out {
+        let output = xtask(&folder, &[command, &["motor.toml", "--out", "bad.toml/x"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{command:?} --out");
+    }
+    assert_eq!(folder.files(), ["bad.toml", "bytes.toml", "motor.toml"]);
+}
+
+#[test]
 fn a_worthless_result_has_a_code_of_its_own() {
     let folder = Folder::new("worthless");
     let page = model("compound-pendulum.toml");

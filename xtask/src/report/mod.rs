@@ -26,6 +26,7 @@ mod write;
 
 use crate::args::ReportArgs;
 use crate::failure::Failure;
+use crate::files::unwritable;
 use crate::progress::Count;
 use crate::{files, nested, scene};
 use goals::Goal;
@@ -96,7 +97,7 @@ fn pages(args: &ReportArgs) -> Result<Vec<PathBuf>, Failure> {
 }
 
 fn unusable(path: &Path, error: &io::Error) -> Failure {
-    Failure::Run(format!("{} cannot be used: {error}", path.display()))
+    unwritable(path, "used", error)
 }
 
 #[cfg(test)]
