@@ -13,6 +13,7 @@ use similar::TextDiff;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use std::{fs, io};
 
 /// Writes the modules of the models, or checks that they are fresh.
@@ -189,7 +190,8 @@ fn difference(output: &Output) -> Option<String> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Some(format!("{path} is missing\n")),
         Err(error) => return Some(format!("{path} cannot be read: {error}\n")),
     };
-    let diff = TextDiff::from_lines(&found, &output.text);
+    // Long texts of which nothing is alike would be compared for hours.
+    let diff = TextDiff::configure().timeout(Duration::from_secs(2)).diff_lines(&found, &output.text);
     let unified = diff.unified_diff().context_radius(1).header("as it is", "as its model says").to_string();
     let mut words = format!("{path} is not what its model says:\n");
     for line in unified.lines().take(SHOWN_LINES) {

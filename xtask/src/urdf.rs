@@ -13,7 +13,7 @@ mod robot;
 use crate::args::ImportArgs;
 use crate::failure::Failure;
 use crate::files;
-use crate::words::count;
+use crate::words::{capped, count};
 use crate::write::{self, Known};
 use gyro_model::Model;
 use merge::Root;
@@ -50,7 +50,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
 
 /// The page of a robot and what is not on it; or every mistake of the file, a line for each.
 fn convert(file: &str, shown: &str, text: &str, root: Root) -> Result<(String, Vec<String>), String> {
-    let joined = |problems: Vec<String>| problems.join("\n");
+    let joined = |problems: Vec<String>| capped(&problems);
     let robot = robot::read(file, text).map_err(joined)?;
     let merged = merge::merge(file, &robot, root).map_err(joined)?;
     let mut remarks = robot.remarks.clone();
@@ -73,7 +73,7 @@ fn report(out: &Path, model: &Model, remarks: &[String]) -> String {
     if !remarks.is_empty() {
         text.push_str("what differs from the robot:\n");
     }
-    for remark in remarks {
+    for remark in capped(remarks).lines() {
         let _ = writeln!(text, "  {remark}");
     }
     text

@@ -33,18 +33,43 @@ pub(crate) fn count(number: u64, noun: &str) -> String {
     format!("{grouped} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// Names of a list that are written out.
+const LISTED: usize = 40;
+
 /// What to write in place of an unknown name.
 pub(crate) fn instead(written: &str, known: &[&str]) -> String {
+    // The search takes as long as lengths and numbers of names multiplied.
+    let searched = if written.len() > 100 || known.len() > 1000 { &[] } else { known };
     let distance = |name: &&&str| strsim::damerau_levenshtein(written, name);
-    let nearest = known.iter().min_by_key(distance).filter(|name| {
+    let nearest = searched.iter().min_by_key(distance).filter(|name| {
         let length = written.chars().count().max(name.chars().count());
         distance(name) <= length.div_ceil(3)
     });
-    let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let names: Vec<String> = known.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+    let more = known.len().saturating_sub(LISTED);
+    let list = if more == 0 { names.join(", ") } else { format!("{} and {more} more", names.join(", ")) };
     match nearest {
         Some(nearest) => format!("write `{nearest}`; there are {list}"),
         None => format!("write one of {list}"),
     }
+}
+
+/// Lines of a list that are shown, and characters of each.
+const LINES: usize = 30;
+const LINE: usize = 800;
+
+/// The first lines of a list, none of them too long, and how many more there are.
+pub(crate) fn capped(lines: &[String]) -> String {
+    let cut = |line: &String| match line.char_indices().nth(LINE) {
+        None => line.clone(),
+        Some((end, _)) => format!("{}...", &line[..end]),
+    };
+    let mut shown: Vec<String> = lines.iter().take(LINES).map(cut).collect();
+    let more = lines.len().saturating_sub(LINES);
+    if more > 0 {
+        shown.push(format!("and {more} more"));
+    }
+    shown.join("\n")
 }
 
 /// Columns side by side: the first to the left, the others to the right, two spaces apart and two before.
@@ -67,6 +92,13 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_lists_are_capped() {
+        let lines = |n: usize| vec!["é".repeat(1000); n];
+        assert_eq!(capped(&lines(2)).chars().count(), 2 * 803 + 1);
+        assert!(!capped(&lines(30)).contains("more") && capped(&lines(100)).ends_with("\nand 70 more"));
+    }
 
     #[test]
     fn numbers_are_short_and_keep_their_digits() {

@@ -112,7 +112,11 @@ fn generate(model: &Model) -> &'static str {
         }
         Ok(module) => {
             let report = verify(model, &module.code, &module.constants, Depth::Quick);
-            if report.is_refuted() { REFUTED } else { "generated" }
+            if !report.is_refuted() {
+                return "generated";
+            }
+            eprintln!("{report}");
+            REFUTED
         }
     }
 }

@@ -3,14 +3,21 @@
 use crate::case::REFUTED;
 use std::collections::BTreeMap;
 use std::env;
+use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, ExitCode, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How long one case may take. All but a few take milliseconds; a busy machine is given time.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+/// How long one case may take of a processor, or of time where that is not known. All but a few take milliseconds, good pages seconds.
+pub const PATIENCE: Duration = Duration::from_secs(40);
+
+/// How long one case may take on a machine that is busy with other things.
+const LONGEST: Duration = Duration::from_secs(600);
+
+/// Ticks of a second in which Linux counts what a process takes of a processor.
+const TICKS: u64 = 100;
 
 /// Memory that a child may take, kB.
 pub const MEMORY_KB: u64 = 2_000_000;
@@ -66,12 +73,12 @@ fn one(seed: u64, first: u64, stride: u64, end: Instant) -> Tally {
             return tally;
         };
         let lines = lines(&mut child);
-        let (mut current, mut begun) = (next, Instant::now());
+        let (mut current, mut begun) = (next, Clock::now(&child));
         let finding = loop {
             match lines.recv_timeout(Duration::from_millis(200)) {
                 Ok(line) => match line.split_once(' ') {
                     Some(("begin", number)) => {
-                        (current, begun) = (number.parse().unwrap_or(current), Instant::now());
+                        (current, begun) = (number.parse().unwrap_or(current), Clock::now(&child));
                     }
                     Some(("panic", words)) => tally.findings.push((current, words.to_owned())),
                     Some(("end", what)) => {
@@ -82,7 +89,7 @@ fn one(seed: u64, first: u64, stride: u64, end: Instant) -> Tally {
                     }
                     _ => {}
                 },
-                Err(RecvTimeoutError::Timeout) if begun.elapsed() > PATIENCE => break Some("takes too long"),
+                Err(RecvTimeoutError::Timeout) if begun.is_over(&child) => break Some("takes too long"),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
                     break Some("ended the process: too much memory or stack");
@@ -101,6 +108,33 @@ fn one(seed: u64, first: u64, stride: u64, end: Instant) -> Tally {
         next = current + stride;
     }
     tally
+}
+
+/// When a case began.
+struct Clock {
+    time: Instant,
+    processor: Option<Duration>,
+}
+
+impl Clock {
+    fn now(child: &Child) -> Self {
+        Self { time: Instant::now(), processor: taken(child) }
+    }
+
+    fn is_over(&self, child: &Child) -> bool {
+        let elapsed = self.time.elapsed();
+        let taken = taken(child).zip(self.processor).map_or(elapsed, |(now, then)| now.saturating_sub(then));
+        taken > PATIENCE || elapsed > LONGEST
+    }
+}
+
+/// What a child has taken of a processor, where Linux counts it.
+fn taken(child: &Child) -> Option<Duration> {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
+    // After the name in brackets; the name may hold anything.
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |index: usize| fields.get(index)?.parse::<u64>().ok();
+    Some(Duration::from_millis((ticks(11)? + ticks(12)?) * 1000 / TICKS))
 }
 
 fn child(seed: u64, first: u64, stride: u64) -> Option<Child> {
