@@ -51,9 +51,10 @@ pub(crate) fn write_if_changed(path: &Path, text: &str) -> io::Result<bool> {
     written.map(|()| true)
 }
 
-/// The same; an error is the command's failure.
+/// The same, in a folder that is made if need be; an error is the command's failure.
 pub(crate) fn write(path: &Path, text: &str) -> Result<bool, Failure> {
-    write_if_changed(path, text)
+    let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+    made.and_then(|()| write_if_changed(path, text))
         .map_err(|e| Failure::Run(format!("{} cannot be written: {e}", path.display())))
 }
 
