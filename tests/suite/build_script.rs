@@ -140,3 +140,60 @@ fn a_package_outside_generates_its_own_mechanisms() {
     let refused = cargo(&wrong, &target, "run", &[]);
     assert!(!refused.is_success && refused.stderr.contains("REFUTED"), "{}", refused.stderr);
 }
+
+/// The blocks of README.md in this language.
+fn of_the_readme(language: &str) -> Vec<String> {
+    let page = fs::read_to_string(root().join("README.md")).unwrap();
+    let fence = format!("```{language}\n");
+    page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+}
+
+/// The page, the manifest, the build script and the lines of Rust that README.md shows make a package that builds and runs.
+#[test]
+fn the_readme_s_example_builds_and_runs() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("src")).unwrap();
+    let tables = of_the_readme("toml");
+    let [page, dependencies, ..] = &tables[..] else { panic!("a page and dependencies") };
+    let (script, lines): (Vec<String>, Vec<String>) =
+        of_the_readme("rust,ignore").into_iter().partition(|block| block.contains("// build.rs"));
+    let clone = root().display().to_string();
+    let head = "[package]\nname = \"readme\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n[profile.dev]\ndebug = false\n\n";
+    let manifest = format!("{head}{}", dependencies.replace("path/to/the/clone", &clone));
+    // What generates the items stands outside of functions, all else is a program.
+    let text = lines.join("\n");
+    let (items, body): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with("include!"));
+    let body: Vec<String> = body.into_iter().map(once_imported()).collect();
+    let main = format!(
+        "#![allow(warnings)]\n{}\nfn main() -> Result<(), gyro_sim::Error> {{\n{}\nprintln!(\"{{:?}} {{:?}}\", state, x);\nOk(())\n}}\n",
+        items.join("\n"),
+        body.join("\n")
+    );
+    let files = [
+        ("Cargo.toml", &manifest),
+        ("build.rs", &script[0]),
+        ("src/main.rs", &main),
+        ("pendulum.toml", page),
+    ];
+    files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested");
+    let said = cargo(&folder, &target, "run", &[]);
+    assert!(said.is_success, "{}\n{main}", said.stderr);
+    assert!(said.stdout.contains("[") && !said.stdout.contains("NaN"), "{}", said.stdout);
+}
+
+/// Names are imported once: the snippets of a page are not one program.
+fn once_imported() -> impl FnMut(&str) -> String {
+    let mut known: Vec<String> = Vec::new();
+    move |line| {
+        let Some(names) = line.strip_prefix("use gyro_sim::{").and_then(|rest| rest.strip_suffix("};"))
+        else {
+            return line.to_owned();
+        };
+        let new: Vec<&str> =
+            names.split(", ").filter(|name| !known.iter().any(|other| other == name)).collect();
+        known.extend(new.iter().map(|name| (*name).to_owned()));
+        format!("use gyro_sim::{{{}}};", new.join(", "))
+    }
+}

@@ -2,7 +2,11 @@
 
 /// A number with so many significant digits at most, plain where that is short.
 pub(crate) fn number(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        // Nor a negative zero.
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
         return format!("{value}");
     }
     let scientific = format!("{value:.*e}", digits.saturating_sub(1));

@@ -75,13 +75,14 @@ fn is_own(path: &Path, known: Known) -> bool {
 
 /// Writes a file unless it has this text already. Returns whether it was written.
 ///
-/// The text goes to a neighbour that is then renamed: at no time is half of it to be seen.
+/// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need be.
 pub(crate) fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
     check(path, known)?;
     if files::holds(path, text) {
         return Ok(false);
     }
     let failed = |e: io::Error| files::unwritable(path, "written", &e);
+    path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
     if known == Known::Record {
         // Before the file: one that is there without its line could never be replaced.
         record(path, text).map_err(failed)?;

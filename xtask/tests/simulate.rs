@@ -265,7 +265,7 @@ fn columns_have_the_names_of_coordinates_and_outputs() {
     assert!(!text.contains("linear theory"), "{text}");
     let table = fs::read_to_string(folder.0.join("motor.csv")).unwrap();
     let header = table.lines().next().unwrap();
-    let expected = "t [s],shaft [rad],shaft rate [rad/s],table.x [m],table.x rate [m/s],table.y [m],table.y rate [m/s],\
+    let expected = "t [s],torque [N*m],push [N],shaft [rad],shaft rate [rad/s],table.x [m],table.x rate [m/s],table.y [m],table.y rate [m/s],\
                     table.angle [rad],table.angle rate [rad/s],spin.vx [m/s],spin.vy [m/s],spin.vz [m/s],spin.wx [rad/s],\
                     spin.wy [rad/s],spin.wz [rad/s],energies.kinetic [J],energies.potential [J],kinetic energy [J],";
     assert!(header.starts_with(expected), "{header}");

@@ -1,0 +1,173 @@
+//! What README.md and the pages of docs/ tell the reader to type works as it is typed.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use gyro_model::Model;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The blocks between fences of this language.
+fn blocks(page: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}\n");
+    page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+}
+
+/// README.md and the pages of docs/, with their names.
+fn pages() -> Vec<(String, String)> {
+    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let mut pages: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|e| e == "md")).collect();
+    pages.push(root().join("README.md"));
+    pages.sort();
+    let page = |path: PathBuf| {
+        (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(path).unwrap())
+    };
+    pages.into_iter().map(page).collect()
+}
+
+/// All commands of a page: lines after a dollar, and what begins with `cargo` between backquotes.
+fn commands(page: &str) -> Vec<Vec<String>> {
+    let blocks = blocks(page, "console").concat();
+    let typed = blocks.lines().filter_map(|line| line.strip_prefix("$ "));
+    let without = blocks_removed(page);
+    let inline = without.split('`').skip(1).step_by(2).filter(|words| words.starts_with("cargo "));
+    let words =
+        |line: &str| line.split(" # ").next().unwrap().split_whitespace().map(str::to_owned).collect();
+    typed.chain(inline).map(words).collect()
+}
+
+fn blocks_removed(page: &str) -> String {
+    page.split("```").step_by(2).collect()
+}
+
+/// The manifests of the workspace's packages.
+fn manifests() -> Vec<String> {
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let members = workspace.lines().find(|line| line.starts_with("members")).unwrap().to_owned();
+    let members = members.split('"').skip(1).step_by(2);
+    members.map(|member| fs::read_to_string(root().join(member).join("Cargo.toml")).unwrap()).collect()
+}
+
+/// A folder for what commands write, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        let path = std::env::temp_dir().join(format!("xtask-readme-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Files that a command reads are there.
+fn files_are_there(page: &str, command: &[String]) {
+    let writes = command.iter().position(|word| word == "--out").map(|at| at + 1);
+    for (index, word) in command.iter().enumerate().skip(1) {
+        let path = word.rsplit('=').next().unwrap();
+        let is_file = [".toml", ".csv", ".urdf"].iter().any(|end| path.ends_with(end));
+        if is_file && writes != Some(index) {
+            assert!(root().join(path).exists(), "{page}: `{}`: there is no {path}", command.join(" "));
+        }
+    }
+}
+
+/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long ones but that
+/// they exist.
+fn run(command: &[String], folder: &Path) -> Output {
+    let mut args: Vec<String> = command[2..].to_vec();
+    if let Some(at) = args.iter().position(|word| word == "--out") {
+        let name = Path::new(&args[at + 1]).file_name().unwrap().to_owned();
+        args[at + 1] = folder.join("made").join(name).display().to_string();
+    }
+    let mut add = |words: &[&str]| args.extend(words.iter().map(|word| (*word).to_owned()));
+    match command[2].as_str() {
+        "simulate" if command.len() > 3 && command[3].ends_with(".toml") => {
+            if !command.iter().any(|word| word == "--engine") {
+                add(&["--engine", "assembled"]);
+            }
+            add(&["--t-end", "0.01", "--out", &folder.join("run").display().to_string()]);
+        }
+        "inspect" => add(&["--no-compile"]),
+        "import" | "generate" if command.len() > 3 => {}
+        _ => args = vec![command[2].clone(), "--help".to_owned()],
+    }
+    Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(root()).output().unwrap()
+}
+
+#[test]
+fn every_command_works_as_it_is_typed() {
+    let folder = Folder::new();
+    let mut number = 0;
+    for (name, page) in pages() {
+        for command in commands(&page) {
+            let command: Vec<String> = command.into_iter().skip_while(|word| word.contains('=')).collect();
+            files_are_there(&name, &command);
+            if command.len() > 2 && command[..2] == ["cargo", "xtask"] {
+                let output = run(&command, &folder.0);
+                let said = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "{name}: `{}`: {said}", command.join(" "));
+                number += 1;
+            }
+            if let Some(at) = command.iter().position(|word| word == "--package") {
+                let package = format!("name = \"{}\"", command[at + 1]);
+                assert!(
+                    manifests().iter().any(|text| text.contains(&package)),
+                    "{name}: {}",
+                    command.join(" ")
+                );
+            }
+        }
+    }
+    assert!(number > 10, "{number} commands");
+}
+
+/// The page of the README is the one that is shipped, and its bar lies where its hinge makes it lie.
+#[test]
+fn the_pendulum_is_the_one_that_is_shipped() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let page = blocks(&readme, "toml").remove(0);
+    assert_eq!(page, fs::read_to_string(root().join("examples/pendulum.toml")).unwrap());
+    let model = gyro_model::read("pendulum.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let (along, moments) = (arm(&model), model.values(&model.bodies[1].inertia));
+    // A thin bar has no moment to speak of about its own direction.
+    for k in 0..3 {
+        assert_eq!(along[k] == 0.0, moments[k] > 0.01, "{along:?} {moments:?}");
+    }
+    // m l^2 / 3 with l half the length.
+    let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
+    assert!((moments[0] - length * length / 3.0).abs() < 1e-3 * moments[0], "{moments:?}");
+}
+
+/// From the mass centre to the hinge.
+fn arm(model: &Model) -> [f64; 3] {
+    model.values(&model.joints[0].second.point)
+}
+
+/// No page claims another version of Rust than the manifest, no picture or page that is linked is missing.
+#[test]
+fn the_version_of_rust_is_the_manifest_s_and_links_lead_somewhere() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let (_, version) = manifest.split_once("rust-version = \"").unwrap();
+    let version = version.split('"').next().unwrap();
+    assert!(readme.contains(&format!("Rust {version} or newer")), "{version}");
+    for (name, page) in pages() {
+        for link in blocks_removed(&page).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let path = link.split('#').next().unwrap();
+            if path.is_empty() || path.contains("://") {
+                continue;
+            }
+            let folder = if name == "README.md" { root() } else { root().join("docs") };
+            assert!(folder.join(path).exists(), "{name}: {link}");
+        }
+    }
+}
