@@ -132,13 +132,18 @@ impl Plan<'_> {
         }
         let order = if self.offers.inputs_vary { 1.0 } else { order(self.approach.integrator) };
         let factor = (judged.relative / AIM).powf(1.0 / order).clamp(SHORTER[0], SHORTER[1]);
-        // Shorter steps round more often.
-        let is_smooth =
-            judged.relative <= SMOOTH && judged.grade < Grade::Worthless && judged.relative > 30.0 * rounding;
+        // Shorter steps round more often, and small motions beside large ones are rounded with these.
+        let largest = judged.errors.iter().map(|error| error.in_tolerances(1.0)).fold(0.0, f64::max);
+        let is_passed = judged.reasons.iter().any(|reason| matches!(reason, Reason::Pivot(_)));
+        let is_smooth = judged.relative <= SMOOTH
+            && judged.grade < Grade::Worthless
+            && judged.relative.min(largest) > 30.0 * rounding
+            && !is_passed
+            && !self.is_single();
         let promise = if is_smooth { Promise::Error(factor) } else { Promise::None };
         let words = match promise {
             Promise::Error(_) => format!("Shorter steps should divide the error by {factor:.1} at least."),
-            _ => "The steps are too long to say by how much shorter ones are better.".to_owned(),
+            _ => "Shorter steps may be better; by how much cannot be said.".to_owned(),
         };
         Some(Remark { words, advice: Some(self.step_over(factor)), promise })
     }
