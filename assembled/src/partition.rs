@@ -68,6 +68,7 @@ const TRUSTED: f64 = 0.125;
 /// over the pivot.
 const ROUNDINGS: f64 = 16.0;
 const NEAR: f64 = 0.02;
+const SLIGHT: f64 = 1e-3;
 
 /// `Φ_u Δu = −Φ`.
 pub(crate) fn newton_step<T: Number>(
@@ -106,7 +107,9 @@ pub(crate) fn solve_velocities<T: Number>(
     let residual = right.amax();
     let (solution, pivot) = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
     let speed = y[lowered.n_q()..lowered.n_q() + lowered.n_v()].iter().fold(T::zero(), |m, v| abs(*v).max(m));
-    if pivot < number(NEAR) && residual * pivot <= T::EPSILON * number(ROUNDINGS) * speed {
+    let rounding = T::EPSILON * number(ROUNDINGS);
+    let is_slight = rounding < number::<T>(SLIGHT) * pivot * pivot;
+    if is_slight && pivot < number(NEAR) && residual * pivot <= rounding * speed {
         return Ok(());
     }
     let mut change = DVector::zeros(lowered.n_q());

@@ -7,6 +7,7 @@
 //! | [`MassWeighted`] | as much of everything as it can: the smallest change in the metric of the masses; any mechanism |
 //! | [`Baumgarte`] | nothing: the accelerations steer back; a system, not a correction |
 //! | [`Uncorrected`] | all of it: direct integration, and systems that have nothing to correct |
+//! | [`Watched`] | all of it too, but drift and singular poses are seen |
 
 mod baumgarte;
 mod closed_form;

@@ -78,11 +78,16 @@ const TRUSTED: f64 = 0.125;
 /// Corrected positions are known to a rounding over the pivot, and the rows' rates at this speed no better. Divided by the pivot once more that
 /// would be a change of velocities by noise; what was integrated is better.
 pub(crate) fn is_noise<T: Real>(rate: T, pivot: T, speed: T) -> bool {
-    pivot < T::constant(SMALL) && rate * pivot <= T::EPSILON * T::constant(ROUNDINGS) * speed
+    let rounding = T::EPSILON * T::constant(ROUNDINGS);
+    let is_slight = rounding < T::constant(SLIGHT) * pivot * pivot;
+    is_slight && pivot < T::constant(SMALL) && rate * pivot <= rounding * speed
 }
 
 /// A pivot below this is small: singular poses are near. Elsewhere corrections are exact.
 const SMALL: f64 = 0.02;
+
+/// Noise is left alone only where it is this part of the motion at most; in single precision it is more wherever pivots are small.
+const SLIGHT: f64 = 1e-3;
 
 /// Rounding errors that add up in a row.
 const ROUNDINGS: f64 = 16.0;

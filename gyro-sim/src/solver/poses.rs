@@ -1,0 +1,229 @@
+//! Singular poses under error control: foreseen, stepped over, or named.
+//!
+//! A motion through a pose where rows become dependent is as smooth as elsewhere. But accelerations are quotients of numbers that vanish there, so
+//! that stages, which lie off the constraints, see them of any size, and what corrections know is divided by a pivot once for positions and twice for
+//! velocities. So the pose is not stepped through but over: see [`Solver::leap`].
+
+use super::Solver;
+use crate::{Clearance, Correction, Error, Ode, Owner, Real, Storage};
+
+/// The way to a singular pose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approach {
+    attempts: u32,
+    /// What the last leap that was refused would have been off by.
+    error: f64,
+}
+
+impl Default for Approach {
+    fn default() -> Self {
+        Self { attempts: 0, error: f64::INFINITY }
+    }
+}
+
+/// Whether a system has singular poses that can be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Watch {
+    Unknown,
+    Needless,
+    Needed,
+}
+
+/// The nearer a pose the less extrapolation is off, until rounding makes it worse again: then as much as this is tolerated of the last chance.
+const WORST: f64 = 100.0;
+/// Steps towards a pose go this part of the way, so that states lie close enough together to extrapolate them.
+const APPROACH: f64 = 0.35;
+/// So many steps lead to any pose that can be passed: each goes the same part of the way.
+const LONGEST_APPROACH: u32 = 300;
+/// With a pivot below this whatever fails does so because of the pose.
+const IN_POSE: f64 = 1e-3;
+/// A leap ends as clear of the pose as it began, to within this factor: where a pivot vanishes linearly, on the other side.
+const BEYOND: f64 = 0.25;
+/// A correction may change a step's result by so many times what is tolerated: by more, and the step was not what its error estimate says.
+const AGREEMENT: f64 = 10.0;
+
+/// What rounding makes of velocities near a pose, see [`Solver::rounding`], is so many times larger after a correction: an allowance.
+const ROUNDINGS: f64 = 64.0;
+/// And in states that are extrapolated.
+const NOISE: f64 = 4.0;
+/// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through a pose are apart.
+const FLOOR: f64 = 100.0;
+
+impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
+    /// In a singular pose there are many ways to fail, for this one reason.
+    pub(super) fn blame<O>(&self, system: &O, error: Error) -> Error
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        let is_symptom = matches!(
+            error,
+            Error::NotFinite { .. }
+                | Error::StepTooShort { .. }
+                | Error::TooManySteps { .. }
+                | Error::Stiff { .. }
+        );
+        let clearance = (is_symptom && self.watch == Watch::Needed)
+            .then(|| self.correction.clearance(system, self.t, &self.y))
+            .flatten();
+        match clearance {
+            Some(Clearance { pivot, owner }) if pivot < T::constant(IN_POSE) => {
+                Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner }
+            }
+            _ => error,
+        }
+    }
+
+    /// Begins to remember states where there are singular poses.
+    pub(super) fn watch<O>(&mut self, system: &O)
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        if self.watch == Watch::Needless || self.past.len() > 0 {
+            return;
+        }
+        self.watch = match self.correction.clearance(system, self.t, &self.y) {
+            Some(clearance) => {
+                self.past.push(self.t, clearance.pivot, &self.y);
+                Watch::Needed
+            }
+            None => Watch::Needless,
+        };
+    }
+
+    /// Corrects the trial if that is due; returns whether it was, and how clear it is of singular poses where there are any.
+    ///
+    /// There it must not be changed by much more than the weights allow: else it was not near the motion, whatever its error estimate says, but
+    /// perhaps near another one. And the pose must be farther away than what the constraints are off: else nothing tells the ways
+    /// on from each other.
+    pub(super) fn settle<O>(&mut self, system: &O, t: T) -> Result<(bool, Option<T>), Error>
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        if self.watch != Watch::Needed {
+            return Ok((self.correct_trial(system, t)?, None));
+        }
+        self.raw.as_mut().copy_from_slice(self.trial.as_ref());
+        let is_corrected = self.correct_trial(system, t)?;
+        let Some(Clearance { pivot, owner }) = self.correction.clearance(system, t, &self.trial) else {
+            return Ok((is_corrected, None));
+        };
+        let owner = owner.unwrap_or(Owner::Body(0));
+        let drift = self.correction.violation(system, t, &self.trial) + T::EPSILON;
+        if pivot * pivot <= T::constant(FLOOR) * drift {
+            return Err(Error::Singular { t: t.to_f64(), pivot: pivot.to_f64(), owner: Some(owner) });
+        }
+        let found = self.change_beyond(self.rounding(pivot) * T::constant(ROUNDINGS));
+        // What has drifted over several steps, or came with the start, is not this step's.
+        if is_corrected && self.since_correction == 0 && self.past.len() > 1 && found > AGREEMENT {
+            let differences =
+                self.raw.as_ref().iter().zip(self.trial.as_ref()).map(|(a, b)| (*a - *b).abs().to_f64());
+            let change = differences.fold(0.0, f64::max);
+            return Err(Error::Jump { t: t.to_f64(), change, limit: change * AGREEMENT / found, owner });
+        }
+        Ok((is_corrected, Some(pivot)))
+    }
+
+    /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the pivot, and so
+    /// velocities, along what the pivot belongs to, to one over its square.
+    fn rounding(&self, pivot: T) -> T {
+        let zero = T::constant(0.0);
+        let size = self.y.as_ref().iter().fold(zero, |size, y| if y.abs() > size { y.abs() } else { size });
+        T::EPSILON * size / (pivot * pivot)
+    }
+
+    /// By how much a correction has changed the trial, not counting so much of each element: the root mean square in units of the weights.
+    fn change_beyond(&self, rounding: T) -> f64 {
+        let (mut sum, mut n) = (0.0, 0.0);
+        let ends = self.raw.as_ref().iter().zip(self.trial.as_ref()).zip(self.weights.as_ref());
+        for ((raw, corrected), weight) in ends {
+            let change = ((*corrected - *raw).abs() - rounding) / *weight;
+            let part = change.to_f64().max(0.0);
+            (sum, n) = (sum + part * part, n + 1.0);
+        }
+        libm::sqrt(sum / n)
+    }
+
+    /// Where a singular pose lies within the next step, or ahead of one that has failed: steps over it, and returns so, or shortens the next
+    /// step to a part of the way there.
+    pub(super) fn approach<O>(&mut self, system: &O, t_end: T) -> Result<bool, Error>
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        let Some((length, pivot)) = self.beyond_pose() else {
+            self.approach = None;
+            return Ok(false);
+        };
+        if self.approach.is_none() && length < self.next_step + self.next_step {
+            self.approach = Some(Approach::default());
+        }
+        let Some(approach) = &mut self.approach else { return Ok(false) };
+        approach.attempts += 1;
+        if approach.attempts > LONGEST_APPROACH {
+            let owner =
+                self.correction.clearance(system, self.t, &self.y).and_then(|clearance| clearance.owner);
+            return Err(Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner });
+        }
+        if self.leap(system, t_end) {
+            self.approach = None;
+            return Ok(true);
+        }
+        let longest = length * T::constant(0.5 * APPROACH);
+        if self.next_step > longest {
+            self.next_step = longest;
+        }
+        Ok(false)
+    }
+
+    /// Steps over a singular pose that lies within a step that has failed; returns whether it has come through.
+    ///
+    /// A motion through such a pose is as smooth as elsewhere, but its accelerations are quotients of numbers that vanish there: the nearer, the
+    /// fewer digits they have, and off the constraints they are of any size. So the last states are extrapolated to about as far behind the
+    /// pose as the motion is before it, and what two polynomials differ by must be within the tolerance, as must be what the
+    /// correction changes: the constraints have not been asked so far, and have to agree.
+    fn leap<O>(&mut self, system: &O, t_end: T) -> bool
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        let Some((length, pivot)) = self.beyond_pose() else { return false };
+        let left = t_end - self.t;
+        let (length, after) =
+            if length < left { (length, self.after(length)) } else { (left, (t_end, T::constant(0.0))) };
+        let Some((degree, error)) =
+            self.past.best_fit(after.0, &self.weights, self.rounding(pivot) * T::constant(NOISE))
+        else {
+            return false;
+        };
+        let before =
+            self.approach.as_mut().map_or(0.0, |approach| core::mem::replace(&mut approach.error, error));
+        let allowed = if error > before { WORST } else { 1.0 };
+        if error.is_nan() || error > allowed {
+            return false;
+        }
+        self.past.at(after.0, degree, &mut self.trial);
+        let Ok(settled) = self.settle(system, after.0) else { return false };
+        if !settled.1.is_some_and(|landing| landing > pivot * T::constant(BEYOND)) {
+            return false;
+        }
+        self.is_untouched = false;
+        self.go_on(after, length, settled);
+        (self.is_kept, self.resumes, self.leap) = (false, false, Some(degree));
+        self.statistics.leaps += 1;
+        self.next_step = length;
+        true
+    }
+
+    /// The length of a step to behind the pose ahead, if there is one, and how clear of it the state is.
+    pub(super) fn beyond_pose(&self) -> Option<(T, T)> {
+        let [now, before] = self.past.last_two()?;
+        if now.pivot >= before.pivot {
+            return None;
+        }
+        let distance = (now.t - before.t) * now.pivot / (before.pivot - now.pivot);
+        Some((distance + distance, now.pivot))
+    }
+}
