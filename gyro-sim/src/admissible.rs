@@ -137,7 +137,7 @@ impl Rule {
 /// semidefinite by all its principal minors, each but for rounding. Scaled by the trace, so that no product leaves the numbers.
 fn is_inertia(elements: [f64; 6], slack: f64) -> bool {
     let trace = elements[0] + elements[1] + elements[2];
-    if !(trace > 0.0) {
+    if trace.is_nan() || trace <= 0.0 {
         return false;
     }
     let j = elements.map(|x| x / trace);
