@@ -77,6 +77,10 @@ static int misuse(Gimbal *gimbal) {
     wrong += gimbal_set_parameter(gimbal, 1, 0.0) != GIMBAL_STATUS_OUT_OF_RANGE;
     wrong += gimbal_set_input(gimbal, 0, nan) != GIMBAL_STATUS_BAD_NUMBER;
     wrong += gimbal_set_parameter(gimbal, 0, infinity) != GIMBAL_STATUS_BAD_NUMBER;
+    wrong += gimbal_set_parameter(gimbal, 0, nan) != GIMBAL_STATUS_BAD_NUMBER;
+    wrong += gimbal_set_parameter(gimbal, 0, 0.0) != GIMBAL_STATUS_BAD_NUMBER;
+    wrong += gimbal_set_parameter(gimbal, 0, -0.085) != GIMBAL_STATUS_BAD_NUMBER;
+    wrong += gimbal_set_parameter(gimbal, 0, 1e101) != GIMBAL_STATUS_BAD_NUMBER;
     wrong += gimbal_step(gimbal, nan, STEPS) != GIMBAL_STATUS_BAD_NUMBER;
     wrong += gimbal_step(gimbal, 0.0, STEPS) != GIMBAL_STATUS_BAD_NUMBER;
     /* None of it has done any harm. */

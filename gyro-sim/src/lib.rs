@@ -54,6 +54,7 @@
 // Generated modules name this crate from outside and from within alike.
 extern crate self as gyro_sim;
 
+pub mod admissible;
 mod apart;
 pub mod charts;
 pub mod correct;

@@ -36,6 +36,7 @@ pub use redundancy::{Analysis, analyse};
 pub use spatial::{Quaternion, Vector};
 pub use spline::Spline;
 pub use tree::{Attachment, Link, Tree};
+pub use validate::ParameterRule;
 
 use std::ops::Range;
 

@@ -74,7 +74,7 @@ fn start_violates(model: &Model, module: &Module) -> Option<String> {
                 |row| model.row_named(*row),
             );
             // Beyond any tolerance are also numbers that are none.
-            (!(value.abs() <= *tolerance)).then(|| {
+            (value.is_nan() || value.abs() > *tolerance).then(|| {
                 format!("the start violates {name}{what} by {value:e} where {tolerance:e} is rounding")
             })
         })

@@ -2,7 +2,7 @@
 
 use super::ModuleWriter;
 use crate::emit::{float, ident, index};
-use gyro_model::Parameter;
+use gyro_model::{Model, Number, Parameter, ParameterRule};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -80,6 +80,8 @@ impl ModuleWriter<'_> {
         let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
         let values: Vec<_> = parameters.iter().map(|p| float(default(p))).collect();
         let docs = parameters.iter().map(|p| format!(" Default {:?}.", default(p)));
+        let model = &self.equations.model;
+        let rules: Vec<_> = model.parameter_rules().iter().map(|rule| rule_tokens(model, rule)).collect();
         Some(quote! {
             #[doc = #doc]
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +92,13 @@ impl ModuleWriter<'_> {
             impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
                 fn default() -> Self {
                     Self { #(#names: T::constant(#values),)* }
+                }
+            }
+
+            impl<T: gyro_sim::Real> Parameters<T> {
+                /// Whether the mechanism can have these parameters, as the model page's rules decide.
+                pub fn check(&self) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+                    gyro_sim::admissible::check(&[#(self.#names),*], &[#(#rules),*])
                 }
             }
         })
@@ -170,6 +179,39 @@ impl ModuleWriter<'_> {
             })
         })
     }
+}
+
+/// A rule as `gyro_sim::admissible` has it.
+fn rule_tokens(model: &Model, rule: &ParameterRule<'_>) -> TokenStream {
+    let number = |number: &Number| match number {
+        Number::Parameter { index: place, negated } => {
+            let (kind, place) = (ident(if *negated { "Negated" } else { "Given" }), index(*place));
+            quote! { gyro_sim::admissible::Number::#kind(#place) }
+        }
+        number => {
+            let value = float(model.value(number));
+            quote! { gyro_sim::admissible::Number::Fixed(#value) }
+        }
+    };
+    let list = |numbers: &[Number]| {
+        let numbers = numbers.iter().map(number);
+        quote! { [#(#numbers),*] }
+    };
+    let (kind, arguments) = match rule {
+        ParameterRule::Positive(one) => ("Positive", number(one)),
+        ParameterRule::NotNegative(one) => ("NotNegative", number(one)),
+        ParameterRule::NotZero(numbers) => {
+            let numbers = list(numbers);
+            ("NotZero", quote! { &#numbers })
+        }
+        ParameterRule::NotParallel(axis, zero) => {
+            let (axis, zero) = (list(*axis), list(*zero));
+            ("NotParallel", quote! { #axis, #zero })
+        }
+        ParameterRule::Inertia(elements) => ("Inertia", list(*elements)),
+    };
+    let kind = ident(kind);
+    quote! { gyro_sim::admissible::Rule::#kind(#arguments) }
 }
 
 fn default(parameter: &Parameter) -> f64 {

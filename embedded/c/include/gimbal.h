@@ -32,7 +32,7 @@ typedef enum GimbalStatus {
    */
   GIMBAL_STATUS_OUT_OF_RANGE = 3,
   /**
-   * A number is not finite, or a step not positive.
+   * A number is not finite, a step not positive, or a parameter one that the mechanism cannot have.
    */
   GIMBAL_STATUS_BAD_NUMBER = 4,
   /**
@@ -130,7 +130,8 @@ extern "C" {
 enum GimbalStatus gimbal_init(struct Gimbal *gimbal);
 
 /**
- * Sets a parameter; from the next step on.
+ * Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is refused with
+ * `BadNumber`, and the parameter keeps its value.
  *
  * # Safety
  * As for `gimbal_init`.

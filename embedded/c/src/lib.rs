@@ -39,7 +39,7 @@ pub enum GimbalStatus {
     NotInitialised = 2,
     /// There is no joint, parameter or input of this number.
     OutOfRange = 3,
-    /// A number is not finite, or a step not positive.
+    /// A number is not finite, a step not positive, or a parameter one that the mechanism cannot have.
     BadNumber = 4,
     /// The state is no longer finite: the step is too large. From here on the gimbal fails until it is initialised anew.
     NotFinite = 5,
@@ -166,7 +166,8 @@ pub unsafe extern "C" fn gimbal_init(gimbal: *mut Gimbal) -> GimbalStatus {
     GimbalStatus::Ok
 }
 
-/// Sets a parameter; from the next step on.
+/// Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is refused with
+/// `BadNumber`, and the parameter keeps its value.
 ///
 /// # Safety
 /// As for `gimbal_init`.
@@ -181,10 +182,15 @@ pub unsafe extern "C" fn gimbal_set_parameter(
         Ok(simulation) => simulation,
         Err(status) => return status,
     };
-    if !value.is_finite() {
+    let mut changed = simulation.mechanism;
+    if !changed.set_parameter(parameter as usize, value) {
+        return GimbalStatus::OutOfRange;
+    }
+    if changed.parameters().check().is_err() {
         return GimbalStatus::BadNumber;
     }
-    in_range(simulation.mechanism.set_parameter(parameter as usize, value))
+    simulation.mechanism = changed;
+    GimbalStatus::Ok
 }
 
 /// Sets an input, until it is set anew.

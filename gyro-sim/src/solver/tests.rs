@@ -2,8 +2,8 @@
 
 use crate::integrate::{Embedded, Method};
 use crate::{
-    ByDuals, Control, Differentiable, Dop853, Dual, Error, Kutta4, Ode, Rodas4, Scalar, Solver, Storage,
-    Tsit5, Uncorrected,
+    ByDuals, Control, Differentiable, Direct, Dop853, Dual, Error, Kutta4, Ode, Rodas4, Scalar, Solver,
+    Storage, Tsit5, Uncorrected,
 };
 use core::marker::PhantomData;
 
@@ -275,5 +275,31 @@ fn dual_numbers_and_symbols_agree() {
         (sum(&[x - c, x]).slopes[0], 2.0),
     ] {
         assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+    }
+}
+
+#[test]
+fn what_is_not_finite_is_an_error_at_once() {
+    let system = Chirp::<f64>(PhantomData);
+    for t in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut solver = Solver::new(Dop853::new(&[1.0, 0.0]), Uncorrected, t, &[1.0, 0.0]);
+        assert!(matches!(solver.advance_to(&system, 1.0), Err(Error::NoEnd { .. })), "{t}");
+        assert!(matches!(solver.step(&system, 0.1), Err(Error::NoEnd { .. })), "{t}");
+        assert!(matches!(solver.correct(&system), Err(Error::NoEnd { .. })), "{t}");
+        assert_eq!(solver.statistics().work.evaluations, 0, "{t}");
+        let mut solver = Solver::new(Dop853::new(&[1.0, 0.0]), Uncorrected, 0.0, &[1.0, 0.0]);
+        assert!(matches!(solver.step(&system, t), Err(Error::Setting { setting: "step", .. })), "{t}");
+        assert!(matches!(solver.advance_to(&system, t), Err(Error::NoEnd { .. })), "{t}");
+        solver.set_state(&[1.0, t]);
+        assert!(matches!(solver.advance_to(&system, 1.0), Err(Error::NotFinite { index: 1, .. })), "{t}");
+        let mut direct = Direct::new(&[1.0, 0.0]);
+        assert!(
+            matches!(direct.advance(&system, t, 0.1, 3, &mut [1.0, 0.0]), Err(Error::NoEnd { .. })),
+            "{t}"
+        );
+        assert!(
+            matches!(direct.advance(&system, 0.0, t, 3, &mut [1.0, 0.0]), Err(Error::NoEnd { .. })),
+            "{t}"
+        );
     }
 }

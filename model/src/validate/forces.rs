@@ -7,7 +7,7 @@ use crate::{Force, ForceKind, Model, Number};
 
 /// What must hold of a coefficient.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Sign {
+pub(super) enum Sign {
     Positive,
     NotNegative,
 }
@@ -32,9 +32,9 @@ pub(super) fn problems(model: &Model, index: usize, force: &Force) -> Vec<Proble
 }
 
 /// A coefficient with its key, what must hold of it and why.
-type Condition<'m> = (&'static str, &'m Number, Sign, &'static str);
+pub(super) type Condition<'m> = (&'static str, &'m Number, Sign, &'static str);
 
-fn conditions(kind: &ForceKind) -> Vec<Condition<'_>> {
+pub(super) fn conditions(kind: &ForceKind) -> Vec<Condition<'_>> {
     use Sign::{NotNegative, Positive};
     const DRIVES: &str = "it would drive the motion";
     match kind {

@@ -6,7 +6,7 @@ use super::{Place, Problem, shown};
 use crate::{Body, Model, Number, Rational, Support};
 
 /// A folded body may leave its mass and inertia out.
-fn is_left_out(body: &Body, numbers: &[Number]) -> bool {
+pub(super) fn is_left_out(body: &Body, numbers: &[Number]) -> bool {
     matches!(body.support, Support::Fixed | Support::Driven) && numbers.iter().all(Number::is_zero)
 }
 

@@ -5,10 +5,12 @@ mod directions;
 mod forces;
 mod inertia;
 mod numbers;
+mod rules;
 mod topology;
 
 pub(crate) use coordinates::problems as coordinate_problems;
 pub(crate) use numbers::problems as number_problems;
+pub use rules::ParameterRule;
 pub(crate) use topology::problems as topology_problems;
 
 use crate::{Model, Rational, to_f64};

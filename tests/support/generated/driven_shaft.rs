@@ -50,6 +50,14 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
         Self { from: T::constant(0.1) }
     }
 }
+impl<T: gyro_sim::Real> Parameters<T> {
+    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    pub fn check(
+        &self,
+    ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+        gyro_sim::admissible::check(&[self.from], &[])
+    }
+}
 /// The mechanism `driven_shaft`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrivenShaft<T> {

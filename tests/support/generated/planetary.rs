@@ -57,6 +57,24 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
         }
     }
 }
+impl<T: gyro_sim::Real> Parameters<T> {
+    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    pub fn check(
+        &self,
+    ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+        gyro_sim::admissible::check(
+            &[self.sun_to_planet, self.ring_to_planet],
+            &[
+                gyro_sim::admissible::Rule::NotZero(
+                    &[gyro_sim::admissible::Number::Given(0)],
+                ),
+                gyro_sim::admissible::Rule::NotZero(
+                    &[gyro_sim::admissible::Number::Given(1)],
+                ),
+            ],
+        )
+    }
+}
 /// The mechanism `planetary`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planetary<T> {

@@ -4,7 +4,7 @@
 //! leave unread as `ANY_name`.
 
 use crate::joints::JointLayout;
-use gyro_model::{JointKind, Model, Parameter, RowOwner, RowUnit, Spline, to_f64};
+use gyro_model::{JointKind, Model, Number, Parameter, ParameterRule, RowOwner, RowUnit, Spline, to_f64};
 use std::fmt::Display;
 
 /// How the coordinate partition is chosen.
@@ -150,11 +150,18 @@ fn definition(model: &Model, name: &str, has_set_up: bool) -> String {
     let (declared, values) = (list(public(parameters)), list(defaults(parameters)));
     let around = ("parameters", "let mut parameters = self.parameters;", "self.set_parameters(parameters);");
     let set_one = setter(set_one, parameters, around);
+    let own = list(parameters.iter().map(|p| format!("self.{}", p.name)));
+    let rules = list(model.parameter_rules().iter().map(|rule| rule_of_parameters(model, rule)));
     format!(
         "#[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters<T> {{ {declared} }}
         impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {{
             fn default() -> Self {{ Self {{ {values} }} }}
+        }}
+        impl<T: gyro_sim::Real> Parameters<T> {{
+            pub fn check(&self) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {{
+                gyro_sim::admissible::check(&[{own}], &[{rules}])
+            }}
         }}
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct {name}<T> {{ {fields} }}
@@ -177,6 +184,29 @@ fn definition(model: &Model, name: &str, has_set_up: bool) -> String {
             {set_up}
         }}",
     )
+}
+
+/// A rule that parameters must satisfy, as `gyro_sim::admissible` has it.
+fn rule_of_parameters(model: &Model, rule: &ParameterRule<'_>) -> String {
+    let number = |number: &Number| {
+        let inside = match number {
+            Number::Parameter { index, negated: false } => format!("Given({index})"),
+            Number::Parameter { index, negated: true } => format!("Negated({index})"),
+            number => format!("Fixed({:?})", model.value(number)),
+        };
+        format!("gyro_sim::admissible::Number::{inside}")
+    };
+    let several = |numbers: &[Number]| format!("[{}]", list(numbers.iter().map(number)));
+    let inside = match rule {
+        ParameterRule::Positive(one) => format!("Positive({})", number(one)),
+        ParameterRule::NotNegative(one) => format!("NotNegative({})", number(one)),
+        ParameterRule::NotZero(numbers) => format!("NotZero(&{})", several(numbers)),
+        ParameterRule::NotParallel(axis, zero) => {
+            format!("NotParallel({}, {})", several(*axis), several(*zero))
+        }
+        ParameterRule::Inertia(elements) => format!("Inertia({})", several(*elements)),
+    };
+    format!("gyro_sim::admissible::Rule::{inside}")
 }
 
 /// Number of elements of the state.

@@ -1,0 +1,71 @@
+//! What parameters must satisfy, for those who set them where this crate is not at hand.
+
+use super::forces::{Sign, conditions};
+use super::inertia::is_left_out;
+use crate::{JointKind, Model, Number};
+
+/// What must hold of numbers of which at least one is a parameter: what [`Model::with_parameters`] decides exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterRule<'m> {
+    /// Greater than 0.
+    Positive(&'m Number),
+    /// 0 or more.
+    NotNegative(&'m Number),
+    /// Not all 0.
+    NotZero(&'m [Number]),
+    /// An axis and a zero direction.
+    NotParallel(&'m [Number; 3], &'m [Number; 3]),
+    /// An inertia tensor, `[xx, yy, zz, xy, xz, yz]`.
+    Inertia(&'m [Number; 6]),
+}
+
+impl ParameterRule<'_> {
+    /// The numbers of the rule.
+    fn numbers(&self) -> Vec<&Number> {
+        match self {
+            Self::Positive(number) | Self::NotNegative(number) => vec![number],
+            Self::NotZero(numbers) => numbers.iter().collect(),
+            Self::NotParallel(a, b) => a.iter().chain(*b).collect(),
+            Self::Inertia(elements) => elements.iter().collect(),
+        }
+    }
+}
+
+impl Model {
+    /// The rules that the values of parameters can break, in the order of the page.
+    pub fn parameter_rules(&self) -> Vec<ParameterRule<'_>> {
+        use ParameterRule::{Inertia, NotNegative, NotParallel, NotZero, Positive};
+        let mut rules = Vec::new();
+        for body in &self.bodies {
+            if !is_left_out(body, std::slice::from_ref(&body.mass)) {
+                rules.push(Positive(&body.mass));
+            }
+            if !is_left_out(body, &body.inertia) {
+                rules.push(Inertia(&body.inertia));
+            }
+            rules.push(NotZero(&body.orientation));
+            rules.extend(
+                body.motion.iter().flat_map(|motion| &motion.rotations).map(|(axis, _)| NotZero(axis)),
+            );
+        }
+        for joint in &self.joints {
+            rules.push(NotNegative(&joint.friction));
+            match joint.kind {
+                JointKind::Screw => rules.push(NotZero(std::slice::from_ref(&joint.lead))),
+                JointKind::Rod => rules.push(Positive(&joint.length)),
+                _ => {}
+            }
+            rules.extend(joint.start.orientation.iter().map(|p| NotZero(p)));
+            let ends = [&joint.first, &joint.second];
+            if !matches!(joint.kind, JointKind::Rod | JointKind::Spherical) {
+                rules.extend(ends.map(|end| NotParallel(&end.axis, &end.zero)));
+            }
+        }
+        rules.extend(self.couplers.iter().map(|coupler| NotZero(std::slice::from_ref(&coupler.ratio))));
+        for (_, number, sign, _) in self.forces.iter().flat_map(|force| conditions(&force.kind)) {
+            rules.push(if sign == Sign::Positive { Positive(number) } else { NotNegative(number) });
+        }
+        rules.retain(|rule| rule.numbers().iter().any(|number| matches!(number, Number::Parameter { .. })));
+        rules
+    }
+}
