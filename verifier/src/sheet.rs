@@ -29,7 +29,7 @@ const WORDS: [(&str, &str, &str); 28] = [
     (
         "derivative",
         "ẏ but for the accelerations: eqs. (14), (16)",
-        "Writes ẏ; beyond what [`Equations::accelerations`] takes",
+        "Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes",
     ),
     ("energy", "T and V", "Kinetic and potential energy"),
     ("read_joints", "joint coordinates and rates", "Writes the joint readings"),
@@ -45,7 +45,7 @@ const WORDS: [(&str, &str, &str); 28] = [
     (
         "joint_derivative",
         "ẋ but for u̇",
-        "Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes",
+        "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes",
     ),
     ("to_maximal", "(q, v) of a joint state", "Writes the maximal state of a joint state"),
     ("to_joints", "(x, u) of a maximal state", "Writes the joint state of a maximal state"),
@@ -67,7 +67,7 @@ const WORDS: [(&str, &str, &str); 28] = [
 
 /// What goes on from other accelerations in the same way has no row of its own.
 const WITHOUT_ROW: (&str, &str) =
-    ("corrected_derivative", "Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes");
+    ("corrected_derivative", "Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes");
 
 /// Where the section on the proof begins.
 pub const PROOF: &str = "# Proof";
@@ -260,6 +260,7 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
         " The mechanism with these parameters.",
         " The parameters.",
         " Sets all parameters, and computes what depends on them alone.",
+        " Whether the mechanism can have these parameters, as the model page's rules decide.",
         " The assembled start, with all parameters at their defaults.",
         " Polynomials between them, from each point's own time.",
     ];

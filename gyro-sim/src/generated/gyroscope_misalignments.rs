@@ -91,6 +91,34 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
         }
     }
 }
+impl<T: gyro_sim::Real> Parameters<T> {
+    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    pub fn check(
+        &self,
+    ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+        gyro_sim::admissible::check(
+            &[
+                self.offset_x,
+                self.offset_y,
+                self.offset_z,
+                self.imbalance_y,
+                self.imbalance_z,
+                self.product_xy,
+                self.product_xz,
+            ],
+            &[
+                gyro_sim::admissible::Rule::Inertia([
+                    gyro_sim::admissible::Number::Fixed(1e-5),
+                    gyro_sim::admissible::Number::Fixed(5e-6),
+                    gyro_sim::admissible::Number::Fixed(5e-6),
+                    gyro_sim::admissible::Number::Given(5),
+                    gyro_sim::admissible::Number::Given(6),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                ]),
+            ],
+        )
+    }
+}
 /// The mechanism `gyroscope_misalignments`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeMisalignments<T> {

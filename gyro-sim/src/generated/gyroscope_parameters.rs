@@ -85,6 +85,43 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
         }
     }
 }
+impl<T: gyro_sim::Real> Parameters<T> {
+    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    pub fn check(
+        &self,
+    ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+        gyro_sim::admissible::check(
+            &[
+                self.gravity,
+                self.rotor_mass,
+                self.rotor_offset,
+                self.ring_axial_inertia,
+                self.ring_diametral_inertia,
+            ],
+            &[
+                gyro_sim::admissible::Rule::Inertia([
+                    gyro_sim::admissible::Number::Given(3),
+                    gyro_sim::admissible::Number::Given(4),
+                    gyro_sim::admissible::Number::Given(4),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                ]),
+                gyro_sim::admissible::Rule::Inertia([
+                    gyro_sim::admissible::Number::Given(4),
+                    gyro_sim::admissible::Number::Given(3),
+                    gyro_sim::admissible::Number::Given(4),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                    gyro_sim::admissible::Number::Fixed(0.0),
+                ]),
+                gyro_sim::admissible::Rule::Positive(
+                    gyro_sim::admissible::Number::Given(1),
+                ),
+            ],
+        )
+    }
+}
 /// The mechanism `gyroscope_parameters`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroscopeParameters<T> {

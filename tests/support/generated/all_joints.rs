@@ -62,6 +62,27 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
         }
     }
 }
+impl<T: gyro_sim::Real> Parameters<T> {
+    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    pub fn check(
+        &self,
+    ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+        gyro_sim::admissible::check(
+            &[self.gravity, self.puck_mass, self.rod_length, self.gear_ratio],
+            &[
+                gyro_sim::admissible::Rule::Positive(
+                    gyro_sim::admissible::Number::Given(1),
+                ),
+                gyro_sim::admissible::Rule::Positive(
+                    gyro_sim::admissible::Number::Given(2),
+                ),
+                gyro_sim::admissible::Rule::NotZero(
+                    &[gyro_sim::admissible::Number::Given(3)],
+                ),
+            ],
+        )
+    }
+}
 /// The mechanism `all_joints`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AllJoints<T> {

@@ -73,6 +73,21 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
         }
     }
 }
+impl<T: gyro_sim::Real> Parameters<T> {
+    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    pub fn check(
+        &self,
+    ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+        gyro_sim::admissible::check(
+            &[self.rotor_mass],
+            &[
+                gyro_sim::admissible::Rule::Positive(
+                    gyro_sim::admissible::Number::Given(0),
+                ),
+            ],
+        )
+    }
+}
 /// The mechanism `gimbal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gimbal<T> {
