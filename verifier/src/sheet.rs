@@ -181,7 +181,11 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
             "charts (for trees of revolute, spherical and fixed joints: the run time pivots)",
         ),
         (model.gravity.iter().all(Number::is_zero), "gravity"),
-        (!model.has_work(), "the work of non-conservative forces (there are none)"),
+        (!model.is_worked_on(), "the work of non-conservative forces (there are none)"),
+        (
+            model.is_worked_on() && !model.has_work(),
+            "the work of non-conservative forces (count_work = false)",
+        ),
         (model.parameters.is_empty(), "parameters (all numbers are folded)"),
         (model.outputs.is_empty(), "outputs (the page asks for none)"),
     ];
