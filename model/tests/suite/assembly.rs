@@ -455,7 +455,7 @@ const TYPED: &str = r#"
 
 /// The largest part of its tolerance that a row of the start takes.
 fn part_of_tolerance(model: &Model) -> f64 {
-    let (start, kinematics) = (model.assemble().unwrap(), Kinematics::at(model, 0.0));
+    let (start, kinematics) = (model.assemble().expect("it can be assembled"), Kinematics::at(model, 0.0));
     let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
     let v = DVector::from_column_slice(&start.v);
     let rates = kinematics.jacobian(&start.q, &near) * v - kinematics.nu(&start.q, &near);
