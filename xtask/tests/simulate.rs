@@ -263,15 +263,15 @@ fn columns_have_the_names_of_coordinates_and_outputs() {
         assert!(text.contains(words), "{words} is missing in\n{text}");
     }
     assert!(!text.contains("linear theory"), "{text}");
-    let table = fs::read_to_string(folder.0.join("motor.csv")).unwrap();
+    let table = fs::read_to_string(folder.0.join("tree_with_jacobian.csv")).unwrap();
     let header = table.lines().next().unwrap();
     let expected = "t [s],torque [N*m],push [N],shaft [rad],shaft rate [rad/s],table.x [m],table.x rate [m/s],table.y [m],table.y rate [m/s],\
                     table.angle [rad],table.angle rate [rad/s],spin.vx [m/s],spin.vy [m/s],spin.vz [m/s],spin.wx [rad/s],\
                     spin.wy [rad/s],spin.wz [rad/s],energies.kinetic [J],energies.potential [J],kinetic energy [J],";
     assert!(header.starts_with(expected), "{header}");
-    let motion = fs::read_to_string(folder.0.join("motor-motion.svg")).unwrap();
+    let motion = fs::read_to_string(folder.0.join("tree_with_jacobian-motion.svg")).unwrap();
     assert!(motion.contains("table.x [m]") && motion.contains("table.angle [rad]"));
-    assert!(folder.files().contains(&"motor-outputs.svg".to_owned()));
+    assert!(folder.files().contains(&"tree_with_jacobian-outputs.svg".to_owned()));
 }
 
 #[test]

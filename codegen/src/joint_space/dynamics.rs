@@ -41,8 +41,13 @@ impl Readings for OfJoints<'_> {
 
 /// The force along each rate.
 pub fn forces_along(system: &mut System, layout: &Layout) -> Vec<ExprId> {
+    let parts = forces::along_coordinates(system, &OfJoints(layout));
+    summed_along(system, layout, parts)
+}
+
+fn summed_along(system: &mut System, layout: &Layout, parts: Vec<forces::Along>) -> Vec<ExprId> {
     let mut along = vec![Graph::ZERO; layout.n_rates];
-    for part in forces::along_coordinates(system, &OfJoints(layout)) {
+    for part in parts {
         let at = layout.scalar(part.on).expect("joints of a tree have their coordinates").place.u;
         along[at] = system.graph.add(along[at], part.force);
     }
@@ -51,12 +56,9 @@ pub fn forces_along(system: &mut System, layout: &Layout) -> Vec<ExprId> {
 
 /// The power of what acts along joint coordinates and stores no energy: force times rate, with nothing of where the bodies are.
 pub fn power_along(system: &mut System, layout: &Layout) -> ExprId {
-    let mut along = vec![Graph::ZERO; layout.n_rates];
-    let parts = forces::along_coordinates(system, &OfJoints(layout));
-    for part in parts.into_iter().filter(|part| part.potential.is_none()) {
-        let at = layout.scalar(part.on).expect("joints of a tree have their coordinates").place.u;
-        along[at] = system.graph.add(along[at], part.force);
-    }
+    let mut parts = forces::along_coordinates(system, &OfJoints(layout));
+    parts.retain(|part| part.potential.is_none());
+    let mut along = summed_along(system, layout, parts);
     add_spherical_friction(system, layout, &mut along);
     let rates: Vec<_> = (0..layout.n_rates).map(|rate| system.graph.symbol(Symbol::Rate(rate))).collect();
     rates.iter().zip(along).fold(Graph::ZERO, |sum, (&rate, force)| {
