@@ -43,6 +43,8 @@ enum Binding {
     Sum,
     Product,
     Unary,
+    /// What a method may be called on: `-x.sqrt()` is the negative of a root.
+    Call,
 }
 
 /// Writes the program that computes `roots`, with stand-ins for its literals.
@@ -79,7 +81,7 @@ pub fn index(value: usize) -> Literal {
 
 /// `x y + added`.
 fn fused(x: &TokenStream, y: &TokenStream, added: &TokenStream) -> (TokenStream, Binding) {
-    (quote! { T::fused(#x, #y, #added) }, Binding::Unary)
+    (quote! { T::fused(#x, #y, #added) }, Binding::Call)
 }
 
 struct Writer<'a, V> {
@@ -168,7 +170,7 @@ impl<V: Variables> Writer<'_, V> {
     fn operation(&self, id: ExprId) -> (TokenStream, Binding) {
         match self.graph.node(id) {
             Node::Constant(value) => (self.literal(value), Binding::Unary),
-            Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Unary),
+            Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Call),
             Node::Add(a, b) => self.sum(*a, *b),
             Node::Mul(a, b) => (self.product(*a, *b), Binding::Product),
             Node::Neg(a) => self.negation(*a),
@@ -181,8 +183,8 @@ impl<V: Variables> Writer<'_, V> {
             Node::Cos(a) => self.function("cos", *a),
             Node::Tanh(a) => self.function("tanh", *a),
             Node::Atan2(y, x) => {
-                let (y, x) = (self.expression(*y, Binding::Unary), self.expression(*x, Binding::Sum));
-                (quote! { #y.atan2(#x) }, Binding::Unary)
+                let (y, x) = (self.expression(*y, Binding::Call), self.expression(*x, Binding::Sum));
+                (quote! { #y.atan2(#x) }, Binding::Call)
             }
         }
     }
@@ -262,7 +264,55 @@ impl<V: Variables> Writer<'_, V> {
     }
 
     fn function(&self, name: &str, a: ExprId) -> (TokenStream, Binding) {
-        let (name, a) = (ident(name), self.expression(a, Binding::Unary));
-        (quote! { #a.#name() }, Binding::Unary)
+        let (name, a) = (ident(name), self.expression(a, Binding::Call));
+        (quote! { #a.#name() }, Binding::Call)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Coordinates;
+
+    impl Variables for Coordinates {
+        fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
+            let Symbol::Coordinate(k) = symbol else { unreachable!("there are no others") };
+            let name = ident(&format!("x{k}"));
+            (quote! { #name }, None)
+        }
+    }
+
+    fn written(build: impl FnOnce(&mut Graph, [ExprId; 2]) -> ExprId) -> String {
+        let mut graph = Graph::new();
+        let [x, y] = [0, 1].map(|k| graph.symbol(Symbol::Coordinate(k)));
+        let root = build(&mut graph, [x, y]);
+        let body = body(&graph, &Coordinates, &Literals::default(), &[root]);
+        body.values[0].to_string().replace(' ', "")
+    }
+
+    /// A method binds more strongly than a sign.
+    #[test]
+    fn functions_are_of_the_negative_where_the_graph_says_so() {
+        let product = |graph: &mut Graph, [x, y]: [ExprId; 2]| {
+            let product = graph.mul(x, y);
+            graph.neg(product)
+        };
+        let root = |graph: &mut Graph, of| {
+            let negative = product(graph, of);
+            graph.sqrt(negative)
+        };
+        let of_product = "-(x0*x1)";
+        assert_eq!(written(root), format!("({of_product}).sqrt()"));
+        let opposite = |graph: &mut Graph, of| {
+            let root = root(graph, of);
+            graph.neg(root)
+        };
+        assert_eq!(written(opposite), format!("-({of_product}).sqrt()"));
+        let angle = |graph: &mut Graph, [x, y]: [ExprId; 2]| {
+            let negative = graph.neg(y);
+            graph.atan2(negative, x)
+        };
+        assert_eq!(written(angle), "(-x1).atan2(x0)");
     }
 }

@@ -203,12 +203,18 @@ impl<'m> System<'m> {
         let (axis, zero) = (self.numbers(&end.axis), self.numbers(&end.zero));
         let point = self.numbers(&end.point);
         let graph = &mut self.graph;
-        // f ∥ (h·h) z − (h·z) h: orthogonal to h without a division.
-        let (square, along) = (graph.dot(&axis, &axis), graph.dot(&axis, &zero));
-        let (whole, part) = (graph.scale_vec(square, &zero), graph.scale_vec(along, &axis));
-        let f = graph.sub_vec(&whole, &part);
-        let (f, h) = (graph.normalise(&f), graph.normalise(&axis));
-        let g = graph.cross(&h, &f);
+        // g ∥ h × z and f ∥ g × h, in products of the page's own numbers: of these, those that cancel are written alike, so a component
+        // that is zero whatever the parameters are is seen to be zero.
+        let normal = graph.cross(&axis, &zero);
+        let across = graph.cross(&normal, &axis);
+        let (f, h) = (graph.normalise(&across), graph.normalise(&axis));
+        // As long as f is before it is normalised, but for the axis: no third root.
+        let [length, stretched] = [&axis, &across].map(|v| {
+            let square = graph.dot(v, v);
+            graph.sqrt(square)
+        });
+        let ratio = graph.div(length, stretched);
+        let g = graph.scale_vec(ratio, &normal);
         End { body: end.body, point, f, g, h }
     }
 

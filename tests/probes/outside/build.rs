@@ -14,10 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if WRONG {
             module.code = module.code.replacen(" - ", " + ", 1);
         }
-        // The chain is there for its length; a proof that stays undecided for want of roots would stop the build.
-        if page != "chain.toml" {
-            gyro_verifier::prove(page, &text, &module.code, &module.constants)?;
-        }
+        gyro_verifier::prove(page, &text, &module.code, &module.constants)?;
         fs::write(Path::new(&out).join(&module.name).with_extension("rs"), module.as_item())?;
     }
     // Names that mean something to Rust or to the run time must not break a module.

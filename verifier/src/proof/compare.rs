@@ -89,16 +89,16 @@ impl<const L: usize> Decider<'_, L> {
 
     /// What is wrong with the patterns: zeros that are stored, places out of order. (That no place is missing is part of the claims.)
     ///
-    /// A number that is zero at a random point is zero identically, with the probability of its claim.
+    /// A number that is zero at a random point is zero identically, with the probability of its claim; so it is if any number may stand for a root.
     ///
     /// # Errors
-    /// [`Verdict::Undecided`] if no point has all roots.
+    /// [`Verdict::Undecided`] if something is divided by zero everywhere.
     pub fn sparsity(&self, module: &Module, seed: impl Into<Seed>) -> Result<Vec<String>, Verdict> {
         let seed = seed.into();
         let patterns = [("phi_q", &module.phi_q_pattern), ("phi_pi", &module.phi_pi_pattern)];
         let mut problems = Vec::new();
         for (matrix, pattern) in patterns {
-            let is_zero = self.at_point(module, seed, |draw, atoms| {
+            let is_zero = self.at_any_point(module, seed, |draw, atoms| {
                 let values = run(module, matrix, draw, &[], atoms)?;
                 Ok(values.iter().map(Field::is_zero).collect::<Vec<_>>())
             });

@@ -31,6 +31,9 @@ use std::f64::consts::LOG10_2;
 /// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.
 const PRIMES: usize = 64;
 
+/// Points more than there are roots, until roots are thought to exclude each other: one of 2^8 primes is passed over in vain.
+const MORE_POINTS: usize = 8;
+
 /// How a claim was decided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
@@ -116,6 +119,38 @@ impl<F: Field> Search<F> {
     }
 }
 
+/// Of each root and what it is the root of, whether it does not exist.
+fn missed_roots<F: Field>(values: &[Option<F>], roots: &[(Id, Id)]) -> Vec<bool> {
+    let is_missed = |&(root, radicand): &(Id, Id)| {
+        let both = values[root].as_ref().zip(values[radicand].as_ref());
+        both.is_none_or(|(root, radicand)| root.mul(root) != *radicand)
+    };
+    roots.iter().map(is_missed).collect()
+}
+
+/// Vectors modulo two that are independent of each other.
+#[derive(Default)]
+struct Independent {
+    /// The place of the first one of each, and the vector.
+    vectors: Vec<(usize, Vec<bool>)>,
+}
+
+impl Independent {
+    /// What is left of a vector, and the place of its first one; `None` if it is a sum of these.
+    fn reduced(&self, mut vector: Vec<bool>) -> Option<(usize, Vec<bool>)> {
+        for (first, other) in &self.vectors {
+            if vector[*first] {
+                vector.iter_mut().zip(other).for_each(|(x, y)| *x ^= y);
+            }
+        }
+        Some((vector.iter().position(|&x| x)?, vector))
+    }
+
+    fn add(&mut self, vector: Vec<bool>) {
+        self.vectors.extend(self.reduced(vector));
+    }
+}
+
 /// What residuals are at one point.
 enum Outcome {
     Zero,
@@ -154,34 +189,57 @@ impl<'a> Statements<'a> {
     }
 
     /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half angles between joint frames
-    /// that are skew to each other: nothing is known of these beforehand, and each exists modulo every other prime. The last prime
-    /// if none has them.
+    /// that are skew to each other, and roots of parameters can exist together: nothing is known of these beforehand. The last prime if none
+    /// has them.
     fn with_nested_roots<const L: usize>(
         &self,
         seed: Seed,
         mut draw: impl FnMut() -> Option<Prime<L>>,
     ) -> Option<Prime<L>> {
         let all = vec![true; self.formulas.program.nodes.len()];
-        let of_constants =
-            |(_, radicand): &(Id, Id)| self.parameters_of(*radicand).is_some_and(|p| p.is_empty());
-        let roots: Vec<Id> =
-            self.roots(&all).into_iter().filter(of_constants).map(|(root, _)| root).collect();
-        let needed = self.formulas.reach(roots.iter().copied());
-        let exist = |prime: &Prime<L>| {
-            let atoms = Drawn::new(prime, seed.numbers(0));
-            let nothing = |_| Modular::zero(prime);
-            roots.is_empty()
-                || !self.formulas.evaluate(&needed, prime, &atoms, &nothing).is_empty()
-                    && !atoms.missed_root()
-        };
+        let is_settled = |(_, radicand): &(Id, Id)| self.parameters_of(*radicand).is_some();
+        let roots: Vec<(Id, Id)> = self.roots(&all).into_iter().filter(is_settled).collect();
         let mut prime = draw()?;
         for _ in 1..PRIMES {
-            if exist(&prime) {
+            if self.can_all_exist(&prime, seed, &roots) {
                 break;
             }
             prime = draw()?;
         }
         Some(prime)
+    }
+
+    /// Whether roots of constants and parameters can exist at one point. Say 26 is no square: then of x and 26 x one is none either, whatever x is.
+    ///
+    /// Of a product of numbers it can be told whether it is a square if it can of each: which roots are missed at points, as vectors modulo two,
+    /// differ by sums of some vectors. If nothing missed is no such sum away from what was missed, some roots exclude each other.
+    fn can_all_exist<const L: usize>(&self, prime: &Prime<L>, seed: Seed, roots: &[(Id, Id)]) -> bool {
+        let needed = self.formulas.reach(roots.iter().map(|&(root, _)| root));
+        let mut random = seed.numbers(0);
+        let mut missed = || {
+            let parameters: Vec<_> = self.model.parameters.iter().map(|_| prime.draw(&mut random)).collect();
+            let atoms = Drawn::new(prime, ChaCha8Rng::from_rng(&mut random));
+            let read = |source| match source {
+                Source::Parameter(k) => parameters[k],
+                _ => Modular::zero(prime),
+            };
+            missed_roots(&self.formulas.evaluate(&needed, prime, &atoms, &read), roots)
+        };
+        let first = missed();
+        let is_constant =
+            |&(_, radicand): &(Id, Id)| self.parameters_of(radicand).is_none_or(|of| of.is_empty());
+        if roots.iter().zip(&first).any(|(root, missed)| *missed && is_constant(root)) {
+            return false;
+        }
+        let mut differences = Independent::default();
+        (0..roots.len() + MORE_POINTS).any(|_| {
+            let is_reached = differences.reduced(first.clone()).is_none();
+            if !is_reached {
+                let difference = missed().iter().zip(&first).map(|(a, b)| a != b).collect();
+                differences.add(difference);
+            }
+            is_reached
+        })
     }
 
     /// For each claim the logarithm to base two of the degree that decides it: of the numerator of any residual, of all denominators on
@@ -347,10 +405,7 @@ impl<'a, const L: usize> Decider<'a, L> {
                 statements.formulas.evaluate(needed, &self.prime, &atoms, &|source| draw.read(source))
             };
             let values = evaluate(&roots_reach);
-            let is_missed = |&(root, radicand): &(Id, Id)| {
-                values[root].zip(values[radicand]).is_none_or(|(root, radicand)| root.mul(&root) != radicand)
-            };
-            let missed: Vec<bool> = roots.iter().map(is_missed).collect();
+            let missed = missed_roots(&values, &roots);
             if missed.contains(&true) {
                 search = Some(Search::after(draw, &groups, &missed));
                 continue;
@@ -422,6 +477,21 @@ impl<'a, const L: usize> Decider<'a, L> {
             Outcome::NotZero { residual } => Verdict::Refuted { residual },
             _ => Verdict::Undecided,
         }
+    }
+
+    /// Evaluates something at a random point at which it exists with all its roots; where there are too many to find such a point, with numbers in the
+    /// place of some. `None` if something is divided by zero.
+    pub(super) fn at_any_point<'p, R>(
+        &'p self,
+        module: &Module,
+        seed: Seed,
+        evaluate: impl Fn(&Draw<Modular<'p, L>>, &Drawn<'p, L>) -> Result<R, DivisionByZero>,
+    ) -> Option<R> {
+        let with_numbers = || {
+            let mut points = (0..DRAWS).filter_map(|number| self.draw(module, seed, number));
+            points.find_map(|(draw, atoms)| evaluate(&draw, &atoms).ok())
+        };
+        self.at_point(module, seed, &evaluate).or_else(with_numbers)
     }
 
     /// Evaluates something at a random point at which it exists with all its roots.

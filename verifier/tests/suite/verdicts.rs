@@ -106,6 +106,45 @@ fn free_frames(joints: usize) -> Model {
     gyro_model::read("frames.toml", &page).expect("a good page")
 }
 
+/// An arm on a joint whose frame's numbers are given.
+fn arm(axis: &str, zero: &str) -> Model {
+    let frame = format!("axis = {axis}, zero = {zero}");
+    let page = format!(
+        "format = 1\nname = \"arm\"\n[parameters]\np = 3\n[[body]]\nname = \"wall\"\nfixed = true\n\
+         [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+         [[joint]]\nname = \"hinge\"\nkind = \"prismatic\"\n\
+         first = {{ body = \"wall\", {frame} }}\nsecond = {{ body = \"arm\", point = [0.5, 0, 0.1], {frame} }}\n"
+    );
+    gyro_model::read("arm.toml", &page).unwrap_or_else(|problems| panic!("{page}\n{problems}"))
+}
+
+/// The axis is as long as the root of 26 + p², its zero direction across it as that of 26 (26 + p²): of a number that is no square modulo a prime, times
+/// 26 or not, one root is always missing, unless 26 is a square.
+#[test]
+fn roots_of_parameters_do_not_exclude_each_other() {
+    for (axis, zero) in
+        [("[5, 1, \"p\"]", "[0, 0, 1]"), ("[1, \"p\", 6]", "[0, 1, 0]"), ("[\"p\", 3, 7]", "[1, 0, 0]")]
+    {
+        let model = arm(axis, zero);
+        let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+        let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+        assert!(report.is_proved(), "{axis}: {report}");
+    }
+}
+
+/// Along an axis of one number the zero direction's component is zero, whatever that number is.
+#[test]
+fn frames_of_parameters_store_no_zeros() {
+    for (axis, zero) in
+        [("[0, 0, \"p\"]", "[3, 0, 4]"), ("[\"p\", 0, 0]", "[1, 2, 0.5]"), ("[0, \"p\", \"p\"]", "[3, 1, 1]")]
+    {
+        let model = arm(axis, zero);
+        let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+        let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+        assert!(report.is_proved(), "{axis}: {report}");
+    }
+}
+
 /// Roots of parameters, a dozen of them: points that have them all are found joint by joint.
 #[test]
 fn roots_of_parameters_are_never_too_many() {
