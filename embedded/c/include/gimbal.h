@@ -136,7 +136,9 @@ enum GimbalStatus gimbal_init(struct Gimbal *gimbal);
  * # Safety
  * As for `gimbal_init`.
  */
-enum GimbalStatus gimbal_set_parameter(struct Gimbal *gimbal, uint32_t parameter, double value);
+enum GimbalStatus gimbal_set_parameter(struct Gimbal *gimbal,
+                                       uint32_t parameter,
+                                       double value);
 
 /**
  * Sets an input, until it is set anew.
