@@ -3791,7 +3791,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
         let t43 = T::fused(t37 + t36, t39, t42);
         let t44 = x2.cos();
-        let t45 = (-(k(4.0) * T::fused(t44, t40, t41 * t43)))
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
             .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t31;

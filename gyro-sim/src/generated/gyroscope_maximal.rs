@@ -3832,7 +3832,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         );
         let t22 = T::fused(t14 - t13, t9, -t21);
         let t23 = x0.sin();
-        let t24 = (-(k(4.0) * T::fused(t23, t19, t20 * t22)))
+        let t24 = -(k(4.0) * T::fused(t23, t19, t20 * t22))
             .atan2(-(k(4.0) * T::fused(-t20, t19, t23 * t22)));
         let t25 = inner_ring_e3 * inner_ring_e3;
         let t26 = inner_ring_e0 * inner_ring_e0;
@@ -3880,7 +3880,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t55 = T::fused(-(k(0.5) - (t26 + t28) - t29), t48, (t32 - t31) * t51);
         let t56 = T::fused(t50 + t49, t52, t55);
         let t57 = x2.cos();
-        let t58 = (-(k(4.0) * T::fused(t57, t53, t54 * t56)))
+        let t58 = -(k(4.0) * T::fused(t57, t53, t54 * t56))
             .atan2(k(4.0) * T::fused(-t54, t53, t57 * t56));
         x[0] = x0 + t24;
         x[1] = x1 + t44;

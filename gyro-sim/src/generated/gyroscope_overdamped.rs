@@ -794,7 +794,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeOverdamped<T> {
         );
         let t15 = T::fused(-t9, T::fused(outer_ring_e1, outer_ring_e1, -t5), t14);
         let t16 = turn0.cos();
-        let t17 = (-(k(4.0) * T::fused(t16, t12, t13 * t15)))
+        let t17 = -(k(4.0) * T::fused(t16, t12, t13 * t15))
             .atan2(k(4.0) * T::fused(-t13, t12, t16 * t15));
         let t18 = turn0 + t17;
         let t19 = k(0.1)
@@ -2169,7 +2169,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeOverdamped<T> {
         );
         let t11 = T::fused(-t5, T::fused(outer_ring_e1, outer_ring_e1, -t1), t10);
         let t12 = turn0.cos();
-        let t13 = (-(k(4.0) * T::fused(t12, t8, t9 * t11)))
+        let t13 = -(k(4.0) * T::fused(t12, t8, t9 * t11))
             .atan2(k(4.0) * T::fused(-t9, t8, t12 * t11));
         let t14 = T::fused(-k(1000.0), turn0 + t13, outer_ring_wz - inner_ring_wz);
         let t15 = k(1e-6) * inner_ring_wy;
@@ -2638,7 +2638,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeOverdamped<T> {
         let t65 = T::fused(t64, t8, T::fused(t20, t60, t63 * t14));
         let t66 = turn0.sin();
         let t67 = turn0.cos();
-        let t68 = (-(k(4.0) * T::fused(-t67, t65, t66 * t42)))
+        let t68 = -(k(4.0) * T::fused(-t67, t65, t66 * t42))
             .atan2(k(4.0) * T::fused(t66, t65, t67 * t42));
         let t69 = T::fused(-k(1000.0), turn0 + t68, outer_ring_wz - inner_ring_wz);
         let t70 = T::fused(
@@ -3176,7 +3176,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeOverdamped<T> {
         let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
         let t43 = T::fused(t37 + t36, t39, t42);
         let t44 = x2.cos();
-        let t45 = (-(k(4.0) * T::fused(t44, t40, t41 * t43)))
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
             .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t31;
@@ -3254,7 +3254,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeOverdamped<T> {
             t18,
         );
         let t20 = turn0.cos();
-        let t21 = (-(k(4.0) * T::fused(t20, t16, t17 * t19)))
+        let t21 = -(k(4.0) * T::fused(t20, t16, t17 * t19))
             .atan2(k(4.0) * T::fused(-t17, t16, t20 * t19));
         let t22 = T::fused(
             -k(1e-5),
@@ -3361,7 +3361,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeOverdamped<T> {
             t28,
         );
         let t30 = turn0.cos();
-        let t31 = (-(k(4.0) * T::fused(t30, t26, t27 * t29)))
+        let t31 = -(k(4.0) * T::fused(t30, t26, t27 * t29))
             .atan2(k(4.0) * T::fused(-t27, t26, t30 * t29));
         let t32 = T::fused(
             -k(1e-5),
@@ -3544,7 +3544,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeOverdamped<T> {
             ),
         );
         let t31 = turn0.cos();
-        let t32 = (-(k(4.0) * T::fused(t31, t27, t28 * t30)))
+        let t32 = -(k(4.0) * T::fused(t31, t27, t28 * t30))
             .atan2(k(4.0) * T::fused(-t28, t27, t31 * t30));
         let t33 = k(1000000.0)
             * T::fused(-k(1000.0), turn0 + t32, outer_ring_wz - inner_ring_wz);
@@ -3692,7 +3692,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeOverdamped<T> {
             ),
         );
         let t30 = turn0.cos();
-        let t31 = (-(k(4.0) * T::fused(t30, t26, t27 * t29)))
+        let t31 = -(k(4.0) * T::fused(t30, t26, t27 * t29))
             .atan2(k(4.0) * T::fused(-t27, t26, t30 * t29));
         let t32 = T::fused(-k(1000.0), turn0 + t31, t7);
         let t33 = T::fused(

@@ -3719,7 +3719,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
         let t45 = T::fused(-(k(0.5) - (t16 + t18) - t19), t38, (t22 - t21) * t41);
         let t46 = T::fused(t40 + t39, t42, t45);
         let t47 = x2.cos();
-        let t48 = (-(k(4.0) * T::fused(t47, t43, t44 * t46)))
+        let t48 = -(k(4.0) * T::fused(t47, t43, t44 * t46))
             .atan2(k(4.0) * T::fused(-t44, t43, t47 * t46));
         x[0] = x0 + t14;
         x[1] = x1 + t34;

@@ -794,7 +794,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeStiff<T> {
         );
         let t15 = T::fused(-t9, T::fused(outer_ring_e1, outer_ring_e1, -t5), t14);
         let t16 = turn0.cos();
-        let t17 = (-(k(4.0) * T::fused(t16, t12, t13 * t15)))
+        let t17 = -(k(4.0) * T::fused(t16, t12, t13 * t15))
             .atan2(k(4.0) * T::fused(-t13, t12, t16 * t15));
         let t18 = turn0 + t17;
         let t19 = k(0.1)
@@ -2168,7 +2168,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeStiff<T> {
         );
         let t10 = T::fused(-t4, T::fused(outer_ring_e1, outer_ring_e1, -t0), t9);
         let t11 = turn0.cos();
-        let t12 = (-(k(4.0) * T::fused(t11, t7, t8 * t10)))
+        let t12 = -(k(4.0) * T::fused(t11, t7, t8 * t10))
             .atan2(k(4.0) * T::fused(-t8, t7, t11 * t10));
         let t13 = k(10000.0)
             * T::fused(-k(100000.0), turn0 + t12, outer_ring_wz - inner_ring_wz);
@@ -2657,7 +2657,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeStiff<T> {
         let t65 = T::fused(t64, t8, T::fused(t20, t60, t63 * t14));
         let t66 = turn0.sin();
         let t67 = turn0.cos();
-        let t68 = (-(k(4.0) * T::fused(-t67, t65, t66 * t42)))
+        let t68 = -(k(4.0) * T::fused(-t67, t65, t66 * t42))
             .atan2(k(4.0) * T::fused(t66, t65, t67 * t42));
         let t69 = T::fused(-k(100000.0), turn0 + t68, outer_ring_wz - inner_ring_wz);
         let t70 = T::fused(
@@ -3195,7 +3195,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeStiff<T> {
         let t42 = T::fused(-(k(0.5) - (t13 + t15) - t16), t35, (t19 - t18) * t38);
         let t43 = T::fused(t37 + t36, t39, t42);
         let t44 = x2.cos();
-        let t45 = (-(k(4.0) * T::fused(t44, t40, t41 * t43)))
+        let t45 = -(k(4.0) * T::fused(t44, t40, t41 * t43))
             .atan2(k(4.0) * T::fused(-t41, t40, t44 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t31;
@@ -3273,7 +3273,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeStiff<T> {
             t18,
         );
         let t20 = turn0.cos();
-        let t21 = (-(k(4.0) * T::fused(t20, t16, t17 * t19)))
+        let t21 = -(k(4.0) * T::fused(t20, t16, t17 * t19))
             .atan2(k(4.0) * T::fused(-t17, t16, t20 * t19));
         let t22 = T::fused(
             -k(0.001),
@@ -3380,7 +3380,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeStiff<T> {
             t28,
         );
         let t30 = turn0.cos();
-        let t31 = (-(k(4.0) * T::fused(t30, t26, t27 * t29)))
+        let t31 = -(k(4.0) * T::fused(t30, t26, t27 * t29))
             .atan2(k(4.0) * T::fused(-t27, t26, t30 * t29));
         let t32 = T::fused(
             -k(0.001),
@@ -3563,7 +3563,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeStiff<T> {
             ),
         );
         let t31 = turn0.cos();
-        let t32 = (-(k(4.0) * T::fused(t31, t27, t28 * t30)))
+        let t32 = -(k(4.0) * T::fused(t31, t27, t28 * t30))
             .atan2(k(4.0) * T::fused(-t28, t27, t31 * t30));
         let t33 = k(10000.0)
             * T::fused(-k(100000.0), turn0 + t32, outer_ring_wz - inner_ring_wz);
@@ -3711,7 +3711,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeStiff<T> {
             ),
         );
         let t30 = turn0.cos();
-        let t31 = (-(k(4.0) * T::fused(t30, t26, t27 * t29)))
+        let t31 = -(k(4.0) * T::fused(t30, t26, t27 * t29))
             .atan2(k(4.0) * T::fused(-t27, t26, t30 * t29));
         let t32 = T::fused(-k(100000.0), turn0 + t31, t7);
         let t33 = T::fused(

@@ -3961,7 +3961,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingGyroscope<T> {
         let t52 = T::fused(-(k(0.5) - (t23 + t25) - t26), t45, (t29 - t28) * t48);
         let t53 = T::fused(t47 + t46, t49, t52);
         let t54 = x2.cos();
-        let t55 = (-(k(4.0) * T::fused(t54, t50, t51 * t53)))
+        let t55 = -(k(4.0) * T::fused(t54, t50, t51 * t53))
             .atan2(k(4.0) * T::fused(-t51, t50, t54 * t53));
         x[0] = x0 + t21;
         x[1] = x1 + t41;

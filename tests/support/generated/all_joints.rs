@@ -15129,7 +15129,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 k(0.8) * T::fused(k(0.6), t487, t481),
             );
             let t635 = turn1.sin();
-            let t636 = (-T::fused(t635, t632, t633 * t634))
+            let t636 = -T::fused(t635, t632, t633 * t634)
                 .atan2(T::fused(-t635, t634, t633 * t632));
             let t637 = k(2.0) * (k(0.1) - (turn1 + t636));
             let t638 = T::fused(t423, t247, T::fused(t431, t232, t427 * t240));
@@ -21181,7 +21181,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 k(0.8) * T::fused(k(0.6), t142, t147),
             );
             let t149 = turn1.sin();
-            let t150 = (-T::fused(t149, t144, t145 * t148))
+            let t150 = -T::fused(t149, t144, t145 * t148)
                 .atan2(T::fused(-t149, t148, t145 * t144));
             let t151 = k(2.0) * (k(0.1) - (turn1 + t150));
             let t152 = T::fused(t123, t34, T::fused(t9, t73, t102 * t57));

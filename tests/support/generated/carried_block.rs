@@ -1056,7 +1056,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let t57 = turn0.sin();
         let t58 = t55 - T::fused(-k(0.5), t53, t51);
         let t59 = turn0.cos();
-        let t60 = (-(k(1.7777777777777777) * T::fused(t59, t56, t57 * t58)))
+        let t60 = -(k(1.7777777777777777) * T::fused(t59, t56, t57 * t58))
             .atan2(k(1.7777777777777777) * T::fused(-t57, t56, t59 * t58));
         let t61 = turn0 + t60;
         let t62 = T::fused(
@@ -2699,7 +2699,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let t87 = turn0.sin();
         let t88 = t85 - T::fused(-k(0.5), t83, t81);
         let t89 = turn0.cos();
-        let t90 = (-(k(1.7777777777777777) * T::fused(t89, t86, t87 * t88)))
+        let t90 = -(k(1.7777777777777777) * T::fused(t89, t86, t87 * t88))
             .atan2(k(1.7777777777777777) * T::fused(-t87, t86, t89 * t88));
         let t91 = turn0 + t90;
         let t92 = k(23.4375) * t91;
@@ -4351,7 +4351,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t99 = turn0.sin();
             let t100 = t97 + T::fused(-k(0.5), t92, t87);
             let t101 = turn0.cos();
-            let t102 = (-(k(1.7777777777777777) * T::fused(t101, t98, t99 * t100)))
+            let t102 = -(k(1.7777777777777777) * T::fused(t101, t98, t99 * t100))
                 .atan2(k(1.7777777777777777) * T::fused(-t99, t98, t101 * t100));
             let t103 = turn0 + t102;
             let t104 = T::fused(t33, t45, -T::fused(t4, t43, t20 * t44));
@@ -5859,7 +5859,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t22 = x0.sin();
         let t23 = T::fused(k(2.0), t16, t20);
         let t24 = x0.cos();
-        let t25 = (-(k(0.4) * T::fused(t24, t21, t22 * t23)))
+        let t25 = -(k(0.4) * T::fused(t24, t21, t22 * t23))
             .atan2(k(0.4) * T::fused(-t22, t21, t24 * t23));
         let t26 = block_e3 * block_e3;
         let t27 = block_e0 * block_e0;
@@ -7415,7 +7415,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t95 = turn0.sin();
         let t96 = t93 + T::fused(-k(0.5), t91, t89);
         let t97 = turn0.cos();
-        let t98 = (-(k(1.7777777777777777) * T::fused(t97, t94, t95 * t96)))
+        let t98 = -(k(1.7777777777777777) * T::fused(t97, t94, t95 * t96))
             .atan2(k(1.7777777777777777) * T::fused(-t95, t94, t97 * t96));
         let t99 = turn0 + t98;
         let t100 = k(3.515625) * t99;
@@ -9747,7 +9747,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             let t105 = turn0.sin();
             let t106 = t103 - T::fused(-k(0.5), t98, t93);
             let t107 = turn0.cos();
-            let t108 = (-(k(1.7777777777777777) * T::fused(t107, t104, t105 * t106)))
+            let t108 = -(k(1.7777777777777777) * T::fused(t107, t104, t105 * t106))
                 .atan2(k(1.7777777777777777) * T::fused(-t105, t104, t107 * t106));
             let t109 = turn0 + t108;
             let t110 = T::fused(t36, t48, T::fused(-t5, t46, t22 * t47));

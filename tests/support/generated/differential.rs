@@ -415,7 +415,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Differential<T> {
         let t52 = turn1.cos();
         let t53 = T::fused(t27, t50, T::fused(-t25, t47, t26 * t49));
         let t54 = turn1.sin();
-        let t55 = (-T::fused(t54, t51, t52 * t53)).atan2(T::fused(-t54, t53, t52 * t51));
+        let t55 = -T::fused(t54, t51, t52 * t53).atan2(T::fused(-t54, t53, t52 * t51));
         let t56 = T::fused(-pinion_e1, t17, t22);
         let t57 = t18 + t16;
         let t58 = T::fused(-pinion_e2, t15, pinion_e3 * t17);
@@ -433,7 +433,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Differential<T> {
         let t70 = turn2.cos();
         let t71 = T::fused(t27, t68, T::fused(-t25, t65, t26 * t67));
         let t72 = turn2.sin();
-        let t73 = (-T::fused(t72, t69, t70 * t71)).atan2(T::fused(-t72, t71, t70 * t69));
+        let t73 = -T::fused(t72, t69, t70 * t71).atan2(T::fused(-t72, t71, t70 * t69));
         let t74 = T::fused(
             case_e3,
             case_e3,

@@ -387,7 +387,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for RackAndScrew<T> {
             T::fused(-(t10 + t9), t18, (t27 - t26) * t20),
         );
         let t32 = turn2.sin();
-        let t33 = (-T::fused(t32, t29, t30 * t31)).atan2(T::fused(-t32, t31, t30 * t29));
+        let t33 = -T::fused(t32, t29, t30 * t31).atan2(T::fused(-t32, t31, t30 * t29));
         let t34 = T::fused(-pinion_e1, t1, T::fused(-pinion_e0, t0, k(1.0)));
         let t35 = turn0.cos();
         let t36 = T::fused(pinion_e3, t0, pinion_e2 * t1);

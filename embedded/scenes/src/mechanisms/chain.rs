@@ -9921,7 +9921,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         );
         let t38 = T::fused(t15 - t14, t30, -t37);
         let t39 = x2.sin();
-        let t40 = (-(k(4.0) * T::fused(t39, t35, t36 * t38)))
+        let t40 = -(k(4.0) * T::fused(t39, t35, t36 * t38))
             .atan2(-(k(4.0) * T::fused(-t36, t35, t39 * t38)));
         let t41 = link_4_e3 * link_4_e3;
         let t42 = link_4_e0 * link_4_e0;
@@ -9961,7 +9961,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         );
         let t68 = T::fused(t47 - t46, t60, -t67);
         let t69 = x4.sin();
-        let t70 = (-(k(4.0) * T::fused(t69, t65, t66 * t68)))
+        let t70 = -(k(4.0) * T::fused(t69, t65, t66 * t68))
             .atan2(-(k(4.0) * T::fused(-t66, t65, t69 * t68)));
         let t71 = link_6_e3 * link_6_e3;
         let t72 = link_6_e0 * link_6_e0;
@@ -9982,7 +9982,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Chain<T> {
         let t79 = x5.sin();
         let t80 = T::fused(-t60, t74, T::fused(t61, t76, t64 * t75));
         let t81 = x5.cos();
-        let t82 = (-(k(4.0) * T::fused(t81, t78, t79 * t80)))
+        let t82 = -(k(4.0) * T::fused(t81, t78, t79 * t80))
             .atan2(k(4.0) * T::fused(-t79, t78, t81 * t80));
         x[0] = x0 + t8;
         x[1] = x1 + t25;

@@ -3099,7 +3099,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         );
         let t29 = T::fused(t23, k(0.5) - (t1 + t3) - t4, -t28);
         let t30 = x1.sin();
-        let t31 = (-(k(4.0) * T::fused(t30, t26, t27 * t29)))
+        let t31 = -(k(4.0) * T::fused(t30, t26, t27 * t29))
             .atan2(-(k(4.0) * T::fused(-t27, t26, t30 * t29)));
         let t32 = rotor_e2 * rotor_e2;
         let t33 = rotor_e0 * rotor_e0;
@@ -3125,7 +3125,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
             T::fused(t37 + t36, t39, (t22 - t21) * t38),
         );
         let t43 = x2.cos();
-        let t44 = (-(k(4.0) * T::fused(t43, t40, t41 * t42)))
+        let t44 = -(k(4.0) * T::fused(t43, t40, t41 * t42))
             .atan2(k(4.0) * T::fused(-t41, t40, t43 * t42));
         x[0] = x0 + t11;
         x[1] = x1 + t31;
