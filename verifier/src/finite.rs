@@ -14,7 +14,7 @@ use crate::proof::point_of_terms;
 use crate::seed::Seed;
 use crate::tape::{Formulas, Tape, Term, Written};
 use crate::textbook::Textbook;
-use gyro_model::Model;
+use gyro_model::{Model, Row, RowOwner, RowUnit};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -34,6 +34,9 @@ const FAST: f64 = 1e6;
 
 /// How far joints of an extreme state are torn.
 const TORN: f64 = 1e-2;
+
+/// Axes of a joint that is whole are off by less, as the dot-1 rows have it: by more than any that are torn by [`TORN`].
+const WHOLE: f64 = 0.2;
 
 /// Eq. (17), its rows and columns brought to size one, can be solved if no pivot is smaller than this.
 const REGULAR: f64 = 1e-9;
@@ -57,8 +60,11 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
     for function in module.programs.keys() {
         let broken = places.iter().find_map(|place| {
             let line = not_finite(model, module, &constants, function, place)?;
-            // Every joint state has its maximal state.
-            let must_be_finite = function == "to_maximal" || textbook.is_regular(model, &place.state);
+            let must_be_finite = match function.as_str() {
+                // Every joint state has its maximal state.
+                "to_maximal" => true,
+                function => textbook.is_regular(model, &place.state, is_solve(function)),
+            };
             must_be_finite.then_some((place.what, line))
         });
         problems.extend(broken.map(|(what, line)| {
@@ -77,6 +83,12 @@ pub fn places(model: &Model, module: &Module, seed: Seed) -> Vec<Place> {
     };
     places.extend(torn(model, &module.start, &mut random));
     places
+}
+
+/// Whether a function solves for what the rows ask. Which unknown is taken from which row is decided for joints that are whole: where axes are torn a
+/// right angle apart, the solve of a tree divides by their cosine, though eq. (17) has a solution there.
+fn is_solve(function: &str) -> bool {
+    ["accelerations", "multipliers", "project", "newton_step", "solve_velocities"].contains(&function)
 }
 
 /// States of joint states.
@@ -220,7 +232,7 @@ struct Dense {
     formulas: Formulas,
     /// The matrix `(M, Φ_π'ᵀ; Φ_π', 0)` by rows; `None` is zero.
     matrix: Vec<Vec<Option<Id>>>,
-    /// All else that must be finite.
+    /// All else that must be finite, Φ first.
     others: Vec<Id>,
     is_written: bool,
 }
@@ -255,8 +267,8 @@ impl Dense {
         Self { formulas, matrix, others, is_written: true }
     }
 
-    /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there.
-    fn is_regular(&self, model: &Model, state: &[f64]) -> bool {
+    /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there; if asked for, whether joints are whole too.
+    fn is_regular(&self, model: &Model, state: &[f64], must_be_whole: bool) -> bool {
         if !self.is_written || state.iter().any(|x| !x.is_finite()) {
             return false;
         }
@@ -273,8 +285,17 @@ impl Dense {
             .collect();
         let is_finite = self.others.iter().all(|id| value(id).is_finite())
             && matrix.iter().flatten().all(|x| x.is_finite());
-        is_finite && smallest_pivot(matrix) > REGULAR
+        let is_whole = || {
+            let mut rows = model.rows().into_iter().zip(&self.others);
+            rows.all(|(row, id)| !is_of_directions(row) || value(id).abs() < WHOLE)
+        };
+        is_finite && (!must_be_whole || is_whole()) && smallest_pivot(matrix) > REGULAR
     }
+}
+
+/// Whether a row holds directions of a joint or a body to each other.
+fn is_of_directions(row: Row) -> bool {
+    row.unit == RowUnit::Pure && matches!(row.owner, RowOwner::Joint(_) | RowOwner::Body(_))
 }
 
 /// The smallest pivot of Gaussian elimination with full pivoting, of a symmetric matrix whose rows and columns are first brought to size one.

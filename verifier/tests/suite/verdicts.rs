@@ -145,6 +145,20 @@ fn frames_of_parameters_store_no_zeros() {
     }
 }
 
+/// A body turned by half a turn away from its joint may have its axis at right angles to the joint's: solves of trees divide by zero there, and may.
+#[test]
+fn solves_may_need_joints_that_are_whole() {
+    let page = "format = 1\nname = \"arm\"\n[[body]]\nname = \"base\"\nfixed = \"constrained\"\nmass = 1\ninertia = [0.1, 0.2, 0.1]\n\
+         [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+         [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\nangle = -0.5\n\
+         first = { body = \"arm\", point = [0, 0.45, 0], axis = [1, 1, 0], zero = [0, 0, -1] }\n\
+         second = { body = \"base\", point = [0, 0, -0.05], axis = [1, 0, 0], zero = [1, 1, 0] }\n";
+    let model = gyro_model::read("arm.toml", page).unwrap_or_else(|problems| panic!("{problems}"));
+    let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+    let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+}
+
 /// Roots of parameters, a dozen of them: points that have them all are found joint by joint.
 #[test]
 fn roots_of_parameters_are_never_too_many() {
