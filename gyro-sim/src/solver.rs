@@ -249,9 +249,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         self.attempt(system, h);
         let after = self.after(h);
         self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
-        let outcome = self
-            .correct_trial(system, after.0)
-            .and_then(|is_corrected| self.pivot_of_trial(system, after.0).map(|pivot| (is_corrected, pivot)));
+        let outcome = self.correct_trial(system, after.0).and_then(|is_corrected| {
+            let pivot = self.pivot_of_trial(system, after.0);
+            self.refuse_unseen(system, (after.0, pivot)).map(|()| (is_corrected, pivot))
+        });
         match outcome {
             Ok(settled) => {
                 self.keep::<O>(after, h, settled);

@@ -45,10 +45,6 @@ fn read(page: &str) -> Model {
 /// A row of parallelograms, benchmark A02 of the IFToMM technical committee for multibody dynamics (*N-four-bar mechanism*): bars of 1 m and
 /// 1 kg, thrown from upright. The first coupler may be longer or shorter by a little.
 fn cells(n: usize, speed: f64, excess: f64) -> Model {
-    read(&page_of_cells(n, speed, excess))
-}
-
-fn page_of_cells(n: usize, speed: f64, excess: f64) -> String {
     let mut page = HEAD.to_owned();
     for k in 0..=n {
         page += &rod(&format!("bar{k}"), 1.0, 1.0);
@@ -64,7 +60,7 @@ fn page_of_cells(n: usize, speed: f64, excess: f64) -> String {
             page += &hinge(&name, (&format!("bar{bar}"), 0.5), (&coupler, end * length), ROUGH_ACROSS);
         }
     }
-    page
+    read(&page)
 }
 
 const ROUGH_UP: &str = "angle_deg = 90\nrough = true";
@@ -320,8 +316,10 @@ fn fixed_steps_pass_or_name_the_pose() {
     for (n, speed, step, correction) in [
         (1, 0.3, 5e-3, Correction::Partition),
         (2, 1.0, 1e-3, Correction::None),
-        (2, 1.0, 5e-3, Correction::Baumgarte(20.0)),
+        (2, 1.0, 3e-4, Correction::None),
+        (2, 1.0, 1e-3, Correction::Baumgarte(20.0)),
         (2, 1.0, 5e-3, Correction::MassWeighted),
+        (3, 2.0, 1e-3, Correction::None),
         (3, 2.0, 5e-3, Correction::Baumgarte(20.0)),
         (3, 2.0, 5e-3, Correction::Partition),
     ] {
@@ -360,19 +358,5 @@ fn the_grid_is_kept_over_a_pose() {
         assert!(error < 1e-6 && summary.statistics.leaps > 0, "{error:e}, {summary:?}");
         let count = (settings.t_end / sample_every).round() as usize + 1;
         assert_eq!(samples.len(), count);
-    }
-}
-
-/// Too near to be foreseen: within the first steps.
-#[test]
-fn a_pose_right_behind_the_start_is_named() {
-    let page = page_of_cells(1, 1.0, 0.0).replace("angle_deg = 90", "angle_deg = 0.05");
-    let model = read(&page.replace("angle_deg = -90", "angle_deg = -0.05"));
-    for step in [1e-3, 1.5e-3, 5e-3] {
-        let (samples, outcome) =
-            by_steps((&dense(&model), &Projecting), (&model, 0.1), step, Correction::Partition);
-        println!("{step:e} s: {} samples, {outcome:?}", samples.len());
-        let failure = outcome.err().unwrap_or_else(|| panic!("{step:e} s: the pose is not named"));
-        assert_named(&failure.to_string());
     }
 }

@@ -44,8 +44,10 @@ const SCENES: [Scene; 13] = [
 /// How far off a result may be in units of the tolerance.
 const TIMES: f64 = 10.0;
 
-/// Errors of single steps add up to no more than so many times what is allowed, but for a tolerance of one.
+/// Errors of single steps add up to no more than so many times what is allowed, but for a tolerance of one and where a mechanism may
+/// go on in two ways.
 const ADDED_UP: f64 = 30.0;
+const IN_LINE: &str = "four-bar-in-line";
 
 /// Of all runs that begin at least so many end right.
 const RIGHT: f64 = 0.75;
@@ -207,8 +209,8 @@ impl<'a> Judge<'a> {
             return;
         }
         let words = format!("{what}: {ratio:.2e} times what is allowed");
-        let is_coarse = approach.tolerance == Some(1.0);
-        if ratio > ADDED_UP && !is_coarse {
+        let is_branching = self.scene.page == IN_LINE || approach.tolerance == Some(1.0);
+        if ratio > ADDED_UP && !is_branching {
             self.tally.wrong.push(words);
             return;
         }

@@ -43,7 +43,6 @@ pub(crate) fn object(
         "evaluations": summary.statistics.work.evaluations,
         "jacobians": summary.statistics.work.jacobians,
         "corrections": summary.statistics.corrections,
-        "poses_stepped_over": summary.statistics.leaps,
         "steps_limited_by_stability": summary.statistics.limited_by_stability,
         "chart_switches": summary.chart_switches,
         "run_time_s": summary.run_time_s,

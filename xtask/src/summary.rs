@@ -176,9 +176,8 @@ fn list(values: &[f64]) -> String {
 
 /// What the steps have cost and met.
 fn cost(statistics: &Statistics) -> Vec<Vec<String>> {
-    let Statistics {
-        accepted, rejected, corrections, work, limited_by_stability, fastest_rate, leaps, ..
-    } = *statistics;
+    let Statistics { accepted, rejected, corrections, work, limited_by_stability, fastest_rate, .. } =
+        *statistics;
     let mut rows = vec![vec!["evaluations".to_owned(), work.evaluations.to_string()]];
     if rejected > 0 {
         rows.push(vec!["rejected steps".to_owned(), rejected.to_string()]);
@@ -188,9 +187,6 @@ fn cost(statistics: &Statistics) -> Vec<Vec<String>> {
     }
     if corrections > 0 {
         rows.push(vec!["corrections".to_owned(), corrections.to_string()]);
-    }
-    if leaps > 0 {
-        rows.push(vec!["poses stepped over".to_owned(), leaps.to_string()]);
     }
     if fastest_rate > 0.0 {
         rows.push(vec!["fastest rate".to_owned(), format!("{} 1/s", number(fastest_rate, FEW))]);

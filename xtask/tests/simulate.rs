@@ -92,7 +92,6 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "run_time_s",
             "step",
             "steps",
-            "poses_stepped_over",
             "steps_limited_by_stability",
             "t",
             "tolerance",

@@ -4,7 +4,7 @@
 //! from each other; a pose that no leap leads over is named before it is reached. See [`poses`](super::poses) for the reasons.
 
 use super::Solver;
-use super::poses::{Approach, BEYOND, FLOOR, NOISE, WORST, Watch};
+use super::poses::{Approach, BEYOND, FLOOR, NOISE, WORST};
 use crate::integrate::Method;
 use crate::{Clearance, Correction, Error, Ode, Real, Storage};
 
@@ -28,8 +28,6 @@ const NEAR: f64 = 2.0;
 const NEAREST: f64 = 1.0;
 /// Behind a pose the constraints are off by so many times more than before and by extrapolation at most.
 const EXPLAINED: f64 = 10.0;
-/// With a larger pivot constraints are not looked at: they would have to be off by a thousandth of the size.
-const SMALL: f64 = 0.3;
 /// A pose has been passed unseen if the pivot, as it rises, was zero within this part of the step before.
 const UNSEEN: f64 = 0.9;
 /// Times nearer to each other than this part of a step are one.
@@ -53,24 +51,14 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     }
 
     /// How clear of poses the trial is, where there are any.
-    ///
-    /// With constraints that are off by the square of that it turns before a pose, or somewhere else, and nothing foretells it.
-    pub(super) fn pivot_of_trial<O>(&mut self, system: &O, t: T) -> Result<Option<T>, Error>
+    pub(super) fn pivot_of_trial<O>(&self, system: &O, t: T) -> Option<T>
     where
         O: Ode<Scalar = T, State = S>,
         C: Correction<O>,
     {
-        let is_needed = self.watch == Watch::Needed;
+        let is_needed = self.watch == super::Watch::Needed;
         let clearance = is_needed.then(|| self.correction.clearance(system, t, &self.trial)).flatten();
-        let Some(Clearance { pivot, owner }) = clearance else { return Ok(None) };
-        let is_falling = self.past.last_two().is_some_and(|[now, _]| pivot < now.pivot);
-        let is_ahead = is_falling && pivot < T::constant(SMALL);
-        if is_ahead && pivot * pivot < T::constant(FLOOR) * self.correction.violation(system, t, &self.trial)
-        {
-            return Err(Error::Singular { t: t.to_f64(), pivot: pivot.to_f64(), owner });
-        }
-        self.refuse_unseen(system, (t, pivot))?;
-        Ok(Some(pivot))
+        clearance.map(|clearance| clearance.pivot)
     }
 
     /// Begins to step over a pose where one is near and states before it tell how; returns whether.
@@ -194,12 +182,12 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
 
     /// A pose right behind the start cannot be foreseen, but the pivot has come from zero in less time than the steps took: which way
     /// the motion has gone there nobody knows.
-    fn refuse_unseen<O>(&self, system: &O, (t, pivot): (T, T)) -> Result<(), Error>
+    pub(super) fn refuse_unseen<O>(&self, system: &O, (t, pivot): (T, Option<T>)) -> Result<(), Error>
     where
         O: Ode<Scalar = T, State = S>,
         C: Correction<O>,
     {
-        let Some([now, before]) = self.past.last_two() else { return Ok(()) };
+        let (Some(pivot), Some([now, before])) = (pivot, self.past.last_two()) else { return Ok(()) };
         let since = now.pivot * (t - now.t);
         let whole = (pivot - now.pivot) * (now.t - before.t);
         if pivot > now.pivot && since < whole * T::constant(UNSEEN) {
