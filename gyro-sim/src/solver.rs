@@ -1,6 +1,5 @@
 //! From a method and a correction to a motion.
 
-mod grid;
 mod past;
 mod poses;
 
@@ -8,7 +7,6 @@ use crate::correct::{check_finite, check_time};
 use crate::integrate::{Embedded, Method, Work};
 use crate::{Correction, Error, Ode, Real, Storage, When};
 use core::cmp::Ordering;
-use grid::Flight;
 use past::Past;
 use poses::{Approach, Watch};
 
@@ -116,8 +114,6 @@ pub struct Solver<S, T, M, C> {
     leap: Option<usize>,
     /// Where there is a singular pose ahead that must be stepped over.
     approach: Option<Approach>,
-    /// Where steps of fixed length are on their way over one.
-    flight: Option<Flight<T>>,
     watch: Watch,
     resumes: bool,
     statistics: Statistics,
@@ -162,7 +158,6 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             raw: y.clone(),
             leap: None,
             approach: None,
-            flight: None,
             watch: Watch::Unknown,
             resumes: false,
             statistics: Statistics { shortest_step: f64::INFINITY, ..Statistics::default() },
@@ -202,22 +197,18 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         self.y.as_mut().copy_from_slice(y.as_ref());
         (self.is_untouched, self.is_checked) = (false, false);
         self.past.forget();
-        (self.leap, self.flight) = (None, None);
+        self.leap = None;
     }
 
     /// The system has changed, as by a new value of an input: nothing that was found out about it holds any longer.
     pub fn system_has_changed(&mut self) {
         self.is_untouched = false;
         self.resumes = false;
-        // A flight goes on: what it lands on has been found.
-        if self.flight.is_none() {
-            self.past.doubt();
-            self.leap = None;
-        }
+        self.past.forget();
+        self.leap = None;
     }
 
-    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again; but a singular pose ahead is
-    /// passed as it is under error control, several steps being extrapolated.
+    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again.
     ///
     /// # Errors
     /// [`Error`], with state and time as they were before.
@@ -231,31 +222,12 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         if !h.is_finite() {
             return Err(Error::Setting { setting: "step", value: h.to_f64() });
         }
-        self.watch(system);
-        let outcome = match self.watch {
-            Watch::Needed => self.step_watched(system, h),
-            _ => self.step_on(system, h),
-        };
-        outcome.map_err(|error| self.blame(system, error))
-    }
-
-    /// A step by the method, whatever lies ahead.
-    fn step_on<O>(&mut self, system: &O, h: T) -> Result<(), Error>
-    where
-        O: Ode<Scalar = T, State = S>,
-        M: Method<O>,
-        C: Correction<O>,
-    {
         self.attempt(system, h);
         let after = self.after(h);
         self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
-        let outcome = self.correct_trial(system, after.0).and_then(|is_corrected| {
-            let pivot = self.pivot_of_trial(system, after.0);
-            self.refuse_unseen(system, (after.0, pivot)).map(|()| (is_corrected, pivot))
-        });
-        match outcome {
-            Ok(settled) => {
-                self.keep::<O>(after, h, settled);
+        match self.correct_trial(system, after.0) {
+            Ok(is_corrected) => {
+                self.keep::<O>(after, h, (is_corrected, None));
                 Ok(())
             }
             Err(error) => {
@@ -278,7 +250,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         (0..n).try_for_each(|_| self.step(system, h))
     }
 
-    /// Corrects the state now, whether that is due or not; not while steps of fixed length pass a singular pose.
+    /// Corrects the state now, whether that is due or not.
     ///
     /// # Errors
     /// [`Error`], with the state as it was before.
@@ -288,14 +260,9 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         C: Correction<O>,
     {
         check_time(self.t, self.t)?;
-        if self.flight.is_some() {
-            // In a pose there is nothing to correct by; where it has been passed there is.
-            return Ok(());
-        }
         self.trial.as_mut().copy_from_slice(self.y.as_ref());
         self.correction.correct(system, self.t, &mut self.trial)?;
         core::mem::swap(&mut self.y, &mut self.trial);
-        self.past.amend(self.t, &self.y);
         self.statistics.corrections += 1;
         (self.since_correction, self.is_untouched) = (0, false);
         Ok(())
@@ -419,20 +386,15 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     }
 
     fn go_on(&mut self, (t, t_rest): (T, T), h: T, (is_corrected, pivot): (bool, Option<T>)) {
-        self.since_correction = if is_corrected { 0 } else { self.since_correction.saturating_add(1) };
-        self.move_on((t, t_rest), h);
-        match pivot {
-            Some(pivot) => self.past.push(t, pivot, &self.y),
-            None => self.past.forget(),
-        }
-    }
-
-    /// To the trial.
-    fn move_on(&mut self, (t, t_rest): (T, T), h: T) {
+        self.since_correction = if is_corrected { 0 } else { self.since_correction + 1 };
         (self.before.0, self.before.2) = (self.t, h);
         core::mem::swap(&mut self.before.1, &mut self.y);
         core::mem::swap(&mut self.y, &mut self.trial);
         (self.t, self.t_rest) = (t, t_rest);
+        match pivot {
+            Some(pivot) => self.past.push(t, pivot, &self.y),
+            None => self.past.forget(),
+        }
         self.statistics.accepted += 1;
         self.statistics.longest_step = self.statistics.longest_step.max(h.to_f64());
     }

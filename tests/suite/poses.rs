@@ -191,7 +191,7 @@ fn without_a_correction_the_pose_is_named() {
         assert!(error < ADDED_UP * tolerance + ROUNDING, "{tolerance:e}: {error:e}");
         if let Err(failure) = outcome {
             let words = failure.to_string();
-            assert_named(&words);
+            assert!(words.contains("in a singular pose, where the constraints of joint"), "{words}");
             assert!(words.contains("--correction partition"), "{words}");
         }
     }
@@ -283,80 +283,5 @@ fn peaucelliers_linkage_passes_its_fold() {
         // It has folded and opened the other way round.
         assert!(ends[0] > 0.6 && ends[1] < -0.1 && summary.statistics.leaps > 0, "{ends:?}");
         assert!(summary.energy_drift < 1e3 * tolerance, "{:e}", summary.energy_drift);
-    }
-}
-
-/// Direct integration drifts, and a linkage that almost comes to rest upright enlarges it; another way on is off by far more.
-const OFF_BY_STEPS: f64 = 1e-3;
-
-fn by_steps(
-    (engine, kit): (&Engine, &dyn Kit<Engine>),
-    (model, t_end): (&Model, f64),
-    step: f64,
-    correction: Correction,
-) -> (Vec<Sample>, Result<Summary, Failure>) {
-    let approach = Approach {
-        integrator: Integrator::Rk4,
-        coordinates: Coordinates::Maximal,
-        correction,
-        ..Approach::default()
-    };
-    let settings = Settings { t_end, step, correct_every: Some(5.0 * step), sample_every: t_end / 50.0 };
-    moved(engine, kit, (&settings, &approach), &start_of(model))
-}
-
-fn error_of(samples: &[Sample], n: usize, pendulum: &Pendulum) -> f64 {
-    off_by(samples, n + 1, pendulum, pivot_angle)
-}
-
-#[test]
-fn fixed_steps_pass_or_name_the_pose() {
-    let mut passed = 0;
-    // Steps in which uncorrected and steered runs went another way in silence are among them.
-    for (n, speed, step, correction) in [
-        (1, 0.3, 5e-3, Correction::Partition),
-        (2, 1.0, 1e-3, Correction::None),
-        (2, 1.0, 3e-4, Correction::None),
-        (2, 1.0, 1e-3, Correction::Baumgarte(20.0)),
-        (2, 1.0, 5e-3, Correction::MassWeighted),
-        (3, 2.0, 1e-3, Correction::None),
-        (3, 2.0, 5e-3, Correction::Baumgarte(20.0)),
-        (3, 2.0, 5e-3, Correction::Partition),
-    ] {
-        let model = cells(n, speed, 0.0);
-        let (samples, outcome) = by_steps((&dense(&model), &Projecting), (&model, 3.0), step, correction);
-        let error = error_of(&samples, n, &as_pendulum(n, speed));
-        println!("{n} cells, {step:e} s, {correction}: off by {error:.1e}, {outcome:?}");
-        assert!(error < OFF_BY_STEPS, "{n} cells, {step:e} s, {correction}: {error:e}");
-        match outcome {
-            Ok(summary) => {
-                assert!(summary.statistics.leaps > 0, "{summary:?}");
-                passed += 1;
-            }
-            Err(failure) => assert_named(&failure.to_string()),
-        }
-    }
-    assert!(passed >= 5, "{passed} runs have come through");
-}
-
-fn assert_named(words: &str) {
-    assert!(words.contains("in a singular pose, where the constraints of joint"), "{words}");
-}
-
-/// Samples lie on the grid, inside a leap too, and after steps that end elsewhere than the leap.
-#[test]
-fn the_grid_is_kept_over_a_pose() {
-    let model = cells(1, 1.0, 0.0);
-    let engine = dense(&model);
-    let approach = Approach { correction: Correction::MassWeighted, ..Approach::default() };
-    for (step, sample_every) in [(2e-3, 2e-3), (2e-3, 2.7e-3)] {
-        let settings = Settings { t_end: 0.81, step, correct_every: None, sample_every };
-        let (samples, outcome) = moved(&engine, &Projecting, (&settings, &approach), &start_of(&model));
-        let summary = outcome.unwrap_or_else(|failure| panic!("{failure}"));
-        let error = error_of(&samples, 1, &as_pendulum(1, 1.0));
-        println!("samples every {sample_every} s: off by {error:.1e}, {:?}", summary.statistics);
-        assert!(error < 1e-6 && summary.statistics.leaps > 0, "{error:e}, {summary:?}");
-        let count = (settings.t_end / sample_every).round() as usize + 1;
-        assert_eq!(samples.len(), count);
     }
 }

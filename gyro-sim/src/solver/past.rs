@@ -14,10 +14,7 @@ const FEWEST: usize = 4;
 pub(super) struct Past<S, T> {
     nodes: [Node<S, T>; NODES],
     newest: usize,
-    /// So many of the newest states can be extrapolated.
     len: usize,
-    /// And of so many the pivots are known.
-    seen: usize,
 }
 
 /// A state that a step has led to.
@@ -32,30 +29,12 @@ pub(super) struct Node<S, T> {
 impl<S: Storage<T>, T: Real> Past<S, T> {
     /// Nothing is known yet.
     pub(super) fn new(t: T, y: &S) -> Self {
-        Self {
-            nodes: core::array::from_fn(|_| Node { t, pivot: t, y: y.clone() }),
-            newest: 0,
-            len: 0,
-            seen: 0,
-        }
+        Self { nodes: core::array::from_fn(|_| Node { t, pivot: t, y: y.clone() }), newest: 0, len: 0 }
     }
 
     /// What was before says nothing about what comes.
     pub(super) fn forget(&mut self) {
-        (self.len, self.seen) = (0, 0);
-    }
-
-    /// States that were before do not lead to those that come, but poses are where they were.
-    pub(super) fn doubt(&mut self) {
-        self.len = self.len.min(1);
-    }
-
-    /// The newest state has been corrected.
-    pub(super) fn amend(&mut self, t: T, y: &S) {
-        let node = &mut self.nodes[self.newest];
-        if self.len > 0 && node.t == t {
-            node.y.as_mut().copy_from_slice(y.as_ref());
-        }
+        self.len = 0;
     }
 
     /// How many states are known.
@@ -69,22 +48,11 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
         (node.t, node.pivot) = (t, pivot);
         node.y.as_mut().copy_from_slice(y.as_ref());
         self.len = (self.len + 1).min(NODES);
-        self.seen = (self.seen + 1).min(NODES);
     }
 
     /// The newest node and the one before it.
     pub(super) fn last_two(&self) -> Option<[&Node<S, T>; 2]> {
-        (self.seen > 1).then(|| [self.node(0), self.node(1)])
-    }
-
-    /// Behind a pose the pivots before it say nothing about the next one.
-    pub(super) fn turn(&mut self) {
-        self.seen = 1;
-    }
-
-    /// Writes the newest state.
-    pub(super) fn newest(&self, y: &mut S) {
-        y.as_mut().copy_from_slice(self.node(0).y.as_ref());
+        (self.len > 1).then(|| [self.node(0), self.node(1)])
     }
 
     fn node(&self, age: usize) -> &Node<S, T> {

@@ -12,7 +12,7 @@ use crate::{Clearance, Correction, Error, Ode, Owner, Real, Storage};
 pub(super) struct Approach {
     attempts: u32,
     /// What the last leap that was refused would have been off by.
-    pub(super) error: f64,
+    error: f64,
 }
 
 impl Default for Approach {
@@ -30,7 +30,7 @@ pub(super) enum Watch {
 }
 
 /// The nearer a pose the less extrapolation is off, until rounding makes it worse again: then as much as this is tolerated of the last chance.
-pub(super) const WORST: f64 = 100.0;
+const WORST: f64 = 100.0;
 /// Steps towards a pose go this part of the way, so that states lie close enough together to extrapolate them.
 const APPROACH: f64 = 0.35;
 /// So many steps lead to any pose that can be passed: each goes the same part of the way.
@@ -38,16 +38,16 @@ const LONGEST_APPROACH: u32 = 300;
 /// With a pivot below this whatever fails does so because of the pose.
 const IN_POSE: f64 = 1e-3;
 /// A leap ends as clear of the pose as it began, to within this factor: where a pivot vanishes linearly, on the other side.
-pub(super) const BEYOND: f64 = 0.25;
+const BEYOND: f64 = 0.25;
 /// A correction may change a step's result by so many times what is tolerated: by more, and the step was not what its error estimate says.
 const AGREEMENT: f64 = 10.0;
 
 /// What rounding makes of velocities near a pose, see [`Solver::rounding`], is so many times larger after a correction: an allowance.
 const ROUNDINGS: f64 = 64.0;
 /// And in states that are extrapolated.
-pub(super) const NOISE: f64 = 4.0;
+const NOISE: f64 = 4.0;
 /// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through a pose are apart.
-pub(super) const FLOOR: f64 = 100.0;
+const FLOOR: f64 = 100.0;
 
 impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     /// In a singular pose there are many ways to fail, for this one reason.
@@ -128,7 +128,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
 
     /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the pivot, and so
     /// velocities, along what the pivot belongs to, to one over its square.
-    pub(super) fn rounding(&self, pivot: T) -> T {
+    fn rounding(&self, pivot: T) -> T {
         let zero = T::constant(0.0);
         let size = self.y.as_ref().iter().fold(zero, |size, y| if y.abs() > size { y.abs() } else { size });
         T::EPSILON * size / (pivot * pivot)
