@@ -1,5 +1,6 @@
 //! What is wrong, what is only flawed, and what many square roots must not hide.
 
+use crate::support::generate_text;
 use gyro_model::Model;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
@@ -250,5 +251,27 @@ fn a_wrong_start_in_joint_coordinates_is_refuted() {
         let report =
             verify(&page.model, &format!("{head}fn joint_start{wrong}"), &page.constants, Depth::Quick);
         assert!(report.is_refuted() && report.problems.len() == 1, "{report}");
+    }
+}
+
+/// What a start violates is judged by what its rows subtract: an angle of a million turns is known to 1e-9.
+#[test]
+fn a_start_after_many_turns_is_proved() {
+    let gears = |angle: f64| {
+        format!(
+            "format = 1\nname = \"gears\"\n[[body]]\nname = \"ground\"\nfixed = true\n\
+             [[body]]\nname = \"one\"\nmass = 1\ninertia = [0.1, 0.1, 0.1]\n\
+             [[body]]\nname = \"other\"\nmass = 1\ninertia = [0.1, 0.1, 0.1]\n\
+             [[joint]]\nname = \"a\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\n\
+             first = {{ body = \"ground\" }}\nsecond = {{ body = \"one\" }}\nangle = {angle:.4}\n\
+             [[joint]]\nname = \"b\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\n\
+             first = {{ body = \"ground\", point = [1000, 0, 0] }}\nsecond = {{ body = \"other\" }}\n\
+             [[coupler]]\nname = \"teeth\"\nfirst = {{ joint = \"a\" }}\nsecond = {{ joint = \"b\" }}\nratio = -1.7\n"
+        )
+    };
+    for angle in [0.1, 62_831.9, 7_654_321.1234] {
+        let page = generate_text("gears.toml", &gears(angle));
+        let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+        assert!(report.is_proved(), "from {angle} rad: {report}");
     }
 }
