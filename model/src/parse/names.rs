@@ -73,7 +73,9 @@ pub(super) fn nearest<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
     // Of equally near names, one of the same letters.
     let best = known.iter().min_by_key(|name| (distance(name), letters(name) != letters(&written)))?;
     let length = written.chars().count().max(best.chars().count());
-    (distance(best) <= length.div_ceil(3)).then_some(best)
+    // Of a single letter nothing would be left.
+    let most = length.div_ceil(3).min(length.saturating_sub(1));
+    (distance(best) <= most).then_some(best)
 }
 
 /// What to write instead of an unknown name.
@@ -110,6 +112,7 @@ mod tests {
         check("angular-velocity", Some("angular_velocity"));
         check("colour", None);
         assert_eq!(nearest("zx", &["xx", "zz", "xz"]), Some("xz"));
+        assert_eq!(nearest("q", &["m", "k"]), None);
         check("", None);
     }
 

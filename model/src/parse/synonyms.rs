@@ -102,7 +102,12 @@ pub(super) fn elsewhere(written: &str, known: &[&str]) -> Option<&'static str> {
     let is_body = known.contains(&"inertia");
     let is_joint = known.contains(&"rough");
     let is_end = known.contains(&"zero") && known.contains(&"point") && !is_joint;
+    let is_page = known.contains(&"gravity");
     let help = match written.to_lowercase().as_str() {
+        "input" if is_page => "inputs are one table: [inputs], with a line such as torque = 0 for each",
+        "parameter" | "param" if is_page => {
+            "parameters are one table: [parameters], with a line such as length = 0.5 for each"
+        }
         "com" | "cog" | "center_of_mass" | "centre_of_mass" | "mass_center" | "cm" if is_body => {
             "remove it: a body's frame has its origin at the mass centre, from where joints' points are measured"
         }

@@ -106,3 +106,17 @@ fn the_tables_know_every_key() {
         }
     }
 }
+
+#[test]
+fn names_have_at_most_a_hundred_characters() {
+    assert!(page().contains("at most 100 characters"));
+    let named = |length: usize| {
+        let (text, name) = (page(), "n".repeat(length));
+        let example = fenced(&text, "toml");
+        let line = example.lines().find(|line| line.starts_with("name = ")).expect("the mechanism's name");
+        read(&example.replacen(line, &format!("name = \"{name}\""), 1))
+    };
+    assert!(named(100).is_ok());
+    let said = named(101).expect_err("a name that is too long").render();
+    assert!(said.contains("at most 100 characters") && said.contains("write `nnn"), "{said}");
+}
