@@ -38,7 +38,7 @@ pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
 pub use input::{Input, any_varies};
 pub use offers::Offers;
 pub use remark::{Promise, Remark};
-pub use run::{Event, Start, run, run_by};
+pub use run::{Event, Start, run, run_by, scheduled};
 pub use sample::{BodySample, JointSample, Sample};
 pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use spectrum::fastest_rate;

@@ -182,14 +182,15 @@ fn foretell<M: Partition + Ports + 'static, F: FnMut(Event<'_>) -> io::Result<()
     }
 }
 
-/// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run.
-pub(crate) fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
+/// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run, nor do steps under error control.
+pub fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
     let has_moments = approach.coordinates == Coordinates::Maximal
         && !matches!(approach.correction, Correction::None | Correction::Baumgarte(_))
         && approach.when.is_none()
         && approach.tolerance.is_none();
     // Under error control only samples divide it.
-    let step = if approach.tolerance.is_some() { settings.t_end } else { settings.step };
+    let is_divided = approach.tolerance.is_none() || settings.t_end == 0.0;
+    let step = if is_divided { settings.step } else { settings.t_end };
     Settings { correct_every: settings.correct_every.filter(|_| has_moments), step, ..*settings }
 }
 

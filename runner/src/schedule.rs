@@ -5,7 +5,7 @@ use std::fmt;
 /// How a run is to be made; all times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Length of the run.
+    /// Length of the run. One of 0 has the start as its only sample.
     pub t_end: f64,
     /// Largest step of the integrator.
     pub step: f64,
@@ -79,7 +79,9 @@ impl Settings {
     /// # Errors
     /// [`Impossible`], for the first setting that cannot be followed.
     pub fn check(&self) -> Result<(), Impossible> {
-        positive("t_end", self.t_end)?;
+        if self.t_end != 0.0 {
+            positive("t_end", self.t_end)?;
+        }
         positive("step", self.step)?;
         positive("sample_every", self.sample_every)?;
         at_most("samples", self.t_end / self.sample_every, MOST_SAMPLES)?;

@@ -170,8 +170,8 @@ pub(crate) struct SimulateArgs {
     /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
-    /// End the run at this time and print the linearisation of the joint coordinates there: A, B and eigenvalues. Trees only
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true, conflicts_with = "t_end")]
+    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and eigenvalues. Trees only
+    #[arg(long, value_name = "S", value_parser = seconds_or_none, allow_hyphen_values = true, conflicts_with = "t_end")]
     pub(crate) linearize: Option<f64>,
     /// Number type of the run
     #[arg(long, value_enum, default_value_t = Precision::F64)]
@@ -382,6 +382,13 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
+fn seconds_or_none(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("0 or a positive number of seconds was expected, such as 0.5".to_owned()),
+    }
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -471,7 +478,8 @@ mod tests {
             (&["--budget", "1e3"], "invalid"),
             (&["--step", "1e400"], "a positive number of seconds was expected"),
             (&["--step", ""], "a positive number of seconds was expected"),
-            (&["--linearize", "nan"], "a positive number of seconds was expected"),
+            (&["--linearize", "nan"], "0 or a positive number of seconds was expected"),
+            (&["--linearize", "-1"], "0 or a positive number of seconds was expected"),
             (&["--correction", "baumgarte=nan"], "such as baumgarte=100"),
             (&["--correct-when", "violation=1e400"], "such as steps=5"),
             (&["--correct-when", "steps=1e12"], "such as steps=5"),

@@ -173,8 +173,7 @@ fn refusal(offers: &Offers, settings: &Settings, approach: &Approach, args: &Sim
         let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
         return Some(words.to_owned());
     }
-    let step = if approach.tolerance.is_some() { settings.t_end } else { settings.step };
-    offers.refusal(&Settings { step, ..*settings }, approach)
+    offers.refusal(&gyro_runner::scheduled(settings, approach), approach)
 }
 
 /// A run of fixed steps that would take longer than this, s, is made only by those who say so.

@@ -122,6 +122,11 @@ fn table_path(name: &str, folder: &Path) -> PathBuf {
 fn write_files(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut written = vec![write_table(scene, samples, folder)?];
     let model = &scene.model;
+    if samples.len() == 1 {
+        // Nothing moves, and plots of an earlier run would belie it.
+        remove_plots(scene, folder);
+        return Ok(written);
+    }
     for (name, svg) in plot::pages(model, samples).map_err(Failure::Run)? {
         let path = plot_path(&model.name, name, folder);
         write::write(&path, &svg, Known::Record)?;
@@ -137,14 +142,16 @@ fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathB
     Ok(path)
 }
 
+fn remove_plots(scene: &Scene, folder: &Path) {
+    plot::NAMES.iter().for_each(|name| write::remove(&plot_path(&scene.model.name, name, folder)));
+}
+
 /// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie them.
 fn keep_what_there_is(scene: &Scene, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
     let (Failure::Run(words), Some(folder), Some(last)) = (&failure, folder, samples.last()) else {
         return failure;
     };
-    for name in plot::NAMES {
-        write::remove(&plot_path(&scene.model.name, name, folder));
-    }
+    remove_plots(scene, folder);
     match write_table(scene, samples, folder) {
         Ok(path) => Failure::Run(format!(
             "{words}\nThe run is incomplete; its {} up to t = {} s are in {}.",

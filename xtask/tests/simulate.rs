@@ -132,6 +132,12 @@ fn a_run_is_judged_and_linearised() {
     // The nutation of the paper's scene.
     let fastest = linear["eigenvalues"][0][1].as_f64().unwrap();
     assert!((fastest - 144.31).abs() < 0.1, "{linear}");
+    // At the start, where nothing has moved yet.
+    let start = json(&folder, &[&[&page, "--linearize", "0", "--out", "."][..], &joint].concat());
+    assert_eq!((start["t"].as_f64(), start["steps"].as_u64()), (Some(0.0), Some(0)));
+    let fastest = start["linearization"]["eigenvalues"][0][1].as_f64().unwrap();
+    assert!((fastest - 144.31).abs() < 0.1, "{start}");
+    assert_eq!(folder.files(), ["gyroscope_parameters.csv"], "one sample has no plots");
 }
 
 #[test]
