@@ -1,24 +1,23 @@
 //! Everything that a module computes, as final expressions of one graph.
 
 use crate::Elimination;
-use crate::closing::closing_rows;
-use crate::definitions::{Definitions, Expansion};
-use crate::dynamics::Dynamics;
-use crate::finish::Finish;
-use crate::graph::{ExprId, Graph};
+use crate::derive::dynamics::Dynamics;
+use crate::derive::joint_coordinate;
+use crate::derive::kinematics::{Kinematics, Matrix, non_zeros};
+use crate::derive::outputs::{self, Sources};
+use crate::derive::readings;
+use crate::derive::system::System;
+use crate::expr::definitions::{Definitions, Expansion, Values};
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::{Mat3, Vec4};
 use crate::joint_space::JointSpace;
-use crate::kinematics::{Kinematics, Matrix, non_zeros};
-use crate::linear::{Mat3, Vec4};
-use crate::normal_form::vanishes;
-use crate::outputs::{self, Sources};
-use crate::partition::Partition;
-use crate::sheet::Form;
-use crate::symbol::Symbol;
-use crate::system::System;
-use crate::trees::Trees;
-use crate::{coordinate, readings, saddle};
+use crate::simplify::cheapest::{Finish, Form};
+use crate::simplify::normal_form::vanishes;
+use crate::solve::forward_dynamics::Trees;
+use crate::solve::partition::Partition;
+use crate::solve::saddle;
 use gyro_model::{Model, Spline, Start};
-use rustc_hash::FxHashMap as HashMap;
 
 /// Non-zeros with their places.
 pub type Sparse = Vec<(usize, usize, ExprId)>;
@@ -84,7 +83,7 @@ impl<'m> Equations<'m> {
         let dynamics = Dynamics::derive(&mut system);
         let trees = Trees::of(&mut system, &kinematics);
         let solution = match elimination {
-            Elimination::Saddle if closing_rows(&system).is_empty() => {
+            Elimination::Saddle if system.closing_rows().is_empty() => {
                 saddle::solve(&mut system, &kinematics, &dynamics)
             }
             _ => trees.solve(&mut system, &kinematics, &dynamics),
@@ -94,7 +93,8 @@ impl<'m> Equations<'m> {
         let drivers_power = outputs::drivers_power(&mut system, &sources);
         let power = system.graph.add(dynamics.power, drivers_power);
         let turns = model.turn_references();
-        let turn_rates: Vec<_> = turns.into_iter().map(|turn| coordinate::rate(&mut system, turn)).collect();
+        let turn_rates: Vec<_> =
+            turns.into_iter().map(|turn| joint_coordinate::rate(&mut system, turn)).collect();
         let readings = readings::readings(&mut system);
         let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
         let position_rates = position_rates(&mut system);
@@ -103,9 +103,9 @@ impl<'m> Equations<'m> {
         let mut doubled_relative = relative_rotations(&mut system, Graph::rotation_by_doubles);
         doubled_relative.extend(doubled.clone());
         let definitions = system.definitions.clone();
-        let finish = Finish::of(&system);
+        let finish = Finish::of(!system.closing_rows().is_empty());
         let mut ways = vec![
-            Way::new(&definitions, "rotations of the bodies", HashMap::default()),
+            Way::new(&definitions, "rotations of the bodies", Values::default()),
             Way::new(&definitions, "rotations of the bodies, doubled", doubled),
             Way::of_unit_parameters(&definitions, "relative Euler parameters", relative),
             Way::of_unit_parameters(&definitions, "relative Euler parameters, doubled", doubled_relative),
@@ -188,16 +188,12 @@ struct Way<'d> {
 }
 
 impl<'d> Way<'d> {
-    fn new(definitions: &'d Definitions, name: &'static str, values: HashMap<Symbol, ExprId>) -> Self {
+    fn new(definitions: &'d Definitions, name: &'static str, values: Values) -> Self {
         let expansion = Expansion::with_values(definitions, values);
         Self { name, expansion, holds_for_any: true }
     }
 
-    fn of_unit_parameters(
-        definitions: &'d Definitions,
-        name: &'static str,
-        values: HashMap<Symbol, ExprId>,
-    ) -> Self {
+    fn of_unit_parameters(definitions: &'d Definitions, name: &'static str, values: Values) -> Self {
         Self { holds_for_any: false, ..Self::new(definitions, name, values) }
     }
 }
@@ -265,8 +261,8 @@ fn position_rates(system: &mut System) -> Vec<ExprId> {
 }
 
 /// A(p) of each slot by way of 2p.
-fn rotations_by_doubles(system: &mut System) -> HashMap<Symbol, ExprId> {
-    let mut values = HashMap::default();
+fn rotations_by_doubles(system: &mut System) -> Values {
+    let mut values = Values::default();
     for (slot, &body) in system.slots.iter().enumerate() {
         let rotation = system.graph.rotation_by_doubles(&system.poses[body].p);
         insert(&mut values, &rotation, |row, column| Symbol::Rotation { slot, row, column });
@@ -275,12 +271,9 @@ fn rotations_by_doubles(system: &mut System) -> HashMap<Symbol, ExprId> {
 }
 
 /// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
-fn relative_rotations(
-    system: &mut System,
-    rotation: fn(&mut Graph, &Vec4) -> Mat3,
-) -> HashMap<Symbol, ExprId> {
-    let mut values = HashMap::default();
-    if !closing_rows(system).is_empty() {
+fn relative_rotations(system: &mut System, rotation: fn(&mut Graph, &Vec4) -> Mat3) -> Values {
+    let mut values = Values::default();
+    if !system.closing_rows().is_empty() {
         return values;
     }
     for (joint, frames) in system.joints.clone().iter().enumerate() {
@@ -291,7 +284,7 @@ fn relative_rotations(
     values
 }
 
-fn insert(values: &mut HashMap<Symbol, ExprId>, rotation: &Mat3, symbol: impl Fn(usize, usize) -> Symbol) {
+fn insert(values: &mut Values, rotation: &Mat3, symbol: impl Fn(usize, usize) -> Symbol) {
     for (row, entries) in rotation.iter().enumerate() {
         for (column, &entry) in entries.iter().enumerate() {
             values.insert(symbol(row, column), entry);

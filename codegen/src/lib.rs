@@ -32,55 +32,29 @@
 //! # Ok::<(), gyro_codegen::Error>(())
 //! ```
 //!
-//! The pipeline, one file an arrow: `system` lowers the model to poses and frames, `constraints` writes Φ, `kinematics`
-//! differentiates it (`differentiate`), `dynamics` adds masses and forces, `freedom`, `null_space` and `mass_matrix` solve eq. (17), `partition` the coordinate
-//! partition, `definitions` expands, `set_up` takes out what depends on parameters alone, `schedule` orders, `emit` and `module` write.
+//! The stages, a folder each, none of which knows of a later one: `expr` has the graph of expressions, `simplify` passes that shorten any of them, `derive`
+//! the textbook from the model to Φ, its derivatives, masses and forces, `solve` the solves of eq. (17) and of the coordinate partition,
+//! `joint_space` the same for trees in joint coordinates; `equations` brings them together, `kernels` names what a module computes, `emit` writes it.
 #![deny(missing_docs)]
 
-mod closing;
-mod constant;
-mod constraints;
-mod coordinate;
-mod definitions;
-mod differentiate;
-mod digits;
-mod dynamics;
+mod derive;
 mod emit;
 mod equations;
-mod evaluate;
-mod finish;
-mod forces;
-mod freedom;
-mod functions;
-mod graph;
+mod expr;
 mod joint_space;
-mod kinematics;
-mod ldl;
-mod linear;
-mod literals;
-mod mass_matrix;
-mod module;
-mod motion;
-mod multipliers;
-mod normal_form;
-mod null_space;
-mod orthogonal;
-mod outputs;
-mod partition;
-mod readings;
-mod reassociate;
-mod saddle;
-mod scales;
-mod schedule;
-mod set_up;
-mod sheet;
-mod steering;
-mod symbol;
-mod system;
-mod trees;
+mod kernels;
+mod simplify;
+mod solve;
 
-pub use schedule::{Operations, Passes};
-pub use sheet::{Form, Function, Reduction, Sheet, large};
+pub use emit::data_sheet::{Function, Sheet, large};
+pub use expr::schedule::{Operations, Passes};
+pub use simplify::cheapest::Form;
+pub use simplify::normal_form::Reduction;
+
+use emit::module;
+use equations::Equations;
+use kernels::Functions;
+use simplify::parameter_setup;
 
 use gyro_model::{AssemblyError, Diagnostics, Model};
 use std::fmt;
@@ -180,8 +154,14 @@ pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
 /// Why no consistent start exists.
 pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let equations = equations::Equations::derive(model, elimination, &start);
+    let mut equations = Equations::derive(model, elimination, &start);
+    let mut kernels = Functions::of(&equations);
+    for roots in kernels.recurring_mut() {
+        *roots = equations.finish.finished(&mut equations.graph, roots);
+    }
+    kernels.set_up = parameter_setup::separate(&mut equations.graph, kernels.recurring_mut());
     let type_name = module::type_name(&model.name);
-    let module::Text { code, constants, sheet } = module::write(file_name, &type_name, equations, &start);
+    let module::Text { code, constants, sheet } =
+        module::write(file_name, &type_name, (&equations, kernels), &start);
     Ok(Module { name: model.name.clone(), type_name, code, constants, sheet })
 }

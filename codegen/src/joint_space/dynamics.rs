@@ -2,27 +2,33 @@
 //!
 //! Both work in the bodies' own frames, on what [`Carriage`] says. Gravity enters as an acceleration of the ground.
 
-use super::carriage::{Bias, Carriage};
-use super::expanded;
 use super::layout::Layout;
-use super::maps::Values;
-use crate::coordinate::Load;
-use crate::dynamics::gyroscopic_torque;
-use crate::forces::{self, Readings};
-use crate::freedom::{Freedom, Parent, Twist};
-use crate::graph::{ExprId, Graph};
-use crate::ldl::Elimination;
-use crate::linear::{UNIT3, Vec3, ZERO3};
-use crate::normal_form::normal_form_of;
-use crate::null_space::{Arm, Basis, EliminatedTree, Excitation, Inertia};
-use crate::orthogonal::OrthogonalTree;
-use crate::outputs::time_derivative;
-use crate::schedule::Operations;
-use crate::sheet::Reduction;
-use crate::symbol::Symbol;
-use crate::system::System;
+use super::link_kinematics::{Bias, Carriage};
+use crate::derive::dynamics::gyroscopic_torque;
+use crate::derive::forces::{self, Readings};
+use crate::derive::joint_coordinate::Load;
+use crate::derive::outputs::time_derivative;
+use crate::derive::system::System;
+use crate::expr::definitions::Values;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::schedule::Operations;
+use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::{UNIT3, Vec3, ZERO3};
+use crate::simplify::normal_form::{Reduction, normal_form_of};
+use crate::solve::articulated_body::{Arm, Basis, EliminatedTree, Excitation, Inertia};
+use crate::solve::gram_schmidt::OrthogonalTree;
+use crate::solve::ldl::Elimination;
+use crate::solve::motion_subspace::{Freedom, Parent};
 use gyro_model::{Attachment, JointCoordinate};
 use std::collections::BTreeMap;
+
+/// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long to work
+/// out: they are not tried.
+pub const MAX_FACTORED: usize = 4;
+
+/// As the data sheet calls it.
+pub const NORMAL_FORM: &str = "normal form";
 
 /// Joint coordinates and rates as they are.
 struct OfJoints<'a>(&'a Layout);
@@ -109,7 +115,7 @@ impl Reduced {
             let bias = bias(system, carriage, spins);
             let graph = &mut system.graph;
             let at_joint = graph.transposed_vec(&carriage.rotation, &bias.on_parent);
-            let own = Twist { t: graph.add_vec(&at_joint, &bias.on_body), rho: bias.rho };
+            let own = SpatialVector { t: graph.add_vec(&at_joint, &bias.on_body), rho: bias.rho };
             let ground = of_ground(system, carriage, &gravity);
             own.plus(&mut system.graph, &ground)
         });
@@ -185,7 +191,7 @@ impl Reduced {
         columns: &[Vec<ExprId>],
     ) -> Vec<Vec<ExprId>> {
         let (places, entries): (Vec<_>, Vec<_>) = self.mass_matrix(system).into_iter().unzip();
-        let entries = expanded(system, in_joints, &entries);
+        let entries = system.expanded(in_joints, &entries);
         let graph = &mut system.graph;
         let matrix = places.into_iter().zip(entries).collect();
         let mut elimination = Elimination::of_several(matrix, columns.to_vec());
@@ -263,7 +269,7 @@ impl Reduced {
         let bodies: Vec<_> =
             (0..self.excitation.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
         let graph = &mut system.graph;
-        let mut motions = vec![Twist::ZERO; self.excitation.bias.len()];
+        let mut motions = vec![SpatialVector::ZERO; self.excitation.bias.len()];
         for ((freedom, forced), rates) in self.freedoms.iter().zip(&self.excitation.forced).zip(&self.rates) {
             let mut motion = *forced;
             if let Some(parent) = freedom.parent {
@@ -332,9 +338,9 @@ pub fn bias(system: &mut System, carriage: &Carriage, spins: &[Vec3]) -> Bias {
 
 /// The acceleration of the joint point and the angular acceleration that a carrier without coordinates imposes, centripetal
 /// parts left out, less gravity; in the body's frame.
-pub fn of_ground(system: &mut System, carriage: &Carriage, gravity: &Vec3) -> Twist {
+pub fn of_ground(system: &mut System, carriage: &Carriage, gravity: &Vec3) -> SpatialVector {
     let (linear, angular, a) = match carriage.parent {
-        Some(body) if system.slot_of(body).is_some() => return Twist::ZERO,
+        Some(body) if system.slot_of(body).is_some() => return SpatialVector::ZERO,
         Some(body) => {
             let pose = system.poses[body];
             (time_derivative(system, &pose.s), time_derivative(system, &pose.w), pose.a)
@@ -346,18 +352,18 @@ pub fn of_ground(system: &mut System, carriage: &Carriage, gravity: &Vec3) -> Tw
     let felt = graph.transposed_vec(&a, &felt);
     let tangential = graph.cross(&angular, &carriage.on_parent);
     let at_joint = graph.add_vec(&felt, &tangential);
-    Twist {
+    SpatialVector {
         t: graph.transposed_vec(&carriage.rotation, &at_joint),
         rho: graph.transposed_vec(&carriage.rotation, &angular),
     }
 }
 
 /// What a body at constant velocity takes: `w̃'J'w'`, less the loads on it.
-fn inertial(system: &mut System, slot: usize, spin: &Vec3, loads: &[Load]) -> Twist {
+fn inertial(system: &mut System, slot: usize, spin: &Vec3, loads: &[Load]) -> SpatialVector {
     let (inertia, body) = (system.inertia(slot), system.slots[slot]);
     let (load, a) = (&loads[body], system.poses[body].a);
     let graph = &mut system.graph;
     let gyroscopic = gyroscopic_torque(graph, &inertia, spin);
     let force = graph.transposed_vec(&a, &load.force);
-    Twist { t: graph.neg_vec(&force), rho: graph.sub_vec(&gyroscopic, &load.torque) }
+    SpatialVector { t: graph.neg_vec(&force), rho: graph.sub_vec(&gyroscopic, &load.torque) }
 }

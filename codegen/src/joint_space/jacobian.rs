@@ -9,18 +9,16 @@
 //! which differentiates no elimination and shares that of the accelerations. For small mechanisms what is solved may be shorter. Both are
 //! written out, from within and from without, and the cheapest is taken.
 
-use super::dynamics::Reduced;
+use super::dynamics::{MAX_FACTORED, NORMAL_FORM, Reduced};
 use super::layout::Layout;
-use super::maps::Values;
-use super::{MAX_FACTORED, NORMAL_FORM, expanded};
-use crate::definitions::{Definitions, Expansion};
-use crate::differentiate::{Derivative, gradient};
-use crate::finish::Finish;
-use crate::graph::{ExprId, Graph, Node};
-use crate::normal_form::normal_form;
-use crate::sheet::Form;
-use crate::symbol::Symbol;
-use crate::system::{Direction, System};
+use crate::derive::system::System;
+use crate::expr::definitions::{Definitions, Expansion, Values};
+use crate::expr::differentiate::Direction;
+use crate::expr::differentiate::{Derivative, gradient};
+use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::symbol::Symbol;
+use crate::simplify::cheapest::{Finish, Form};
+use crate::simplify::normal_form::normal_form;
 
 /// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 16500 operations for six rates and 29300 for eight, and as many lines:
 /// then a module is longer than it is worth.
@@ -124,7 +122,7 @@ impl JointForm<'_> {
         let rates_of_rates: Vec<_> =
             (0..self.layout.n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
         let left = self.reduced.left_over(system, &rates_of_rates);
-        let left = expanded(system, self.in_joints, &left);
+        let left = system.expanded(self.in_joints, &left);
         let unit =
             |k: usize| (0..self.layout.n_rates).map(move |l| if k == l { Graph::ONE } else { Graph::ZERO });
         let units: Vec<_> = (0..self.layout.n_rates).map(|k| unit(k).collect()).collect();
@@ -162,7 +160,7 @@ impl JointForm<'_> {
     /// The same of columns in which the elimination is yet to be expanded.
     fn finished(&self, system: &mut System, columns: &Columns) -> Columns {
         let expand = |column: &Vec<ExprId>| {
-            let column = expanded(system, self.in_joints, column);
+            let column = system.expanded(self.in_joints, column);
             self.at_accelerations(&mut system.graph, &column)
         };
         columns.iter().map(expand).collect()

@@ -1,6 +1,6 @@
 //! Where each joint's coordinates and rates stand.
 
-use crate::system::System;
+use crate::derive::system::System;
 use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
 
 /// The joint coordinates x and rates u of a tree: joints in the order of the page, then free bodies.

@@ -1,22 +1,19 @@
 //! Between joint coordinates and maximal ones, both ways.
 
-use super::carriage::{Carriage, at_zero};
 use super::dynamics;
 use super::layout::{Layout, LinkCoordinates, Scalar};
-use crate::coordinate::{self, relative_spin};
-use crate::definitions::Expansion;
-use crate::evaluate::evaluate;
-use crate::graph::{ExprId, Graph};
-use crate::linear::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
-use crate::readings::{raw_angle, relative_euler};
-use crate::symbol::Symbol;
-use crate::system::{JointFrames, System};
+use super::link_kinematics::{Carriage, at_zero};
+use crate::derive::frames::{JointFrames, sine_and_cosine};
+use crate::derive::joint_coordinate::{self, relative_spin};
+use crate::derive::readings::{raw_angle, relative_euler};
+use crate::derive::system::System;
+use crate::expr::definitions::{Expansion, Values};
+use crate::expr::evaluate::evaluate;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
 use gyro_model::{Attachment, CoordinateKind};
-use rustc_hash::FxHashMap as HashMap;
 use std::array::from_fn;
-
-/// Symbols and what they are.
-pub type Values = HashMap<Symbol, ExprId>;
 
 /// Maximal positions and velocities in terms of joint coordinates and rates.
 pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -> Values {
@@ -243,10 +240,10 @@ pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
 
 fn scalar_of_joint(system: &mut System, scalar: &Scalar, values: &mut Values) {
     let (coordinate, x) = (scalar.coordinate, scalar.place.x);
-    let rate = coordinate::rate(system, coordinate);
+    let rate = joint_coordinate::rate(system, coordinate);
     values.insert(Symbol::Rate(scalar.place.u), rate);
     if !scalar.kind.is_angle() {
-        let value = coordinate::value(system, coordinate);
+        let value = joint_coordinate::value(system, coordinate);
         values.insert(Symbol::Coordinate(x), value);
         return;
     }
@@ -261,12 +258,12 @@ fn scalar_of_joint(system: &mut System, scalar: &Scalar, values: &mut Values) {
         let square = graph.dot(&at_zero, &at_zero);
         doubled(graph, half, square)
     } else {
-        coordinate::sine_and_cosine(&mut system.graph, scalar.kind, &joint, &joint.relative)
+        sine_and_cosine(&mut system.graph, scalar.kind, &joint, &joint.relative)
     };
     values.insert(Symbol::Sine(x), sine);
     values.insert(Symbol::Cosine(x), cosine);
     if system.model.turn_references().contains(&coordinate) {
-        let angle = coordinate::value(system, coordinate);
+        let angle = joint_coordinate::value(system, coordinate);
         values.insert(Symbol::Coordinate(x), angle);
     }
 }

@@ -1,19 +1,20 @@
 //! λ at a state that satisfies the constraints: the balance of forces of `multipliers`, with what each row forces upon its body
 //! in polynomial normal form. There the gradients of a joint's rows are perpendicular unit vectors, and divisions vanish.
 
-use super::carriage::Carriage;
-use super::maps::Values;
-use super::{Layout, expanded};
-use crate::dynamics::Dynamics;
-use crate::freedom::{Freedom, Parent, Twist};
-use crate::graph::{ExprId, Graph};
-use crate::kinematics::Kinematics;
-use crate::linear::{Vec3, transposed};
-use crate::multipliers::imbalance;
-use crate::normal_form::normal_form;
-use crate::null_space::Arm;
-use crate::symbol::Symbol;
-use crate::system::System;
+use super::layout::Layout;
+use super::link_kinematics::Carriage;
+use crate::derive::dynamics::Dynamics;
+use crate::derive::kinematics::Kinematics;
+use crate::derive::system::System;
+use crate::expr::definitions::Values;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::{Vec3, transposed};
+use crate::simplify::normal_form::normal_form;
+use crate::solve::articulated_body::Arm;
+use crate::solve::motion_subspace::{Freedom, Parent};
+use crate::solve::multipliers::imbalance;
 use gyro_model::Attachment;
 use std::array::from_fn;
 
@@ -81,13 +82,13 @@ impl Rotation {
 
 fn on_manifold(
     system: &mut System,
-    forced: &[Twist],
+    forced: &[SpatialVector],
     carriage: &Carriage,
     values: &Values,
     unit: &[Vec<ExprId>],
 ) -> Vec<Forced> {
     let rotations: Vec<_> = forced.iter().flat_map(|twist| twist.rho).collect();
-    let on_body = expanded(system, values, &rotations);
+    let on_body = system.expanded(values, &rotations);
     let graph = &mut system.graph;
     let on_body = normal_form(graph, unit, &on_body);
     let (on_body, _) = on_body.as_chunks::<3>();

@@ -1,0 +1,118 @@
+//! Φ(q, t): the textbook primitives and the joints made of them. Nothing else of a joint is written anywhere: Φ_q, ν and γ
+//! are derived from these rows.
+
+use crate::derive::frames::{JointFrames, dot1};
+use crate::derive::joint_coordinate;
+use crate::derive::system::System;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::vector::Vec3;
+use gyro_model::{Coupler, JointCoordinate, JointKind, Support};
+
+/// The rows of `Model::rows`, in their order.
+pub fn rows(system: &mut System) -> Vec<ExprId> {
+    let mut rows = Vec::new();
+    for slot in 0..system.slots.len() {
+        if system.model.bodies[system.slots[slot]].support == Support::Constrained {
+            rows.extend(held(system, slot));
+        }
+    }
+    for joint in 0..system.joints.len() {
+        rows.extend(joint_rows(system, joint));
+    }
+    for coupler in &system.model.couplers {
+        rows.push(coupled(system, coupler));
+    }
+    for driver in &system.model.drivers {
+        let (coordinate, motion) =
+            (joint_coordinate::value(system, driver.coordinate), system.prescribed(&driver.motion));
+        rows.push(system.graph.sub(coordinate, motion));
+    }
+    let (all, kept) = (system.model.all_rows(), system.model.rows());
+    all.iter().zip(rows).filter(|(row, _)| kept.contains(row)).map(|(_, phi)| phi).collect()
+}
+
+/// The rows of a joint, redundant ones included.
+fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
+    let joint = system.joints[index];
+    let (i, j) = (&joint.first, &joint.second);
+    let aligned = [(i.f, j.h), (i.g, j.h), (i.f, j.g)];
+    let (mut rows, dots) = match joint.kind {
+        JointKind::Revolute => (coincident(system, &joint), &aligned[..2]),
+        JointKind::Spherical => (coincident(system, &joint), &aligned[..0]),
+        JointKind::Fixed => (coincident(system, &joint), &aligned[..]),
+        JointKind::Universal => (coincident(system, &joint), &[(i.h, j.h)][..]),
+        JointKind::Cylindrical => (dot2(system, &joint, &[i.f, i.g]), &aligned[..2]),
+        JointKind::Prismatic => (dot2(system, &joint, &[i.f, i.g]), &aligned[..]),
+        JointKind::Planar => (dot2(system, &joint, &[i.h]), &aligned[..2]),
+        JointKind::PointOnLine => (dot2(system, &joint, &[i.f, i.g]), &aligned[..0]),
+        JointKind::Screw => (screw(system, index), &aligned[..2]),
+        JointKind::Rod => (vec![distance(system, &joint)], &aligned[..0]),
+    };
+    rows.extend(dots.iter().map(|(a, b)| dot1(&mut system.graph, a, &joint.relative, b)));
+    rows
+}
+
+/// `second − ratio · first − offset`.
+fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
+    let (first, second) =
+        (joint_coordinate::value(system, coupler.first), joint_coordinate::value(system, coupler.second));
+    let [ratio, offset] = [&coupler.ratio, &coupler.offset].map(|number| system.number(number));
+    let driven = system.graph.mul(ratio, first);
+    let lag = system.graph.sub(second, driven);
+    system.graph.sub(lag, offset)
+}
+
+/// `pᵀp − 1` of each slot, eq. (12).
+pub fn normalisations(system: &mut System) -> Vec<ExprId> {
+    let one = Graph::ONE;
+    let euler: Vec<_> = system.slots.iter().map(|&body| system.poses[body].p).collect();
+    euler
+        .iter()
+        .map(|p| {
+            let square = system.graph.dot(p, p);
+            system.graph.sub(square, one)
+        })
+        .collect()
+}
+
+/// A body held where it is given: `r − r0` and the vector part of `p0* p`, eqs. (5) and (6).
+fn held(system: &mut System, slot: usize) -> Vec<ExprId> {
+    let body = system.slots[slot];
+    let (pose, given) = (system.poses[body], system.fixed_pose(body));
+    let position = system.graph.sub_vec(&pose.r, &given.r);
+    // G(p0) p is the vector part of p0* p.
+    let g = system.graph.g_matrix(&given.p);
+    let orientation = g.map(|row| system.graph.dot(&row, &pose.p));
+    position.into_iter().chain(orientation).collect()
+}
+
+/// Points that coincide: eq. (7).
+fn coincident(system: &mut System, joint: &JointFrames) -> Vec<ExprId> {
+    joint_coordinate::between_points(system, joint).to_vec()
+}
+
+/// `(A_i u')·d` for directions of the first body: Haug (1989), section 9.4, dot-2.
+fn dot2(system: &mut System, joint: &JointFrames, directions: &[Vec3]) -> Vec<ExprId> {
+    directions.iter().map(|u| joint_coordinate::displacement(system, joint, u)).collect()
+}
+
+/// Across the axis nothing, along it as far as the angle says.
+fn screw(system: &mut System, index: usize) -> Vec<ExprId> {
+    let joint = system.joints[index];
+    let mut rows = dot2(system, &joint, &[joint.first.f, joint.first.g, joint.first.h]);
+    let angle = joint_coordinate::value(system, JointCoordinate { joint: index, coordinate: 0 });
+    let advance = system.graph.mul(joint.lead, angle);
+    rows[2] = system.graph.sub(rows[2], advance);
+    rows
+}
+
+/// `½ (d·d / length − length)`: a distance, to first order.
+fn distance(system: &mut System, joint: &JointFrames) -> ExprId {
+    let d = joint_coordinate::between_points(system, joint);
+    let graph = &mut system.graph;
+    let square = graph.dot(&d, &d);
+    let quotient = graph.div(square, joint.length);
+    let difference = graph.sub(quotient, joint.length);
+    let half = graph.fraction(1, 2);
+    graph.mul(half, difference)
+}

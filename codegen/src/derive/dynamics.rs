@@ -1,0 +1,104 @@
+//! M, J', applied forces and energy: the rest of eq. (17).
+
+use crate::derive::forces::Forces;
+use crate::derive::joint_coordinate::Load;
+use crate::derive::kinematics::Matrix;
+use crate::derive::system::System;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::vector::{Mat3, Vec3};
+
+/// The terms of eq. (17) that do not come from Φ.
+#[derive(Debug)]
+pub struct Dynamics {
+    /// diag(m, m, m, J') of each slot, by rows.
+    pub mass_matrix: Matrix,
+    /// (f, n' − w̃'J'w') of each slot.
+    pub applied_force: Vec<ExprId>,
+    /// What acts on each body besides gravity and forces along joint coordinates.
+    pub other_loads: Vec<Load>,
+    /// ½ Σ (sᵀ m s + w'ᵀ J' w').
+    pub kinetic: ExprId,
+    /// −Σ m gᵀ r, and what springs store.
+    pub potential: ExprId,
+    /// Power of the non-conservative forces.
+    pub power: ExprId,
+    /// The part of it that links and loads have.
+    pub power_at_points: ExprId,
+    /// Power fed in where forces (not constraints) act on bodies whose motion is prescribed.
+    pub power_of_driven_bodies: ExprId,
+}
+
+impl Dynamics {
+    /// Minus (f, n' − w̃'J'w') of a slot.
+    pub fn minus_applied_force(&self, graph: &mut Graph, slot: usize) -> SpatialVector {
+        let force = |k: usize| self.applied_force[6 * slot + k];
+        let applied =
+            SpatialVector { t: [force(0), force(1), force(2)], rho: [force(3), force(4), force(5)] };
+        applied.negated(graph)
+    }
+
+    pub fn derive(system: &mut System) -> Self {
+        let n_slots = system.slots.len();
+        let forces = Forces::of(system);
+        let mut dynamics = Self {
+            mass_matrix: vec![vec![Graph::ZERO; 6 * n_slots]; 6 * n_slots],
+            applied_force: Vec::new(),
+            other_loads: forces.other_loads.clone(),
+            kinetic: Graph::ZERO,
+            potential: forces.potential,
+            power: forces.power,
+            power_at_points: forces.power_at_points,
+            power_of_driven_bodies: forces.power_of_driven_bodies(system),
+        };
+        for slot in 0..n_slots {
+            dynamics.add_body(system, slot, &forces.loads[system.slots[slot]]);
+        }
+        dynamics
+    }
+
+    fn add_body(&mut self, system: &mut System, slot: usize, load: &Load) {
+        let (mass, inertia) = (system.mass(slot), system.inertia(slot));
+        let gravity = system.numbers(&system.model.gravity);
+        let pose = system.poses[system.slots[slot]];
+        let graph = &mut system.graph;
+        for (row, inertia_row) in inertia.iter().enumerate() {
+            self.mass_matrix[6 * slot + row][6 * slot + row] = mass;
+            let start = 6 * slot + 3;
+            self.mass_matrix[start + row][start..start + 3].copy_from_slice(inertia_row);
+        }
+        let weight = graph.scale_vec(mass, &gravity);
+        let momentum = graph.mat_vec(&inertia, &pose.w);
+        let gyroscopic = gyroscopic_torque(graph, &inertia, &pose.w);
+        let (force, torque) = (graph.add_vec(&weight, &load.force), graph.sub_vec(&load.torque, &gyroscopic));
+        self.applied_force.extend(force.into_iter().chain(torque));
+
+        let (square, spin) = (graph.dot(&pose.s, &pose.s), graph.dot(&pose.w, &momentum));
+        let translation = graph.mul(mass, square);
+        let twice = graph.add(translation, spin);
+        let half = graph.fraction(1, 2);
+        let kinetic = graph.mul(half, twice);
+        self.kinetic = graph.add(self.kinetic, kinetic);
+        let height = graph.dot(&weight, &pose.r);
+        self.potential = graph.sub(self.potential, height);
+    }
+}
+
+/// `w̃'J'w'`, collected in products of components so that equal moments of inertia cancel exactly.
+pub fn gyroscopic_torque(graph: &mut Graph, inertia: &Mat3, w: &Vec3) -> Vec3 {
+    // Component i of w × (J w) is Σ_k w_j w_k J_lk − w_l w_k J_jk with (i, j, l) cyclic.
+    std::array::from_fn(|i| {
+        let (j, l) = ((i + 1) % 3, (i + 2) % 3);
+        let difference = graph.sub(inertia[l][l], inertia[j][j]);
+        let product = graph.mul(w[j], w[l]);
+        let diagonal = graph.mul(difference, product);
+        let (square_j, square_l) = (graph.mul(w[j], w[j]), graph.mul(w[l], w[l]));
+        let squares = graph.sub(square_j, square_l);
+        let skew = graph.mul(inertia[j][l], squares);
+        let (from_j, from_l) = (graph.mul(w[j], inertia[l][i]), graph.mul(w[l], inertia[j][i]));
+        let mixed = graph.sub(from_j, from_l);
+        let mixed = graph.mul(w[i], mixed);
+        let sum = graph.add(diagonal, skew);
+        graph.add(sum, mixed)
+    })
+}

@@ -1,0 +1,300 @@
+//! Forces besides gravity: what each does to the bodies, what energy it stores, what power it has.
+
+use crate::derive::joint_coordinate::{self, Load, relative_spin};
+use crate::derive::system::System;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::vector::{Vec3, ZERO3};
+use gyro_model::{Force, ForceKind, JointCoordinate, JointKind, LoadFrame, Number, StopSide};
+
+/// All forces together.
+#[derive(Debug)]
+pub struct Forces {
+    /// On each body of the model.
+    pub loads: Vec<Load>,
+    /// The part of them that does not act along joint coordinates.
+    pub other_loads: Vec<Load>,
+    /// Energy stored in springs.
+    pub potential: ExprId,
+    /// Power of the forces that store none.
+    pub power: ExprId,
+    /// The part of it that links and loads have: those that act between points of bodies, not along a joint's coordinates.
+    pub power_at_points: ExprId,
+}
+
+/// A force along a joint coordinate.
+pub struct Along {
+    pub on: JointCoordinate,
+    pub force: ExprId,
+    /// Stored energy; a force that stores none has power.
+    pub potential: Option<ExprId>,
+}
+
+/// What forces along joint coordinates read.
+pub trait Readings {
+    /// The joint coordinate; of an angle its continuous value.
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId;
+    /// Its rate.
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId;
+}
+
+/// Joint coordinates in terms of maximal ones.
+struct OfBodies;
+
+impl Readings for OfBodies {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        joint_coordinate::value(system, on)
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        joint_coordinate::rate(system, on)
+    }
+}
+
+/// All forces that act along joint coordinates.
+pub fn along_coordinates(system: &mut System, readings: &impl Readings) -> Vec<Along> {
+    let (joints, forces) = (&system.model.joints, &system.model.forces);
+    let mut all = Vec::new();
+    for (index, joint) in joints.iter().enumerate() {
+        if !joint.friction.is_zero() && joint.kind != JointKind::Spherical {
+            let on = JointCoordinate { joint: index, coordinate: 0 };
+            all.push(damper(system, readings, on, &joint.friction));
+        }
+    }
+    all.extend(forces.iter().filter_map(|force| along(system, readings, force)));
+    all
+}
+
+fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option<Along> {
+    match &force.kind {
+        ForceKind::Spring { on, stiffness, free } => {
+            let (x, [stiffness, free]) = (readings.value(system, *on), numbers(system, [stiffness, free]));
+            let (force, stored) = spring(&mut system.graph, stiffness, x, free);
+            Some(Along { on: *on, force, potential: Some(stored) })
+        }
+        ForceKind::Damper { on, damping } => Some(damper(system, readings, *on, damping)),
+        ForceKind::Coulomb { on, level, rate } => {
+            let (speed, [level, rate]) = (readings.rate(system, *on), numbers(system, [level, rate]));
+            let ratio = system.graph.div(speed, rate);
+            let sliding = system.graph.tanh(ratio);
+            let drag = system.graph.mul(level, sliding);
+            Some(Along { on: *on, force: system.graph.neg(drag), potential: None })
+        }
+        ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
+            let numbers = numbers(system, [limit, stiffness, damping, softness]);
+            let (x, rate) = (readings.value(system, *on), readings.rate(system, *on));
+            let force = stop(&mut system.graph, *side, (x, rate), numbers);
+            Some(Along { on: *on, force, potential: None })
+        }
+        ForceKind::Motor { on, value } => {
+            Some(Along { on: *on, force: system.number(value), potential: None })
+        }
+        ForceKind::Link { .. } | ForceKind::Load { .. } => None,
+    }
+}
+
+fn damper(system: &mut System, readings: &impl Readings, on: JointCoordinate, damping: &Number) -> Along {
+    let (speed, damping) = (readings.rate(system, on), system.number(damping));
+    let drag = system.graph.mul(damping, speed);
+    Along { on, force: system.graph.neg(drag), potential: None }
+}
+
+impl Forces {
+    pub fn of(system: &mut System) -> Self {
+        let none = Load { force: ZERO3, torque: ZERO3 };
+        let loads = vec![none; system.model.bodies.len()];
+        let mut forces = Self {
+            other_loads: loads.clone(),
+            loads,
+            potential: Graph::ZERO,
+            power: Graph::ZERO,
+            power_at_points: Graph::ZERO,
+        };
+        for joint in 0..system.joints.len() {
+            forces.add_friction(system, joint);
+        }
+        let power_of_friction = std::mem::replace(&mut forces.power, Graph::ZERO);
+        for force in &system.model.forces {
+            forces.add_link(system, &force.kind);
+            forces.add_load(system, &force.kind);
+        }
+        forces.power_at_points = forces.power;
+        forces.power = system.graph.add(power_of_friction, forces.power);
+        forces.other_loads = forces.loads.clone();
+        for along in along_coordinates(system, &OfBodies) {
+            forces.add_along(system, &along);
+        }
+        forces
+    }
+
+    /// The viscous friction of a spherical joint.
+    fn add_friction(&mut self, system: &mut System, index: usize) {
+        let friction = &system.model.joints[index].friction;
+        let joint = system.joints[index];
+        if friction.is_zero() || joint.kind != JointKind::Spherical {
+            return;
+        }
+        let (coefficient, spin) = (system.number(friction), relative_spin(system, &joint));
+        let graph = &mut system.graph;
+        let drag = graph.scale_vec(coefficient, &spin);
+        let (on_first, on_second) = (graph.mat_vec(&joint.relative, &drag), graph.neg_vec(&drag));
+        let loss = graph.dot(&drag, &spin);
+        self.power = graph.sub(self.power, loss);
+        self.push(system, joint.first.body, &Load { force: ZERO3, torque: on_first });
+        self.push(system, joint.second.body, &Load { force: ZERO3, torque: on_second });
+    }
+
+    fn add_along(&mut self, system: &mut System, along: &Along) {
+        let on = along.on;
+        let bodies = [system.joints[on.joint].first.body, system.joints[on.joint].second.body];
+        for (body, load) in bodies.into_iter().zip(joint_coordinate::unit_loads(system, on)) {
+            let load = load.scaled(&mut system.graph, along.force);
+            self.push(system, body, &load);
+        }
+        if let Some(potential) = along.potential {
+            self.potential = system.graph.add(self.potential, potential);
+        } else {
+            let rate = joint_coordinate::rate(system, on);
+            let power = system.graph.mul(along.force, rate);
+            self.power = system.graph.add(self.power, power);
+        }
+    }
+
+    /// Between two points: along the line from the first to the second.
+    fn add_link(&mut self, system: &mut System, kind: &ForceKind) {
+        let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return };
+        let ends = [first, second].map(|(body, point)| PointOfBody::new(system, *body, point));
+        let [stiffness, damping, free] = numbers(system, [stiffness, damping, free_length]);
+        let graph = &mut system.graph;
+        let (d, d_dot) = (
+            graph.sub_vec(&ends[1].position, &ends[0].position),
+            graph.sub_vec(&ends[1].velocity, &ends[0].velocity),
+        );
+        let square = graph.dot(&d, &d);
+        let length = graph.sqrt(square);
+        let inverse = graph.recip(length);
+        let unit = graph.scale_vec(inverse, &d);
+        let rate = graph.dot(&unit, &d_dot);
+        let (elastic, stored) = spring(graph, stiffness, length, free);
+        let drag = graph.mul(damping, rate);
+        let force = graph.sub(elastic, drag);
+        let on_second = graph.scale_vec(force, &unit);
+        let on_first = graph.neg_vec(&on_second);
+        let loss = graph.mul(drag, rate);
+        self.power = graph.sub(self.power, loss);
+        self.potential = graph.add(self.potential, stored);
+        for (end, force) in ends.iter().zip([on_first, on_second]) {
+            let load = end.load(system, &force);
+            self.push(system, end.body, &load);
+        }
+    }
+
+    fn add_load(&mut self, system: &mut System, kind: &ForceKind) {
+        let ForceKind::Load { body, point, force, torque, frame } = kind else { return };
+        let end = PointOfBody::new(system, *body, point);
+        let (given_force, given_torque) = (system.numbers(force), system.numbers(torque));
+        let pose = system.poses[*body];
+        let graph = &mut system.graph;
+        let (force, torque) = match frame {
+            LoadFrame::Global => (given_force, graph.transposed_vec(&pose.a, &given_torque)),
+            LoadFrame::Body => (graph.mat_vec(&pose.a, &given_force), given_torque),
+        };
+        let (pushing, turning) = (graph.dot(&force, &end.velocity), graph.dot(&torque, &pose.w));
+        let power = graph.add(pushing, turning);
+        self.power = graph.add(self.power, power);
+        let load = end.load(system, &force);
+        let torque = system.graph.add_vec(&load.torque, &torque);
+        self.push(system, *body, &Load { force: load.force, torque });
+    }
+
+    fn push(&mut self, system: &mut System, body: usize, load: &Load) {
+        let sum = self.loads[body];
+        let graph = &mut system.graph;
+        self.loads[body] = Load {
+            force: graph.add_vec(&sum.force, &load.force),
+            torque: graph.add_vec(&sum.torque, &load.torque),
+        };
+    }
+
+    /// The power that has to be fed in to move bodies as prescribed against these forces.
+    pub fn power_of_driven_bodies(&self, system: &mut System) -> ExprId {
+        let mut power = Graph::ZERO;
+        for (body, load) in self.loads.iter().enumerate() {
+            if system.model.bodies[body].motion.is_some() {
+                let pose = system.poses[body];
+                let graph = &mut system.graph;
+                let (pushed, turned) = (graph.dot(&load.force, &pose.s), graph.dot(&load.torque, &pose.w));
+                let done = graph.add(pushed, turned);
+                power = graph.sub(power, done);
+            }
+        }
+        power
+    }
+}
+
+impl Load {
+    fn scaled(&self, graph: &mut Graph, factor: ExprId) -> Self {
+        Self { force: graph.scale_vec(factor, &self.force), torque: graph.scale_vec(factor, &self.torque) }
+    }
+}
+
+/// A point of a body.
+pub struct PointOfBody {
+    pub body: usize,
+    /// In the body's frame.
+    point: Vec3,
+    /// Global.
+    pub position: Vec3,
+    pub velocity: Vec3,
+}
+
+impl PointOfBody {
+    pub fn new(system: &mut System, body: usize, point: &[Number; 3]) -> Self {
+        let point = system.numbers(point);
+        let pose = system.poses[body];
+        let graph = &mut system.graph;
+        let (arm, turning) = (graph.mat_vec(&pose.a, &point), graph.cross(&pose.w, &point));
+        let turning = graph.mat_vec(&pose.a, &turning);
+        let (position, velocity) = (graph.add_vec(&pose.r, &arm), graph.add_vec(&pose.s, &turning));
+        Self { body, point, position, velocity }
+    }
+
+    /// A force at the point, global frame.
+    fn load(&self, system: &mut System, force: &Vec3) -> Load {
+        let a = system.poses[self.body].a;
+        let in_body = system.graph.transposed_vec(&a, force);
+        Load { force: *force, torque: system.graph.cross(&self.point, &in_body) }
+    }
+}
+
+/// `−stiffness (x − free)`, and the energy stored: half the stiffness times the square.
+fn spring(graph: &mut Graph, stiffness: ExprId, x: ExprId, free: ExprId) -> (ExprId, ExprId) {
+    let stretch = graph.sub(x, free);
+    let pull = graph.mul(stiffness, stretch);
+    let (half, double) = (graph.fraction(1, 2), graph.mul(pull, stretch));
+    (graph.neg(pull), graph.mul(half, double))
+}
+
+/// The smooth end stop of `ForceKind::Stop`.
+fn stop(
+    graph: &mut Graph,
+    side: StopSide,
+    (x, rate): (ExprId, ExprId),
+    [limit, stiffness, damping, softness]: [ExprId; 4],
+) -> ExprId {
+    let beyond = graph.sub(x, limit);
+    let depth = if side == StopSide::Upper { beyond } else { graph.neg(beyond) };
+    let square = graph.dot(&[depth, softness], &[depth, softness]);
+    let (root, half) = (graph.sqrt(square), graph.fraction(1, 2));
+    let (sum, quotient) = (graph.add(depth, root), graph.div(depth, root));
+    let (ramp, slope) = (graph.mul(half, sum), graph.add(Graph::ONE, quotient));
+    let slope = graph.mul(half, slope);
+    let push = graph.mul(stiffness, ramp);
+    let push = if side == StopSide::Upper { graph.neg(push) } else { push };
+    let (resistance, drag) = (graph.mul(damping, slope), rate);
+    let drag = graph.mul(resistance, drag);
+    graph.sub(push, drag)
+}
+
+fn numbers<const N: usize>(system: &mut System, numbers: [&Number; N]) -> [ExprId; N] {
+    numbers.map(|number| system.number(number))
+}

@@ -1,0 +1,131 @@
+//! The outputs that the page asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
+
+use crate::derive::dynamics::Dynamics;
+use crate::derive::forces::PointOfBody;
+use crate::derive::joint_coordinate::Load;
+use crate::derive::kinematics::Kinematics;
+use crate::derive::system::System;
+use crate::expr::differentiate::Derivative;
+use crate::expr::differentiate::Direction;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::{Vec3, ZERO3};
+use gyro_model::{Number, OutputKind, RowOwner};
+use std::array::from_fn;
+
+/// What outputs are made of besides the state.
+pub struct Sources<'a> {
+    pub kinematics: &'a Kinematics,
+    pub dynamics: &'a Dynamics,
+    /// λ of each row.
+    pub lambda: &'a [ExprId],
+}
+
+/// The numbers of all outputs, one after another.
+pub fn derive(system: &mut System, sources: &Sources) -> Vec<ExprId> {
+    let outputs = &system.model.outputs;
+    outputs.iter().flat_map(|output| numbers(system, sources, &output.kind)).collect()
+}
+
+/// Power of the drivers: `−λᵀν`, and what it takes to move bodies as prescribed against forces.
+pub fn drivers_power(system: &mut System, sources: &Sources) -> ExprId {
+    let mut power = sources.dynamics.power_of_driven_bodies;
+    for (&lambda, &nu) in sources.lambda.iter().zip(&sources.kinematics.nu) {
+        let product = system.graph.mul(lambda, nu);
+        power = system.graph.sub(power, product);
+    }
+    power
+}
+
+fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<ExprId> {
+    match kind {
+        OutputKind::Pose { body, point } => {
+            let position = PointOfBody::new(system, *body, point).position;
+            position.into_iter().chain(system.poses[*body].p).collect()
+        }
+        OutputKind::Velocity { body, point } => {
+            let velocity = PointOfBody::new(system, *body, point).velocity;
+            velocity.into_iter().chain(system.poses[*body].w).collect()
+        }
+        OutputKind::Acceleration { body, point } => {
+            let (linear, angular) = acceleration(system, *body, point);
+            linear.into_iter().chain(angular).collect()
+        }
+        OutputKind::Inertial { body, point } => {
+            let (linear, _) = acceleration(system, *body, point);
+            let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[*body]);
+            let felt = system.graph.sub_vec(&linear, &gravity);
+            let felt = system.graph.transposed_vec(&pose.a, &felt);
+            felt.into_iter().chain(pose.w).collect()
+        }
+        OutputKind::Reaction { joint } => reaction(system, sources, *joint),
+        OutputKind::Driver { driver } => system
+            .model
+            .rows_of(RowOwner::Driver(*driver))
+            .map(|row| system.graph.neg(sources.lambda[row]))
+            .collect(),
+        OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
+        OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],
+    }
+}
+
+/// Acceleration of a point, global frame, `r̈ = s̈ + A (ẇ' × c + w' × (w' × c))`, and ẇ'.
+fn acceleration(system: &mut System, body: usize, point: &[Number; 3]) -> (Vec3, Vec3) {
+    let (pose, point) = (system.poses[body], system.numbers(point));
+    let (linear, angular) = match system.slot_of(body) {
+        Some(slot) => {
+            let mut component = |k| system.graph.symbol(Symbol::Acceleration { slot, k });
+            (from_fn(&mut component), from_fn(|k| component(3 + k)))
+        }
+        None => (time_derivative(system, &pose.s), time_derivative(system, &pose.w)),
+    };
+    let graph = &mut system.graph;
+    let (tangential, speed) = (graph.cross(&angular, &point), graph.cross(&pose.w, &point));
+    let centripetal = graph.cross(&pose.w, &speed);
+    let relative = graph.add_vec(&tangential, &centripetal);
+    let relative = graph.mat_vec(&pose.a, &relative);
+    (graph.add_vec(&linear, &relative), angular)
+}
+
+pub fn time_derivative(system: &mut System, vector: &Vec3) -> Vec3 {
+    let time = Direction::from([(Symbol::Time, Graph::ONE)]);
+    let mut derivative = Derivative::new(&system.definitions, time);
+    vector.map(|x| derivative.of(&mut system.graph, x))
+}
+
+/// Force and torque of the joint's rows on its second body, at its joint point, in the first body's joint frame.
+fn reaction(system: &mut System, sources: &Sources, index: usize) -> Vec<ExprId> {
+    let joint = system.joints[index];
+    let (i, j) = (joint.first.body, joint.second.body);
+    let (a_i, pose_j) = (system.poses[i].a, system.poses[j]);
+    let arm = system.graph.mat_vec(&pose_j.a, &joint.second.point);
+    let point = system.graph.add_vec(&pose_j.r, &arm);
+    // Without coordinates of the second body: the opposite of what acts on the first.
+    let (body, sign) = if system.slot_of(j).is_some() { (j, -1) } else { (i, 1) };
+    let taken = taken(system, sources, index, body);
+    let sign = system.graph.integer(sign);
+    let from_point = system.graph.sub_vec(&system.poses[body].r, &point);
+    let graph = &mut system.graph;
+    let (torque, moment) =
+        (graph.mat_vec(&system.poses[body].a, &taken.torque), graph.cross(&from_point, &taken.force));
+    let torque = graph.add_vec(&torque, &moment);
+    let frame = [joint.first.f, joint.first.g, joint.first.h].map(|u| graph.mat_vec(&a_i, &u));
+    let supplied = [taken.force, torque].map(|v| graph.scale_vec(sign, &v));
+    supplied.iter().flat_map(|v| frame.map(|u| graph.dot(&u, v))).collect()
+}
+
+/// `Φ_rᵀλ` and `Φ_π'ᵀλ` of a joint's rows for one body; nothing of a body without coordinates.
+fn taken(system: &mut System, sources: &Sources, joint: usize, body: usize) -> Load {
+    let mut taken = Load { force: ZERO3, torque: ZERO3 };
+    let Some(slot) = system.slot_of(body) else { return taken };
+    for row in system.model.rows_of(RowOwner::Joint(joint)) {
+        let column = |k: usize| sources.kinematics.phi_pi[row][6 * slot + k];
+        let (by_r, by_pi): (Vec3, Vec3) = (from_fn(column), from_fn(|k| column(3 + k)));
+        let graph = &mut system.graph;
+        let (force, torque) =
+            (graph.scale_vec(sources.lambda[row], &by_r), graph.scale_vec(sources.lambda[row], &by_pi));
+        taken.force = graph.add_vec(&taken.force, &force);
+        taken.torque = graph.add_vec(&taken.torque, &torque);
+    }
+    taken
+}

@@ -1,0 +1,220 @@
+//! The mechanism's type, its parameters and what is set up from them.
+
+use super::writer::ModuleWriter;
+use crate::emit::literals::float;
+use crate::emit::tokens::{ident, index};
+use gyro_model::{Model, Number, Parameter, ParameterRule};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    /// The type, its default and its parameters.
+    pub fn definition(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let doc = format!(" The mechanism `{}`.", self.equations.model.name);
+        let (parameters, inputs) = (&self.equations.model.parameters, &self.equations.model.inputs);
+        let input_names: Vec<_> = inputs.iter().map(|p| ident(&p.name)).collect();
+        let input_docs =
+            inputs.iter().map(|p| format!(" Input, set at every step; until then {:?}.", default(p)));
+        let inputs_at_first: Vec<_> = inputs.iter().map(|p| float(default(p))).collect();
+        let n_derived = (!self.functions.set_up.is_empty()).then(|| index(self.functions.set_up.len()));
+        let (fields, at_first) = if parameters.is_empty() && inputs.is_empty() {
+            let doc = " The model has neither parameters nor inputs.";
+            (
+                quote! { #[doc = #doc] scalar: ::core::marker::PhantomData<T>, },
+                quote! { scalar: ::core::marker::PhantomData, },
+            )
+        } else {
+            let (parameters, derived) = ((!parameters.is_empty()).then_some(()), n_derived.iter());
+            let (declared, given) = (
+                parameters.map(|()| quote! { parameters: Parameters<T>, }),
+                parameters.map(|()| quote! { parameters, }),
+            );
+            let zeros = n_derived.iter().map(|n| quote! { derived: [T::constant(0.0); #n], });
+            (
+                quote! {
+                    #declared
+                    #(
+                        /// What depends on parameters alone.
+                        derived: [T; #derived],
+                    )*
+                    #(#[doc = #input_docs] pub #input_names: T,)*
+                },
+                quote! { #given #(#zeros)* #(#input_names: T::constant(#inputs_at_first),)* },
+            )
+        };
+        let (default_value, set_parameters) = if parameters.is_empty() {
+            (quote! { Self { #at_first } }, self.without_parameters())
+        } else {
+            (quote! { Self::new(Parameters::default()) }, self.set_parameters(&at_first))
+        };
+        let (parameters, set_up) = (self.parameters(), self.set_up());
+        quote! {
+            #parameters
+
+            #[doc = #doc]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name<T> {
+                #fields
+            }
+
+            impl<T: gyro_sim::Scalar> ::core::default::Default for #name<T> {
+                fn default() -> Self {
+                    #default_value
+                }
+            }
+
+            impl<T: gyro_sim::Scalar> #name<T> {
+                #set_parameters
+                #set_up
+            }
+        }
+    }
+
+    /// The parameters by name; nothing if there are none.
+    fn parameters(&self) -> Option<TokenStream> {
+        let parameters = &self.equations.model.parameters;
+        if parameters.is_empty() {
+            return None;
+        }
+        let doc = format!(" Parameters of [`{}`].", self.type_name);
+        let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
+        let values: Vec<_> = parameters.iter().map(|p| float(default(p))).collect();
+        let docs = parameters.iter().map(|p| format!(" Default {:?}.", default(p)));
+        let model = &self.equations.model;
+        let rules: Vec<_> = model.parameter_rules().iter().map(|rule| rule_tokens(model, rule)).collect();
+        Some(quote! {
+            #[doc = #doc]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Parameters<T> {
+                #(#[doc = #docs] pub #names: T,)*
+            }
+
+            impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
+                fn default() -> Self {
+                    Self { #(#names: T::constant(#values),)* }
+                }
+            }
+
+            impl<T: gyro_sim::Real> Parameters<T> {
+                /// Whether the mechanism can have these parameters, as the model page's rules decide.
+                pub fn check(&self) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
+                    gyro_sim::admissible::check(&[#(self.#names),*], &[#(#rules),*])
+                }
+            }
+        })
+    }
+
+    fn without_parameters(&self) -> TokenStream {
+        quote! {
+            /// Names of the parameters.
+            pub const PARAMETERS: [&'static str; 0] = [];
+
+            /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
+            pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+                false
+            }
+        }
+    }
+
+    fn set_parameters(&self, at_first: &TokenStream) -> TokenStream {
+        let parameters = &self.equations.model.parameters;
+        let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
+        let strings = parameters.iter().map(|p| &p.name);
+        let (count, places) = (index(parameters.len()), (0..parameters.len()).map(index));
+        let set_up = (!self.functions.set_up.is_empty()).then(|| {
+            quote! {
+                let mut derived = self.derived;
+                self.set_up(&mut derived);
+                self.derived = derived;
+            }
+        });
+        quote! {
+            /// Names of the parameters.
+            pub const PARAMETERS: [&'static str; #count] = [#(#strings),*];
+
+            /// The mechanism with these parameters.
+            pub fn new(parameters: Parameters<T>) -> Self {
+                let mut mechanism = Self { #at_first };
+                mechanism.set_parameters(parameters);
+                mechanism
+            }
+
+            /// The parameters.
+            pub fn parameters(&self) -> &Parameters<T> {
+                &self.parameters
+            }
+
+            /// Sets all parameters, and computes what depends on them alone.
+            pub fn set_parameters(&mut self, parameters: Parameters<T>) {
+                self.parameters = parameters;
+                #set_up
+            }
+
+            /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
+            pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
+                let mut parameters = self.parameters;
+                match index {
+                    #(#places => { parameters.#names = value; })*
+                    _ => return false,
+                }
+                self.set_parameters(parameters);
+                true
+            }
+        }
+    }
+
+    /// Nothing if nothing depends on parameters alone.
+    fn set_up(&self) -> Option<TokenStream> {
+        let roots = &self.functions.set_up;
+        let n = index(roots.len());
+        (!roots.is_empty()).then(|| {
+            self.function("What depends on parameters alone", roots, |body, _, _| {
+                let (statements, values) = (&body.statements, &body.values);
+                quote! {
+                    fn set_up(&self, out: &mut [T; #n]) {
+                        #statements
+                        *out = [#(#values),*];
+                    }
+                }
+            })
+        })
+    }
+}
+
+/// A rule as `gyro_sim::admissible` has it.
+fn rule_tokens(model: &Model, rule: &ParameterRule<'_>) -> TokenStream {
+    let number = |number: &Number| match number {
+        Number::Parameter { index: place, negated } => {
+            let (kind, place) = (ident(if *negated { "Negated" } else { "Given" }), index(*place));
+            quote! { gyro_sim::admissible::Number::#kind(#place) }
+        }
+        number => {
+            let value = float(model.value(number));
+            quote! { gyro_sim::admissible::Number::Fixed(#value) }
+        }
+    };
+    let list = |numbers: &[Number]| {
+        let numbers = numbers.iter().map(number);
+        quote! { [#(#numbers),*] }
+    };
+    let (kind, arguments) = match rule {
+        ParameterRule::Positive(one) => ("Positive", number(one)),
+        ParameterRule::NotNegative(one) => ("NotNegative", number(one)),
+        ParameterRule::NotZero(numbers) => {
+            let numbers = list(numbers);
+            ("NotZero", quote! { &#numbers })
+        }
+        ParameterRule::NotParallel(axis, zero) => {
+            let (axis, zero) = (list(*axis), list(*zero));
+            ("NotParallel", quote! { #axis, #zero })
+        }
+        ParameterRule::Inertia(elements) => ("Inertia", list(*elements)),
+    };
+    let kind = ident(kind);
+    quote! { gyro_sim::admissible::Rule::#kind(#arguments) }
+}
+
+fn default(parameter: &Parameter) -> f64 {
+    gyro_model::to_f64(&parameter.value)
+}

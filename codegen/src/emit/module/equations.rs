@@ -1,0 +1,115 @@
+//! The equations of motion term by term.
+
+use super::writer::ModuleWriter;
+use crate::emit::tokens::{ident, index};
+use crate::equations::Sparse;
+use crate::expr::graph::ExprId;
+use crate::expr::symbol::Symbol;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    pub fn equations(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let e = self.equations;
+        let [n_velocities, n_closing, n_phi_q, n_phi_pi] =
+            [e.accelerations.len(), e.closing.len(), e.phi_q.len(), e.phi_pi.len()].map(index);
+        let n_solved = index(e.accelerations.len() + e.closing.len());
+        let rest = if e.closing.is_empty() {
+            " (s̈, ẇ') of each body.".to_owned()
+        } else {
+            format!(" (s̈, ẇ') of each body, then {n_closing} multipliers of the rows that close loops.")
+        };
+        let (phi_q_pattern, phi_pi_pattern) = (pattern(&e.phi_q), pattern(&e.phi_pi));
+        let f = &self.functions;
+        let filling = [
+            self.filling("phi_q", "Writes the non-zeros of Φ_q", "PhiQ", &f.phi_q),
+            self.filling("phi_pi", "Writes the non-zeros of (Φ_r, Φ_π')", "PhiPi", &f.phi_pi),
+            self.filling("nu", "Writes ν", "Rows", &f.nu),
+            self.filling("gamma", "Writes γ", "Rows", &f.gamma),
+            self.filling("applied_force", "Writes (f, n' − w̃'J'w')", "Velocities", &f.applied_force),
+        ];
+        let accelerations =
+            self.filling("accelerations", "Solves eq. (17)", "Accelerations", &f.accelerations);
+        let multipliers = self.multipliers("multipliers", "Accelerations", &f.multipliers);
+        quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::Equations for #name<T> {
+                type Velocities = [T; #n_velocities];
+                type PhiQ = [T; #n_phi_q];
+                type PhiPi = [T; #n_phi_pi];
+                #[doc = #rest]
+                type Accelerations = [T; #n_solved];
+
+                fn velocities(&self) -> Self::Velocities {
+                    [T::constant(0.0); #n_velocities]
+                }
+                fn phi_q_values(&self) -> Self::PhiQ {
+                    [T::constant(0.0); #n_phi_q]
+                }
+                fn phi_pi_values(&self) -> Self::PhiPi {
+                    [T::constant(0.0); #n_phi_pi]
+                }
+                fn accelerations_buffer(&self) -> Self::Accelerations {
+                    [T::constant(0.0); #n_solved]
+                }
+                fn phi_q_pattern(&self) -> &[(u16, u16)] {
+                    &[#(#phi_q_pattern),*]
+                }
+                fn phi_pi_pattern(&self) -> &[(u16, u16)] {
+                    &[#(#phi_pi_pattern),*]
+                }
+
+                #(#filling)*
+                #accelerations
+                #multipliers
+            }
+        }
+    }
+
+    pub fn projection(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let what = "Solves eq. (17) without forces, the changes of the rows for γ";
+        let project = self.function(what, &self.functions.project, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            let reads_rows = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Change(_)));
+            let rows = ident(if reads_rows { "rows" } else { "_rows" });
+            quote! {
+                fn project(&self, #t: T, #y: &Self::State, #rows: &Self::Rows, out: &mut Self::Velocities) {
+                    #statements
+                    *out = [#(#values),*];
+                }
+            }
+        });
+        quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::Projection for #name<T> {
+                #project
+            }
+        }
+    }
+
+    /// λ, the accelerations being known.
+    pub fn multipliers(&self, name: &str, accelerations: &str, roots: &[ExprId]) -> TokenStream {
+        let (name, accelerations) = (ident(name), ident(accelerations));
+        self.function("Writes λ", roots, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
+            let argument =
+                ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
+            quote! {
+                fn #name(
+                    &self, #t: T, #y: &Self::State, #argument: &Self::#accelerations, lambda: &mut Self::Rows,
+                ) {
+                    #statements
+                    *lambda = [#(#values),*];
+                }
+            }
+        })
+    }
+}
+
+fn pattern(sparse: &Sparse) -> impl Iterator<Item = TokenStream> + '_ {
+    sparse.iter().map(|&(row, column, _)| {
+        let (row, column) = (index(row), index(column));
+        quote! { (#row, #column) }
+    })
+}

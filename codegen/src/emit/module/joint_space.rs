@@ -1,0 +1,200 @@
+//! Joint coordinates.
+
+use super::writer::ModuleWriter;
+use crate::emit::literals::float;
+use crate::emit::tokens::{Body, ident, index};
+use crate::expr::graph::ExprId;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    /// Nothing for mechanisms that are no trees.
+    pub fn joint_space(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        let (name, f) = (ident(self.type_name), &self.functions);
+        let (n_x, n_u) = (space.layout.n_coordinates, space.layout.n_rates);
+        let n_work = usize::from(self.equations.power.is_some());
+        let start: Vec<_> = space.start.iter().copied().chain((0..n_work).map(|_| 0.0)).collect();
+        let start = start.iter().map(|&x| if x == 0.0 { float(0.0) } else { float(x) });
+        let (n_joints, n_rates) = (index(n_x + n_u + n_work), index(n_u));
+        let accelerations = self.of_joints(
+            "joint_accelerations",
+            "Writes u̇",
+            &quote! { out: &mut Self::Rates },
+            &f.joint_accelerations,
+            |values| quote! { *out = [#(#values),*]; },
+        );
+        let derivative = self.joint_derivative(n_x, n_u);
+        let to_maximal = self.to_maximal(n_x + n_u);
+        let to_joints = self.to_joints(n_x + n_u);
+        let at = self.filling(
+            "joint_accelerations_at",
+            "Writes u̇ at a state that satisfies the constraints",
+            "Rates",
+            &f.joint_accelerations_at,
+        );
+        let corrected = self.filling(
+            "corrected_accelerations",
+            "Writes (s̈, ẇ') at a state that satisfies the constraints",
+            "Velocities",
+            &f.corrected_accelerations,
+        );
+        let multipliers = self.multipliers("corrected_multipliers", "Velocities", &f.corrected_multipliers);
+        let solution = self.filling(
+            "corrected_solution",
+            "Writes (s̈, ẇ') and λ at a state that satisfies the constraints",
+            "Solution",
+            &f.corrected_solution,
+        );
+        let n_solution = index(space.solution.len());
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
+                type Joints = [T; #n_joints];
+                type Rates = [T; #n_rates];
+                type Solution = [T; #n_solution];
+
+                fn joint_start(&self) -> Self::Joints {
+                    let k = T::constant;
+                    [#(k(#start)),*]
+                }
+                fn rates(&self) -> Self::Rates {
+                    [T::constant(0.0); #n_rates]
+                }
+                fn solution(&self) -> Self::Solution {
+                    [T::constant(0.0); #n_solution]
+                }
+
+                #accelerations
+                #derivative
+                #to_maximal
+                #to_joints
+                #at
+                #corrected
+                #multipliers
+                #solution
+            }
+        })
+    }
+
+    /// Nothing for mechanisms that are no trees, or too large.
+    pub fn joint_jacobian(&self) -> Option<TokenStream> {
+        let jacobian = self.equations.joint_space.as_ref()?.jacobian.as_ref()?;
+        let (name, f) = (ident(self.type_name), &self.functions);
+        let (n_state, n_inputs) = (index(jacobian.by_state.len()), index(jacobian.by_inputs.len()));
+        let out = quote! { dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints };
+        let what = "Writes ∂f/∂x and ∂f/∂t";
+        let by_state = self.of_joints("joint_jacobian", what, &out, &f.joint_jacobian, |values| {
+            let (by_state, by_time) = values.split_at(jacobian.by_state.len());
+            quote! {
+                *dfdx = [#(#by_state),*];
+                *dfdt = [#(#by_time),*];
+            }
+        });
+        let by_inputs = if f.joint_input_jacobian.is_empty() {
+            quote! {
+                fn joint_input_jacobian(&self, _t: T, _x: &Self::Joints, _out: &mut Self::InputJacobian) {}
+            }
+        } else {
+            let (out, roots) = (quote! { out: &mut Self::InputJacobian }, &f.joint_input_jacobian);
+            let write = |values: &[TokenStream]| quote! { *out = [#(#values),*]; };
+            self.of_joints("joint_input_jacobian", "Writes ∂f/∂(inputs)", &out, roots, write)
+        };
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for #name<T> {
+                type Jacobian = [T; #n_state];
+                type InputJacobian = [T; #n_inputs];
+
+                fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+                    [T::constant(0.0); #n_state]
+                }
+                fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+                    [T::constant(0.0); #n_inputs]
+                }
+
+                #by_state
+                #by_inputs
+            }
+        })
+    }
+
+    /// A function of time and joint state.
+    fn of_joints(
+        &self,
+        name: &str,
+        what: &str,
+        out: &TokenStream,
+        roots: &[ExprId],
+        write: impl Fn(&[TokenStream]) -> TokenStream,
+    ) -> TokenStream {
+        self.function(what, roots, |body, t, x| {
+            of_joints(name, [t, &quote! { #x }, out], body, write(&body.values))
+        })
+    }
+
+    fn joint_derivative(&self, n_x: usize, n_u: usize) -> TokenStream {
+        let what = "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes";
+        self.function(what, &self.functions.joint_derivative, |body, _, _| {
+            let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
+            let places = (0..n_u).map(index);
+            quote! {
+                fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+                    let mut rates = gyro_sim::JointSpace::rates(self);
+                    gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+                    #statements
+                    *dx = [#(#coordinates,)* #(rates[#places],)* #(#rest),*];
+                }
+            }
+        })
+    }
+
+    fn to_maximal(&self, work_at: usize) -> TokenStream {
+        let n_state = 13 * self.equations.n_slots();
+        let work = self.equations.power.is_some().then(|| index(work_at));
+        let work = work.map(|at| quote! { x[#at], });
+        let out = quote! { y: &mut Self::State };
+        let what = "Writes the maximal state of a joint state";
+        self.function(what, &self.functions.to_maximal, |body, t, x| {
+            let (state, turns) = body.values.split_at(n_state);
+            let x = if work.is_some() {
+                quote! { x }
+            } else {
+                quote! { #x }
+            };
+            of_joints("to_maximal", [t, &x, &out], body, quote! { *y = [#(#state,)* #work #(#turns),*]; })
+        })
+    }
+
+    fn to_joints(&self, n: usize) -> TokenStream {
+        let work = self.equations.power.is_some().then(|| index(13 * self.equations.n_slots()));
+        let places: Vec<_> = (0..n).map(index).collect();
+        let at = index(n);
+        let work = work.map(|work| quote! { x[#at] = y[#work]; });
+        let what = "Writes the joint state of a maximal state";
+        self.function(what, &self.functions.to_joints, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            let y = if work.is_some() {
+                quote! { y }
+            } else {
+                quote! { #y }
+            };
+            quote! {
+                fn to_joints(&self, #t: T, #y: &Self::State, x: &mut Self::Joints) {
+                    #statements
+                    #(x[#places] = #values;)*
+                    #work
+                }
+            }
+        })
+    }
+}
+
+/// A function of time and joint state, with its arguments t and x as they are called where nothing reads them.
+fn of_joints(name: &str, [t, x, out]: [&TokenStream; 3], body: &Body, written: TokenStream) -> TokenStream {
+    let (name, statements) = (ident(name), &body.statements);
+    quote! {
+        fn #name(&self, #t: T, #x: &Self::Joints, #out) {
+            #statements
+            #written
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! The text of a generated module: the mechanism's type and its implementation of the run-time contract.
+
+mod definition;
+mod equations;
+mod joint_space;
+mod mechanism;
+mod ode;
+mod partition;
+mod ports;
+mod variables;
+mod writer;
+
+use self::writer::ModuleWriter;
+use crate::emit::data_sheet::Sheet;
+use crate::emit::literals::Literals;
+use crate::equations::Equations;
+use crate::kernels::Functions;
+use gyro_model::Start;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
+pub fn type_name(module_name: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters
+            .next()
+            .map(|first| first.to_uppercase().chain(letters).collect::<String>())
+            .unwrap_or_default()
+    };
+    let name: String = module_name.split('_').map(capital).collect();
+    if ["Self", "T", "Parameters"].contains(&name.as_str()) { format!("{name}_") } else { name }
+}
+
+/// The text of a module, the exact constants of its literals and its data sheet.
+pub struct Text {
+    pub code: String,
+    pub constants: String,
+    pub sheet: Sheet,
+}
+
+/// Writes the files.
+pub fn write(
+    file_name: &str,
+    type_name: &str,
+    (equations, functions): (&Equations, Functions),
+    start: &Start,
+) -> Text {
+    let literals = Literals::default();
+    let module = ModuleWriter { equations, type_name, functions, literals };
+    let tokens = module.tokens(start);
+    let sheet = Sheet::of(equations, &module.functions);
+    let (tokens, constants) = module.literals.write(tokens);
+    let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
+    let code = format!("{}\n{}", sheet.head(file_name), prettyplease::unparse(&file));
+    Text { code, constants, sheet }
+}
+
+impl ModuleWriter<'_> {
+    fn tokens(&self, start: &Start) -> TokenStream {
+        let (tables, definition, ode) = (self.tables_of_motions(), self.definition(), self.ode(start));
+        let (mechanism, partition) = (self.mechanism(), self.partition());
+        let (equations, projection) = (self.equations(), self.projection());
+        let (joint_space, joint_jacobian) = (self.joint_space(), self.joint_jacobian());
+        let ports = self.ports();
+        quote! {
+            #tables
+            #definition
+            #ode
+            #mechanism
+            #partition
+            #equations
+            #projection
+            #joint_space
+            #joint_jacobian
+            #ports
+        }
+    }
+}

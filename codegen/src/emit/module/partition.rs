@@ -1,0 +1,147 @@
+//! The coordinate partition.
+
+use super::writer::ModuleWriter;
+use crate::emit::tokens::{Variables, ident, index};
+use crate::expr::graph::{ExprId, Node};
+use crate::expr::symbol::Symbol;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    pub fn partition(&self) -> TokenStream {
+        if self.equations.charts.is_some() { self.by_charts() } else { self.by_pivoting() }
+    }
+
+    /// Full pivoting at run time.
+    fn by_pivoting(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let [n_constraints, n_positions] =
+            [self.equations.phi.len(), 7 * self.equations.n_slots()].map(index);
+        // Trees have no singular poses.
+        let clearance = self.equations.joint_space.is_none().then(|| {
+            quote! {
+                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+                    ::core::option::Option::Some(
+                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
+                    )
+                }
+            }
+        });
+        quote! {
+            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
+                type Independent = gyro_sim::pivoting::Pivots<#n_constraints, #n_positions>;
+
+                fn independent(&self, t: T, y: &Self::State) -> Self::Independent {
+                    gyro_sim::pivoting::independent(self, t, y)
+                }
+                fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+                    gyro_sim::pivoting::follow(self, t, y, choice)
+                }
+                fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+                    gyro_sim::pivoting::is_met(self, t, y, phi)
+                }
+                fn newton_step(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::pivoting::newton_step(self, t, choice, y)
+                }
+                fn solve_velocities(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+                }
+                #clearance
+            }
+        }
+    }
+
+    /// The unrolled solves with their charts.
+    fn by_charts(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let n_charts = index(self.functions.chart_vectors.len() / 4);
+        let vectors = self.function(
+            "The four-vectors whose largest components are the special Euler parameters",
+            &self.functions.chart_vectors,
+            |body, _, y| {
+                let statements = &body.statements;
+                let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
+                quote! {
+                    fn chart_vectors(&self, #y: &Self::State) -> Self::Vectors {
+                        #statements
+                        [#(#vectors),*]
+                    }
+                }
+            },
+        );
+        let newton = self.solve(
+            "newton_step_on",
+            "One Newton step of the dependent positions",
+            &self.functions.newton_step,
+            0,
+        );
+        let velocities = self.solve(
+            "solve_velocities_on",
+            "Solves eq. (19) for the dependent velocities",
+            &self.functions.solve_velocities,
+            7 * self.equations.n_slots(),
+        );
+        quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::Charted for #name<T> {
+                type Vectors = [[T; 4]; #n_charts];
+
+                #vectors
+                #newton
+                #velocities
+            }
+
+            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
+                type Independent = gyro_sim::charts::Charts<#n_charts>;
+
+                fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+                    gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+                }
+                fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+                    gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+                }
+                fn newton_step(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::Charted::newton_step_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    Ok(())
+                }
+                fn solve_velocities(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::Charted::solve_velocities_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    Ok(())
+                }
+            }
+        }
+    }
+
+    /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
+    fn solve(&self, name: &str, what: &str, roots: &[ExprId], first: usize) -> TokenStream {
+        let name = ident(name);
+        let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element(root, place));
+        let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
+        let y = ident(if places.is_empty() { "_y" } else { "y" });
+        self.function(what, &roots, |body, t, _| {
+            let (statements, values) = (&body.statements, &body.values);
+            let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
+            let charts = ident(if charted { "charts" } else { "_charts" });
+            quote! {
+                fn #name(&self, #t: T, #charts: &Self::Vectors, #y: &mut Self::State) {
+                    #statements
+                    #(y[#places] = #values;)*
+                }
+            }
+        })
+    }
+
+    /// Whether an expression is just an element of the state.
+    fn is_element(&self, root: ExprId, place: usize) -> bool {
+        let Node::Symbol(symbol) = self.equations.graph.node(root) else { return false };
+        let place = index(place);
+        self.variable(*symbol).1.is_some_and(|source| source.to_string() == quote! { y[#place] }.to_string())
+    }
+}

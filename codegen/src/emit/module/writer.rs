@@ -1,0 +1,122 @@
+//! What the parts of a module are written from, and how a function of it is written.
+
+use crate::emit::data_sheet::printable;
+use crate::emit::literals::{Literals, float};
+use crate::emit::tokens::{self, Body, ident};
+use crate::equations::Equations;
+use crate::expr::graph::ExprId;
+use crate::expr::schedule::Operations;
+use crate::expr::symbol::Symbol;
+use crate::kernels::Functions;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+use std::collections::BTreeSet;
+
+fn table_of(symbol: &Symbol) -> Option<usize> {
+    if let Symbol::Table { table, .. } = symbol { Some(*table) } else { None }
+}
+
+fn table_names(table: usize) -> (Ident, Ident) {
+    (ident(&format!("KNOTS_{table}")), ident(&format!("PIECES_{table}")))
+}
+
+/// Binds value and derivatives of a table's curve.
+fn evaluated_table(table: usize) -> TokenStream {
+    let (name, (knots, pieces)) = (ident(&format!("table{table}")), table_names(table));
+    quote! { let #name = t.spline(&#knots, &#pieces); }
+}
+
+/// What the parts of a module are written from.
+pub struct ModuleWriter<'a> {
+    pub equations: &'a Equations<'a>,
+    pub type_name: &'a str,
+    pub functions: Functions,
+    /// Exact constants of all functions.
+    pub literals: Literals,
+}
+
+impl ModuleWriter<'_> {
+    pub fn slots(&self) -> Vec<usize> {
+        self.equations.model.coordinate_bodies()
+    }
+
+    pub fn body(&self, roots: &[ExprId]) -> Body {
+        let mut body = tokens::body(&self.equations.graph, self, &self.literals, roots);
+        let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
+        let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
+        body.statements = quote! { #(#tables)* #statements };
+        body
+    }
+
+    pub fn operations(&self, roots: &[ExprId]) -> Operations {
+        Operations::count(&self.equations.graph, roots)
+    }
+
+    /// Knots and pieces of each table.
+    pub fn tables_of_motions(&self) -> TokenStream {
+        let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
+            let (knots, pieces) = table_names(table);
+            let (n_knots, n_pieces) = (tokens::index(spline.knots.len()), tokens::index(spline.pieces.len()));
+            let times = spline.knots.iter().map(|&t| float(t));
+            let coefficients = spline.pieces.iter().map(|piece| piece.map(float));
+            let coefficients = coefficients.map(|c| quote! { [#(#c),*] });
+            let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
+            quote! {
+                #[doc = #doc]
+                const #knots: [f64; #n_knots] = [#(#times),*];
+                /// Polynomials between them, from each point's own time.
+                const #pieces: [[f64; 4]; #n_pieces] = [#(#coefficients),*];
+            }
+        });
+        tables.collect()
+    }
+
+    /// A function of time and state that fills `out`.
+    pub fn filling(&self, name: &str, what: &str, ty: &str, roots: &[ExprId]) -> TokenStream {
+        let (name, ty) = (ident(name), ident(ty));
+        self.function(what, roots, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            quote! {
+                fn #name(&self, #t: T, #y: &Self::State, out: &mut Self::#ty) {
+                    #statements
+                    *out = [#(#values),*];
+                }
+            }
+        })
+    }
+
+    /// A function with its operation counts; arguments that it does not read get a leading underscore.
+    pub fn function(
+        &self,
+        what: &str,
+        roots: &[ExprId],
+        write: impl Fn(&Body, &TokenStream, &Ident) -> TokenStream,
+    ) -> TokenStream {
+        let body = self.body(roots);
+        let reads_state = body.symbols.iter().any(|symbol| {
+            matches!(
+                symbol,
+                Symbol::Position { .. }
+                    | Symbol::Euler { .. }
+                    | Symbol::Velocity { .. }
+                    | Symbol::Spin { .. }
+                    | Symbol::Turn(_)
+            )
+        });
+        let t = if body.symbols.iter().any(|s| matches!(s, Symbol::Time | Symbol::Table { .. })) {
+            quote! { t }
+        } else {
+            quote! { _t }
+        };
+        let reads_joints =
+            body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Coordinate(_) | Symbol::Rate(_)));
+        let y = ident(match (reads_state, reads_joints) {
+            (true, _) => "y",
+            (false, true) => "x",
+            (false, false) => "_y",
+        });
+        let doc = format!(" {what}: {}.", self.operations(roots));
+        let function = write(&body, &t, &y);
+        quote! { #[doc = #doc] #function }
+    }
+}

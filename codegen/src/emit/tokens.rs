@@ -1,0 +1,309 @@
+//! A straight-line program as Rust tokens.
+
+use crate::emit::literals::Literals;
+use crate::expr::constant::Constant;
+use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::schedule::Program;
+use crate::expr::symbol::Symbol;
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::quote;
+use rustc_hash::FxHashMap as HashMap;
+use std::cell::Cell;
+use std::collections::BTreeSet;
+
+/// The statements of a function and the values of its roots.
+#[derive(Debug)]
+pub struct Body {
+    /// Bindings of literals, variables and shared expressions.
+    pub statements: TokenStream,
+    /// One expression for each root.
+    pub values: Vec<TokenStream>,
+    /// Variables that the program reads.
+    pub symbols: BTreeSet<Symbol>,
+}
+
+/// Where the variables of a module come from.
+pub trait Variables {
+    /// Name of a variable and the expression that reads it; `None` for the expression where it needs no binding.
+    fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>);
+}
+
+/// Statements in one block: rustc opens a scope for each `let` and recurses over them, so long functions are cut into
+/// blocks that hand on what is still needed.
+const CHUNK: usize = 200;
+
+/// A function with more statements is cut into larger blocks that are compiled apart: LLVM's time grows with the square of a
+/// function's length.
+const LONG: usize = 1500;
+const PART: usize = 500;
+
+/// How strongly an expression binds, for parentheses.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Unary,
+    /// What a method may be called on: `-x.sqrt()` is the negative of a root.
+    Call,
+}
+
+/// Writes the program that computes `roots`, with stand-ins for its literals.
+pub fn body(graph: &Graph, variables: &impl Variables, literals: &Literals, roots: &[ExprId]) -> Body {
+    let program = Program::new(graph, roots);
+    let names =
+        program.temporaries.iter().enumerate().map(|(n, &id)| (id, ident(&format!("t{n}")))).collect();
+    let writer =
+        Writer { graph, variables, literals, program: &program, names, has_literals: Cell::new(false) };
+    let symbols: BTreeSet<_> = program.uses.order.iter().filter_map(|&id| writer.as_symbol(id)).collect();
+    let bindings = symbols.iter().filter_map(|&symbol| match variables.variable(symbol) {
+        (name, Some(source)) => Some(quote! { let #name = #source; }),
+        (_, None) => None,
+    });
+    let values: Vec<_> = roots.iter().map(|&root| writer.expression(root, Binding::Sum)).collect();
+    let temporaries = writer.temporaries(roots);
+    let literal = writer.has_literals.get().then(|| quote! { let k = T::constant; });
+    let statements = quote! { #literal #(#bindings)* #temporaries };
+    Body { statements, values, symbols }
+}
+
+pub fn ident(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
+
+pub fn index(value: usize) -> Literal {
+    Literal::usize_unsuffixed(value)
+}
+
+/// `x y + added`.
+fn fused(x: &TokenStream, y: &TokenStream, added: &TokenStream) -> (TokenStream, Binding) {
+    (quote! { T::fused(#x, #y, #added) }, Binding::Call)
+}
+
+struct Writer<'a, V> {
+    graph: &'a Graph,
+    variables: &'a V,
+    literals: &'a Literals,
+    program: &'a Program,
+    names: HashMap<ExprId, Ident>,
+    has_literals: Cell<bool>,
+}
+
+impl<V: Variables> Writer<'_, V> {
+    fn as_symbol(&self, id: ExprId) -> Option<Symbol> {
+        if let Node::Symbol(symbol) = self.graph.node(id) { Some(*symbol) } else { None }
+    }
+
+    fn temporaries(&self, roots: &[ExprId]) -> TokenStream {
+        let temporaries = &self.program.temporaries;
+        if temporaries.len() <= CHUNK {
+            return temporaries.iter().map(|&id| self.binding(id)).collect();
+        }
+        let is_long = temporaries.len() > LONG;
+        let size = if is_long { PART } else { CHUNK };
+        let last_use = self.last_uses(roots);
+        let chunks = temporaries.chunks(size).enumerate().map(|(n, chunk)| {
+            let end = (n + 1) * size;
+            let live: Vec<_> =
+                chunk.iter().filter(|id| last_use[id] >= end).map(|id| &self.names[id]).collect();
+            let bindings = chunk.iter().map(|&id| self.binding(id));
+            let block = quote! { { #(#bindings)* (#(#live,)*) } };
+            let block = if is_long {
+                quote! { gyro_sim::apart(move || #block) }
+            } else {
+                block
+            };
+            quote! { let (#(#live,)*) = #block; }
+        });
+        chunks.collect()
+    }
+
+    /// For each temporary the position of the last one that reads it; beyond all for a root.
+    fn last_uses(&self, roots: &[ExprId]) -> HashMap<ExprId, usize> {
+        let temporaries = &self.program.temporaries;
+        let mut last = HashMap::default();
+        for (position, &id) in temporaries.iter().enumerate() {
+            for operand in self.graph.node(id).operands() {
+                self.mark(operand, position, &mut last);
+            }
+        }
+        for &root in roots {
+            self.mark(root, usize::MAX, &mut last);
+        }
+        last
+    }
+
+    fn mark(&self, id: ExprId, position: usize, last: &mut HashMap<ExprId, usize>) {
+        if self.names.contains_key(&id) {
+            let entry = last.entry(id).or_insert(position);
+            *entry = position.max(*entry);
+            return;
+        }
+        for operand in self.graph.node(id).operands() {
+            self.mark(operand, position, last);
+        }
+    }
+
+    fn binding(&self, id: ExprId) -> TokenStream {
+        let name = &self.names[&id];
+        let (value, _) = self.operation(id);
+        quote! { let #name = #value; }
+    }
+
+    /// An expression by its name if it has one, in parentheses if it binds less strongly than needed.
+    fn expression(&self, id: ExprId, needed: Binding) -> TokenStream {
+        if let Some(name) = self.names.get(&id) {
+            return quote! { #name };
+        }
+        let (tokens, binding) = self.operation(id);
+        if binding < needed {
+            quote! { (#tokens) }
+        } else {
+            tokens
+        }
+    }
+
+    fn operation(&self, id: ExprId) -> (TokenStream, Binding) {
+        match self.graph.node(id) {
+            Node::Constant(value) => (self.literal(value), Binding::Unary),
+            Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Call),
+            Node::Add(a, b) => self.sum(*a, *b),
+            Node::Mul(a, b) => (self.product(*a, *b), Binding::Product),
+            Node::Neg(a) => self.negation(*a),
+            Node::Recip(a) => {
+                let (one, a) = (self.literal(&Constant::integer(1)), self.expression(*a, Binding::Unary));
+                (quote! { #one / #a }, Binding::Product)
+            }
+            Node::Sqrt(a) => self.function("sqrt", *a),
+            Node::Sin(a) => self.function("sin", *a),
+            Node::Cos(a) => self.function("cos", *a),
+            Node::Tanh(a) => self.function("tanh", *a),
+            Node::Atan2(y, x) => {
+                // Odd in y: a sign before it may as well be one before the angle.
+                let (y, x) = (self.expression(*y, Binding::Unary), self.expression(*x, Binding::Sum));
+                (quote! { #y.atan2(#x) }, Binding::Call)
+            }
+        }
+    }
+
+    /// A product that nobody else uses becomes one operation with the sum.
+    fn sum(&self, a: ExprId, b: ExprId) -> (TokenStream, Binding) {
+        if let Node::Neg(subtracted) = self.graph.node(b) {
+            return self.difference(a, *subtracted);
+        }
+        let with_b = self.fusible(b).map(|factors| (factors, a));
+        if let Some((factors, added)) = with_b.or_else(|| Some((self.fusible(a)?, b))) {
+            let (x, y) = self.factors(factors);
+            return fused(&x, &y, &self.expression(added, Binding::Sum));
+        }
+        let (first, second) = (self.expression(a, Binding::Sum), self.expression(b, Binding::Product));
+        (quote! { #first + #second }, Binding::Sum)
+    }
+
+    fn difference(&self, from: ExprId, subtracted: ExprId) -> (TokenStream, Binding) {
+        if let Some((x, y)) = self.fusible(subtracted) {
+            let (x, y) = (self.expression(x, Binding::Unary), self.expression(y, Binding::Sum));
+            let minus_x = quote! { -#x };
+            return fused(&minus_x, &y, &self.expression(from, Binding::Sum));
+        }
+        if let Some(factors) = self.fusible(from) {
+            let ((x, y), added) = (self.factors(factors), self.expression(subtracted, Binding::Unary));
+            let minus_added = quote! { -#added };
+            return fused(&x, &y, &minus_added);
+        }
+        let first = self.expression(from, Binding::Sum);
+        let second = self.expression(subtracted, Binding::Product);
+        (quote! { #first - #second }, Binding::Sum)
+    }
+
+    fn factors(&self, (x, y): (ExprId, ExprId)) -> (TokenStream, TokenStream) {
+        (self.expression(x, Binding::Sum), self.expression(y, Binding::Sum))
+    }
+
+    /// The factors of a product that is written where it is used, and is no quotient.
+    fn fusible(&self, id: ExprId) -> Option<(ExprId, ExprId)> {
+        match self.graph.node(id) {
+            Node::Mul(a, b)
+                if !self.names.contains_key(&id)
+                    && self.program.uses.quotient(self.graph, *a, *b).is_none() =>
+            {
+                Some((*a, *b))
+            }
+            _ => None,
+        }
+    }
+
+    fn product(&self, a: ExprId, b: ExprId) -> TokenStream {
+        if let Some((numerator, denominator)) = self.program.uses.quotient(self.graph, a, b) {
+            let numerator = self.expression(numerator, Binding::Product);
+            let denominator = self.expression(denominator, Binding::Unary);
+            return quote! { #numerator / #denominator };
+        }
+        let (a, b) = (self.expression(a, Binding::Product), self.expression(b, Binding::Unary));
+        quote! { #a * #b }
+    }
+
+    /// A difference that is not needed elsewhere is turned round instead of negated.
+    fn negation(&self, a: ExprId) -> (TokenStream, Binding) {
+        if let Node::Add(x, y) = self.graph.node(a)
+            && let Node::Neg(y) = self.graph.node(*y)
+            && !self.names.contains_key(&a)
+        {
+            return self.difference(*y, *x);
+        }
+        let a = self.expression(a, Binding::Unary);
+        (quote! { -#a }, Binding::Unary)
+    }
+
+    fn literal(&self, constant: &Constant) -> TokenStream {
+        self.has_literals.set(true);
+        self.literals.stand_in(constant)
+    }
+
+    fn function(&self, name: &str, a: ExprId) -> (TokenStream, Binding) {
+        let (name, a) = (ident(name), self.expression(a, Binding::Call));
+        (quote! { #a.#name() }, Binding::Call)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Coordinates;
+
+    impl Variables for Coordinates {
+        fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
+            let Symbol::Coordinate(k) = symbol else { unreachable!("there are no others") };
+            let name = ident(&format!("x{k}"));
+            (quote! { #name }, None)
+        }
+    }
+
+    fn written(build: impl FnOnce(&mut Graph, [ExprId; 2]) -> ExprId) -> String {
+        let mut graph = Graph::new();
+        let [x, y] = [0, 1].map(|k| graph.symbol(Symbol::Coordinate(k)));
+        let root = build(&mut graph, [x, y]);
+        let body = body(&graph, &Coordinates, &Literals::default(), &[root]);
+        body.values[0].to_string().replace(' ', "")
+    }
+
+    /// A method binds more strongly than a sign.
+    #[test]
+    fn functions_are_of_the_negative_where_the_graph_says_so() {
+        let product = |graph: &mut Graph, [x, y]: [ExprId; 2]| {
+            let product = graph.mul(x, y);
+            graph.neg(product)
+        };
+        let root = |graph: &mut Graph, of| {
+            let negative = product(graph, of);
+            graph.sqrt(negative)
+        };
+        let of_product = "-(x0*x1)";
+        assert_eq!(written(root), format!("({of_product}).sqrt()"));
+        let opposite = |graph: &mut Graph, of| {
+            let root = root(graph, of);
+            graph.neg(root)
+        };
+        assert_eq!(written(opposite), format!("-({of_product}).sqrt()"));
+    }
+}

@@ -1,0 +1,473 @@
+//! The expression graph: a hash-consed arena. Equal expressions are one node, so sharing is common-subexpression
+//! elimination, and one graph serves every function of a module.
+//!
+//! Constructors simplify: constants fold exactly, zeros and ones vanish, signs and constant factors move outwards, and the
+//! operands of commutative operations are ordered. An operand always has a smaller id than its expression.
+
+use crate::expr::constant::Constant;
+use crate::expr::symbol::Symbol;
+use gyro_model::Rational;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+
+/// Handle of an expression in its [`Graph`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ExprId(u32);
+
+/// One expression.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Node {
+    Constant(Constant),
+    Symbol(Symbol),
+    /// A sum; at most the second operand is a [`Node::Neg`], and then it is a difference.
+    Add(ExprId, ExprId),
+    Mul(ExprId, ExprId),
+    Neg(ExprId),
+    /// `1 / x`.
+    Recip(ExprId),
+    Sqrt(ExprId),
+    Sin(ExprId),
+    Cos(ExprId),
+    Tanh(ExprId),
+    /// The angle of the point (second operand, first operand).
+    Atan2(ExprId, ExprId),
+}
+
+impl Node {
+    /// The operands.
+    pub fn operands(&self) -> impl Iterator<Item = ExprId> + use<> {
+        let (a, b) = match *self {
+            Self::Constant(_) | Self::Symbol(_) => (None, None),
+            Self::Add(a, b) | Self::Mul(a, b) | Self::Atan2(a, b) => (Some(a), Some(b)),
+            Self::Neg(a) | Self::Recip(a) | Self::Sqrt(a) | Self::Sin(a) | Self::Cos(a) | Self::Tanh(a) => {
+                (Some(a), None)
+            }
+        };
+        a.into_iter().chain(b)
+    }
+
+    /// The same operation on other operands.
+    #[must_use]
+    pub fn with_operands(&self, other: impl Fn(ExprId) -> ExprId) -> Self {
+        match self {
+            Self::Constant(_) | Self::Symbol(_) => self.clone(),
+            Self::Add(a, b) => Self::Add(other(*a), other(*b)),
+            Self::Mul(a, b) => Self::Mul(other(*a), other(*b)),
+            Self::Atan2(a, b) => Self::Atan2(other(*a), other(*b)),
+            Self::Neg(a) => Self::Neg(other(*a)),
+            Self::Recip(a) => Self::Recip(other(*a)),
+            Self::Sqrt(a) => Self::Sqrt(other(*a)),
+            Self::Sin(a) => Self::Sin(other(*a)),
+            Self::Cos(a) => Self::Cos(other(*a)),
+            Self::Tanh(a) => Self::Tanh(other(*a)),
+        }
+    }
+}
+
+/// The arena.
+#[derive(Debug)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    index: HashMap<Node, ExprId>,
+    /// Of each node, what it changes with.
+    changes: Vec<Changes>,
+}
+
+/// What an expression changes with: the last of what its symbols are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Changes {
+    Never,
+    WithParameters,
+    WithState,
+}
+
+impl Graph {
+    pub const ZERO: ExprId = ExprId(0);
+    pub const ONE: ExprId = ExprId(1);
+
+    pub fn new() -> Self {
+        let mut graph = Self { nodes: Vec::new(), index: HashMap::default(), changes: Vec::new() };
+        graph.integer(0);
+        graph.integer(1);
+        graph
+    }
+
+    pub fn node(&self, id: ExprId) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+
+    /// The exact value of a constant expression.
+    pub fn as_constant(&self, id: ExprId) -> Option<&Constant> {
+        if let Node::Constant(value) = self.node(id) { Some(value) } else { None }
+    }
+
+    /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see `set_up`).
+    pub fn is_settled(&self, id: ExprId) -> bool {
+        self.changes[id.0 as usize] == Changes::WithParameters
+    }
+
+    /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from the
+    /// roots completes them: what an expression needs comes shortly before it.
+    pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
+        self.reachable_beyond(roots, |_| false)
+    }
+
+    /// The same, but for what is known and what only that depends on.
+    pub fn reachable_beyond(&self, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
+        let mut seen = HashSet::default();
+        let mut order = Vec::new();
+        // A node is pushed a second time, as complete, beneath its operands.
+        let mut stack: Vec<_> = roots.iter().rev().map(|&root| (root, false)).collect();
+        while let Some((id, complete)) = stack.pop() {
+            if complete {
+                order.push(id);
+            } else if !is_known(id) && seen.insert(id) {
+                stack.push((id, true));
+                stack.extend(self.node(id).operands().map(|operand| (operand, false)));
+            }
+        }
+        order
+    }
+
+    pub fn constant(&mut self, value: Constant) -> ExprId {
+        self.intern(Node::Constant(value))
+    }
+
+    pub fn rational(&mut self, value: Rational) -> ExprId {
+        self.constant(Constant::rational(value))
+    }
+
+    pub fn integer(&mut self, value: i64) -> ExprId {
+        self.constant(Constant::integer(value))
+    }
+
+    /// `numerator / denominator`.
+    pub fn fraction(&mut self, numerator: i64, denominator: i64) -> ExprId {
+        self.rational(Rational::new(numerator.into(), denominator.into()))
+    }
+
+    pub fn symbol(&mut self, symbol: Symbol) -> ExprId {
+        self.intern(Node::Symbol(symbol))
+    }
+
+    pub fn neg(&mut self, a: ExprId) -> ExprId {
+        match self.node(a) {
+            Node::Neg(inner) => *inner,
+            Node::Constant(value) => {
+                let value = value.neg();
+                self.constant(value)
+            }
+            _ => self.intern(Node::Neg(a)),
+        }
+    }
+
+    pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let ((has_factor_a, rest_a), (has_factor_b, rest_b)) = (self.rest(a), self.rest(b));
+        if rest_a != rest_b && !(has_factor_a && has_factor_b) && a != Self::ZERO && b != Self::ZERO {
+            return self.add_terms(a, b);
+        }
+        let ((ca, xa), (cb, xb)) = (self.split(a), self.split(b));
+        if ca.is_zero() {
+            return b;
+        }
+        if cb.is_zero() {
+            return a;
+        }
+        if xa == xb
+            && let Some(sum) = ca.add(&cb)
+        {
+            return self.scale(&sum, xa);
+        }
+        let same_factor = ca.abs() == cb.abs() && xa != Self::ONE && xb != Self::ONE;
+        if same_factor && !ca.abs().is_one() {
+            // c x ± c y = c (x ± y)
+            let (x, y) = (self.signed(&ca, xa), self.signed(&cb, xb));
+            let sum = self.add_terms(x, y);
+            return self.scale(&ca.abs(), sum);
+        }
+        self.add_terms(a, b)
+    }
+
+    pub fn sub(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let b = self.neg(b);
+        self.add(a, b)
+    }
+
+    /// A constant factor of one operand stays with it: it is usually shared, as a column of a factorisation is.
+    pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if let Some(product) = self.reduced_product(self.rest(a).1, self.rest(b).1) {
+            let (ca, cb) = (self.split(a).0, self.split(b).0);
+            return self.scale(&ca.mul(&cb), product);
+        }
+        let ((negative_a, a), (negative_b, b)) = (self.split_sign(a), self.split_sign(b));
+        let product = self.intern(Node::Mul(a.min(b), a.max(b)));
+        if negative_a == negative_b { product } else { self.neg(product) }
+    }
+
+    pub fn recip(&mut self, a: ExprId) -> ExprId {
+        let (c, x) = self.split(a);
+        let Some(c) = c.recip() else { return self.intern(Node::Recip(a)) };
+        let inverse = match self.node(x) {
+            Node::Recip(inner) => *inner,
+            _ if x == Self::ONE => Self::ONE,
+            _ => self.intern(Node::Recip(x)),
+        };
+        self.scale(&c, inverse)
+    }
+
+    pub fn div(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let inverse = self.recip(b);
+        self.mul(a, inverse)
+    }
+
+    pub fn sqrt(&mut self, a: ExprId) -> ExprId {
+        match self.as_constant(a).and_then(Constant::sqrt) {
+            Some(root) => self.constant(root),
+            None => self.intern(Node::Sqrt(a)),
+        }
+    }
+
+    /// Odd: the sign moves outwards.
+    pub fn sin(&mut self, a: ExprId) -> ExprId {
+        if a == Self::ZERO {
+            return a;
+        }
+        let (negative, x) = self.split_sign(a);
+        let sin = self.intern(Node::Sin(x));
+        if negative { self.neg(sin) } else { sin }
+    }
+
+    /// Even: the sign vanishes.
+    pub fn cos(&mut self, a: ExprId) -> ExprId {
+        if a == Self::ZERO {
+            return Self::ONE;
+        }
+        let (_, x) = self.split_sign(a);
+        self.intern(Node::Cos(x))
+    }
+
+    /// Odd: the sign moves outwards.
+    pub fn tanh(&mut self, a: ExprId) -> ExprId {
+        if a == Self::ZERO {
+            return a;
+        }
+        let (negative, x) = self.split_sign(a);
+        let tanh = self.intern(Node::Tanh(x));
+        if negative { self.neg(tanh) } else { tanh }
+    }
+
+    /// The angle of the point (x, y), in (−π, π].
+    pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
+        self.intern(Node::Atan2(y, x))
+    }
+
+    /// `c · x`, the sign outermost.
+    pub fn scale(&mut self, c: &Constant, x: ExprId) -> ExprId {
+        if c.is_zero() || x == Self::ZERO {
+            return Self::ZERO;
+        }
+        if x == Self::ONE {
+            return self.constant(c.clone());
+        }
+        let (opposite, x) = self.split_sign(x);
+        let magnitude = c.abs();
+        let scaled = if magnitude.is_one() {
+            x
+        } else {
+            let magnitude = self.constant(magnitude);
+            self.intern(Node::Mul(magnitude, x))
+        };
+        if c.is_negative() == opposite { scaled } else { self.neg(scaled) }
+    }
+
+    /// An expression as constant times the rest; the rest of a constant is one.
+    pub fn split(&self, id: ExprId) -> (Constant, ExprId) {
+        match self.node(id) {
+            Node::Constant(value) => (value.clone(), Self::ONE),
+            Node::Neg(inner) => {
+                let (c, x) = self.split(*inner);
+                (c.neg(), x)
+            }
+            Node::Mul(c, x) => match self.node(*c) {
+                Node::Constant(value) => (value.clone(), *x),
+                _ => (Constant::integer(1), id),
+            },
+            _ => (Constant::integer(1), id),
+        }
+    }
+
+    /// What [`Self::split`] leaves beside the constant, and whether that is other than ±1.
+    fn rest(&self, id: ExprId) -> (bool, ExprId) {
+        match self.node(id) {
+            Node::Constant(_) => (true, Self::ONE),
+            Node::Neg(inner) => self.rest(*inner),
+            Node::Mul(c, x) if matches!(self.node(*c), Node::Constant(_)) => (true, *x),
+            _ => (false, id),
+        }
+    }
+
+    /// Whether an expression is a negation, and what it negates; negative constants count.
+    pub fn split_sign(&mut self, id: ExprId) -> (bool, ExprId) {
+        match self.node(id) {
+            Node::Neg(inner) => (true, *inner),
+            Node::Constant(value) if value.is_negative() => (true, self.neg(id)),
+            _ => (false, id),
+        }
+    }
+
+    fn signed(&mut self, c: &Constant, x: ExprId) -> ExprId {
+        if c.is_negative() { self.neg(x) } else { x }
+    }
+
+    /// A sum of two terms that do not combine. A difference keeps its smaller operand first, its sign outermost.
+    fn add_terms(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let ((negative_a, xa), (negative_b, xb)) = (self.split_sign(a), self.split_sign(b));
+        let (first, second, differ, negative) = if xa <= xb {
+            (xa, xb, negative_a != negative_b, negative_a)
+        } else {
+            (xb, xa, negative_a != negative_b, negative_b)
+        };
+        let second = if differ { self.intern(Node::Neg(second)) } else { second };
+        let sum = self.intern(Node::Add(first, second));
+        if negative { self.neg(sum) } else { sum }
+    }
+
+    /// A product that is no product: 1 · b, x · 1/x, √x · √x.
+    fn reduced_product(&self, a: ExprId, b: ExprId) -> Option<ExprId> {
+        match (self.node(a), self.node(b)) {
+            _ if a == Self::ONE => Some(b),
+            _ if b == Self::ONE => Some(a),
+            (Node::Recip(x), _) if *x == b => Some(Self::ONE),
+            (_, Node::Recip(x)) if *x == a => Some(Self::ONE),
+            (Node::Sqrt(x), Node::Sqrt(y)) if x == y => Some(*x),
+            _ => None,
+        }
+    }
+
+    /// An operation on other operands, simplified.
+    pub fn rebuilt(&mut self, node: Node) -> ExprId {
+        match node {
+            Node::Add(a, b) => self.add(a, b),
+            Node::Mul(a, b) => self.mul(a, b),
+            Node::Neg(a) => self.neg(a),
+            Node::Recip(a) => self.recip(a),
+            Node::Sqrt(a) => self.sqrt(a),
+            Node::Sin(a) => self.sin(a),
+            Node::Cos(a) => self.cos(a),
+            Node::Tanh(a) => self.tanh(a),
+            Node::Atan2(a, b) => self.atan2(a, b),
+            Node::Constant(_) | Node::Symbol(_) => self.intern(node),
+        }
+    }
+
+    /// An expression as it is, without any simplification.
+    pub fn intern(&mut self, node: Node) -> ExprId {
+        if let Some(&id) = self.index.get(&node) {
+            return id;
+        }
+        let id = ExprId(
+            u32::try_from(self.nodes.len()).expect("four thousand million expressions do not fit in memory"),
+        );
+        let changes = match &node {
+            Node::Symbol(Symbol::Parameter(_)) => Changes::WithParameters,
+            Node::Symbol(_) => Changes::WithState,
+            operation => {
+                let operands = operation.operands().map(|operand| self.changes[operand.0 as usize]);
+                operands.max().unwrap_or(Changes::Never)
+            }
+        };
+        self.changes.push(changes);
+        self.nodes.push(node.clone());
+        self.index.insert(node, id);
+        id
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::evaluate::{evaluate, sample};
+
+    fn symbols(graph: &mut Graph) -> [ExprId; 3] {
+        [0, 1, 2].map(|k| graph.symbol(Symbol::Position { slot: 0, k }))
+    }
+
+    #[test]
+    fn equal_expressions_are_one_node() {
+        let mut g = Graph::new();
+        let [x, y, z] = symbols(&mut g);
+        assert_eq!(g.add(x, y), g.add(y, x));
+        assert_eq!(g.mul(x, y), g.mul(y, x));
+        let (difference, opposite) = (g.sub(x, y), g.sub(y, x));
+        assert_eq!(g.neg(difference), opposite);
+        let (product, minus_x) = (g.mul(difference, z), g.neg(x));
+        let other = g.mul(z, opposite);
+        assert_eq!(g.add(product, other), Graph::ZERO);
+        assert_eq!(g.add(x, minus_x), Graph::ZERO);
+    }
+
+    #[test]
+    fn constants_fold_exactly() {
+        let mut g = Graph::new();
+        let [x, y, _] = symbols(&mut g);
+        let (tenth, fifth, three_tenths) = (g.fraction(1, 10), g.fraction(1, 5), g.fraction(3, 10));
+        assert_eq!(g.add(tenth, fifth), three_tenths);
+        let (a, b) = (g.mul(tenth, x), g.mul(fifth, x));
+        assert_eq!(g.add(a, b), g.mul(three_tenths, x));
+        let (two, root) = (g.integer(2), g.sqrt(fifth));
+        let square = g.mul(root, root);
+        assert_eq!(square, fifth);
+        let (ax, ay) = (g.mul(two, x), g.mul(two, y));
+        let (sum, x_plus_y) = (g.add(ax, ay), g.add(x, y));
+        assert_eq!(sum, g.mul(two, x_plus_y));
+    }
+
+    #[test]
+    fn a_reciprocal_undoes_a_product() {
+        let mut g = Graph::new();
+        let [x, _, _] = symbols(&mut g);
+        let inverse = g.recip(x);
+        assert_eq!(g.mul(x, inverse), Graph::ONE);
+        assert_eq!(g.recip(inverse), x);
+        let minus_two = g.integer(-2);
+        let scaled = g.mul(minus_two, x);
+        assert_eq!(g.div(scaled, x), minus_two);
+        // The reciprocal of zero stays what it is: nothing is decided about it here.
+        let undefined = g.recip(Graph::ZERO);
+        assert!(matches!(g.node(undefined), Node::Recip(_)));
+    }
+
+    /// Builds random sums, differences and products and compares each with the same arithmetic on numbers.
+    #[test]
+    fn simplification_keeps_values() {
+        for seed in 0..200u64 {
+            let (mut g, value) = (Graph::new(), sample(seed));
+            let mut pool: Vec<(ExprId, f64)> =
+                symbols(&mut g).map(|x| (x, evaluate(&g, &[x], &value)[0])).to_vec();
+            pool.extend(
+                [-2, -1, 0, 1, 2].map(|n| (g.integer(n), f64::from(i32::try_from(n).expect("small")))),
+            );
+            let mut state = seed;
+            let mut next = |n: usize| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                usize::try_from(state >> 33).expect("31 bits") % n
+            };
+            for _ in 0..40 {
+                let ((a, va), (b, vb)) = (pool[next(pool.len())], pool[next(pool.len())]);
+                let built = match next(4) {
+                    0 => (g.add(a, b), va + vb),
+                    1 => (g.sub(a, b), va - vb),
+                    2 => (g.neg(a), -va),
+                    _ => (g.mul(a, b), va * vb),
+                };
+                pool.push(built);
+            }
+            for (expression, expected) in pool {
+                let value = evaluate(&g, &[expression], &value)[0];
+                assert!(
+                    (value - expected).abs() <= 1e-9 * expected.abs().max(1.0),
+                    "seed {seed}: {value} {expected}"
+                );
+            }
+        }
+    }
+}

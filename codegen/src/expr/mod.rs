@@ -1,0 +1,11 @@
+//! Expressions: the graph, exact constants, derivatives, and the order in which expressions are computed.
+
+pub mod constant;
+pub mod definitions;
+pub mod differentiate;
+pub mod evaluate;
+pub mod graph;
+pub mod schedule;
+pub mod spatial_vector;
+pub mod symbol;
+pub mod vector;

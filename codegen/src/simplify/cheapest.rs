@@ -1,0 +1,66 @@
+//! The last passes over a function, when its form is chosen; what forms are compared by.
+
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::schedule::Operations;
+use crate::simplify::reassociate::reassociated;
+use crate::simplify::scales::scaled;
+
+/// Longer ways of writing a function are compared as they are.
+const MAX_OPERATIONS: usize = 3000;
+
+/// A way of computing a function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// What it is called.
+    pub name: String,
+    /// What it takes.
+    pub operations: Operations,
+    /// Whether it is the one that was emitted.
+    pub is_taken: bool,
+}
+
+/// What is done at the end.
+#[derive(Clone, Copy, Debug)]
+pub struct Finish {
+    chooses_scales: bool,
+}
+
+impl Finish {
+    /// Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
+    pub fn of(has_loops: bool) -> Self {
+        Self { chooses_scales: !has_loops }
+    }
+
+    /// The same expressions, finished.
+    pub fn finished(self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+        let roots = if self.chooses_scales { scaled(graph, roots) } else { roots.to_vec() };
+        reassociated(graph, &roots)
+    }
+
+    /// The set of roots that takes the fewest operations when it is finished, and what each would have taken.
+    pub fn cheapest(
+        self,
+        graph: &mut Graph,
+        candidates: Vec<(String, Vec<ExprId>)>,
+    ) -> (Vec<ExprId>, Vec<Form>) {
+        let costs: Vec<_> = candidates.iter().map(|(_, roots)| self.cost(graph, roots)).collect();
+        let cost = |&k: &usize| (costs[k].functions, costs[k].total());
+        let taken = (0..candidates.len()).min_by_key(cost).expect("there is a candidate");
+        let form = |(k, (name, _)): (usize, &(String, _))| Form {
+            name: name.clone(),
+            operations: costs[k],
+            is_taken: k == taken,
+        };
+        let forms = candidates.iter().enumerate().map(form).collect();
+        (candidates.into_iter().nth(taken).expect("it is one of them").1, forms)
+    }
+
+    fn cost(self, graph: &mut Graph, roots: &[ExprId]) -> Operations {
+        let now = Operations::recurring(graph, roots);
+        if now.total() > MAX_OPERATIONS {
+            return now;
+        }
+        let roots = self.finished(graph, roots);
+        Operations::recurring(graph, &roots)
+    }
+}

@@ -1,0 +1,176 @@
+//! Which ways of writing the same expressions keep their digits. Where masses or moments of inertia are unlike, or are parameters that may be
+//! set so, a way is tried at states and masses among which are extreme ones: evaluated in `f32` it may not be much further
+//! from itself in `f64` than a way that is known to keep its digits (see `orthogonal`).
+
+use crate::derive::system::System;
+use crate::expr::evaluate::evaluate;
+use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::symbol::Symbol;
+use gyro_model::{Number, to_f64};
+use rustc_hash::FxHashMap as HashMap;
+use std::collections::BTreeSet;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// How many states are tried.
+const STATES: u32 = 200;
+
+/// Masses and moments that are parameters are tried at their values times ten to a power between minus and plus this.
+const DECADES: f64 = 3.0;
+
+/// Masses or moments that differ by more than this are unlike: the sum of two loses as many digits of the lesser.
+const UNLIKE: f64 = 1e3;
+
+/// An error that is larger by no more than this is the like of another.
+const LIKE: f64 = 10.0;
+
+/// Whether digits are at stake: whether masses or moments of inertia are parameters, or unlike.
+pub fn are_at_stake(system: &mut System) -> bool {
+    let (mut masses, mut moments, mut about_joints) = (Vec::new(), Vec::new(), Vec::new());
+    for (slot, body) in system.slots.clone().into_iter().enumerate() {
+        let (mass, inertia) = (system.mass(slot), system.inertia(slot));
+        let constant = |id: ExprId| system.graph.as_constant(id).map(|constant| constant.to_f64());
+        let own: Option<Vec<_>> = (0..3).map(|k| constant(inertia[k][k])).collect();
+        let Some((mass, own)) = constant(mass).zip(own) else { return true };
+        let ends = system.joints.iter().flat_map(|joint| [joint.first, joint.second]);
+        let arms = ends.filter(|end| end.body == body).map(|end| end.point);
+        let squares = arms.map(|arm| arm.into_iter().filter_map(constant).map(|x| x * x).sum::<f64>());
+        about_joints.extend(squares.map(|square| mass * square));
+        masses.push(mass);
+        moments.extend(own);
+    }
+    about_joints.extend(&moments);
+    let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let least = |values: &[f64]| values.iter().copied().filter(|&x| x > 0.0).fold(f64::INFINITY, f64::min);
+    largest(&masses) > UNLIKE * least(&masses) || largest(&about_joints) > UNLIKE * least(&moments)
+}
+
+/// States at which expressions are tried.
+#[derive(Debug)]
+pub struct Trials {
+    states: Vec<HashMap<Symbol, f64>>,
+}
+
+impl Trials {
+    /// For the symbols of these expressions; `angles` are the joint coordinates that are angles.
+    pub fn draw(system: &System, roots: &[ExprId], angles: &BTreeSet<usize>) -> Self {
+        let graph = &system.graph;
+        let symbols: BTreeSet<_> = (graph.reachable(roots).into_iter())
+            .filter_map(|id| if let Node::Symbol(symbol) = graph.node(id) { Some(*symbol) } else { None })
+            .collect();
+        let inertial = inertial_parameters(system);
+        let steps: Vec<_> = irrational().take(symbols.len()).collect();
+        let state = |n: u32| {
+            let between = steps.iter().map(|step| 2.0 * (f64::from(n + 1) * step).fract() - 1.0);
+            let mut values: HashMap<Symbol, f64> = symbols.iter().copied().zip(between).collect();
+            // In every other state all is aligned.
+            let is_aligned = n.is_multiple_of(2);
+            for (&symbol, value) in &mut values {
+                match symbol {
+                    Symbol::Coordinate(x) if angles.contains(&x) && is_aligned => {
+                        *value = (2.0 * *value).round() * FRAC_PI_2;
+                    }
+                    Symbol::Coordinate(x) if angles.contains(&x) => *value *= PI,
+                    Symbol::Euler { .. } if is_aligned => *value = (1.2 * *value).round(),
+                    Symbol::Parameter(index) => {
+                        let factor = 10.0_f64.powf(DECADES * *value);
+                        *value = to_f64(&system.model.parameters[index].value);
+                        *value *= if inertial.contains(&index) { factor } else { 1.0 };
+                    }
+                    Symbol::Input(index) => *value = to_f64(&system.model.inputs[index].value),
+                    _ => {}
+                }
+            }
+            (0..system.slots.len()).for_each(|slot| to_length_one(&mut values, slot));
+            values.values_mut().for_each(|value| *value = f64::from(shortened(*value)));
+            values
+        };
+        Self { states: (0..STATES).map(state).collect() }
+    }
+
+    /// Whether a way of writing some expressions keeps the digits that another is known to keep.
+    pub fn keep_digits(&self, graph: &Graph, way: &[ExprId], keeping: &[ExprId]) -> bool {
+        self.states.iter().all(|state| {
+            let [error, least] = [way, keeping].map(|roots| {
+                let exact = evaluate(graph, roots, |symbol| state[&symbol]);
+                error(&exact, &evaluate(graph, roots, |symbol| shortened(state[&symbol])))
+            });
+            error <= LIKE * least.max(f64::from(f32::EPSILON))
+        })
+    }
+}
+
+/// The largest error in terms of the largest number.
+fn error(exact: &[f64], computed: &[f32]) -> f64 {
+    let largest = exact.iter().fold(f64::MIN_POSITIVE, |largest, x| largest.max(x.abs()));
+    let errors = exact.iter().zip(computed).map(|(x, &y)| (x - f64::from(y)).abs());
+    errors.fold(0.0, f64::max) / largest
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
+fn shortened(x: f64) -> f32 {
+    x as f32
+}
+
+/// Parameters that are masses or moments of inertia.
+fn inertial_parameters(system: &System) -> BTreeSet<usize> {
+    let bodies = system.model.bodies.iter();
+    let numbers = bodies.flat_map(|body| std::iter::once(&body.mass).chain(&body.inertia));
+    let index = |number: &Number| match number {
+        Number::Parameter { index, .. } => Some(*index),
+        _ => None,
+    };
+    numbers.filter_map(index).collect()
+}
+
+/// Makes the Euler parameters of a slot a unit vector.
+fn to_length_one(values: &mut HashMap<Symbol, f64>, slot: usize) {
+    let p = [0, 1, 2, 3].map(|k| Symbol::Euler { slot, k });
+    let square: f64 = p.iter().filter_map(|symbol| values.get(symbol)).map(|x| x * x).sum();
+    for symbol in p {
+        if let Some(x) = values.get_mut(&symbol) {
+            *x = if square > 0.0 { *x / square.sqrt() } else { 0.5 };
+        }
+    }
+}
+
+/// Square roots of primes: the fractional parts of their multiples fill the unit cube evenly (a Kronecker sequence).
+fn irrational() -> impl Iterator<Item = f64> {
+    let is_prime = |n: &u32| (2..*n).all(|d| !n.is_multiple_of(d));
+    (2..).filter(is_prime).map(|prime| f64::from(prime).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at_stake(page: &str) -> bool {
+        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        are_at_stake(&mut System::new(&model))
+    }
+
+    #[test]
+    fn digits_are_at_stake_where_masses_are_unlike_or_may_be() {
+        assert!(!at_stake(include_str!("../../../models/gyroscope.toml")));
+        assert!(at_stake(include_str!("../../../models/gyroscope-light-rings.toml")));
+        assert!(at_stake(include_str!("../../../models/gyroscope-parameters.toml")));
+    }
+
+    #[test]
+    fn the_difference_of_large_sums_loses_digits_and_a_product_does_not() {
+        let page = include_str!("../../../models/gyroscope-parameters.toml");
+        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        let mut system = System::new(&model);
+        let inertial: Vec<_> = inertial_parameters(&system).into_iter().collect();
+        let graph = &mut system.graph;
+        let [mass, moment] = [inertial[0], inertial[1]].map(|index| graph.symbol(Symbol::Parameter(index)));
+        // A sine keeps the sum from being taken apart.
+        let sine = graph.sin(mass);
+        let sum = graph.add(sine, moment);
+        let difference = graph.sub(sum, sine);
+        let square = graph.mul(moment, moment);
+        let product = graph.div(square, moment);
+        let trials = Trials::draw(&system, &[difference, product, moment], &BTreeSet::new());
+        assert!(!trials.keep_digits(&system.graph, &[difference], &[moment]));
+        assert!(trials.keep_digits(&system.graph, &[product], &[moment]));
+    }
+}

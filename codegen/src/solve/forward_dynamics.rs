@@ -1,0 +1,238 @@
+//! The solve of eq. (17) for the trees of a mechanism, through the null space of the joints, in the way that suits them.
+
+use crate::derive::dynamics::Dynamics;
+use crate::derive::kinematics::Kinematics;
+use crate::derive::system::System;
+use crate::expr::definitions::Expansion;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::schedule::Operations;
+use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::symbol::Symbol;
+use crate::solve::articulated_body::{Basis, EliminatedTree, Excitation};
+use crate::solve::cancellation::{self, Trials};
+use crate::solve::gram_schmidt::{self, OrthogonalTree};
+use crate::solve::loop_closure;
+use crate::solve::motion_subspace::Freedom;
+use crate::solve::multipliers;
+use crate::solve::reduced_mass_matrix::ReducedTree;
+use std::collections::BTreeSet;
+
+/// Accelerations and what follows from them.
+#[derive(Debug)]
+pub struct Solution {
+    /// (s̈, ẇ') of each slot.
+    pub accelerations: Vec<ExprId>,
+    /// Multipliers of the rows that close loops or couple joints, those that no joint of the tree owns.
+    pub closing: Vec<ExprId>,
+    /// The multiplier of each row, in terms of [`Symbol::Acceleration`] and [`Symbol::Closing`].
+    pub lambda: Vec<ExprId>,
+}
+
+/// With more rates than this a reduced mass matrix is seldom shorter.
+const MAX_REDUCED: usize = 4;
+
+/// The trees of a mechanism, ready to be solved.
+#[derive(Debug)]
+pub struct Trees {
+    freedoms: Vec<Freedom>,
+    /// In each basis that is tried.
+    eliminated: Vec<EliminatedTree>,
+    /// Of small open trees.
+    reduced: Option<ReducedTree>,
+    /// In each basis that is tried, where digits are at stake.
+    orthogonal: Vec<OrthogonalTree>,
+    /// The rows that no joint of the trees owns.
+    closing: Vec<usize>,
+}
+
+impl Trees {
+    pub fn of(system: &mut System, kinematics: &Kinematics) -> Self {
+        let links = system.tree.links.clone();
+        let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
+        let closing = system.closing_rows();
+        let mut eliminated = vec![EliminatedTree::new(system, freedoms.clone(), Basis::Mixed)];
+        // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
+        let (mut reduced, mut orthogonal) = (None, Vec::new());
+        if closing.is_empty() {
+            let in_global_frame: Vec<_> =
+                freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+            let in_own_frames: Vec<_> =
+                freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
+            let n_rates: usize = freedoms.iter().map(|freedom| freedom.free.len()).sum();
+            if (2..=gram_schmidt::MAX_RATES).contains(&n_rates) && cancellation::are_at_stake(system) {
+                orthogonal.push(OrthogonalTree::new(system, freedoms.clone(), Basis::Mixed));
+                orthogonal.push(OrthogonalTree::new(system, in_own_frames.clone(), Basis::Own));
+            }
+            if n_rates <= MAX_REDUCED {
+                reduced = Some(ReducedTree::new(system, in_global_frame.clone(), &freedoms));
+            }
+            eliminated.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
+            eliminated.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
+        }
+        Self { freedoms, eliminated, reduced, orthogonal, closing }
+    }
+
+    /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
+    pub fn solve(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
+        let of_eliminated = |tree: &EliminatedTree| {
+            let freedoms = tree.joints.iter().map(|joint| &joint.freedom);
+            let excitation = Excitation::by_forces(system, dynamics, freedoms);
+            let free = tree.respond(&mut system.graph, &excitation).motions;
+            let rows = (&self.closing[..], &kinematics.gamma[..]);
+            let (motions, closing) = loop_closure::close(&mut system.graph, kinematics, tree, rows, free);
+            (listed(&motions), closing)
+        };
+        let mut ways: Vec<Way> = self.eliminated.iter().map(of_eliminated).collect();
+        let reduced =
+            self.reduced.as_ref().map(|tree| (listed(&tree.accelerations(system, dynamics)), Vec::new()));
+        let of_orthogonal = |tree: &OrthogonalTree| {
+            let excitation = Excitation::by_forces(system, dynamics, &tree.freedoms);
+            (listed(&tree.respond(&mut system.graph, &excitation).motions), Vec::new())
+        };
+        let orthogonal: Vec<Way> = self.orthogonal.iter().map(of_orthogonal).collect();
+        if let Some((keeping, _)) = orthogonal.first() {
+            ways.extend(reduced);
+            ways = keeping_digits(system, ways, keeping);
+            ways.extend(orthogonal);
+        } else if let Some(reduced) = reduced {
+            // Elimination keeps more digits where a body spins fast: they are worth a quarter of the operations.
+            let cost = |way: &Way| cost(&system.graph, way);
+            if ways.iter().all(|eliminated| 4 * cost(&reduced) < 3 * cost(eliminated)) {
+                ways = vec![reduced];
+            }
+        }
+        let (accelerations, closing) = cheapest(&system.graph, ways);
+        let lambda = multipliers::of(system, kinematics, dynamics, &self.freedoms);
+        Solution { accelerations, closing, lambda }
+    }
+
+    /// The smallest (δr, δπ') of each slot, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
+    /// and with these changes for γ. In symbols that are yet to be expanded.
+    pub fn project(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
+        let changes: Vec<_> =
+            (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
+        let projected = self.eliminated.iter().map(|tree| {
+            let forced = tree.joints.iter().map(|joint| joint.freedom.forced_by(graph, &changes)).collect();
+            let excitation = Excitation { forced, ..Excitation::none(tree.n_slots(), tree.joints.len()) };
+            let free = tree.respond(graph, &excitation).motions;
+            let (motions, _) = loop_closure::close(graph, kinematics, tree, (&self.closing, &changes), free);
+            (listed(&motions), Vec::new())
+        });
+        let mut projected: Vec<_> = projected.collect();
+        projected
+            .extend(self.reduced.as_ref().map(|tree| (listed(&tree.project(graph, &changes)), Vec::new())));
+        cheapest(graph, projected).0
+    }
+}
+
+impl Excitation {
+    /// The applied forces and the rows of the joints, whose freedoms come root first.
+    fn by_forces<'f>(
+        system: &mut System,
+        dynamics: &Dynamics,
+        freedoms: impl IntoIterator<Item = &'f Freedom>,
+    ) -> Self {
+        let n_slots = system.slots.len();
+        let forced: Vec<_> = freedoms.into_iter().map(|freedom| freedom.bias).collect();
+        let bias = (0..n_slots).map(|slot| dynamics.minus_applied_force(&mut system.graph, slot)).collect();
+        let along = vec![Vec::new(); forced.len()];
+        Self { bias, forced, along }
+    }
+}
+
+/// Accelerations, and the multipliers of what closes loops.
+type Way = (Vec<ExprId>, Vec<ExprId>);
+
+fn cost(graph: &Graph, (accelerations, closing): &Way) -> usize {
+    Operations::recurring(graph, &[&accelerations[..], closing].concat()).total()
+}
+
+fn cheapest(graph: &Graph, ways: Vec<Way>) -> Way {
+    ways.into_iter().min_by_key(|way| cost(graph, way)).expect("at least one")
+}
+
+/// Those ways of writing the accelerations of an open tree that keep the digits that `keeping` is known to keep.
+fn keeping_digits(system: &mut System, ways: Vec<Way>, keeping: &[ExprId]) -> Vec<Way> {
+    let mut expansion = Expansion::new(&system.definitions);
+    let keeping = expansion.all(&mut system.graph, keeping);
+    let expanded: Vec<_> = ways.iter().map(|(way, _)| expansion.all(&mut system.graph, way)).collect();
+    let all: Vec<_> = expanded.iter().flatten().chain(&keeping).copied().collect();
+    let trials = Trials::draw(system, &all, &BTreeSet::new());
+    let ways = ways.into_iter().zip(expanded);
+    ways.filter(|(_, way)| trials.keep_digits(&system.graph, way, &keeping)).map(|(way, _)| way).collect()
+}
+
+/// The components of the motions of all slots.
+fn listed(motions: &[SpatialVector]) -> Vec<ExprId> {
+    motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::definitions::Expansion;
+    use crate::expr::evaluate::{evaluate, sample};
+
+    /// A thousand operations on numbers of order one, and a solve.
+    const ROUNDING: f64 = 1e-9;
+
+    /// A state anyhow, but with unit Euler parameters, and positive parameters.
+    fn state(seed: u64) -> impl Fn(Symbol) -> f64 {
+        move |symbol| {
+            let value = sample(seed);
+            match symbol {
+                Symbol::Euler { slot, .. } => {
+                    let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { slot, k }));
+                    value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
+                }
+                Symbol::Parameter(_) => value(symbol).abs(),
+                _ => value(symbol),
+            }
+        }
+    }
+
+    /// Through the reduced mass matrix, by elimination and by orthogonal motions, in every basis, the accelerations are the same.
+    fn check(page: &str) {
+        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        let mut system = System::new(&model);
+        let kinematics = Kinematics::derive(&mut system);
+        let dynamics = Dynamics::derive(&mut system);
+        let trees = Trees::of(&mut system, &kinematics);
+        let mut forms = Vec::new();
+        for tree in &trees.eliminated {
+            let freedoms = tree.joints.iter().map(|joint| &joint.freedom);
+            let excitation = Excitation::by_forces(&mut system, &dynamics, freedoms);
+            forms.push(listed(&tree.respond(&mut system.graph, &excitation).motions));
+        }
+        for basis in [Basis::Mixed, Basis::Own] {
+            let freedoms = trees.freedoms.iter().map(|freedom| match basis {
+                Basis::Own => freedom.in_own_frames(&mut system),
+                _ => freedom.clone(),
+            });
+            let freedoms = freedoms.collect();
+            let tree = OrthogonalTree::new(&mut system, freedoms, basis);
+            let excitation = Excitation::by_forces(&mut system, &dynamics, &tree.freedoms);
+            forms.push(listed(&tree.respond(&mut system.graph, &excitation).motions));
+        }
+        let reduced = trees.reduced.as_ref().expect("few rates");
+        forms.push(listed(&reduced.accelerations(&mut system, &dynamics)));
+        let mut expansion = Expansion::new(&system.definitions);
+        let forms: Vec<_> = forms.iter().map(|form| expansion.all(&mut system.graph, form)).collect();
+        for seed in 0..10 {
+            let values: Vec<_> =
+                forms.iter().map(|form| evaluate(&system.graph, form, state(seed))).collect();
+            let size = values[0].iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+            for (a, b) in values.iter().flat_map(|other| values[0].iter().zip(other)) {
+                assert!((a - b).abs() <= ROUNDING * size, "{a} {b} of {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_reduced_mass_matrix_and_orthogonal_motions_give_what_elimination_gives() {
+        check(include_str!("../../../models/gyroscope-misalignments.toml"));
+        check(include_str!("../../../models/heavy-top.toml"));
+        check(include_str!("../../../tests/models/universal.toml"));
+        check(include_str!("../../../tests/models/cylindrical.toml"));
+    }
+}

@@ -1,0 +1,434 @@
+//! How a body may move relative to what holds it: the null space of its joint's rows, and their right inverse.
+//!
+//! Both are written down from the joint's axes, with no solve. They hold for every configuration, also off the constraint
+//! manifold: a dot-1 row with the vector h of one body is blind to rotations about h whatever the other vector is.
+
+use crate::derive::frames::{End, JointFrames};
+use crate::derive::joint_coordinate;
+use crate::derive::kinematics::Kinematics;
+use crate::derive::system::System;
+use crate::expr::differentiate::Derivative;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3};
+use crate::solve::axis_bias::Steering;
+use gyro_model::{Attachment, JointCoordinate, JointKind, Link, RowOwner};
+use std::ops::Range;
+
+/// A body, what holds it, and how it may move relative to that.
+#[derive(Clone, Debug)]
+pub struct Freedom {
+    pub slot: usize,
+    /// The body nearer to the root, if it has coordinates too.
+    pub parent: Option<Parent>,
+    /// The joint point as the body meets it, in the body's frame; its mass centre where no joint holds it.
+    pub point: Vec3,
+    /// From the body's frame to that of the translations `t`.
+    pub frame: Mat3,
+    /// Null space of the rows: with the parent at rest, these twists leave them all unchanged.
+    pub free: Vec<SpatialVector>,
+    /// The joint's rows among all rows.
+    pub rows: Range<usize>,
+    /// Right inverse: twist `k` changes row `k` at unit rate and no other.
+    pub forced: Vec<SpatialVector>,
+    /// The acceleration that the rows force upon the body, its parent at rest: γ times the right inverse.
+    pub bias: SpatialVector,
+    /// The short way to its rotation.
+    pub steering: Option<Steering>,
+}
+
+/// The parent's end of a joint.
+#[derive(Clone, Copy, Debug)]
+pub struct Parent {
+    pub slot: usize,
+    /// The joint point as the parent meets it, in the parent's frame.
+    pub point: Vec3,
+    /// `A_parentᵀ A_body`.
+    pub relative: Mat3,
+    /// From the parent's frame to that of its translations.
+    pub frame: Mat3,
+    /// From the frame of the body's translations to that of the parent's.
+    pub carried: Mat3,
+}
+
+/// How a joint restrains its child relative to its parent at rest.
+struct Restraint {
+    /// For each row that is a length the displacement that changes it at unit rate, global frame.
+    held: Vec<Vec3>,
+    /// Displacements that it leaves free, global frame.
+    sliding: Vec<Vec3>,
+    /// Rotations that it leaves free, in the child's frame.
+    turning: Vec<Vec3>,
+}
+
+impl Freedom {
+    pub fn of(system: &mut System, kinematics: &Kinematics, link: Link) -> Self {
+        let slot = system.slot_of(link.body).expect("links have coordinates");
+        match link.attachment {
+            Attachment::Free => Self::whole(system, slot),
+            Attachment::Constrained => Self::held(system, kinematics, link.body, slot),
+            Attachment::Joint { joint, reversed, .. } => {
+                Self::carried(system, kinematics, slot, joint, reversed)
+            }
+        }
+    }
+
+    /// In a tree that has no rows, all vectors in the bodies' own frames.
+    pub fn of_tree(slot: usize, parent: Option<Parent>, point: Vec3, free: Vec<SpatialVector>) -> Self {
+        let (frame, bias) = (UNIT3, SpatialVector::ZERO);
+        Self { slot, parent, point, frame, free, rows: 0..0, forced: Vec::new(), bias, steering: None }
+    }
+
+    /// Nothing holds the body.
+    fn whole(system: &System, slot: usize) -> Self {
+        let translations = UNIT3.map(|t| SpatialVector { t, rho: ZERO3 });
+        let rotations = UNIT3.map(|rho| SpatialVector { t: ZERO3, rho });
+        let free = translations.into_iter().chain(rotations).collect();
+        let frame = system.poses[system.slots[slot]].a;
+        Self { frame, ..Self::of_tree(slot, None, ZERO3, free) }
+    }
+
+    /// The body's own six rows hold it.
+    fn held(system: &mut System, kinematics: &Kinematics, body: usize, slot: usize) -> Self {
+        let rows = system.model.rows_of(RowOwner::Body(body));
+        let gradients: Vec<_> = rows.clone().skip(3).map(|row| kinematics.rotation(row, slot)).collect();
+        let rotations = right_inverse(&mut system.graph, &gradients, &[]);
+        let translations = UNIT3.map(|t| SpatialVector { t, rho: ZERO3 });
+        let rotations = rotations.into_iter().map(|rho| SpatialVector { t: ZERO3, rho });
+        let forced: Vec<_> = translations.into_iter().chain(rotations).collect();
+        let frame = system.poses[body].a;
+        let bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
+        Self { frame, rows, forced, bias, ..Self::of_tree(slot, None, ZERO3, Vec::new()) }
+    }
+
+    /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the root.
+    fn carried(
+        system: &mut System,
+        kinematics: &Kinematics,
+        slot: usize,
+        index: usize,
+        reversed: bool,
+    ) -> Self {
+        let joint = system.joints[index];
+        let rows = system.model.rows_of(RowOwner::Joint(index));
+        let restraint = Restraint::of(system, &joint, reversed);
+        let sign = system.graph.integer(if reversed { -1 } else { 1 });
+        let n_held = restraint.held.len();
+        let gradients: Vec<_> = rows.clone().skip(n_held).map(|row| kinematics.rotation(row, slot)).collect();
+        let rotations = right_inverse(&mut system.graph, &gradients, &restraint.turning);
+        let held =
+            restraint.held.iter().map(|t| SpatialVector { t: system.graph.scale_vec(sign, t), rho: ZERO3 });
+        let held: Vec<_> = held.collect();
+        let advance = Advance::of(system, &joint, index, slot, held.last());
+        let turn = |system: &mut System, rho: Vec3| advance.follow(&mut system.graph, rho);
+        let turning: Vec<_> = restraint.turning.iter().map(|&rho| turn(system, rho)).collect();
+        let rotations: Vec<_> = rotations.into_iter().map(|rho| turn(system, rho)).collect();
+        let (first, second) = (restraint.arm_of_first(system, &joint), joint.second.point);
+        let (point, parent_point) = if reversed { (first, second) } else { (second, first) };
+        let sliding = restraint.sliding.into_iter().map(|t| SpatialVector { t, rho: ZERO3 });
+        let forced: Vec<_> = held.into_iter().chain(rotations).collect();
+        let mut bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
+        let is_open = system.closing_rows().is_empty();
+        let steering = if is_open { Steering::of(system, &joint, reversed) } else { None };
+        if let Some(steering) = &steering {
+            let back = [0, 1, 2].map(|column| joint.relative.map(|row| row[column]));
+            bias.rho = steering.angular_acceleration(&mut system.graph, &back, &UNIT3);
+        }
+        Self {
+            slot,
+            parent: Parent::of(system, &joint, reversed, parent_point),
+            point,
+            frame: system.poses[system.slots[slot]].a,
+            free: sliding.chain(turning).collect(),
+            rows,
+            forced,
+            bias,
+            steering,
+        }
+    }
+}
+
+/// What the rows with these right-hand sides force upon a body.
+fn accelerated(graph: &mut Graph, gamma: &[ExprId], forced: &[SpatialVector]) -> SpatialVector {
+    let parts: Vec<_> = gamma.iter().zip(forced).map(|(&gamma, twist)| twist.scaled(graph, gamma)).collect();
+    parts.iter().fold(SpatialVector::ZERO, |sum, part| sum.plus(graph, part))
+}
+
+impl Freedom {
+    /// What the rows force upon the body, its parent at rest, if these are the changes of all rows.
+    pub fn forced_by(&self, graph: &mut Graph, changes: &[ExprId]) -> SpatialVector {
+        accelerated(graph, &changes[self.rows.clone()], &self.forced)
+    }
+
+    /// The same between the mass centres, all vectors in the global frame.
+    pub fn in_global_frame(&self, system: &mut System) -> Self {
+        let frame_of = |slot: usize| system.poses[system.slots[slot]].a;
+        let (a, of_parent) = (frame_of(self.slot), self.parent.map(|parent| frame_of(parent.slot)));
+        let graph = &mut system.graph;
+        let arm = graph.mat_vec(&a, &self.point);
+        let turned = |graph: &mut Graph, twist: &SpatialVector| SpatialVector {
+            t: twist.t,
+            rho: graph.mat_vec(&a, &twist.rho),
+        };
+        let moved = |graph: &mut Graph, twist: SpatialVector| {
+            let turned = graph.cross(&arm, &twist.rho);
+            SpatialVector { t: graph.add_vec(&twist.t, &turned), ..twist }
+        };
+        let [free, forced] = [&self.free, &self.forced].map(|twists| {
+            let twists = twists.iter().map(|twist| {
+                let turned = turned(graph, twist);
+                moved(graph, turned)
+            });
+            twists.collect()
+        });
+        let mut bias = turned(graph, &self.bias);
+        if let Some(steering) = &self.steering {
+            bias.rho = steering.angular_acceleration(graph, &steering.frame_of_first, &a);
+        }
+        if let Some(((steering, parent), of_parent)) = self.held_point().zip(of_parent) {
+            let arm_of_parent = graph.mat_vec(&of_parent, &parent.point);
+            bias.t = steering.acceleration_of_point(graph, (&of_parent, &arm_of_parent), (&a, &arm));
+        }
+        let bias = moved(graph, bias);
+        let parent = self.parent.zip(of_parent).map(|(parent, a)| {
+            let point = graph.mat_vec(&a, &parent.point);
+            let point = graph.sub_vec(&point, &arm);
+            Parent { slot: parent.slot, point, relative: UNIT3, frame: UNIT3, carried: UNIT3 }
+        });
+        Self { parent, point: ZERO3, frame: UNIT3, free, forced, bias, ..self.clone() }
+    }
+}
+
+impl Freedom {
+    /// For a joint that holds an axis and a point of it to a parent with coordinates.
+    fn held_point(&self) -> Option<(&Steering, &Parent)> {
+        let steering = self.steering.as_ref().filter(|steering| steering.holds_point)?;
+        Some((steering, self.parent.as_ref()?))
+    }
+
+    /// The same with all vectors in the bodies' own frames.
+    pub fn in_own_frames(&self, system: &mut System) -> Self {
+        let a = system.poses[system.slots[self.slot]].a;
+        let graph = &mut system.graph;
+        let mut turned =
+            |twist: &SpatialVector| SpatialVector { t: graph.transposed_vec(&a, &twist.t), rho: twist.rho };
+        let [free, forced] =
+            [&self.free, &self.forced].map(|twists| twists.iter().map(&mut turned).collect());
+        let mut bias = turned(&self.bias);
+        if let Some((steering, parent)) = self.held_point() {
+            let (at_first, at_second) = steering.centripetal(graph, &parent.point, &self.point);
+            let at_first = graph.transposed_vec(&parent.relative, &at_first);
+            bias.t = graph.sub_vec(&at_first, &at_second);
+        }
+        let parent = self.parent.map(|parent| Parent { frame: UNIT3, carried: parent.relative, ..parent });
+        Self { parent, frame: UNIT3, free, forced, bias, ..self.clone() }
+    }
+}
+
+impl Restraint {
+    fn of(system: &mut System, joint: &JointFrames, reversed: bool) -> Self {
+        let End { body, f, g, h, .. } = joint.first;
+        let a = system.poses[body].a;
+        let [along_f, along_g, along_h] = [f, g, h].map(|u| system.graph.mat_vec(&a, &u));
+        let (held, sliding) = match joint.kind {
+            JointKind::Cylindrical | JointKind::Prismatic | JointKind::PointOnLine => {
+                (vec![along_f, along_g], vec![along_h])
+            }
+            JointKind::Planar => (vec![along_h], vec![along_f, along_g]),
+            JointKind::Screw => (vec![along_f, along_g, along_h], Vec::new()),
+            _ => (UNIT3.to_vec(), Vec::new()),
+        };
+        Self { held, sliding, turning: turning(&mut system.graph, joint, reversed) }
+    }
+
+    /// Where rows are measured along the first body's directions, that body is touched at the second joint point: there a
+    /// rotation of the first body changes them as little as one of the second.
+    fn arm_of_first(&self, system: &mut System, joint: &JointFrames) -> Vec3 {
+        match joint.kind {
+            JointKind::Revolute | JointKind::Spherical | JointKind::Fixed | JointKind::Universal => {
+                joint.first.point
+            }
+            _ => joint_coordinate::arm_on_first(system, joint),
+        }
+    }
+}
+
+/// The rotations that are free, in the frame of the body further from the root. Rows with a vector of a body are blind to
+/// rotations about it.
+fn turning(graph: &mut Graph, joint: &JointFrames, reversed: bool) -> Vec<Vec3> {
+    let second = if reversed { graph.mat_vec(&joint.relative, &joint.second.h) } else { joint.second.h };
+    match joint.kind {
+        JointKind::Revolute | JointKind::Cylindrical | JointKind::Planar | JointKind::Screw => vec![second],
+        JointKind::Universal if reversed => vec![joint.first.h, second],
+        JointKind::Universal => vec![graph.transposed_vec(&joint.relative, &joint.first.h), second],
+        JointKind::Spherical | JointKind::PointOnLine => UNIT3.to_vec(),
+        JointKind::Fixed | JointKind::Prismatic | JointKind::Rod => Vec::new(),
+    }
+}
+
+/// The displacement that goes with a rotation: none, but along a screw's axis.
+struct Advance {
+    /// Change of the screw's row, per rotation in the child's frame, and the displacement that makes up for it.
+    screw: Option<(Vec3, Vec3)>,
+}
+
+impl Advance {
+    fn of(
+        system: &mut System,
+        joint: &JointFrames,
+        index: usize,
+        slot: usize,
+        held: Option<&SpatialVector>,
+    ) -> Self {
+        if joint.kind != JointKind::Screw {
+            return Self { screw: None };
+        }
+        let angle = joint_coordinate::value(system, JointCoordinate { joint: index, coordinate: 0 });
+        let gradient = std::array::from_fn(|k| {
+            let rotation = system.unit_motion(slot, 3 + k);
+            let rotation = system.direction(&rotation);
+            let rate = Derivative::new(&system.definitions, rotation).of(&mut system.graph, angle);
+            system.graph.mul(joint.lead, rate)
+        });
+        Self { screw: held.map(|along| (gradient, along.t)) }
+    }
+
+    fn follow(&self, graph: &mut Graph, rho: Vec3) -> SpatialVector {
+        let Some((gradient, along)) = self.screw else { return SpatialVector { t: ZERO3, rho } };
+        let advance = graph.dot(&gradient, &rho);
+        SpatialVector { t: graph.scale_vec(advance, &along), rho }
+    }
+}
+
+impl Parent {
+    fn of(system: &mut System, joint: &JointFrames, reversed: bool, point: Vec3) -> Option<Self> {
+        let end = if reversed { &joint.second } else { &joint.first };
+        let turned = |column: usize| joint.relative.map(|row| row[column]);
+        let relative = if reversed { [0, 1, 2].map(turned) } else { joint.relative };
+        system.slot_of(end.body).map(|slot| {
+            let frame = system.poses[end.body].a;
+            Self { slot, point, relative, frame, carried: UNIT3 }
+        })
+    }
+}
+
+/// Rotations that change one of the rows with these gradients and not the others; perpendicular to a single free axis.
+pub fn right_inverse(graph: &mut Graph, gradients: &[Vec3], free: &[Vec3]) -> Vec<Vec3> {
+    match (gradients, free) {
+        ([], _) => Vec::new(),
+        ([a], _) => {
+            let square = graph.dot(a, a);
+            scaled(graph, square, &[*a])
+        }
+        ([a, b], [h]) => {
+            let (of_a, of_b) = (graph.cross(b, h), graph.cross(h, a));
+            let unit = graph.dot(a, &of_a);
+            scaled(graph, unit, &[of_a, of_b])
+        }
+        ([a, b, c], []) => {
+            let cofactors = [graph.cross(b, c), graph.cross(c, a), graph.cross(a, b)];
+            let determinant = graph.dot(c, &cofactors[2]);
+            scaled(graph, determinant, &cofactors)
+        }
+        _ => unreachable!("what a joint does not forbid of the three rotations it leaves free"),
+    }
+}
+
+fn scaled(graph: &mut Graph, divisor: ExprId, vectors: &[Vec3]) -> Vec<Vec3> {
+    let inverse = graph.recip(divisor);
+    vectors.iter().map(|vector| graph.scale_vec(inverse, vector)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::definitions::Expansion;
+    use crate::expr::evaluate::{evaluate, sample};
+    use crate::expr::symbol::Symbol;
+    use crate::solve::articulated_body::Arm;
+
+    /// Products of a dozen numbers of order one.
+    const ROUNDING: f64 = 1e-12;
+
+    /// Two bodies one after the other, so that the second hangs on a parent that moves.
+    fn page(kind: &str, reversed: bool) -> String {
+        let (first, second) = if reversed { ("b", "a") } else { ("a", "b") };
+        let frame = if kind == "spherical" { "" } else { "axis = [1, 2, 2]\nzero = [0, 1, 0]" };
+        let more = if kind == "screw" { "lead = 0.1" } else { "" };
+        format!(
+            "format = 1\nname = \"chain\"\n[[body]]\nname = \"a\"\nfree = true\nmass = 1\ninertia = [1, 1, 1]\n\
+             [[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\n\
+             [[joint]]\nname = \"j\"\nkind = \"{kind}\"\n{frame}\n{more}\n\
+             first = {{ body = \"{first}\", point = [0.1, 0.2, 0.3] }}\nsecond = {{ body = \"{second}\", point = [0.3, -0.1, 0.2] }}\n"
+        )
+    }
+
+    /// A state anyhow, but with unit Euler parameters.
+    fn state(seed: u64) -> impl Fn(Symbol) -> f64 {
+        move |symbol| {
+            let value = sample(seed);
+            match symbol {
+                Symbol::Euler { slot, .. } => {
+                    let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { slot, k }));
+                    value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
+                }
+                _ => value(symbol),
+            }
+        }
+    }
+
+    /// Free twists leave every row unchanged, each forced twist changes its own row alone, whatever the state.
+    fn check(kind: &str, reversed: bool) {
+        let text = page(kind, reversed);
+        let model = gyro_model::read("chain.toml", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let mut system = System::new(&model);
+        let kinematics = Kinematics::derive(&mut system);
+        let link = system.tree.links.iter().copied().find(|link| link.body == 1).expect("b hangs on a");
+        let freedom = Freedom::of(&mut system, &kinematics, link);
+        assert_eq!(freedom.free.len() + freedom.forced.len(), 6, "{kind}");
+        let arm = Arm::on_body(&mut system.graph, &freedom);
+        let mut changes = Vec::new();
+        for twist in freedom.free.iter().chain(&freedom.forced) {
+            let centre = arm.twist(&mut system.graph, twist);
+            for row in freedom.rows.clone() {
+                let columns = &kinematics.phi_pi[row][6 * freedom.slot..6 * freedom.slot + 6];
+                let gradient = SpatialVector {
+                    t: [columns[0], columns[1], columns[2]],
+                    rho: [columns[3], columns[4], columns[5]],
+                };
+                changes.push(gradient.dot(&mut system.graph, &centre));
+            }
+        }
+        let changes = Expansion::new(&system.definitions).all(&mut system.graph, &changes);
+        for seed in 0..10 {
+            let values = evaluate(&system.graph, &changes, state(seed));
+            for (index, value) in values.into_iter().enumerate() {
+                let (twist, row) = (index / freedom.rows.len(), index % freedom.rows.len());
+                let expected = if twist == freedom.free.len() + row { 1.0 } else { 0.0 };
+                assert!(
+                    (value - expected).abs() <= ROUNDING,
+                    "{kind} {reversed} twist {twist} row {row}: {value}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn free_and_forced_twists_are_dual_to_the_rows_off_the_constraints() {
+        let kinds = [
+            "revolute",
+            "spherical",
+            "fixed",
+            "universal",
+            "cylindrical",
+            "prismatic",
+            "planar",
+            "screw",
+            "point_on_line",
+        ];
+        for kind in kinds {
+            check(kind, false);
+            check(kind, true);
+        }
+    }
+}
