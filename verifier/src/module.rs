@@ -5,6 +5,7 @@ mod expression;
 mod matching;
 mod plain;
 mod skeleton;
+mod syntax;
 mod tables;
 
 use crate::constants::Constants;

@@ -3,9 +3,8 @@
 //! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
 
 use crate::module::{Module, type_name};
-use crate::program::{Node, Program};
+use crate::program::{Node, Operations, Program};
 use crate::refusal::Refusal;
-use crate::structure::Operations;
 use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
 use std::collections::BTreeSet;
 

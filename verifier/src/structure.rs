@@ -7,41 +7,6 @@ use crate::sheet;
 use gyro_model::Model;
 use std::collections::{HashMap, HashSet};
 
-/// Operations of a program: a negation is free.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Operations {
-    /// Sums and differences.
-    pub additions: usize,
-    /// Products.
-    pub multiplications: usize,
-    /// Quotients.
-    pub divisions: usize,
-    /// Calls of sin, cos, tanh, √, atan2.
-    pub functions: usize,
-}
-
-impl Operations {
-    /// Counts them as they are written.
-    pub fn of(program: &Program) -> Self {
-        let mut operations = Self::default();
-        for node in &program.nodes {
-            match node {
-                Node::Add(..) | Node::Sub(..) => operations.additions += 1,
-                Node::Mul(..) => operations.multiplications += 1,
-                Node::Div(..) => operations.divisions += 1,
-                Node::Call(..) | Node::Atan2(..) => operations.functions += 1,
-                Node::Constant(_) | Node::Read(_) | Node::Neg(_) | Node::Curve { .. } => {}
-            }
-        }
-        operations
-    }
-
-    /// All but functions.
-    pub fn total(self) -> usize {
-        self.additions + self.multiplications + self.divisions
-    }
-}
-
 /// All that is wrong with the structure of a module.
 pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
     let mut problems = Vec::new();

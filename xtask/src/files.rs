@@ -72,28 +72,9 @@ fn unreadable(path: &Path, error: &io::Error) -> String {
     }
 }
 
-/// Whether a file is there with just this text.
-pub(crate) fn holds(path: &Path, text: &str) -> bool {
-    fs::read(path).is_ok_and(|old| old == text.as_bytes())
-}
-
 /// Writes a file in a place of the tool's own. Returns whether it was written: not if it has this text already.
 pub(crate) fn write(path: &Path, text: &str) -> Result<bool, Failure> {
     write::write(path, text, Known::Place)
-}
-
-/// A place that cannot be written to was asked for wrongly; a full disk was not.
-pub(crate) fn unwritable(path: &Path, done: &str, error: &io::Error) -> Failure {
-    use io::ErrorKind::{
-        AlreadyExists, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
-    };
-    let words = format!("{} cannot be {done}: {error}", path.display());
-    match error.kind() {
-        AlreadyExists | IsADirectory | NotADirectory | NotFound | PermissionDenied | ReadOnlyFilesystem => {
-            Failure::Usage(words)
-        }
-        _ => Failure::Run(words),
-    }
 }
 
 /// A path as messages and generated files show it: relative to the workspace if inside of it, with slashes.

@@ -2,6 +2,7 @@
 
 use crate::args::GenerateArgs;
 use crate::failure::Failure;
+use crate::places::{Places, all_pages, is_in, listing, module_path};
 use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
@@ -20,26 +21,6 @@ use std::{fs, io};
 pub(crate) fn generate(args: &GenerateArgs) -> Result<(), Failure> {
     let outputs = outputs(args, &Places::of_workspace(&files::root()))?;
     if args.check { check(&outputs, &mend(args)) } else { write(&outputs) }
-}
-
-/// Where pages and their generated modules are in the workspace.
-#[derive(Clone, Debug)]
-pub(crate) struct Places {
-    models: PathBuf,
-    generated: PathBuf,
-}
-
-impl Places {
-    /// What is shipped, what only tests need, and what the firmware runs.
-    pub(crate) fn of_workspace(root: &Path) -> [Self; 3] {
-        let (shipped, tests) = (root.join("gyro-sim").join("src"), root.join("tests"));
-        let (firmware, scenes) = (root.join("embedded"), root.join("embedded").join("scenes").join("src"));
-        [
-            Self { models: root.join("models"), generated: shipped.join("generated") },
-            Self { models: tests.join("models"), generated: tests.join("support").join("generated") },
-            Self { models: firmware.join("models"), generated: scenes.join("mechanisms") },
-        ]
-    }
 }
 
 /// What the generated files should be.
@@ -104,15 +85,6 @@ fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
 
 /// How a generated module begins.
 const MARK: &str = "// @generated";
-
-/// Where a page's module is: in the workspace, or beside the page.
-pub(crate) fn module_path(places: &[Places], page: &Path, name: &str) -> PathBuf {
-    let file = format!("{name}.rs");
-    match places.iter().find(|place| is_in(page, &place.models)) {
-        Some(place) => place.generated.join(file),
-        None => page.with_file_name(file),
-    }
-}
 
 /// Writes what has changed and says where.
 fn write(outputs: &Outputs) -> Result<(), Failure> {
@@ -232,33 +204,6 @@ fn orphans(generated: &Path, names: &[String]) -> Result<Vec<String>, Failure> {
     };
     let orphans = listing(generated)?.into_iter().filter(is_orphan);
     Ok(orphans.map(|p| format!("{} has no model: delete it and its line in mod.rs", p.display())).collect())
-}
-
-/// The pages of the workspace, in the order of their names.
-pub(crate) fn all_pages(places: &[Places]) -> Result<Vec<PathBuf>, Failure> {
-    let mut pages = Vec::new();
-    for place in places {
-        pages.extend(
-            listing(&place.models)?.into_iter().filter(|p| p.extension().is_some_and(|e| e == "toml")),
-        );
-    }
-    Ok(pages)
-}
-
-fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let said = |e: io::Error| Failure::Usage(format!("{} cannot be read: {e}", folder.display()));
-    let entries: io::Result<Vec<PathBuf>> =
-        fs::read_dir(folder).map_err(said)?.map(|entry| Ok(entry?.path())).collect();
-    let mut paths = entries.map_err(said)?;
-    paths.sort();
-    Ok(paths)
-}
-
-fn is_in(page: &Path, folder: &Path) -> bool {
-    match (fs::canonicalize(page), fs::canonicalize(folder)) {
-        (Ok(page), Ok(folder)) => page.parent() == Some(&folder),
-        _ => false,
-    }
 }
 
 fn say(words: &str) {

@@ -1,7 +1,7 @@
 //! The table of packs of lanes: measured by a program that is compiled for this machine's own processor.
 
 use crate::failure::Failure;
-use crate::performance::{built, folder, output, three};
+use crate::programs::{built, folder, output, three};
 use crate::progress::Spinner;
 use std::fmt::Write as _;
 use std::process::Command;

@@ -1,6 +1,6 @@
 //! Machine code of a generated module: a library that has each of its functions for `f64`, and what `nm` says of it.
 
-use crate::performance::output;
+use crate::programs::output;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;

@@ -111,7 +111,7 @@ impl Package {
     /// Whether this very module was written, and so verified, before.
     fn is_there(&self) -> bool {
         let file = self.folder().join("src").join("mechanism.rs");
-        self.mechanism.as_ref().is_some_and(|mechanism| files::holds(&file, mechanism))
+        self.mechanism.as_ref().is_some_and(|mechanism| crate::write::holds(&file, mechanism))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::files;
 use crate::machine_code::{self, SYMBOLS};
-use crate::performance::{cargo, folder, output, said, three};
+use crate::programs::{cargo, folder, output, said, three};
 use crate::progress::Spinner;
 use std::fmt::Write as _;
 use std::fs;

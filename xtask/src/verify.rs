@@ -2,7 +2,7 @@
 
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
-use crate::generate::{Places, all_pages, module_path};
+use crate::places::{Places, all_pages, module_path};
 use crate::progress::Spinner;
 use crate::words::count;
 use crate::{files, remarks, rounding, scene, stability};

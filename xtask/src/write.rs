@@ -5,7 +5,6 @@
 //! relative path or other capitals.
 
 use crate::failure::Failure;
-use crate::files;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -78,10 +77,10 @@ fn is_own(path: &Path, known: Known) -> bool {
 /// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need be.
 pub(crate) fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
     check(path, known)?;
-    if files::holds(path, text) {
+    if holds(path, text) {
         return Ok(false);
     }
-    let failed = |e: io::Error| files::unwritable(path, "written", &e);
+    let failed = |e: io::Error| unwritable(path, "written", &e);
     path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
     if known == Known::Record {
         // Before the file: one that is there without its line could never be replaced.
@@ -149,6 +148,25 @@ fn line(path: &Path, text: &[u8]) -> String {
     });
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     format!("{} {digest:016x} {name}", text.len())
+}
+
+/// Whether a file is there with just this text.
+pub(crate) fn holds(path: &Path, text: &str) -> bool {
+    fs::read(path).is_ok_and(|old| old == text.as_bytes())
+}
+
+/// A place that cannot be written to was asked for wrongly; a full disk was not.
+pub(crate) fn unwritable(path: &Path, done: &str, error: &io::Error) -> Failure {
+    use io::ErrorKind::{
+        AlreadyExists, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
+    };
+    let words = format!("{} cannot be {done}: {error}", path.display());
+    match error.kind() {
+        AlreadyExists | IsADirectory | NotADirectory | NotFound | PermissionDenied | ReadOnlyFilesystem => {
+            Failure::Usage(words)
+        }
+        _ => Failure::Run(words),
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::numbers::{number, plain_number, vector};
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::tensor::tensor;
-use super::{driven, page};
+use super::{driven, tables};
 use crate::validate::Owner;
 use crate::{Body, Number, Support};
 
@@ -27,11 +27,11 @@ const KEYS: [&str; 11] = [
 /// Reads all bodies. Their names are with the reader before any joint refers to them.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
     page.require(reader, "body", "the page", "[[body]] on a line of its own, then the keys of the body");
-    let tables = page::tables(reader, page, "body");
+    let tables = tables::tables(reader, page, "body");
     if let Some((first, _)) = tables.first() {
         reader.mark(page.place("body"), first.clone());
     }
-    reader.bodies = page::names(reader, &tables, Owner::Body, "body");
+    reader.bodies = tables::names(reader, &tables, Owner::Body, "body");
     let names = reader.bodies.clone();
     let named = tables.iter().zip(names).enumerate();
     named

@@ -5,7 +5,7 @@ use toml::de::DeTable;
 use super::numbers::number;
 use super::reader::Reader;
 use super::section::Section;
-use super::{motion, page, references};
+use super::{motion, references, tables};
 use crate::validate::{Owner, Place, Side};
 use crate::{Coupler, Driver, JointCoordinate, Number};
 
@@ -18,8 +18,8 @@ pub(super) const NO_COORDINATE: JointCoordinate = JointCoordinate { joint: usize
 
 /// Reads all couplers.
 pub(super) fn couplers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Coupler> {
-    let tables = page::tables(reader, page, "coupler");
-    let names = page::names(reader, &tables, Owner::Coupler, "coupler");
+    let tables = tables::tables(reader, page, "coupler");
+    let names = tables::names(reader, &tables, Owner::Coupler, "coupler");
     let named = tables.iter().zip(names).enumerate();
     named
         .map(|(index, ((_, table), name))| {
@@ -60,8 +60,8 @@ fn coupler_end(
 
 /// Reads all drivers. Their names are with the reader before any output refers to them.
 pub(super) fn drivers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Driver> {
-    let tables = page::tables(reader, page, "driver");
-    reader.drivers = page::names(reader, &tables, Owner::Driver, "driver");
+    let tables = tables::tables(reader, page, "driver");
+    reader.drivers = tables::names(reader, &tables, Owner::Driver, "driver");
     let names = reader.drivers.clone();
     let named = tables.iter().zip(names).enumerate();
     named

@@ -6,7 +6,7 @@ use super::couplings::NO_COORDINATE;
 use super::numbers::{strength, strengths};
 use super::reader::Reader;
 use super::section::{self, Section};
-use super::{page, references};
+use super::{references, tables};
 use crate::validate::{Owner, Place, Side};
 use crate::{Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
 
@@ -76,8 +76,8 @@ impl Kind {
 
 /// Reads all forces.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Force> {
-    let tables = page::tables(reader, page, "force");
-    let names = page::names(reader, &tables, Owner::Force, "force");
+    let tables = tables::tables(reader, page, "force");
+    let names = tables::names(reader, &tables, Owner::Force, "force");
     let named = tables.iter().zip(names).enumerate();
     named
         .map(|(index, ((_, table), name))| {

@@ -7,7 +7,7 @@ use super::kinds::{self, KINDS};
 use super::numbers::{number, per_turn, plain_number};
 use super::reader::{NamedJoint, Reader};
 use super::section::Section;
-use super::{joint_start, page, references};
+use super::{joint_start, references, tables};
 use crate::validate::{Owner, Place, Side};
 use crate::{Joint, JointEnd, JointKind, Number};
 
@@ -40,8 +40,8 @@ const END_KEYS: [&str; 4] = ["body", "point", "axis", "zero"];
 
 /// Reads all joints. Their names and kinds are with the reader before anything refers to them.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Joint> {
-    let tables = page::tables(reader, page, "joint");
-    let names = page::names(reader, &tables, Owner::Joint, "joint");
+    let tables = tables::tables(reader, page, "joint");
+    let names = tables::names(reader, &tables, Owner::Joint, "joint");
     let mut joints = Vec::new();
     for (index, ((_, table), name)) in tables.iter().zip(names).enumerate() {
         let title = name.clone().unwrap_or_else(|| format!("joint {}", index + 1));

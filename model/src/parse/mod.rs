@@ -20,6 +20,7 @@ mod section;
 mod start;
 mod synonyms;
 mod table;
+mod tables;
 mod tensor;
 mod units;
 

@@ -10,9 +10,6 @@ use crate::number::{SIZE_EXPONENT, in_range};
 use crate::validate::{Owner, Place};
 use crate::{Number, Rational, parse_decimal};
 
-/// π to more digits than any `f64` distinguishes, so that what is computed with it is rounded once.
-const PI: &str = "3.14159265358979323846264338327950288419717";
-
 /// Keys of forces that may be inputs.
 const STRENGTHS: [&str; 5] = ["value", "force", "torque", "level", "damping"];
 
@@ -179,21 +176,17 @@ fn along_one_axis(item: Item<'_>) -> Option<String> {
 
 /// Degrees in rad.
 pub(super) fn radians(degrees: Rational) -> Number {
-    Number::Exact(degrees * pi() / Rational::from_integer(180.into()))
+    Number::Exact(degrees * units::pi() / Rational::from_integer(180.into()))
 }
 
 /// Something a turn as the same a radian.
 pub(super) fn per_turn(value: Rational) -> Number {
-    Number::Exact(value / (pi() * Rational::from_integer(2.into())))
+    Number::Exact(value / (units::pi() * Rational::from_integer(2.into())))
 }
 
 /// Turns a second in rad/s.
 pub(super) fn turns(value: Rational) -> Number {
-    Number::Exact(value * pi() * Rational::from_integer(2.into()))
-}
-
-pub(super) fn pi() -> Rational {
-    parse_decimal(PI).expect("π is a decimal")
+    Number::Exact(value * units::pi() * Rational::from_integer(2.into()))
 }
 
 /// Elements of a vector that would be right.

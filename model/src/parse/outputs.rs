@@ -4,7 +4,7 @@ use toml::de::DeTable;
 
 use super::reader::Reader;
 use super::section::{self, Section};
-use super::{page, references};
+use super::{references, tables};
 use crate::validate::Owner;
 use crate::{Number, Output, OutputKind};
 
@@ -48,8 +48,8 @@ impl Kind {
 
 /// Reads all outputs.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Output> {
-    let tables = page::tables(reader, page, "output");
-    let names = page::names(reader, &tables, Owner::Output, "output");
+    let tables = tables::tables(reader, page, "output");
+    let names = tables::names(reader, &tables, Owner::Output, "output");
     let named = tables.iter().zip(names).enumerate();
     named
         .map(|(index, ((_, table), name))| {

@@ -2,9 +2,15 @@
 
 use num_traits::ToPrimitive;
 
-use super::numbers::pi;
 use crate::validate::{Owner, Place};
 use crate::{Rational, parse_decimal};
+
+/// π to more digits than any `f64` distinguishes, so that what is computed with it is rounded once.
+const PI: &str = "3.14159265358979323846264338327950288419717";
+
+pub(super) fn pi() -> Rational {
+    parse_decimal(PI).expect("π is a decimal")
+}
 
 /// The words for a number that is written as a text with its unit; `None` for other texts.
 pub(super) fn with_unit(place: Place, text: &str) -> Option<[String; 3]> {

@@ -1,6 +1,6 @@
 //! Function bodies of the emitted subset.
 
-use super::expression::{decimal, integer, is_name, refused};
+use super::syntax::{decimal, integer, is_name, refused, text};
 use crate::constants::Occurrence;
 use crate::program::{Id, Node, Program, Source};
 use crate::refusal::Refusal;
@@ -446,8 +446,4 @@ impl Before {
     fn starts(&self, local: &Local) -> bool {
         text(local) == format!("let mut {} = {} ;", self.buffer, self.made_by)
     }
-}
-
-fn text(tokens: &impl quote::ToTokens) -> String {
-    tokens.to_token_stream().to_string()
 }

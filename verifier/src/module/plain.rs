@@ -4,7 +4,7 @@
 //! must not be there, the body is written down again from the parts that the reader takes its meaning from. What comes out must
 //! be the tokens that stand there, so that whatever else there is, is refused.
 
-use super::expression::refused;
+use super::syntax::refused;
 use crate::refusal::Refusal;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use quote::ToTokens;

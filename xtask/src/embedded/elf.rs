@@ -3,7 +3,7 @@
 //! 32 bits, little-endian, as the linker writes it for these chips.
 
 use crate::failure::Failure;
-use crate::performance::said;
+use crate::programs::said;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -4,7 +4,7 @@ use super::process::within;
 use super::target;
 use super::tools::Tools;
 use crate::failure::Failure;
-use crate::performance::said;
+use crate::programs::said;
 use crate::progress::Spinner;
 use std::fs;
 use std::path::PathBuf;

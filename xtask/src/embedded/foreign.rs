@@ -7,8 +7,7 @@ use super::process::within;
 use super::tools::Tools;
 use super::{folder, proof, say, target};
 use crate::failure::Failure;
-use crate::files;
-use crate::performance::{output, said};
+use crate::programs::{output, said};
 use crate::progress::Spinner;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -69,7 +68,7 @@ pub(crate) fn header_path() -> PathBuf {
 /// Fails if the header is not what its source says.
 pub(crate) fn check_header(text: &str) -> Result<(), Failure> {
     let path = header_path();
-    if files::holds(&path, text) {
+    if crate::write::holds(&path, text) {
         return Ok(());
     }
     Err(Failure::Run(format!("{} is stale, run: cargo xtask embedded", path.display())))

@@ -3,7 +3,7 @@
 use super::output::{Output, Run};
 use super::{folder, target};
 use crate::failure::Failure;
-use crate::performance::{self, output};
+use crate::programs::{self, output};
 use crate::progress::Spinner;
 use std::path::Path;
 use std::process::Command;
@@ -36,7 +36,7 @@ fn with(name: &str, flags: &str) -> Result<Output, Failure> {
 
 /// A command of Cargo for this machine, on the firmware's workspace.
 pub(crate) fn cargo(subcommand: &str, flags: &str) -> Command {
-    let mut command = Command::new(performance::cargo());
+    let mut command = Command::new(programs::cargo());
     command.args([subcommand, "--quiet", "--locked"]).env("RUSTFLAGS", flags);
     for name in ["CARGO_BUILD_TARGET", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_BOOTSTRAP"] {
         command.env_remove(name);

@@ -5,7 +5,7 @@ use super::elf::Elf;
 use super::firmware::Program;
 use super::tools::Tools;
 use crate::failure::Failure;
-use crate::performance::output;
+use crate::programs::output;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the code of a program says of its stack.

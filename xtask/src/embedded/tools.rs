@@ -3,7 +3,7 @@
 use super::target;
 use crate::failure::Failure;
 use crate::files;
-use crate::performance::output;
+use crate::programs::output;
 use std::path::PathBuf;
 use std::process::Command;
 

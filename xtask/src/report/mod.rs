@@ -26,8 +26,8 @@ mod write;
 
 use crate::args::ReportArgs;
 use crate::failure::Failure;
-use crate::files::unwritable;
 use crate::progress::Count;
+use crate::write::unwritable;
 use crate::{files, nested, scene};
 use goals::Goal;
 use std::path::{Path, PathBuf};
