@@ -13,7 +13,7 @@ use crate::program::{Id, Node, Program, Source};
 use crate::proof::point_of_terms;
 use crate::seed::Seed;
 use crate::tape::{Formulas, Tape, Term, Written};
-use crate::textbook::Textbook;
+use crate::textbook::{Sparse, Textbook};
 use gyro_model::{Model, Row, RowOwner, RowUnit};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -230,8 +230,10 @@ fn largest(vector: &[f64]) -> [f64; 4] {
 /// Eq. (17) of the textbook, written out to be run in `f64`.
 struct Dense {
     formulas: Formulas,
-    /// The matrix `(M, Φ_π'ᵀ; Φ_π', 0)` by rows; `None` is zero.
-    matrix: Vec<Vec<Option<Id>>>,
+    /// The matrix `(M, Φ_π'ᵀ; Φ_π', 0)`: rows, columns and what is not zero.
+    entries: Vec<(usize, usize, Id)>,
+    /// Its rows.
+    size: usize,
     /// All else that must be finite, Φ first.
     others: Vec<Id>,
     is_written: bool,
@@ -247,24 +249,23 @@ impl Dense {
                 let others =
                     [e.phi()?, e.velocity_residual()?, e.gamma()?, e.applied_force()?, e.energy()?.to_vec()];
                 let ids = |row: Vec<Term<'_>>| row.into_iter().map(Term::id).collect::<Vec<Id>>();
-                let [mass, phi_pi] =
-                    [e.mass_matrix(), e.phi_pi()?].map(|m| m.into_iter().map(ids).collect::<Vec<_>>());
-                Some((mass, phi_pi, ids(others.concat())))
+                let entries = |matrix: Sparse<Term<'_>>| {
+                    let rows = matrix.rows.into_iter().enumerate();
+                    let entries = rows.flat_map(|(i, row)| row.into_iter().map(move |(k, x)| (i, k, x.id())));
+                    entries.collect::<Vec<_>>()
+                };
+                let (mass, phi_pi) = (e.mass_matrix(), e.phi_pi()?);
+                let (n, size) = (mass.rows.len(), mass.rows.len() + phi_pi.rows.len());
+                let mut all = entries(mass);
+                let of_rows = entries(phi_pi).into_iter();
+                all.extend(of_rows.flat_map(|(i, k, id)| [(n + i, k, id), (k, n + i, id)]));
+                Some((all, size, ids(others.concat())))
             })
         };
         let formulas = tape.finish();
-        let Some((mass, phi_pi, others)) = written else {
-            return Self { formulas, matrix: Vec::new(), others: Vec::new(), is_written: false };
-        };
-        let (n, rows) = (mass.len(), phi_pi.len());
-        let entry = |i: usize, k: usize| match (i < n, k < n) {
-            (true, true) => Some(mass[i][k]),
-            (true, false) => Some(phi_pi[k - n][i]),
-            (false, true) => Some(phi_pi[i - n][k]),
-            (false, false) => None,
-        };
-        let matrix = (0..n + rows).map(|i| (0..n + rows).map(|k| entry(i, k)).collect()).collect();
-        Self { formulas, matrix, others, is_written: true }
+        let is_written = written.is_some();
+        let (entries, size, others) = written.unwrap_or_default();
+        Self { formulas, entries, size, others, is_written }
     }
 
     /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there; if asked for, whether joints are whole too.
@@ -273,16 +274,13 @@ impl Dense {
             return false;
         }
         let point: Point<f64> = numeric::point(model, (), state, 0.0, |x| x);
-        let entries = self.matrix.iter().flatten().flatten();
-        let reach = self.formulas.reach(entries.chain(&self.others).copied());
+        let entries = self.entries.iter().map(|&(.., id)| id);
+        let reach = self.formulas.reach(entries.chain(self.others.iter().copied()));
         let read = |source| *point.given(source).expect("the textbook reads what the model says there is");
         let values = self.formulas.evaluate(&reach, (), &Elementary, &read);
         let value = |id: &Id| values[*id].unwrap_or(f64::NAN);
-        let matrix: Vec<Vec<f64>> = self
-            .matrix
-            .iter()
-            .map(|row| row.iter().map(|id| id.as_ref().map_or(0.0, value)).collect())
-            .collect();
+        let mut matrix = vec![vec![0.0; self.size]; self.size];
+        self.entries.iter().for_each(|(i, k, id)| matrix[*i][*k] = value(id));
         let is_finite = self.others.iter().all(|id| value(id).is_finite())
             && matrix.iter().flatten().all(|x| x.is_finite());
         let is_whole = || {

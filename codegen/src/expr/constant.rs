@@ -1,39 +1,21 @@
 //! Exact constants: a rational times the square root of a whole number.
 //!
 //! Every number of a model page is rational, and normalising an axis adds one square root, so products, quotients and like
-//! sums of these constants stay exact. Rounding happens once, at emission.
+//! sums of these constants stay exact. Rounding happens once, at emission. The parts of a rough direction have hundreds of digits after a few
+//! products, and most of the time of a generation may go into bringing them to lowest terms: hence a library of numbers whose greatest common divisors are quick.
 
-use gyro_model::{Rational, to_f64};
-use num_bigint::{BigInt, BigUint, Sign};
-use num_integer::Integer;
-use num_traits::{One, Signed, ToPrimitive, Zero};
-use std::borrow::Cow;
+use dashu_base::{BitTest, Gcd, Sign, SquareRoot};
+use dashu_int::{IBig, UBig};
+use dashu_ratio::RBig;
+use gyro_model::Rational;
 use std::fmt;
-use std::hash::{Hash, Hasher};
 
 /// `coefficient · √radicand`.
-#[derive(Clone, Debug, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Constant {
-    coefficient: Rational,
+    coefficient: RBig,
     /// At least one; free of the squares of small primes, so that equal constants are equal in this form too.
-    radicand: BigUint,
-}
-
-/// Rationals are in lowest terms, so that their parts tell them apart: to expand them into continued fractions, as [`Rational`]
-/// does for the sake of others, takes long.
-impl PartialEq for Constant {
-    fn eq(&self, other: &Self) -> bool {
-        let (own, others) = (&self.coefficient, &other.coefficient);
-        own.numer() == others.numer() && own.denom() == others.denom() && self.radicand == other.radicand
-    }
-}
-
-impl Hash for Constant {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.coefficient.numer().hash(state);
-        self.coefficient.denom().hash(state);
-        self.radicand.hash(state);
-    }
+    radicand: UBig,
 }
 
 /// Squares of primes up to this bound are taken out of a radicand. Two equal constants whose radicands differ by the square
@@ -42,11 +24,13 @@ const LARGEST_PRIME: u32 = 1000;
 
 impl Constant {
     pub fn rational(coefficient: Rational) -> Self {
-        Self { coefficient, radicand: BigUint::one() }
+        let numerator = IBig::from_le_bytes(&coefficient.numer().to_signed_bytes_le());
+        let denominator = UBig::from_le_bytes(&coefficient.denom().magnitude().to_bytes_le());
+        Self { coefficient: RBig::from_parts(numerator, denominator), radicand: UBig::ONE }
     }
 
     pub fn integer(value: i64) -> Self {
-        Self::rational(Rational::from_integer(value.into()))
+        Self { coefficient: IBig::from(value).into(), radicand: UBig::ONE }
     }
 
     pub fn is_zero(&self) -> bool {
@@ -58,7 +42,7 @@ impl Constant {
     }
 
     pub fn is_negative(&self) -> bool {
-        self.coefficient.is_negative()
+        self.coefficient.sign() == Sign::Negative
     }
 
     pub fn neg(&self) -> Self {
@@ -78,7 +62,7 @@ impl Constant {
             return Some(self.clone());
         }
         (self.radicand == other.radicand)
-            .then(|| Self::new(sum(&self.coefficient, &other.coefficient), self.radicand.clone()))
+            .then(|| Self::new(&self.coefficient + &other.coefficient, self.radicand.clone()))
     }
 
     pub fn mul(&self, other: &Self) -> Self {
@@ -89,18 +73,23 @@ impl Constant {
         if other.is_one() {
             return self.clone();
         }
-        let coefficient = product(&self.coefficient, &other.coefficient);
+        let coefficient = &self.coefficient * &other.coefficient;
         if self.radicand.is_one() || other.radicand.is_one() {
             return Self::new(coefficient, &self.radicand * &other.radicand);
         }
-        Self::new(coefficient, BigUint::one()).mul_root(&self.radicand * &other.radicand)
+        // What the rest is made of is apart, and neither has small squares.
+        let common = (&self.radicand).gcd(&other.radicand);
+        let rest = (&self.radicand / &common) * (&other.radicand / &common);
+        let (root, rest) = whole_root(rest);
+        Self::new(coefficient * common * root, rest)
     }
 
     /// `1 / (a √b) = √b / (a b)`; `None` for zero.
     pub fn recip(&self) -> Option<Self> {
-        let square = Rational::from_integer(self.radicand.clone().into());
-        (!self.is_zero())
-            .then(|| Self::new(product(&self.coefficient, &square).recip(), self.radicand.clone()))
+        (!self.is_zero()).then(|| {
+            let inverse = RBig::ONE / (&self.coefficient * &self.radicand);
+            Self::new(inverse, self.radicand.clone())
+        })
     }
 
     /// Square root of a rational that is not negative; `None` otherwise.
@@ -108,39 +97,36 @@ impl Constant {
         if self.is_negative() || !self.radicand.is_one() {
             return None;
         }
-        let (numerator, denominator) = (self.coefficient.numer(), self.coefficient.denom());
-        let scale = Self::rational(Rational::new(BigInt::one(), denominator.clone()));
-        Some(scale.mul_root((numerator * denominator).magnitude().clone()))
+        let (numerator, denominator) = self.coefficient.clone().into_parts();
+        let (_, numerator) = numerator.into_parts();
+        Some(Self::root(numerator * &denominator, denominator))
     }
 
-    /// The nearest `f64`: the root is taken to 128 bits beyond the binary point before the one rounding.
+    /// The nearest `f64`: a root is taken to 128 bits before the one rounding.
     pub fn to_f64(&self) -> f64 {
         if self.radicand.is_one() {
-            return to_f64(&self.coefficient);
+            return self.coefficient.to_f64().value();
         }
-        let (numerator, denominator) = (self.coefficient.numer(), self.coefficient.denom());
-        let shift = 128 + denominator.bits();
-        let square = (numerator.magnitude().pow(2) * &self.radicand) << (2 * shift);
-        let root = BigInt::from_biguint(numerator.sign(), square.sqrt());
-        Rational::new(root, denominator << shift).to_f64().expect("a rational always converts")
+        let (numerator, denominator) = (self.coefficient.numerator(), self.coefficient.denominator());
+        let (square, divisor) = (numerator.sqr() * &self.radicand, denominator.sqr());
+        let half = (divisor.bit_len().saturating_sub(square.bit_len()) / 2) + 129;
+        let root = ((square << (2 * half)) / divisor).sqrt();
+        let nearest = RBig::from_parts(root.into(), UBig::ONE << half).to_f64().value();
+        if self.is_negative() { -nearest } else { nearest }
     }
 
-    fn new(coefficient: Rational, radicand: BigUint) -> Self {
+    fn new(coefficient: RBig, radicand: UBig) -> Self {
         if coefficient.is_zero() { Self::integer(0) } else { Self { coefficient, radicand } }
     }
 
-    /// `self · √n` for a rational `self`.
-    fn mul_root(&self, mut n: BigUint) -> Self {
+    /// `√n / divisor`.
+    fn root(n: UBig, divisor: UBig) -> Self {
         if n.is_zero() {
             return Self::integer(0);
         }
-        let mut outside = BigUint::one();
-        let root = n.sqrt();
-        if &root * &root == n {
-            (outside, n) = (root, BigUint::one());
-        }
+        let (mut outside, mut n) = whole_root(n);
         for factor in 2..LARGEST_PRIME {
-            let square = BigUint::from(factor * factor);
+            let square = UBig::from(factor * factor);
             if square > n {
                 break;
             }
@@ -149,54 +135,14 @@ impl Constant {
                 outside *= factor;
             }
         }
-        let outside = Rational::from_integer(BigInt::from_biguint(Sign::Plus, outside));
-        Self::new(product(&self.coefficient, &outside), n)
+        Self::new(RBig::from_parts(outside.into(), divisor), n)
     }
 }
 
-/// A product in lowest terms. Its factors are in lowest terms already, so there is nothing to look for but what they have in common
-/// crosswise: [`Rational`]'s own product looks three times, and half of all derivation was spent on it.
-fn product(a: &Rational, b: &Rational) -> Rational {
-    let crosswise = [common(a.numer(), b.denom()), common(b.numer(), a.denom())];
-    let without =
-        |x: &BigInt, divisor: &Option<BigInt>| divisor.as_ref().map_or_else(|| x.clone(), |d| x / d);
-    let numerator = without(a.numer(), &crosswise[0]) * without(b.numer(), &crosswise[1]);
-    let denominator = without(a.denom(), &crosswise[1]) * without(b.denom(), &crosswise[0]);
-    if numerator.is_zero() { Rational::zero() } else { Rational::new_raw(numerator, denominator) }
-}
-
-/// A sum in lowest terms, after Knuth, "The Art of Computer Programming" 2, 4.5.1: with g what the denominators have in common, nothing
-/// but a divisor of g can cancel.
-fn sum(a: &Rational, b: &Rational) -> Rational {
-    let Some(shared) = common(a.denom(), b.denom()) else {
-        let numerator = a.numer() * b.denom() + b.numer() * a.denom();
-        return if numerator.is_zero() {
-            Rational::zero()
-        } else {
-            Rational::new_raw(numerator, a.denom() * b.denom())
-        };
-    };
-    let (rest_a, rest_b) = (a.denom() / &shared, b.denom() / &shared);
-    let numerator = a.numer() * &rest_b + b.numer() * &rest_a;
-    match common(&numerator, &shared) {
-        _ if numerator.is_zero() => Rational::zero(),
-        Some(cancelled) => Rational::new_raw(numerator / &cancelled, rest_a * (b.denom() / cancelled)),
-        None => Rational::new_raw(numerator, rest_a * b.denom()),
-    }
-}
-
-/// The greatest common divisor; `None` for one. By Euclid's algorithm as long as the numbers are large, for which `BigInt` shifts bit
-/// by bit.
-fn common(a: &BigInt, b: &BigInt) -> Option<BigInt> {
-    let (mut a, mut b) = (Cow::Borrowed(a.magnitude()), Cow::Borrowed(b.magnitude()));
-    let divisor = loop {
-        match (a.to_u128(), b.to_u128()) {
-            (Some(a), Some(b)) => break BigInt::from(a.gcd(&b)),
-            _ if b.is_zero() => break BigInt::from(a.into_owned()),
-            _ => (a, b) = (b.clone(), Cow::Owned(&*a % &*b)),
-        }
-    };
-    (!divisor.is_one()).then_some(divisor)
+/// The root of a square and one, or one and what is no square.
+fn whole_root(n: UBig) -> (UBig, UBig) {
+    let root = n.sqrt();
+    if root.sqr() == n { (root, UBig::ONE) } else { (UBig::ONE, n) }
 }
 
 /// `1/2*sqrt(2)`, `-3/10`.
@@ -210,7 +156,7 @@ impl fmt::Display for Constant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyro_model::parse_decimal;
+    use gyro_model::{parse_decimal, to_f64};
 
     fn root(text: &str) -> Constant {
         Constant::rational(parse_decimal(text).expect("a decimal")).sqrt().expect("not negative")
@@ -226,16 +172,17 @@ mod tests {
 
     /// Small parts and parts beyond 128 bits; what cancels and what does not.
     #[test]
-    fn products_and_sums_are_those_of_rationals() {
-        let parts = ["1", "-6", "1e-7", "-0.15", "2.5e30", "1234567e-9", "-3e-45", "0", "30", "1e-45"];
+    fn products_sums_and_nearest_doubles_are_those_of_rationals() {
+        let parts =
+            ["1", "-6", "1e-7", "-0.15", "2.5e30", "1234567e-9", "-3e-45", "0", "30", "1e-45", "3e-320"];
         let mut numbers: Vec<_> = parts.map(|text| parse_decimal(text).expect("a decimal")).to_vec();
-        numbers.extend(numbers.clone().iter().filter(|x| !x.is_zero()).map(|x| x / BigInt::from(21)));
+        numbers.extend(numbers.clone().iter().map(|x| x / Rational::from_integer(21.into())));
         for a in &numbers {
             for b in &numbers {
-                let (product, sum) = (product(a, b), sum(a, b));
-                for (found, expected) in [(&product, a * b), (&sum, a + b)] {
-                    let [found_parts, expected_parts] = [found, &expected].map(|x| (x.numer(), x.denom()));
-                    assert_eq!(found_parts, expected_parts, "{a}, {b}");
+                let [x, y] = [a, b].map(|x| Constant::rational(x.clone()));
+                for (found, expected) in [(x.mul(&y), a * b), (x.add(&y).expect("a rational"), a + b)] {
+                    assert_eq!(found.to_f64(), to_f64(&expected), "{a}, {b}");
+                    assert_eq!(found, Constant::rational(expected), "{a}, {b}");
                 }
             }
         }

@@ -1,13 +1,15 @@
 //! What is proved of each function: numbers that must be zero wherever they exist.
 
 use super::case::{Arguments, Case};
+use super::partition::dot;
 use super::point::stretched;
 use super::{joints, partition};
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
 use crate::tape::Term;
-use crate::textbook::Reading;
+use crate::textbook::{Reading, Sparse};
+use std::collections::BTreeMap;
 
 /// A claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -266,21 +268,25 @@ pub fn differences<F: Field>(a: &[F], b: &[F]) -> Vec<F> {
     both.chain(rest).collect()
 }
 
-/// The matrix that the values are, minus the given one, by rows. A value without a place in the matrix is a row of its own.
+/// The matrix that the values are, minus the given one, by rows, where either has an entry. A value without a place in the matrix is a row of its own.
 fn sparse_differences<F: Field>(
     values: &[F],
     pattern: &[(usize, usize)],
-    expected: Vec<Vec<F>>,
+    expected: Sparse<F>,
 ) -> Vec<Vec<F>> {
-    let mut differences: Vec<Vec<F>> =
-        expected.into_iter().map(|row| row.iter().map(F::neg).collect()).collect();
+    let mut differences = expected.rows;
+    differences.iter_mut().flat_map(BTreeMap::values_mut).for_each(|entry| *entry = entry.neg());
     for (value, &(row, column)) in values.iter().zip(pattern) {
-        match differences.get_mut(row).and_then(|row| row.get_mut(column)) {
-            Some(entry) => *entry = entry.add(value),
-            None => differences.push(vec![value.clone(); 7]),
+        match differences.get_mut(row).filter(|_| column < expected.n_columns) {
+            Some(row) => {
+                row.entry(column)
+                    .and_modify(|entry| *entry = entry.add(value))
+                    .or_insert_with(|| value.clone());
+            }
+            None => differences.push(BTreeMap::from([(column, value.clone())])),
         }
     }
-    differences
+    differences.into_iter().map(|row| row.into_values().collect()).collect()
 }
 
 /// With `δ = P(rows)` what the module gives: `Φ_π' P(rows) = rows` for any rows, and `(z − P(Φ_π' z))ᵀ M P(rows) = 0` for any motion z. What is in the
@@ -295,7 +301,7 @@ fn projection<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let mut residuals = differences(&textbook.product(&phi_pi, &projected), &case.changes);
     let other = project(&textbook.product(&phi_pi, &case.motion));
     let rest = differences(&case.motion, &other);
-    residuals.extend(textbook.product(&[rest], &textbook.product(&mass, &projected)));
+    residuals.push(dot(&rest, &textbook.product(&mass, &projected)));
     Some(residuals)
 }
 

@@ -11,6 +11,7 @@ use super::point::stretched;
 use crate::field::Field;
 use crate::point::Point;
 use crate::tape::Term;
+use crate::textbook::Evaluation;
 use gyro_model::{Attachment, JointKind, Link, RowOwner, Support, Tree};
 use num_traits::Signed;
 use std::ops::Range;
@@ -135,8 +136,9 @@ pub fn newton_step<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     }
     // Away from |p| = 1 the derived Jacobian is not that of eq. (3); the step is one of Newton's to first order only.
     let moved = case.moved("newton_step", &case.point);
+    let textbook = case.textbook(&moved)?;
     for body in &bodies {
-        residuals.extend(linearised_rows(case, body, &moved)?);
+        residuals.extend(linearised_rows(case, &textbook, body, &moved)?);
     }
     Some(residuals)
 }
@@ -210,18 +212,17 @@ fn given_pose<'a>(case: &Case<'a>, slot: usize) -> Vec<Term<'a>> {
 }
 
 /// The dot-1 rows after the step, to first order in the body's own p.
-fn linearised_rows<'a>(case: &Case<'a>, body: &Held, moved: &Point<Term<'a>>) -> Option<Vec<Term<'a>>> {
-    if !matches!(body.hold, Hold::Revolute { .. } | Hold::Fixed { .. }) {
-        return Some(Vec::new());
-    }
-    let own = 7 * body.slot + 3..7 * body.slot + 7;
-    let mut before = moved.clone();
-    before.state[own.clone()].clone_from_slice(&case.point.state[own.clone()]);
-    let textbook = case.textbook(&before)?;
-    let (phi, phi_q) = (textbook.phi()?, textbook.phi_q()?);
-    let change = differences(&moved.state[own.clone()], &before.state[own.clone()]);
-    let rows = body.rows(case).skip(3);
-    Some(rows.map(|row| phi[row].add(&dot(&phi_q[row][own.clone()], &change))).collect())
+fn linearised_rows<'a>(
+    case: &Case<'a>,
+    textbook: &Evaluation<'_, Term<'a>>,
+    body: &Held,
+    moved: &Point<Term<'a>>,
+) -> Option<Vec<Term<'a>>> {
+    let (Hold::Revolute { joint, .. } | Hold::Fixed { joint }) = body.hold else { return Some(Vec::new()) };
+    let before = euler(&case.point, body.slot);
+    let change = differences(euler(moved, body.slot), before);
+    let rows = textbook.linearised(RowOwner::Joint(joint), body.slot, before, &change)?;
+    Some(rows.into_iter().skip(3).collect())
 }
 
 /// The dependent velocities.
@@ -253,7 +254,7 @@ fn euler<'p, 'a>(point: &'p Point<Term<'a>>, slot: usize) -> &'p [Term<'a>] {
     &point.position(slot)[3..]
 }
 
-fn dot<F: Field>(a: &[F], b: &[F]) -> F {
+pub(super) fn dot<F: Field>(a: &[F], b: &[F]) -> F {
     let products = a.iter().zip(b).map(|(a, b)| a.mul(b));
     products.reduce(|sum, x| sum.add(&x)).expect("vectors have components")
 }

@@ -4,20 +4,23 @@ use super::Evaluation;
 use super::jet::Jet;
 use super::linear::{Matrix, Vector};
 use super::pose::Moving;
+use super::sparse::Sparse;
 use crate::field::Field;
 use gyro_model::Support;
 
 impl<F: Field> Evaluation<'_, F> {
-    /// `diag(M, J')` of eq. (17) by rows, (s̈, ẇ') body after body.
-    pub fn mass_matrix(&self) -> Vec<Vec<F>> {
+    /// `diag(M, J')` of eq. (17), (s̈, ẇ') body after body.
+    pub fn mass_matrix(&self) -> Sparse<F> {
         let size = 6 * self.textbook.slots.len();
-        let mut matrix = vec![vec![self.scope.zero.value.clone(); size]; size];
+        let mut matrix = Sparse::new(size, size);
         for (slot, &body) in self.textbook.slots.iter().enumerate() {
             let (mass, inertia) = (self.mass(body), self.inertia(body));
             for row in 0..3 {
-                matrix[6 * slot + row][6 * slot + row] = mass.value.clone();
+                let (of_place, of_turning) = (6 * slot + row, 6 * slot + 3 + row);
+                matrix.rows[of_place].insert(of_place, mass.value.clone());
                 for column in 0..3 {
-                    matrix[6 * slot + 3 + row][6 * slot + 3 + column] = inertia.0[row][column].value.clone();
+                    matrix.rows[of_turning]
+                        .insert(6 * slot + 3 + column, inertia.0[row][column].value.clone());
                 }
             }
         }
@@ -81,27 +84,28 @@ impl<F: Field> Evaluation<'_, F> {
     /// What is left of eq. (17) at accelerations `(s̈, ẇ')` and multipliers: 6 numbers for each body, then one for each row.
     pub fn residual_of_motion(&self, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
         let (imbalance, phi_pi) = (self.imbalance(accelerations)?, self.phi_pi()?);
-        let reaction = |k: usize| self.dot(phi_pi.iter().map(|row| &row[k]), lambda);
-        let forces = imbalance.iter().enumerate().map(|(k, left)| left.add(&reaction(k)));
+        let reactions = phi_pi.transposed_product(lambda, &self.scope.zero.value);
+        let forces = imbalance.iter().zip(&reactions).map(|(left, reaction)| left.add(reaction));
         Some(forces.chain(self.residual_of_rows(accelerations)?).collect())
     }
 
     /// `M v̇ − f`: what the constraints have to take.
     pub fn imbalance(&self, accelerations: &[F]) -> Option<Vec<F>> {
         let applied = self.applied_force()?;
-        let balances = self.mass_matrix().into_iter().zip(&applied);
-        Some(balances.map(|(row, f)| self.dot(&row, accelerations).sub(f)).collect())
+        let inertial = self.product(&self.mass_matrix(), accelerations);
+        Some(inertial.iter().zip(&applied).map(|(inertial, f)| inertial.sub(f)).collect())
     }
 
     /// `Φ_r s̈ + Φ_π' ẇ' − γ`.
     pub fn residual_of_rows(&self, accelerations: &[F]) -> Option<Vec<F>> {
         let (phi_pi, gamma) = (self.phi_pi()?, self.gamma()?);
-        Some(phi_pi.iter().zip(&gamma).map(|(row, gamma)| self.dot(row, accelerations).sub(gamma)).collect())
+        let moved = self.product(&phi_pi, accelerations);
+        Some(moved.iter().zip(&gamma).map(|(moved, gamma)| moved.sub(gamma)).collect())
     }
 
     /// `matrix · vector`.
-    pub fn product(&self, matrix: &[Vec<F>], vector: &[F]) -> Vec<F> {
-        matrix.iter().map(|row| self.dot(row, vector)).collect()
+    pub fn product(&self, matrix: &Sparse<F>, vector: &[F]) -> Vec<F> {
+        matrix.product(vector, &self.scope.zero.value)
     }
 
     fn dot<'f>(&self, a: impl IntoIterator<Item = &'f F>, b: &[F]) -> F

@@ -20,18 +20,21 @@ mod observe;
 mod pose;
 mod rows;
 mod scope;
+mod sparse;
 #[cfg(test)]
 mod tests;
 
 pub use observe::Reading;
+pub use sparse::Sparse;
 
 use crate::atoms::Atoms;
 use crate::field::Field;
 use crate::point::Point;
-use gyro_model::{JointCoordinate, Model};
+use gyro_model::{JointCoordinate, Model, RowOwner};
 use joint::JointFrames;
 use pose::{Moving, Path, Pose};
 use scope::Scope;
+use std::ops::Range;
 
 /// A model read as the textbook does.
 #[derive(Clone, Debug)]
@@ -39,10 +42,24 @@ pub struct Textbook<'m> {
     model: &'m Model,
     /// Bodies with coordinates.
     slots: Vec<usize>,
-    /// Of [`Model::all_rows`], whether a row is among [`Model::rows`].
-    is_kept: Vec<bool>,
+    /// Of each body its place among them.
+    slot_of_body: Vec<Option<usize>>,
+    /// [`Model::rows`], owner after owner.
+    blocks: Vec<Block>,
+    /// Of each body the blocks in whose rows it occurs.
+    blocks_of_body: Vec<Vec<usize>>,
     /// [`Model::turn_references`].
     turns: Vec<JointCoordinate>,
+}
+
+/// The rows of one owner.
+#[derive(Clone, Debug)]
+struct Block {
+    owner: RowOwner,
+    /// Of all of its rows, whether each is among [`Model::rows`].
+    is_kept: Vec<bool>,
+    /// Places of those that are.
+    rows: Range<usize>,
 }
 
 /// The textbook's formulas at one point.
@@ -63,13 +80,18 @@ pub struct Evaluation<'a, F: Field> {
 impl<'m> Textbook<'m> {
     /// Reads a model.
     pub fn new(model: &'m Model) -> Self {
-        let kept = model.rows();
-        Self {
-            model,
-            slots: model.coordinate_bodies(),
-            is_kept: model.all_rows().iter().map(|row| kept.contains(row)).collect(),
-            turns: model.turn_references(),
+        let (slots, blocks) = (model.coordinate_bodies(), blocks(model));
+        let mut slot_of_body = vec![None; model.bodies.len()];
+        slots.iter().enumerate().for_each(|(slot, &body)| slot_of_body[body] = Some(slot));
+        let mut blocks_of_body = vec![Vec::new(); model.bodies.len()];
+        for (index, block) in blocks.iter().enumerate() {
+            bodies_of(model, block.owner).into_iter().for_each(|body| blocks_of_body[body].push(index));
         }
+        Self { model, slots, slot_of_body, blocks, blocks_of_body, turns: model.turn_references() }
+    }
+
+    fn n_rows(&self) -> usize {
+        self.blocks.last().map_or(0, |block| block.rows.end)
     }
 
     /// The formulas at a point; `None` where an axis of joint or body has no length there.
@@ -101,8 +123,43 @@ impl<'m> Textbook<'m> {
     }
 
     fn slot_of(&self, body: usize) -> Option<usize> {
-        self.slots.iter().position(|&b| b == body)
+        self.slot_of_body[body]
     }
+}
+
+/// The rows, owner after owner.
+fn blocks(model: &Model) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    let dropped: Vec<_> = model.redundant.iter().map(|redundant| redundant.row).collect();
+    for row in model.all_rows() {
+        if blocks.last().is_none_or(|last| last.owner != row.owner) {
+            let start = blocks.last().map_or(0, |last| last.rows.end);
+            blocks.push(Block { owner: row.owner, is_kept: Vec::new(), rows: start..start });
+        }
+        let block = blocks.last_mut().expect("there is one now");
+        let is_kept = !dropped.contains(&row);
+        block.is_kept.push(is_kept);
+        block.rows.end += usize::from(is_kept);
+    }
+    blocks
+}
+
+/// The bodies that occur in an owner's rows, each once.
+fn bodies_of(model: &Model, owner: RowOwner) -> Vec<usize> {
+    let of_joint =
+        |joint: usize| [&model.joints[joint].first, &model.joints[joint].second].map(|end| end.body);
+    let mut bodies = match owner {
+        RowOwner::Body(body) => vec![body],
+        RowOwner::Joint(joint) => of_joint(joint).to_vec(),
+        RowOwner::Coupler(coupler) => {
+            let coupler = &model.couplers[coupler];
+            [of_joint(coupler.first.joint), of_joint(coupler.second.joint)].concat()
+        }
+        RowOwner::Driver(driver) => of_joint(model.drivers[driver].coordinate.joint).to_vec(),
+    };
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
 }
 
 impl<F: Field> std::fmt::Debug for Evaluation<'_, F> {

@@ -152,7 +152,8 @@ impl<F: Field> Evaluation<'_, F> {
         let rows = self.textbook.model.rows_of(RowOwner::Joint(joint));
         let column = |k: usize| {
             rows.clone().fold(self.scope.zero.clone(), |sum, row| {
-                sum + Jet::constant(phi_pi[row][6 * slot + k].mul(&lambda[row]))
+                let entry = phi_pi.rows[row].get(&(6 * slot + k));
+                entry.map_or(sum.clone(), |entry| sum + Jet::constant(entry.mul(&lambda[row])))
             })
         };
         Some([0, 3].map(|from| Vector(std::array::from_fn(|k| column(from + k)))))

@@ -92,7 +92,7 @@ impl<F: Field> Evaluation<'_, F> {
         (0..self.textbook.model.bodies.len()).map(|body| self.pose(body, path)).collect()
     }
 
-    fn pose(&self, body: usize, path: Path) -> Pose<F> {
+    pub(super) fn pose(&self, body: usize, path: Path) -> Pose<F> {
         match (self.textbook.slot_of(body), &self.prescribed[body]) {
             (Some(slot), _) => self.pose_of_slot(slot, path),
             (None, Some(pose)) if path.moves_time() => pose.clone(),

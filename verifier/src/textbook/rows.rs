@@ -1,11 +1,13 @@
 //! Φ along a path, and what follows from it: Φ_q, Φ_π', ν, γ.
 
-use super::Evaluation;
-use super::attitude::{compose, conjugate};
+use super::attitude::{Euler, compose, conjugate};
 use super::jet::Jet;
 use super::pose::{Path, Pose};
+use super::sparse::Sparse;
+use super::{Block, Evaluation};
 use crate::field::Field;
-use gyro_model::{Coupler, Driver, JointCoordinate, JointKind, Support};
+use gyro_model::{Coupler, Driver, JointCoordinate, JointKind, RowOwner};
+use std::array::from_fn;
 
 impl<F: Field> Evaluation<'_, F> {
     /// Φ: joint rows, then the normalisations of eq. (12).
@@ -14,22 +16,63 @@ impl<F: Field> Evaluation<'_, F> {
         Some(rows.map(|row| row.value).collect())
     }
 
-    /// Φ_q by rows, normalisations included; columns (r, p) body after body.
-    pub fn phi_q(&self) -> Option<Vec<Vec<F>>> {
-        let columns = (0..self.textbook.slots.len()).flat_map(|slot| (0..7).map(move |k| (slot, k)));
-        let columns = columns.map(|(slot, k)| {
-            let path = Path::Coordinate { slot, k };
-            Some(self.rates(self.rows(path)?.into_iter().chain(self.normalisations(path))))
-        });
-        columns.collect::<Option<Vec<_>>>().map(|columns| transposed(&columns))
+    /// Φ_q, normalisations included; columns (r, p) body after body.
+    pub fn phi_q(&self) -> Option<Sparse<F>> {
+        let (n_rows, slots) = (self.textbook.n_rows(), &self.textbook.slots);
+        let mut matrix = self.derivatives(n_rows + slots.len(), 7, |slot, k| Path::Coordinate { slot, k })?;
+        for slot in 0..slots.len() {
+            for k in 3..7 {
+                let pose = self.pose(slots[slot], Path::Coordinate { slot, k });
+                if let Some(rate) = self.normalisation(&pose).rate {
+                    matrix.rows[n_rows + slot].insert(7 * slot + k, rate);
+                }
+            }
+        }
+        Some(matrix)
     }
 
-    /// (Φ_r, Φ_π') by rows, `Φ_π' = ½ Φ_p Gᵀ`; columns (r, π') body after body.
-    pub fn phi_pi(&self) -> Option<Vec<Vec<F>>> {
-        let columns = (0..self.textbook.slots.len()).flat_map(|slot| (0..6).map(move |k| (slot, k)));
-        let columns =
-            columns.map(|(slot, k)| Some(self.rates(self.rows(Path::Virtual { slot, k })?.into_iter())));
-        columns.collect::<Option<Vec<_>>>().map(|columns| transposed(&columns))
+    /// (Φ_r, Φ_π'), `Φ_π' = ½ Φ_p Gᵀ`; columns (r, π') body after body.
+    pub fn phi_pi(&self) -> Option<Sparse<F>> {
+        self.derivatives(self.textbook.n_rows(), 6, |slot, k| Path::Virtual { slot, k })
+    }
+
+    /// The derivatives of the joint rows along some paths of each slot. A row in which a body does not occur does not change with it.
+    fn derivatives(
+        &self,
+        n_rows: usize,
+        paths: usize,
+        path: impl Fn(usize, usize) -> Path,
+    ) -> Option<Sparse<F>> {
+        let mut matrix = Sparse::new(n_rows, paths * self.textbook.slots.len());
+        let mut poses = self.still.clone();
+        for (slot, &body) in self.textbook.slots.iter().enumerate() {
+            for k in 0..paths {
+                let path = path(slot, k);
+                poses[body] = self.pose(body, path);
+                for block in &self.textbook.blocks_of_body[body] {
+                    let block = &self.textbook.blocks[*block];
+                    for (row, jet) in block.rows.clone().zip(self.rows_of(block, path, &poses)?) {
+                        if let Some(rate) = jet.rate {
+                            matrix.rows[row].insert(paths * slot + k, rate);
+                        }
+                    }
+                }
+            }
+            poses[body] = self.still[body].clone();
+        }
+        Some(matrix)
+    }
+
+    /// Φ of an owner's rows to first order in a change of the Euler parameters of a slot from other ones: `Φ + Φ_p δ`.
+    pub fn linearised(&self, owner: RowOwner, slot: usize, p: &[F], change: &[F]) -> Option<Vec<F>> {
+        let body = self.textbook.slots[slot];
+        let mut poses = self.still.clone();
+        let p: Euler<F> = from_fn(|k| Jet::moving(p[k].clone(), change[k].clone()));
+        poses[body] = Pose { r: poses[body].r.clone(), a: self.scope.rotation(&p), p };
+        let block = self.textbook.blocks.iter().find(|block| block.owner == owner)?;
+        let rows = self.rows_of(block, Path::Coordinate { slot, k: 3 }, &poses)?;
+        let sum = |row: Jet<F>| row.rate.map_or_else(|| row.value.clone(), |rate| row.value.add(&rate));
+        Some(rows.into_iter().map(sum).collect())
     }
 
     /// `ν = −Φ_t`.
@@ -51,39 +94,40 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// The rows of [`gyro_model::Model::rows`] along a path, eq. (11) and what is driven or coupled.
     fn rows(&self, path: Path) -> Option<Vec<Jet<F>>> {
-        let (model, poses) = (self.textbook.model, self.poses(path));
-        let mut rows = Vec::new();
-        for (body, description) in model.bodies.iter().enumerate() {
-            if description.support == Support::Constrained {
-                rows.extend(self.held(&poses[body], body)?);
-            }
+        let (poses, mut rows) = (self.poses(path), Vec::new());
+        for block in &self.textbook.blocks {
+            rows.extend(self.rows_of(block, path, &poses)?);
         }
-        for (joint, frames) in self.joints.iter().enumerate() {
-            let is_screw = frames.kind == JointKind::Screw;
-            let angle = JointCoordinate { joint, coordinate: 0 };
-            let angle = if is_screw { Some(self.coordinate(angle, &poses)?) } else { None };
-            rows.extend(frames.placed(&poses).rows(&self.scope, frames, angle.as_ref())?);
-        }
-        for coupler in &model.couplers {
-            rows.push(self.coupled(coupler, &poses)?);
-        }
-        for driver in &model.drivers {
-            rows.push(self.driven(driver, path, &poses)?);
-        }
-        Some(
-            rows.into_iter()
-                .zip(&self.textbook.is_kept)
-                .filter(|(_, kept)| **kept)
-                .map(|(row, _)| row)
-                .collect(),
-        )
+        Some(rows)
     }
 
-    /// `pᵀp − 1`, eq. (12).
+    /// The rows of one owner that are kept.
+    fn rows_of(&self, block: &Block, path: Path, poses: &[Pose<F>]) -> Option<Vec<Jet<F>>> {
+        let model = self.textbook.model;
+        let rows = match block.owner {
+            RowOwner::Body(body) => self.held(&poses[body], body)?,
+            RowOwner::Joint(joint) => {
+                let frames = &self.joints[joint];
+                let is_screw = frames.kind == JointKind::Screw;
+                let angle = JointCoordinate { joint, coordinate: 0 };
+                let angle = if is_screw { Some(self.coordinate(angle, poses)?) } else { None };
+                frames.placed(poses).rows(&self.scope, frames, angle.as_ref())?
+            }
+            RowOwner::Coupler(coupler) => vec![self.coupled(&model.couplers[coupler], poses)?],
+            RowOwner::Driver(driver) => vec![self.driven(&model.drivers[driver], path, poses)?],
+        };
+        Some(rows.into_iter().zip(&block.is_kept).filter(|(_, kept)| **kept).map(|(row, _)| row).collect())
+    }
+
+    /// `pᵀp − 1` of each slot, eq. (12).
     fn normalisations(&self, path: Path) -> Vec<Jet<F>> {
-        let poses = self.poses(path);
-        let euler = self.textbook.slots.iter().map(|&body| &poses[body].p);
-        euler.map(|[e0, e1, e2, e3]| e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3 - &self.scope.one).collect()
+        let bodies = self.textbook.slots.iter();
+        bodies.map(|&body| self.normalisation(&self.pose(body, path))).collect()
+    }
+
+    fn normalisation(&self, pose: &Pose<F>) -> Jet<F> {
+        let [e0, e1, e2, e3] = &pose.p;
+        e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3 - &self.scope.one
     }
 
     /// `r − r0` and the vector part of `p0* p`, eqs. (5) and (6).
@@ -111,9 +155,4 @@ impl<F: Field> Evaluation<'_, F> {
     fn rates(&self, rows: impl Iterator<Item = Jet<F>>) -> Vec<F> {
         rows.map(|row| row.rate.unwrap_or_else(|| self.scope.zero.value.clone())).collect()
     }
-}
-
-fn transposed<F: Field>(columns: &[Vec<F>]) -> Vec<Vec<F>> {
-    let n_rows = columns.first().map_or(0, Vec::len);
-    (0..n_rows).map(|row| columns.iter().map(|column| column[row].clone()).collect()).collect()
 }

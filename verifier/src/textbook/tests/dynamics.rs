@@ -1,6 +1,8 @@
 //! Energy against power, reactions against Newton's and Euler's laws.
 
-use super::support::{accelerations, assert_close, at, derivative, for_each_motion, later, random_point};
+use super::support::{
+    accelerations, assert_close, at, dense, derivative, for_each_motion, later, random_point,
+};
 use crate::point::Point;
 use crate::textbook::Textbook;
 use crate::textbook::jet::Jet;
@@ -89,7 +91,7 @@ fn needed(textbook: &Textbook, point: &Point<f64>, accelerations: &[f64], bob_is
     let bob = evaluation.moving(1);
     let acceleration = evaluation.acceleration(1, accelerations);
     let mass = evaluation.scope.number(&model.bodies[1].mass);
-    let inertia = evaluation.mass_matrix();
+    let inertia = dense(&evaluation.mass_matrix());
     let inertia = Matrix(std::array::from_fn(|row| {
         std::array::from_fn(|column| Jet::constant(inertia[3 + row][3 + column]))
     }));

@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-12;
 #[test]
 fn phi_q_is_the_derivative_of_phi() {
     for_each_state(|what, textbook, point| {
-        let phi_q = at(textbook, point).phi_q().expect("Φ_q");
+        let phi_q = dense(&at(textbook, point).phi_q().expect("Φ_q"));
         for column in 0..7 * textbook.slots.len() {
             let quotient = derivative(STEP, |step| {
                 let mut moved = point.clone();
@@ -37,6 +37,7 @@ fn phi_pi_is_half_phi_p_g_transposed() {
     for_each_state(|what, textbook, point| {
         let (phi_q, phi_pi) =
             (at(textbook, point).phi_q().expect("Φ_q"), at(textbook, point).phi_pi().expect("Φ_π'"));
+        let (phi_q, phi_pi) = (dense(&phi_q), dense(&phi_pi));
         for slot in 0..textbook.slots.len() {
             let [e0, e1, e2, e3] = [3, 4, 5, 6].map(|k| point.state[7 * slot + k]);
             let g = [[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]];
@@ -71,7 +72,7 @@ fn the_velocity_residual_is_what_eq_18_says() {
     for_each_state(|what, textbook, point| {
         let (evaluation, n) = (at(textbook, point), textbook.slots.len());
         let velocities = &point.state[7 * n..13 * n];
-        let rows = evaluation.phi_pi().expect("Φ_π'").into_iter().zip(evaluation.nu().expect("ν"));
+        let rows = dense(&evaluation.phi_pi().expect("Φ_π'")).into_iter().zip(evaluation.nu().expect("ν"));
         let expected: Vec<f64> = rows.map(|(row, nu)| dot(&row, velocities) - nu).collect();
         assert_close(what, &evaluation.velocity_residual().expect("residual"), &expected, ROUNDING);
     });
@@ -90,7 +91,7 @@ fn gamma_is_what_the_second_derivative_of_phi_leaves() {
             moved.state[references.clone()].copy_from_slice(&point.state[references.clone()]);
             at(textbook, &moved).velocity_residual().expect("residual")
         });
-        let rows = evaluation.phi_pi().expect("Φ_π'").into_iter().zip(evaluation.gamma().expect("γ"));
+        let rows = dense(&evaluation.phi_pi().expect("Φ_π'")).into_iter().zip(evaluation.gamma().expect("γ"));
         let expected: Vec<f64> = rows.map(|(row, gamma)| dot(&row, &accelerations) - gamma).collect();
         assert_close(what, &change, &expected, 100.0 * DIFFERENCE);
     });
@@ -114,7 +115,7 @@ fn the_model_says_the_same_of_phi_phi_pi_and_nu() {
         let phi = evaluation.phi().expect("Φ");
         assert_close(what, &phi[..phi.len() - n], &kept(kinematics.phi(q, &near).as_slice()), ROUNDING);
         assert_close(what, &evaluation.nu().expect("ν"), &kept(kinematics.nu(q, &near).as_slice()), ROUNDING);
-        let (jacobian, phi_pi) = (kinematics.jacobian(q, &near), evaluation.phi_pi().expect("Φ_π'"));
+        let (jacobian, phi_pi) = (kinematics.jacobian(q, &near), dense(&evaluation.phi_pi().expect("Φ_π'")));
         for column in 0..6 * n {
             let of_column: Vec<f64> = phi_pi.iter().map(|row| row[column]).collect();
             let expected = kept(jacobian.column(column).as_slice());

@@ -2,7 +2,7 @@
 
 use crate::atoms::Elementary;
 use crate::point::Point;
-use crate::textbook::{Evaluation, Textbook};
+use crate::textbook::{Evaluation, Sparse, Textbook};
 use gyro_model::Model;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -114,7 +114,7 @@ fn project(textbook: &Textbook, point: &mut Point<f64>) {
     let n = textbook.slots.len();
     for _ in 0..20 {
         let (phi, phi_q) = (at(textbook, point).phi().expect("Φ"), at(textbook, point).phi_q().expect("Φ_q"));
-        least_change(&phi_q, &phi).iter().zip(&mut point.state).for_each(|(change, q)| *q -= change);
+        least_change(&dense(&phi_q), &phi).iter().zip(&mut point.state).for_each(|(change, q)| *q -= change);
     }
     let worst = at(textbook, point).phi().expect("Φ").iter().fold(0.0, |worst, row| row.abs().max(worst));
     assert!(worst < 1e-13, "{}: Newton ends at {worst:e}", textbook.model.name);
@@ -122,8 +122,15 @@ fn project(textbook: &Textbook, point: &mut Point<f64>) {
     let evaluation = at(textbook, point);
     let (residual, phi_pi) =
         (evaluation.velocity_residual().expect("residual"), evaluation.phi_pi().expect("Φ_π'"));
-    let change = least_change(&phi_pi, &residual);
+    let change = least_change(&dense(&phi_pi), &residual);
     change.iter().zip(&mut point.state[7 * n..]).for_each(|(change, v)| *v -= change);
+}
+
+/// A matrix by rows, its zeros written out.
+pub fn dense(matrix: &Sparse<f64>) -> Vec<Vec<f64>> {
+    let entry = |row: usize, column: usize| matrix.rows[row].get(&column).copied().unwrap_or(0.0);
+    let row = |row| (0..matrix.n_columns).map(|column| entry(row, column)).collect();
+    (0..matrix.rows.len()).map(row).collect()
 }
 
 /// The shortest x of `a x = b`.
@@ -137,7 +144,7 @@ fn least_change(a: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
 /// Accelerations and multipliers: eq. (17) solved densely.
 pub fn accelerations(textbook: &Textbook, point: &Point<f64>) -> (Vec<f64>, Vec<f64>) {
     let evaluation = at(textbook, point);
-    let (mass, phi_pi) = (evaluation.mass_matrix(), evaluation.phi_pi().expect("Φ_π'"));
+    let (mass, phi_pi) = (dense(&evaluation.mass_matrix()), dense(&evaluation.phi_pi().expect("Φ_π'")));
     let (n, rows) = (mass.len(), phi_pi.len());
     let mut matrix = vec![vec![0.0; n + rows]; n + rows];
     for (row, values) in mass.iter().enumerate() {
