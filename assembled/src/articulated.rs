@@ -1,7 +1,7 @@
 //! Accelerations from the leaves to the root and back, without λ.
 
-use crate::careful::{Bearing, Hinge, Hold, Link, Side, Space};
 use crate::freedom::{self, Attitude, Freedom};
+use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::joint::Joint;
 use crate::lowered::{Lowered, Moment, Place};
 use crate::motion::Motion;
@@ -9,6 +9,17 @@ use crate::number::{Number, number};
 use crate::spatial::{Inertia, Spatial};
 use crate::textbook::direction_rotation;
 use nalgebra::{Matrix3, Vector3};
+
+/// What one evaluation needs.
+#[derive(Clone, Debug)]
+pub(crate) struct Space<T> {
+    /// Bodies with coordinates.
+    pub(crate) nodes: Vec<Node<T>>,
+    /// Bodies that move by prescription.
+    pub(crate) driven: Vec<Motion<T>>,
+    /// `(f, n' − w̃'J'w')`, body after body.
+    pub(crate) forces: Vec<T>,
+}
 
 /// One body's quantities, all in global axes and about its mass centre.
 #[derive(Clone, Copy, Debug)]

@@ -1,22 +1,23 @@
 //! λ by a balance of forces from the leaves to the roots, for every kind of joint: `Φ_qᵀ λ = f − M a` of each body and its
 //! descendants.
 
+use crate::limbs::Limbs;
 use crate::lowered::{Lowered, Moment};
 use crate::number::{Number, number};
-use crate::recursion::{Recursion, Space};
 use crate::screws::{Six, dot, plus};
+use crate::sweeps::Space;
 use nalgebra::{Matrix6, Vector6};
 
 /// Writes λ at given accelerations `(s̈, ẇ')`.
 pub(crate) fn multipliers<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     at: Moment<'_, T>,
     accelerations: &[T],
     space: &mut Space<T>,
     lambda: &mut [T],
 ) {
-    differentiate(recursion, lowered, at, &mut space.gradients);
+    differentiate(tree, lowered, at, &mut space.gradients);
     lowered.applied_force(at, &mut space.forces);
     let unbalanced = space.forces.as_chunks_mut::<6>().0;
     for ((force, body), taken) in
@@ -28,7 +29,7 @@ pub(crate) fn multipliers<T: Number>(
     }
     // Torques over the mechanism's size are forces.
     let weight = T::one() / (lowered.size * lowered.size);
-    for limb in recursion.limbs.iter().rev() {
+    for limb in tree.limbs.iter().rev() {
         let Some(hinge) = &limb.hinge else { continue };
         let rows = &space.gradients[hinge.rows.clone()];
         let lambda = &mut lambda[hinge.rows.clone()];
@@ -39,21 +40,21 @@ pub(crate) fn multipliers<T: Number>(
             }
         }
     }
-    for (slot, rows) in &recursion.held {
+    for (slot, rows) in &tree.held {
         solve(&space.gradients[rows.clone()], weight, &unbalanced[*slot], &mut lambda[rows.clone()]);
     }
 }
 
 /// The derivatives of each row with respect to the `(r, π')` of the body that it holds, and of that body's parent.
 fn differentiate<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     at: Moment<'_, T>,
     gradients: &mut [[Six<T>; 2]],
 ) {
     gradients.fill([[number(0.0); 6]; 2]);
     lowered.phi_pi(at, |row, column, value| {
-        gradients[row][usize::from(recursion.children[row] != column / 6)][column % 6] = value;
+        gradients[row][usize::from(tree.children[row] != column / 6)][column % 6] = value;
     });
 }
 

@@ -1,15 +1,14 @@
 //! The careful form: eq. (17) eliminated body by body, with every buffer allocated once.
 
-use crate::articulated::{self, Node};
+use crate::articulated::{self, Node, Space};
 use crate::assembled::{Assembled, Refusal, Solver};
 use crate::charts;
 use crate::error::Unsupported;
-use crate::joint::{End, Joint};
+use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::lowered::{Lowered, Moment};
-use crate::motion::Motion;
 use crate::number::Number;
 use crate::reactions;
-use gyro_model::{Attachment, JointKind, Model, RowOwner, Tree};
+use gyro_model::{Attachment, Model, RowOwner, Tree};
 use std::cell::RefCell;
 
 /// Eliminates eq. (17) from the leaves to the root in the null space of each joint, in global axes.
@@ -32,81 +31,6 @@ pub struct Elimination<T: Number> {
     links: Vec<Link>,
     /// Work space. A mechanism is constant to its callers, so it is borrowed inside each call and never across.
     space: RefCell<Space<T>>,
-}
-
-/// What one evaluation needs.
-#[derive(Clone, Debug)]
-pub(crate) struct Space<T> {
-    /// Bodies with coordinates.
-    pub(crate) nodes: Vec<Node<T>>,
-    /// Bodies that move by prescription.
-    pub(crate) driven: Vec<Motion<T>>,
-    /// `(f, n' − w̃'J'w')`, body after body.
-    pub(crate) forces: Vec<T>,
-}
-
-/// A body with coordinates and what holds it; parents come before children.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Link {
-    pub(crate) slot: usize,
-    pub(crate) hold: Hold,
-}
-
-/// What holds a body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Hold {
-    Free,
-    /// Index of the constrained body, and its first row.
-    Constrained(usize, usize),
-    Joint(Hinge),
-}
-
-/// A joint with its direction in the tree.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hinge {
-    pub(crate) joint: usize,
-    /// Its first row; the others follow.
-    pub(crate) first_row: usize,
-    pub(crate) bearing: Bearing,
-    pub(crate) child: Side,
-    /// The parent's slot, if the parent moves under the child's load.
-    pub(crate) loads: Option<usize>,
-}
-
-/// The kinds of joint that elimination knows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Bearing {
-    Revolute,
-    Spherical,
-    Fixed,
-}
-
-/// Which of a joint's bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    First,
-    Second,
-}
-
-impl Bearing {
-    fn of(kind: JointKind) -> Option<Self> {
-        match kind {
-            JointKind::Revolute => Some(Self::Revolute),
-            JointKind::Spherical => Some(Self::Spherical),
-            JointKind::Fixed => Some(Self::Fixed),
-            _ => None,
-        }
-    }
-}
-
-impl Hinge {
-    /// The parent's end of the joint and the child's.
-    pub(crate) fn ends<'a, T>(&self, joint: &'a Joint<T>) -> (&'a End<T>, &'a End<T>) {
-        match self.child {
-            Side::First => (&joint.second, &joint.first),
-            Side::Second => (&joint.first, &joint.second),
-        }
-    }
 }
 
 impl<T: Number> Assembled<T, Elimination<T>> {

@@ -3,7 +3,7 @@
 //! Which Euler parameter of a body is special follows the rule of [`gyro_sim::charts`]. A parent is corrected before its
 //! children look at it, so the block-triangular system needs no coupling blocks, and point rows are met in closed form.
 
-use crate::careful::{Bearing, Hinge, Hold, Link, Side};
+use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::joint::Dot;
 use crate::lowered::{Constrained, Lowered, Moment};
 use crate::motion::Motion;

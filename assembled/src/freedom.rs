@@ -1,6 +1,6 @@
 //! What a joint leaves free and what it determines of a child's rotation; all in the global frame.
 
-use crate::careful::Bearing;
+use crate::hinges::Bearing;
 use crate::joint::Joint;
 use crate::number::Number;
 use crate::spatial::{Inertia, Spatial, inverse};

@@ -1,8 +1,8 @@
 //! Where a body is and how it moves, and the vectors and points fixed in it.
 
 use crate::number::{Number, number};
-use crate::textbook::rotation;
-use nalgebra::{Matrix3, Vector3, Vector4};
+use crate::textbook::{rotated_gradient, rotation};
+use nalgebra::{Matrix3, RealField, RowVector3, RowVector4, Vector3, Vector4};
 
 /// Position and velocity of a body, and its acceleration as far as that is prescribed.
 #[derive(Clone, Copy, Debug)]
@@ -108,4 +108,22 @@ impl<T: Number> Jet<T> {
             outer + number::<T>(2.0) * self.rate.dot(&other.rate),
         ]
     }
+}
+
+/// `∂(xᵀ A a')/∂p`.
+pub(crate) fn along_p<T: RealField + Copy>(
+    motion: &Motion<T>,
+    x: &Vector3<T>,
+    a: &Vector3<T>,
+) -> RowVector4<T> {
+    x.transpose() * rotated_gradient(&motion.p, a)
+}
+
+/// `∂(xᵀ A a')/∂π' = −xᵀ A ã'`, which is `(a' × Aᵀx)ᵀ`.
+pub(crate) fn along_pi<T: RealField + Copy>(
+    motion: &Motion<T>,
+    x: &Vector3<T>,
+    a: &Vector3<T>,
+) -> RowVector3<T> {
+    a.cross(&motion.a.tr_mul(x)).transpose()
 }

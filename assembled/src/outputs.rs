@@ -2,9 +2,9 @@
 
 use crate::lowered::{Lowered, Moment, Place, Places, vector};
 use crate::motion::Motion;
+use crate::motion::along_pi;
 use crate::number::Number;
 use crate::rows::Row;
-use crate::textbook::along_pi;
 use gyro_model::{Model, OutputKind, RowOwner};
 use gyro_sim::OutputInfo;
 use nalgebra::Vector3;

@@ -1,8 +1,8 @@
 //! λ by a balance of forces from the leaves to the root: `Φ_qᵀ λ = f − M a` of each body and its descendants.
 
-use crate::articulated::{attitude, place_all};
-use crate::careful::{Hinge, Hold, Link, Side, Space};
+use crate::articulated::{Space, attitude, place_all};
 use crate::freedom::dual_directions;
+use crate::hinges::{Hinge, Hold, Link, Side};
 use crate::joint::Joint;
 use crate::lowered::{Lowered, Moment, Place};
 use crate::number::{Number, number};

@@ -1,10 +1,10 @@
 //! The partition of the recursive form: each body put where its joint's coordinates say, from the root to the leaves.
 
 use crate::charts::{restore, set_p};
+use crate::limbs::{Hinge, Limbs};
 use crate::lowered::{Lowered, Moment};
 use crate::motion::Motion;
 use crate::number::{Number, number, resolvable, sqrt};
-use crate::recursion::{Hinge, Recursion};
 use crate::screws::{End, Screw};
 use crate::textbook::{conjugate, product, rotation};
 use gyro_model::JointKind;
@@ -15,17 +15,17 @@ use nalgebra::{Vector3, Vector4};
 /// # Errors
 /// The length that vanished, where a joint's coordinates cannot be told.
 pub(crate) fn positions<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     t: T,
     y: &mut [T],
 ) -> Result<(), T> {
     lowered.constrained.iter().for_each(|body| restore(body, y));
-    for limb in &recursion.limbs {
+    for limb in &tree.limbs {
         let p = match &limb.hinge {
             None => normalised(lowered.p(y, limb.slot))?,
             Some(hinge) => {
-                let (r, p) = position(recursion, lowered, hinge, Moment { t, y })?;
+                let (r, p) = position(tree, lowered, hinge, Moment { t, y })?;
                 y[7 * limb.slot..7 * limb.slot + 3].copy_from_slice(r.as_slice());
                 p
             }
@@ -37,7 +37,7 @@ pub(crate) fn positions<T: Number>(
 
 /// r and p of the child.
 fn position<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     hinge: &Hinge<T>,
     at: Moment<'_, T>,
@@ -53,7 +53,7 @@ fn position<T: Number>(
     let p = normalised(p)?;
     let child = if hinge.child == End::First { &mut *i } else { &mut *j };
     (child.p, child.a) = (p, rotation(&p));
-    let screws = &recursion.screws[hinge.screws.clone()];
+    let screws = &tree.screws[hinge.screws.clone()];
     let d = if joint.kind == JointKind::Screw {
         let angle = joint.coordinates[0].measure.jet(joint, &[*i, *j], at.y)[0];
         j.a * screws[0].axis * (screws[0].slide * angle)
@@ -104,14 +104,14 @@ fn normalised<T: Number>(p: Vector4<T>) -> Result<Vector4<T>, T> {
 }
 
 /// Gives every body the velocity that its parent's and the rates of its joint make; the rates are the state's.
-pub(crate) fn velocities<T: Number>(recursion: &Recursion<T>, lowered: &Lowered<T>, t: T, y: &mut [T]) {
+pub(crate) fn velocities<T: Number>(tree: &Limbs<T>, lowered: &Lowered<T>, t: T, y: &mut [T]) {
     let velocities = lowered.n_q();
-    for (slot, _) in &recursion.held {
+    for (slot, _) in &tree.held {
         y[velocities + 6 * slot..velocities + 6 * slot + 6].fill(number(0.0));
     }
-    for limb in &recursion.limbs {
+    for limb in &tree.limbs {
         let Some(hinge) = &limb.hinge else { continue };
-        let (s, w) = velocity(recursion, lowered, hinge, Moment { t, y });
+        let (s, w) = velocity(tree, lowered, hinge, Moment { t, y });
         let at = velocities + 6 * limb.slot;
         y[at..at + 3].copy_from_slice(s.as_slice());
         y[at + 3..at + 6].copy_from_slice(w.as_slice());
@@ -120,7 +120,7 @@ pub(crate) fn velocities<T: Number>(recursion: &Recursion<T>, lowered: &Lowered<
 
 /// s and w' of the child.
 fn velocity<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     hinge: &Hinge<T>,
     at: Moment<'_, T>,
@@ -131,7 +131,7 @@ fn velocity<T: Number>(
     let at_point = [i.s + i.omega().cross(&arms[0]), j.s + j.omega().cross(&arms[1])];
     let (turning, sliding) = (j.omega() - i.omega(), at_point[1] - at_point[0]);
     let (mut omega, mut v) = (Vector3::zeros(), Vector3::zeros());
-    for screw in &recursion.screws[hinge.screws.clone()] {
+    for screw in &tree.screws[hinge.screws.clone()] {
         let axis = if screw.of == End::First { i.a * screw.axis } else { j.a * screw.axis };
         let rate = if screw.turn == number(0.0) { axis.dot(&sliding) } else { axis.dot(&turning) };
         omega += axis * (screw.turn * rate);

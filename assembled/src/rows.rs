@@ -9,9 +9,10 @@ use crate::joint::Joint;
 use crate::lowered::{Constrained, Lowered, Moment};
 use crate::measure::Measure;
 use crate::motion::Motion;
+use crate::motion::{along_p, along_pi};
 use crate::number::{Number, abs, number};
 use crate::primitives::{Axis, Primitive, Pull, Turning, primitives};
-use crate::textbook::{along_p, along_pi, g_matrix, relative_matrix, tilde};
+use crate::textbook::{g_matrix, relative_matrix, tilde};
 use gyro_model::{JointCoordinate, JointKind, Model, RowOwner};
 use nalgebra::{Matrix3, RowVector3, SMatrix, Vector3};
 

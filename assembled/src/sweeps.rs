@@ -1,11 +1,24 @@
 //! The three sweeps of the recursion: out to the leaves, in to the roots, and out again.
 
+use crate::limbs::{Hinge, Limb, Limbs};
 use crate::lowered::{Body, Lowered, Moment};
 use crate::motion::Motion;
 use crate::number::{Number, number};
-use crate::recursion::{Hinge, Limb, Recursion, Space};
 use crate::screws::{End, Inertia6, Screw, Six, angular, apply, carried, dot, linear, plus, six};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4, Vector6};
+
+/// What one evaluation needs.
+#[derive(Clone, Debug)]
+pub(crate) struct Space<T> {
+    /// The global frame, driven bodies, constrained and fixed bodies; then the limbs.
+    pub(crate) nodes: Vec<Node<T>>,
+    /// What is known of each screw.
+    pub(crate) turning: Vec<Free<T>>,
+    /// What the page's forces exert, body after body: `(f, n')`.
+    pub(crate) forces: Vec<T>,
+    /// Of each row its derivative with respect to the child's and to the parent's `(r, π')`.
+    pub(crate) gradients: Vec<[Six<T>; 2]>,
+}
 
 /// One body's quantities, in global axes and about the common point.
 #[derive(Clone, Copy, Debug)]
@@ -76,42 +89,42 @@ impl<T: Number> Free<T> {
 
 /// Writes `(s̈, ẇ')` of every body to `out`.
 pub(crate) fn accelerations<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     at: Moment<'_, T>,
     space: &mut Space<T>,
     out: &mut [T],
 ) {
-    let Some(first) = recursion.limbs.first() else {
+    let Some(first) = tree.limbs.first() else {
         out.fill(number(0.0));
         return;
     };
     let origin = lowered.r(at.y, first.slot);
-    place_roots(recursion, lowered, at, &origin, &mut space.nodes);
+    place_roots(tree, lowered, at, &origin, &mut space.nodes);
     let has_forces = !lowered.elements.is_empty();
     if has_forces {
         space.forces.fill(number(0.0));
         lowered.add_page_force(at, &mut space.forces);
     }
-    let n_roots = space.nodes.len() - recursion.limbs.len();
+    let n_roots = space.nodes.len() - tree.limbs.len();
     let (nodes, free) = (&mut space.nodes, &mut space.turning);
-    for (index, limb) in recursion.limbs.iter().enumerate() {
+    for (index, limb) in tree.limbs.iter().enumerate() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         let node = &mut node[0];
         place(lowered, at, limb.slot, &origin, node);
-        coast(recursion, limb, &before[limb.parent], node, free);
+        coast(tree, limb, &before[limb.parent], node, free);
         let force = has_forces.then(|| &space.forces[6 * limb.slot..6 * limb.slot + 6]);
         load(&lowered.bodies[limb.slot], &lowered.gravity, force, node);
     }
-    for (index, limb) in recursion.limbs.iter().enumerate().rev() {
+    for (index, limb) in tree.limbs.iter().enumerate().rev() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         let parent = (limb.parent >= n_roots).then(|| &mut before[limb.parent]);
         fold(limb, &mut node[0], parent, free);
     }
-    for (slot, _) in &recursion.held {
+    for (slot, _) in &tree.held {
         out[6 * slot..6 * slot + 6].fill(number(0.0));
     }
-    for (index, limb) in recursion.limbs.iter().enumerate() {
+    for (index, limb) in tree.limbs.iter().enumerate() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         release(limb, &before[limb.parent], &mut node[0], free);
         write(&node[0], &mut out[6 * limb.slot..6 * limb.slot + 6]);
@@ -120,7 +133,7 @@ pub(crate) fn accelerations<T: Number>(
 
 /// The global frame, driven bodies, constrained bodies at rest where the state has them, and fixed ones.
 fn place_roots<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     lowered: &Lowered<T>,
     at: Moment<'_, T>,
     origin: &Vector3<T>,
@@ -133,11 +146,11 @@ fn place_roots<T: Number>(
     for (index, node) in nodes[1..first_held].iter_mut().enumerate() {
         *node = Node::known(&lowered.driven_motion(at.t, index), origin);
     }
-    let first_fixed = first_held + recursion.held.len();
-    for (node, motion) in nodes[first_fixed..].iter_mut().zip(&recursion.fixed) {
+    let first_fixed = first_held + tree.held.len();
+    for (node, motion) in nodes[first_fixed..].iter_mut().zip(&tree.fixed) {
         *node = Node::known(motion, origin);
     }
-    for (node, &(slot, _)) in nodes[first_held..].iter_mut().zip(&recursion.held) {
+    for (node, &(slot, _)) in nodes[first_held..].iter_mut().zip(&tree.held) {
         let pose = Motion::new(lowered.r(at.y, slot), lowered.p(at.y, slot), zero, zero);
         *node = Node::known(&pose, origin);
     }
@@ -188,7 +201,7 @@ fn unit_rotation<T: Number>(p: &Vector4<T>) -> Matrix3<T> {
 /// fixed in the first body makes `−(v_child − v_parent) × x` besides.
 #[inline]
 fn coast<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     limb: &Limb<T>,
     parent: &Node<T>,
     node: &mut Node<T>,
@@ -204,14 +217,14 @@ fn coast<T: Number>(
         End::Second => (parent, &*node),
     };
     let point = second.centre + second.a * hinge.point;
-    for (free, screw) in free[hinge.screws.clone()].iter_mut().zip(&recursion.screws[hinge.screws.clone()]) {
+    for (free, screw) in free[hinge.screws.clone()].iter_mut().zip(&tree.screws[hinge.screws.clone()]) {
         let a = if screw.of == End::First { &first.a } else { &second.a };
         free.motion = screw.motion(&(a * screw.axis), &point);
     }
     let mut gained = carried(&parent.velocity, &node.velocity);
     if hinge.is_mixed {
         let relative = plus(&second.velocity, number(-1.0), &first.velocity);
-        let of_first = first_part(recursion, hinge, &relative, &point, free);
+        let of_first = first_part(tree, hinge, &relative, &point, free);
         let between = plus(&node.velocity, number(-1.0), &parent.velocity);
         gained = plus(&gained, number(-1.0), &carried(&between, &of_first));
     }
@@ -221,13 +234,13 @@ fn coast<T: Number>(
 /// The part of a relative velocity that is due to the screw fixed in the first body, which comes first and is orthogonal to those
 /// of its kind.
 fn first_part<T: Number>(
-    recursion: &Recursion<T>,
+    tree: &Limbs<T>,
     hinge: &Hinge<T>,
     relative: &Six<T>,
     point: &Vector3<T>,
     free: &[Free<T>],
 ) -> Six<T> {
-    let Screw { turn, .. } = recursion.screws[hinge.screws.start];
+    let Screw { turn, .. } = tree.screws[hinge.screws.start];
     let motion = &free[hinge.screws.start].motion;
     let rate = if turn > number(0.0) {
         angular(motion).dot(&angular(relative))

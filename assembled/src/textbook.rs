@@ -1,7 +1,6 @@
 //! The matrices of the textbook, as the paper and Haug (1989) print them.
 
-use crate::motion::Motion;
-use nalgebra::{Matrix3, Matrix3x4, Matrix4, RealField, RowVector3, RowVector4, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix3x4, Matrix4, RealField, Vector3, Vector4};
 
 /// ã, with `ã b = a × b`.
 pub(crate) fn tilde<T: RealField + Copy>(a: &Vector3<T>) -> Matrix3<T> {
@@ -54,24 +53,6 @@ pub(crate) fn rotated_gradient<T: RealField + Copy>(p: &Vector4<T>, a: &Vector3<
         Vector3::new(e1 * a.y + e0 * a.z, e1 * a.x + two * e2 * a.y + e3 * a.z, -e0 * a.x + e3 * a.y),
         Vector3::new(-e0 * a.y + e1 * a.z, e0 * a.x + e2 * a.z, e1 * a.x + e2 * a.y + two * e3 * a.z),
     ]) * two
-}
-
-/// `∂(xᵀ A a')/∂p`.
-pub(crate) fn along_p<T: RealField + Copy>(
-    motion: &Motion<T>,
-    x: &Vector3<T>,
-    a: &Vector3<T>,
-) -> RowVector4<T> {
-    x.transpose() * rotated_gradient(&motion.p, a)
-}
-
-/// `∂(xᵀ A a')/∂π' = −xᵀ A ã'`, which is `(a' × Aᵀx)ᵀ`.
-pub(crate) fn along_pi<T: RealField + Copy>(
-    motion: &Motion<T>,
-    x: &Vector3<T>,
-    a: &Vector3<T>,
-) -> RowVector3<T> {
-    a.cross(&motion.a.tr_mul(x)).transpose()
 }
 
 /// G(p), paper, eq. (15).

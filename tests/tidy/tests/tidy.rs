@@ -1,0 +1,69 @@
+//! What keeps the source text easy to find one's way in: no circles of modules, stages that know nothing of later ones, folders that
+//! ARCHITECTURE.md names.
+
+mod modules;
+
+use modules::{Modules, circles};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The crates whose modules are looked at.
+const CRATES: [&str; 9] = [
+    "model",
+    "codegen",
+    "gyro-sim",
+    "assembled",
+    "verifier",
+    "runner",
+    "xtask",
+    "benches",
+    "benches/yardstick",
+];
+
+/// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
+const STAGES: [&str; 8] =
+    ["expr", "simplify", "derive", "solve", "joint_space", "equations", "kernels", "emit"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+#[test]
+fn no_modules_use_each_other_in_a_circle() {
+    let mut found = Vec::new();
+    for name in CRATES {
+        let modules = Modules::of(&root().join(name).join("src"));
+        assert!(!modules.uses.is_empty(), "{name} has no modules");
+        found.extend(circles(&modules.uses).iter().map(|circle| format!("{name}: {}", circle.join(", "))));
+    }
+    assert!(found.is_empty(), "circles of modules:\n{}", found.join("\n"));
+}
+
+#[test]
+fn no_stage_of_the_generator_knows_of_a_later_one() {
+    let modules = Modules::of(&root().join("codegen/src"));
+    let stage = |module: &str| {
+        let first = module.split("::").next().unwrap_or(module);
+        STAGES.iter().position(|stage| *stage == first)
+    };
+    let mut wrong = Vec::new();
+    for (module, used) in &modules.uses {
+        let own = stage(module);
+        assert!(own.is_some(), "{module} belongs to no stage");
+        wrong
+            .extend(used.iter().filter(|used| stage(used) > own).map(|used| format!("{module} uses {used}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn architecture_names_every_folder() {
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
+    let entries = fs::read_dir(root()).expect("the root").map(|entry| entry.expect("an entry"));
+    let folders = entries.filter(|entry| entry.path().is_dir());
+    let names = folders.map(|folder| folder.file_name().to_string_lossy().into_owned());
+    let is_source = |name: &String| !name.starts_with('.') && !["target", "out"].contains(&name.as_str());
+    let missing: Vec<_> =
+        names.filter(is_source).filter(|name| !page.contains(&format!("`{name}/"))).collect();
+    assert!(missing.is_empty(), "ARCHITECTURE.md does not name {missing:?}");
+}
