@@ -7,6 +7,7 @@ mod mechanism;
 mod ode;
 mod partition;
 mod ports;
+mod tables;
 mod variables;
 
 use crate::emit::ident;
@@ -55,7 +56,8 @@ pub fn write(file_name: &str, type_name: &str, mut equations: Equations, start: 
     let sheet = Sheet::of(equations, &module.functions);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
-    let code = format!("{}\n{}", sheet.head(file_name), prettyplease::unparse(&file));
+    let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);
+    let code = format!("{}\n{text}", sheet.head(file_name));
     Text { code, constants, sheet }
 }
 
@@ -64,7 +66,7 @@ fn table_of(symbol: &Symbol) -> Option<usize> {
 }
 
 fn table_names(table: usize) -> (Ident, Ident) {
-    (ident(&format!("KNOTS_{table}")), ident(&format!("PIECES_{table}")))
+    (ident(&tables::knots_name(table)), ident(&tables::pieces_name(table)))
 }
 
 /// Binds value and derivatives of a table's curve.
@@ -119,20 +121,17 @@ impl ModuleWriter<'_> {
         }
     }
 
-    /// Knots and pieces of each table.
+    /// Knots and pieces of each table, without their numbers.
     fn tables_of_motions(&self) -> TokenStream {
         let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
             let (knots, pieces) = table_names(table);
             let (n_knots, n_pieces) = (emit::index(spline.knots.len()), emit::index(spline.pieces.len()));
-            let times = spline.knots.iter().map(|&t| emit::float(t));
-            let coefficients = spline.pieces.iter().map(|piece| piece.map(emit::float));
-            let coefficients = coefficients.map(|c| quote! { [#(#c),*] });
             let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
             quote! {
                 #[doc = #doc]
-                const #knots: [f64; #n_knots] = [#(#times),*];
+                const #knots: [f64; #n_knots] = [];
                 /// Polynomials between them, from each point's own time.
-                const #pieces: [[f64; 4]; #n_pieces] = [#(#coefficients),*];
+                const #pieces: [[f64; 4]; #n_pieces] = [];
             }
         });
         tables.collect()
