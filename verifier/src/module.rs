@@ -168,9 +168,9 @@ impl Module {
             ..refusal
         })?;
         no_comments(text)?;
+        let (tables, text) = tables::read(model, text)?;
         let tokens: TokenStream =
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
-        let tables = tables::read(model, tokens.clone())?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let jacobian = text.contains("gyro_sim::JointJacobian");
         let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };

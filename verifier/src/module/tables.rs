@@ -2,28 +2,27 @@
 
 use crate::refusal::Refusal;
 use gyro_model::{Model, Motion, Spline};
-use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
+use std::slice::from_ref;
 
-/// The tables of a module in their order. Each must be a table of the model, number for number. A table can have a hundred thousand
-/// rows, so its tokens are read as they come; that nothing else stands there is for [`matching`](super::matching) to say.
-pub fn read(model: &Model, tokens: TokenStream) -> Result<Vec<Spline>, Refusal> {
-    let constants = arrays(tokens);
-    let knots = constants.iter().filter_map(|(name, array)| Some((name.strip_prefix("KNOTS_")?, array)));
-    knots
-        .map(|(number, array)| {
-            let times = numbers(array)?;
-            let pieces = format!("PIECES_{number}");
-            let Some((_, pieces)) = constants.iter().find(|(name, _)| *name == pieces) else {
-                return Err(Refusal::at(array.span(), format!("`{pieces}` is missing")));
+/// The tables of a module in their order, and its text without their numbers. Each must be a table of the model, number for number.
+///
+/// A table can have a hundred thousand rows, which as tokens would take most of the time of a proof. So the arrays `KNOTS_0`, `PIECES_0` and so on are read, and
+/// emptied, before the text is parsed. Only numbers, commas, brackets and blanks are taken out, and lines stay where they are; an array that
+/// is written otherwise is not emptied, and [`matching`](super::matching) expects empty ones.
+pub fn read(model: &Model, text: &str) -> Result<(Vec<Spline>, String), Refusal> {
+    let (arrays, emptied) = arrays(text)?;
+    let pairs = arrays.chunks(2).enumerate().map(|(k, pair)| match pair {
+        [knots, pieces] if knots.is_called("KNOTS", k) && pieces.is_called("PIECES", k) => {
+            let same = |table: &&Spline| {
+                table.knots.iter().map(from_ref).eq(&knots.rows)
+                    && table.pieces.iter().map(<[f64; 4]>::as_slice).eq(&pieces.rows)
             };
-            let pieces: Vec<[f64; 4]> =
-                elements(pieces).iter().map(|e| piece(e)).collect::<Result<_, _>>()?;
-            let same = |table: &&Spline| table.knots == times && table.pieces == pieces;
-            of_model(model).into_iter().find(same).cloned().ok_or_else(|| {
-                Refusal::at(array.span(), format!("`KNOTS_{number}` is no table of the model"))
-            })
-        })
-        .collect()
+            let found = of_model(model).into_iter().find(same).cloned();
+            found.ok_or_else(|| knots.refusal("is no table of the model"))
+        }
+        _ => Err(pair[0].refusal("is out of place")),
+    });
+    Ok((pairs.collect::<Result<_, _>>()?, emptied))
 }
 
 /// All tables that motions of the model follow.
@@ -45,101 +44,138 @@ fn collect<'m>(motion: &'m Motion, tables: &mut Vec<&'m Spline>) {
     }
 }
 
-/// Constants of arrays by their names: `const NAME: [type] = [elements];`, at the head of a module.
-fn arrays(tokens: TokenStream) -> Vec<(String, Group)> {
-    let (mut found, mut name, mut is_value) = (Vec::new(), None, false);
-    let mut before = None;
-    for token in tokens {
-        match &token {
-            TokenTree::Ident(word) if before.as_ref().is_some_and(|b| is_word(b, "const")) => {
-                (name, is_value) = (Some(word.to_string()), false);
-            }
-            TokenTree::Punct(mark) => is_value = mark.as_char() == '=',
-            TokenTree::Group(array) if is_value && array.delimiter() == Delimiter::Bracket => {
-                if let Some(name) = name.take() {
-                    found.push((name, array.clone()));
-                }
-            }
-            _ => {}
-        }
-        before = Some(token);
+/// A constant array of numbers, or of arrays of numbers.
+#[derive(Debug, PartialEq)]
+struct Array<'t> {
+    name: &'t str,
+    line: usize,
+    /// Its elements; a number is a row of its own.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Array<'_> {
+    fn is_called(&self, what: &str, k: usize) -> bool {
+        self.name == format!("{what}_{k}")
     }
-    found
-}
 
-fn is_word(token: &TokenTree, word: &str) -> bool {
-    matches!(token, TokenTree::Ident(found) if found == word)
-}
-
-/// What stands between commas.
-fn elements(array: &Group) -> Vec<Vec<TokenTree>> {
-    let mut elements = vec![Vec::new()];
-    for token in array.stream() {
-        match (&token, elements.last_mut()) {
-            (TokenTree::Punct(mark), _) if mark.as_char() == ',' => elements.push(Vec::new()),
-            (_, Some(element)) => element.push(token),
-            (_, None) => {}
-        }
+    fn refusal(&self, words: &str) -> Refusal {
+        Refusal::new(self.line, format!("`{}` {words}", self.name))
     }
-    elements.pop_if(|last| last.is_empty());
-    elements
 }
 
-fn numbers(array: &Group) -> Result<Vec<f64>, Refusal> {
-    elements(array).iter().map(|element| number(element, array.span())).collect()
+/// The arrays whose constants begin a line, and the text with nothing but ends of lines in them.
+fn arrays(text: &str) -> Result<(Vec<Array<'_>>, String), Refusal> {
+    let (mut arrays, mut emptied, mut rest, mut line) = (Vec::new(), String::new(), text, 1);
+    while !rest.is_empty() {
+        let (this, _) = rest.split_at(rest.find('\n').map_or(rest.len(), |end| end + 1));
+        let Some((name, start)) = array_at(this) else {
+            emptied += this;
+            (rest, line) = (&rest[this.len()..], line + 1);
+            continue;
+        };
+        emptied += &rest[..start];
+        let mut numbers = Numbers { rest: &rest[start..], line };
+        let rows = numbers.list(&mut |numbers| {
+            if numbers.takes('[') { numbers.list(&mut Numbers::number) } else { Ok(vec![numbers.number()?]) }
+        })?;
+        arrays.push(Array { name, line, rows });
+        emptied.extend((line..numbers.line).map(|_| '\n'));
+        emptied.push(']');
+        (rest, line) = (numbers.rest, numbers.line);
+    }
+    Ok((arrays, emptied))
 }
 
-fn piece(element: &[TokenTree]) -> Result<[f64; 4], Refusal> {
-    let [TokenTree::Group(group)] = element else {
-        let span = element.first().map_or(Span::call_site(), TokenTree::span);
-        return Err(Refusal::at(span, "expected an array"));
-    };
-    let numbers = numbers(group)?;
-    numbers.try_into().map_err(|_| Refusal::at(group.span(), "a piece has four coefficients"))
+/// The name of the constant array that a line begins with, and where its elements start.
+fn array_at(line: &str) -> Option<(&str, usize)> {
+    let (name, rest) = line.strip_prefix("const ")?.split_once(": ")?;
+    let is_of_table = name.starts_with("KNOTS_") || name.starts_with("PIECES_");
+    let start = line.len() - rest.len() + rest.find("= [")? + "= [".len();
+    is_of_table.then_some((name, start))
 }
 
-/// A decimal with its sign.
-fn number(element: &[TokenTree], around: Span) -> Result<f64, Refusal> {
-    let (sign, literal) = match element {
-        [TokenTree::Punct(mark), TokenTree::Literal(literal)] if mark.as_char() == '-' => (-1.0, literal),
-        [TokenTree::Literal(literal)] => (1.0, literal),
-        _ => {
-            let span = element.first().map_or(around, TokenTree::span);
-            return Err(Refusal::at(span, "expected a decimal"));
+/// What is left of a list of numbers.
+struct Numbers<'t> {
+    rest: &'t str,
+    line: usize,
+}
+
+impl Numbers<'_> {
+    /// Whether a character comes next, after blanks; it is passed over.
+    fn takes(&mut self, wanted: char) -> bool {
+        let trimmed = self.rest.trim_start_matches([' ', '\n']);
+        let blanks = &self.rest[..self.rest.len() - trimmed.len()];
+        self.line += blanks.bytes().filter(|&byte| byte == b'\n').count();
+        self.rest = trimmed.strip_prefix(wanted).unwrap_or(trimmed);
+        self.rest.len() < trimmed.len()
+    }
+
+    /// Elements with commas between them, up to the bracket that closes them.
+    fn list<T>(
+        &mut self,
+        element: &mut impl FnMut(&mut Self) -> Result<T, Refusal>,
+    ) -> Result<Vec<T>, Refusal> {
+        let mut elements = Vec::new();
+        while !self.takes(']') {
+            elements.push(element(self)?);
+            if !self.takes(',') && !self.rest.starts_with(']') {
+                return Err(Refusal::new(self.line, "expected `,` or `]`"));
+            }
         }
-    };
-    let text = literal.to_string();
-    let is_float = text.contains(['.', 'e']);
-    let value = text.parse::<f64>().ok().filter(|value| is_float && value.is_finite());
-    value
-        .map(|value| sign * value)
-        .ok_or_else(|| Refusal::at(literal.span(), format!("`{text}` is no decimal")))
+        Ok(elements)
+    }
+
+    /// A decimal with its sign.
+    fn number(&mut self) -> Result<f64, Refusal> {
+        self.takes('\n');
+        let end = self.rest.find([' ', '\n', ',', ']']).unwrap_or(self.rest.len());
+        let (text, rest) = self.rest.split_at(end);
+        let is_decimal = text.contains(['.', 'e'])
+            && text.bytes().all(|byte| byte.is_ascii_digit() || b"-.e".contains(&byte));
+        let value = text.parse::<f64>().ok().filter(|value| is_decimal && value.is_finite());
+        self.rest = rest;
+        value.ok_or_else(|| Refusal::new(self.line, "expected a decimal"))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The arrays of a text and, where they are of numbers, the numbers.
-    fn read(text: &str) -> Vec<(String, Option<Vec<f64>>)> {
-        let tokens: TokenStream = text.parse().unwrap();
-        arrays(tokens).into_iter().map(|(name, array)| (name, numbers(&array).ok())).collect()
-    }
-
     #[test]
-    fn arrays_are_read_number_for_number() {
-        let found = read(
-            "/// Times.\nconst A: [f64; 3] = [0.0, -1e-3, 2.5]; const B: [f64; 0] = []; fn f() { [1.0] }",
-        );
-        let expected = [("A".to_owned(), Some(vec![0.0, -1e-3, 2.5])), ("B".to_owned(), Some(vec![]))];
+    fn arrays_are_read_number_for_number_and_emptied() {
+        let text = "/// Times.\nconst KNOTS_0: [f64; 3] = [0.0, -1e-3,\n    2.5,\n];\nconst B: [f64; 1] = [1.0];\n\
+                    const PIECES_0: [[f64; 2]; 1] = [[1.0, 2.0]]; fn f() {}\n";
+        let (found, emptied) = arrays(text).unwrap();
+        let expected = [
+            Array { name: "KNOTS_0", line: 2, rows: vec![vec![0.0], vec![-1e-3], vec![2.5]] },
+            Array { name: "PIECES_0", line: 6, rows: vec![vec![1.0, 2.0]] },
+        ];
         assert_eq!(found, expected);
+        let rest = "/// Times.\nconst KNOTS_0: [f64; 3] = [\n\n];\nconst B: [f64; 1] = [1.0];\n\
+                    const PIECES_0: [[f64; 2]; 1] = []; fn f() {}\n";
+        assert_eq!(emptied, rest);
     }
 
     #[test]
     fn what_is_no_decimal_is_refused() {
-        for element in ["1", "--1.0", "+1.0", "1.0 + 2.0", "1.0f32", "x", "[1.0]", "", "1.0 1.0", "inf"] {
-            let text = format!("const A: [f64; 2] = [0.5, {element}, 1.5];");
-            assert_eq!(read(&text), [("A".to_owned(), None)], "{element}");
+        for element in [
+            "1",
+            "--1.0",
+            "+1.0",
+            "1.0 + 2.0",
+            "1.0f32",
+            "x",
+            "[[1.0]]",
+            "",
+            "1.0 1.0",
+            "inf",
+            "1.0 /* */",
+            "1e999",
+        ] {
+            let text = format!("const KNOTS_0: [f64; 3] = [0.5, {element}, 1.5];");
+            assert!(arrays(&text).is_err(), "{element}");
         }
+        assert!(arrays("const KNOTS_0: [f64; 3] = [0.5, 1.5").is_err());
     }
 }

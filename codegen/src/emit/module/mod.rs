@@ -7,6 +7,7 @@ mod mechanism;
 mod ode;
 mod partition;
 mod ports;
+mod tables;
 mod variables;
 mod writer;
 
@@ -52,7 +53,8 @@ pub fn write(
     let sheet = Sheet::of(equations, &module.functions);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
-    let code = format!("{}\n{}", sheet.head(file_name), prettyplease::unparse(&file));
+    let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);
+    let code = format!("{}\n{text}", sheet.head(file_name));
     Text { code, constants, sheet }
 }
 

@@ -1,7 +1,8 @@
 //! What the parts of a module are written from, and how a function of it is written.
 
+use super::tables;
 use crate::emit::data_sheet::printable;
-use crate::emit::literals::{Literals, float};
+use crate::emit::literals::Literals;
 use crate::emit::tokens::{self, Body, ident};
 use crate::equations::Equations;
 use crate::expr::graph::ExprId;
@@ -17,7 +18,7 @@ fn table_of(symbol: &Symbol) -> Option<usize> {
 }
 
 fn table_names(table: usize) -> (Ident, Ident) {
-    (ident(&format!("KNOTS_{table}")), ident(&format!("PIECES_{table}")))
+    (ident(&tables::knots_name(table)), ident(&tables::pieces_name(table)))
 }
 
 /// Binds value and derivatives of a table's curve.
@@ -52,20 +53,17 @@ impl ModuleWriter<'_> {
         Operations::count(&self.equations.graph, roots)
     }
 
-    /// Knots and pieces of each table.
+    /// Knots and pieces of each table, without their numbers.
     pub fn tables_of_motions(&self) -> TokenStream {
         let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
             let (knots, pieces) = table_names(table);
             let (n_knots, n_pieces) = (tokens::index(spline.knots.len()), tokens::index(spline.pieces.len()));
-            let times = spline.knots.iter().map(|&t| float(t));
-            let coefficients = spline.pieces.iter().map(|piece| piece.map(float));
-            let coefficients = coefficients.map(|c| quote! { [#(#c),*] });
             let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
             quote! {
                 #[doc = #doc]
-                const #knots: [f64; #n_knots] = [#(#times),*];
+                const #knots: [f64; #n_knots] = [];
                 /// Polynomials between them, from each point's own time.
-                const #pieces: [[f64; 4]; #n_pieces] = [#(#coefficients),*];
+                const #pieces: [[f64; 4]; #n_pieces] = [];
             }
         });
         tables.collect()

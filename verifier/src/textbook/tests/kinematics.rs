@@ -1,8 +1,8 @@
 //! Φ and its derivatives, coordinates and their rates, prescribed motions.
 
 use super::support::{
-    accelerations, assert_close, at, derivative, dot, for_each_motion, for_each_state, later, normalise,
-    raft, random_point,
+    accelerations, assert_close, at, dense, derivative, dot, for_each_motion, for_each_state, later,
+    normalise, raft, random_point,
 };
 use crate::point::Point;
 use crate::textbook::linear::Vector;
@@ -110,7 +110,12 @@ fn the_model_says_the_same_of_phi_phi_pi_and_nu() {
             near[turn.joint][turn.coordinate] = *point.turn_reference(model, place);
         }
         let kept = |values: &[f64]| -> Vec<f64> {
-            values.iter().zip(&textbook.is_kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
+            values
+                .iter()
+                .zip(textbook.blocks.iter().flat_map(|block| &block.is_kept))
+                .filter(|(_, kept)| **kept)
+                .map(|(value, _)| *value)
+                .collect()
         };
         let phi = evaluation.phi().expect("Φ");
         assert_close(what, &phi[..phi.len() - n], &kept(kinematics.phi(q, &near).as_slice()), ROUNDING);
