@@ -321,6 +321,11 @@ impl JointKind {
     pub fn carries(self) -> bool {
         self != Self::Rod
     }
+
+    /// Whether the joint carries a body and its coordinates say how the body is turned.
+    pub(crate) fn turns(self) -> bool {
+        self.carries() && self != Self::PointOnLine
+    }
 }
 
 impl Model {

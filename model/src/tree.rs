@@ -49,12 +49,12 @@ impl Tree {
     /// on over the first point on a line of the page that leads to another body, and only where there is none from the
     /// first body that a rod ties to one that is reached.
     pub fn of(model: &Model) -> Self {
-        Self::along(model, |_| true)
+        Self::along(model, |joint| u8::from(!model.joints[joint].kind.turns()))
     }
 
-    /// The same, but joints that are not preferred are followed, one by one in the order of the page, only where no other
-    /// leads on.
-    pub(crate) fn along(model: &Model, is_preferred: impl Fn(usize) -> bool) -> Self {
+    /// The same with another order of the joints: those of rank zero are walked breadth first; the others are followed one by one, lower
+    /// ranks first, only where none of a lower rank leads on.
+    pub(crate) fn along(model: &Model, rank: impl Fn(usize) -> u8) -> Self {
         let mut walk = Walk::of(model);
         for (body, support) in model.bodies.iter().map(|body| body.support).enumerate() {
             match support {
@@ -64,13 +64,9 @@ impl Tree {
                 Support::Moving => {}
             }
         }
-        let turns = |kind: JointKind| kind.carries() && kind != JointKind::PointOnLine;
         loop {
-            walk.follow_all(|joint| turns(model.joints[joint].kind) && is_preferred(joint));
-            let led = walk.follow_one(turns)
-                || walk.follow_one(|kind| kind == JointKind::PointOnLine)
-                || walk.float_on_rod();
-            if !led {
+            walk.follow_all(|joint| model.joints[joint].kind.carries() && rank(joint) == 0);
+            if !(walk.follow_one(&rank) || walk.float_on_rod()) {
                 return walk.finish();
             }
         }
@@ -123,9 +119,9 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// Whether a body could be hung on the first joint of some kinds that leads to one.
-    fn follow_one(&mut self, of: impl Fn(JointKind) -> bool) -> bool {
-        let next = self.ways(of).next();
+    /// Whether a body could be hung on the first joint, by rank and page, that leads to one.
+    fn follow_one(&mut self, rank: impl Fn(usize) -> u8) -> bool {
+        let next = self.ways(JointKind::carries).min_by_key(|&(joint, ..)| rank(joint));
         if let Some((joint, parent, body)) = next {
             self.hang(joint, parent, body);
         }

@@ -19,19 +19,41 @@ const SCATTER: f64 = 0.05;
 /// Moves below this (rad or parts of the size) are not worth telling.
 const MOVED: f64 = 1e-9;
 
-/// The start of a mechanism whose trees alone do not place it.
+/// The start of a mechanism whose trees alone do not place it, from the first guess from which it closes.
 pub(super) fn assemble(model: &Model) -> Result<Start, AssemblyError> {
-    let (kinematics, scales) = (Kinematics::at(model, 0.0), Scales::of(model));
     let guesses = guesses(model);
-    // What the page says of joints is heeded as far as it can be: joints that it tells nothing of close the loops.
-    let tree = &Tree::along(model, |joint| guesses[joint].is_told());
-    let guessed = Walk::of(model, tree, kinematics.joints(), &guesses, roots(model, tree));
+    let [first, second] = trees(model, &guesses);
+    let start = assembled(model, &guesses, &first);
+    if start.is_ok() || second.links == first.links {
+        return start;
+    }
+    assembled(model, &guesses, &second).or(start)
+}
+
+/// The trees along which bodies may be guessed. What the page says of joints is heeded as far as it can be: joints that it tells nothing
+/// of close the loops. Which is the better guess of a body that only such joints and points on lines hold, the joint's zero or the
+/// body's own orientation, nothing tells.
+fn trees(model: &Model, guesses: &[Guess]) -> [Tree; 2] {
+    let ranked = |untold_turns: u8, untold_lines: u8| {
+        Tree::along(model, |joint| match (model.joints[joint].kind.turns(), guesses[joint].is_told()) {
+            (true, true) => 0,
+            (true, false) => untold_turns,
+            (false, true) => 2,
+            (false, false) => untold_lines,
+        })
+    };
+    [ranked(1, 2), ranked(4, 3)]
+}
+
+fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, AssemblyError> {
+    let (kinematics, scales) = (Kinematics::at(model, 0.0), Scales::of(model));
+    let guessed = Walk::of(model, tree, kinematics.joints(), guesses, roots(model, tree));
     check_finite(model, &tree.links, &guessed.states)?;
-    let guess = configuration(&kinematics, tree, &guesses, &guessed);
-    let closed = Closing { model, kinematics: &kinematics, scales: &scales }.positions(&guesses, &guess)?;
+    let guess = configuration(&kinematics, tree, guesses, &guessed);
+    let closed = Closing { model, kinematics: &kinematics, scales: &scales }.positions(guesses, &guess)?;
     branch::check(model, &kinematics, &guess, &closed)?;
 
-    let (placed, states) = settled(model, tree, &guesses, &guessed.states, &closed);
+    let (placed, states) = settled(model, tree, guesses, &guessed.states, &closed);
     let walk = Walk::of(model, tree, kinematics.joints(), &placed, states);
     let (q, from) = walk.layout();
     let at = Configuration { near: kinematics.coordinates(&q, &closed.near), q };

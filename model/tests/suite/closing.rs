@@ -481,3 +481,49 @@ fn a_symmetric_guess_is_left() {
         let _ = assembled(&model);
     }
 }
+
+/// A bead on a wire that a joint ties to an arm, of which joint nothing is told.
+const BEAD: &str = r#"
+format = 1
+name = "bead"
+[[body]]
+name = "ground"
+fixed = true
+[[body]]
+name = "arm"
+mass = 1
+inertia = [1, 1, 1]
+[[body]]
+name = "bead"
+mass = 1
+inertia = [1, 1, 1]
+[[joint]]
+name = "hinge"
+kind = "revolute"
+first = { body = "ground", point = [0, -1.2, 0], axis = [3, 1, 2], zero = [1, 0, 0] }
+second = { body = "arm", axis = [3, 1, 2], zero = [1, 0, 0] }
+[[joint]]
+name = "wire"
+kind = "point_on_line"
+first = { body = "ground", axis = [0, 1, 0], zero = [1, 2, 2] }
+second = { body = "bead", point = [1, 0, 0] }
+[[joint]]
+name = "tie"
+kind = "spherical"
+first = { body = "arm", point = [-0.29, -0.72, 0.99] }
+second = { body = "bead", point = [1.7327185555934046, -2.1215155037235207, -0.44332008152834645] }
+[[coupler]]
+name = "coupler"
+first = { joint = "wire", coordinate = "displacement" }
+second = { joint = "hinge", coordinate = "angle" }
+ratio = 0.5
+offset = 1.57
+"#;
+
+/// Nothing tells how the bead is turned: the zero of the tie is as good a guess as the bead's own orientation, and where one is on the wrong
+/// branch the other is taken.
+#[test]
+fn a_guess_from_which_it_does_not_close_gives_way_to_the_other() {
+    let model = read("bead", BEAD).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    check(&model, &assembled(&model));
+}

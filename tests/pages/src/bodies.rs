@@ -35,7 +35,6 @@ impl Page {
             Hold::Constrained => format!("fixed = \"constrained\"\n{}{place}", self.solid()),
             Hold::Driven => format!("{place}{}", self.prescribed()),
             Hold::Free => {
-                self.freedoms += 6;
                 let velocity = self.dice.point();
                 let velocity = self.tunables(velocity);
                 format!("free = true\n{}{place}velocity = {velocity}\n{}", self.solid(), self.spin())
@@ -69,7 +68,7 @@ impl Page {
         self.bodies.push((Hold::Joint, text));
         self.roots.push(self.roots[parent]);
         self.held.push(if kind.name == "rod" { child } else { self.held[parent] });
-        self.freedoms += kind.freedoms;
+        *self.freedoms.entry(self.roots[parent]).or_default() += kind.freedoms;
         self.joint(kind, [parent, child], has_spin);
     }
 
@@ -100,7 +99,8 @@ impl Page {
             text += &format!("friction = {}\n", self.positive());
         }
         let starts = self.starts(kind, has_spin);
-        self.joints.push(Joint { kind, text, starts, taken: Vec::new(), following: Vec::new() });
+        let root = self.roots[parent];
+        self.joints.push(Joint { kind, root, text, starts, taken: Vec::new(), following: Vec::new() });
     }
 
     /// The ends' axes and zero directions.

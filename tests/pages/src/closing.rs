@@ -19,12 +19,12 @@ const SMALL: f64 = 1e-6;
 pub struct Closing {
     pub kind: Kind,
     length: f64,
-    ends: [End; 2],
+    pub ends: [End; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
-struct End {
-    body: usize,
+pub struct End {
+    pub body: usize,
     point: Vector,
     /// Axis and zero direction, where this end has them.
     frame: Option<[Vector; 2]>,
@@ -78,7 +78,7 @@ impl Closing {
     }
 
     /// The joint for the page, the bodies being where they are.
-    pub fn joint(&self, places: &[Place]) -> Joint {
+    pub fn joint(&self, root: usize) -> Joint {
         let mut text = format!("kind = {:?}\n", self.kind.name);
         if self.kind.name == "rod" {
             text += &format!("length = {:?}\n", self.length);
@@ -88,16 +88,7 @@ impl Closing {
             let frame = frame.map_or(String::new(), |[axis, zero]| format!(", axis = {axis}, zero = {zero}"));
             text += &format!("{key} = {{ body = \"b{body}\", point = {}{frame} }}\n", list(&printed(point)));
         }
-        // Bodies may be placed along this joint as well as along those of the tree.
-        let [a, b] = self.ends.map(|end| places[end.body]);
-        let relative = a.relative(&b).map(|e| format!("{e:?}"));
-        let starts = match self.kind.name {
-            "spherical" => vec![("orientation", list(&relative))],
-            // Its second axis was put across the plane of the first body's axis and zero direction.
-            "universal" => vec![("first_angle_deg", "90".to_owned())],
-            _ => Vec::new(),
-        };
-        Joint { kind: self.kind, text, starts, taken: Vec::new(), following: Vec::new() }
+        Joint { kind: self.kind, root, text, starts: Vec::new(), taken: Vec::new(), following: Vec::new() }
     }
 
     /// What the joint holds at zero, or at its length.

@@ -1,7 +1,7 @@
 //! What ties the tree's coordinates: drivers, couplers, and joints that close loops. Loops are closed where the tree already is, so
 //! that a consistent start exists.
 
-use crate::closing::{Closing, REGULAR};
+use crate::closing::Closing;
 use crate::dice::value;
 use crate::page::{KINDS, Page};
 use crate::vector::Place;
@@ -52,16 +52,23 @@ impl Page {
 
     /// A coordinate that nothing prescribes, if there is one and enough ways to move remain without it.
     fn free_coordinate(&mut self) -> Option<(usize, &'static str)> {
-        let free: Vec<_> =
-            self.coordinates().into_iter().filter(|(j, c)| !self.joints[*j].taken.contains(c)).collect();
-        (!free.is_empty() && self.freedoms > usize::from(self.is_closed))
-            .then(|| free[self.dice.below(free.len())])
+        let least = usize::from(self.is_closed);
+        let is_free = |(joint, coordinate): &(usize, &str)| {
+            let joint = &self.joints[*joint];
+            !joint.taken.contains(coordinate) && self.freedoms[&joint.root] > least
+        };
+        let free: Vec<_> = self.coordinates().into_iter().filter(is_free).collect();
+        (!free.is_empty()).then(|| free[self.dice.below(free.len())])
     }
 
     fn take(&mut self, joint: usize, coordinate: &'static str) {
         self.joints[joint].taken.push(coordinate);
         self.joints[joint].following.push(coordinate);
-        self.freedoms -= 1;
+        *self.freedoms_of(self.joints[joint].root) -= 1;
+    }
+
+    fn freedoms_of(&mut self, root: usize) -> &mut usize {
+        self.freedoms.get_mut(&root).expect("a tree that has joints")
     }
 
     /// All joint coordinates.
@@ -87,8 +94,9 @@ impl Page {
                 self.closing(&places).filter(|closing| closing.is_regular(&model, &places, &motions))
             });
             if let Some(closing) = closed {
-                self.freedoms -= 6 - closing.kind.freedoms;
-                self.joints.push(closing.joint(&places));
+                let root = self.roots[closing.ends[0].body];
+                *self.freedoms_of(root) -= 6 - closing.kind.freedoms;
+                self.joints.push(closing.joint(root));
             }
         }
     }
@@ -106,7 +114,7 @@ impl Page {
         let mut vector = || [(); 3].map(|()| (100.0 * self.dice.between(-1.0, 1.0)).round() / 100.0);
         let (points, axis, zero) = ([vector(), vector()], vector(), vector());
         let is_possible = is_possible && (name == "rod" || self.held[a] == self.held[b]);
-        (is_possible && self.freedoms > 6 - kind.freedoms)
+        (is_possible && self.freedoms.get(&self.roots[a]).is_some_and(|free| *free > 6 - kind.freedoms))
             .then(|| Closing::between(kind, bodies, places, points, [axis, zero]))?
     }
 
@@ -154,13 +162,16 @@ fn unit(p: [f64; 4]) -> [f64; 4] {
     p.map(|e| e / length)
 }
 
-/// The motions that the rows of a tree leave free, velocities of mass centres and w' of its bodies with coordinates.
+/// Singular values of rows below this are zero but for rounding.
+const FREE: f64 = 1e-6;
+
+/// The motions that the rows so far leave free, velocities of mass centres and w' of its bodies with coordinates.
 fn free_motions(model: &Model) -> Vec<Vec<f64>> {
     let start = model.assemble().unwrap_or_else(|error| panic!("{}: {error}", model.name));
     let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
     let jacobian = Kinematics::at(model, 0.0).jacobian(&start.q, &near);
     // Of the squared rows, whose singular vectors are as many as there are columns.
     let squared = (jacobian.transpose() * jacobian).symmetric_eigen();
-    let free = squared.eigenvalues.iter().enumerate().filter(|(_, value)| **value < REGULAR * REGULAR);
+    let free = squared.eigenvalues.iter().enumerate().filter(|(_, value)| **value < FREE * FREE);
     free.map(|(column, _)| squared.eigenvectors.column(column).iter().copied().collect()).collect()
 }

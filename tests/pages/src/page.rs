@@ -1,6 +1,7 @@
 //! A page in the making.
 
 use crate::dice::{Dice, value};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// A kind of joint: name, coordinates, how many rates are free.
@@ -48,6 +49,8 @@ impl Hold {
 #[derive(Clone, Debug)]
 pub struct Joint {
     pub kind: Kind,
+    /// The tree that it belongs to.
+    pub root: usize,
     pub text: String,
     /// Keys that the start is given by; dropped where a coordinate is prescribed or coupled.
     pub starts: Vec<(&'static str, String)>,
@@ -72,8 +75,9 @@ pub struct Page {
     pub joints: Vec<Joint>,
     /// All the rest.
     pub elements: String,
-    /// How many ways there are to move.
-    pub freedoms: usize,
+    /// How many ways the joints of each tree leave its bodies to move against one another and its root; those of a free root are none of
+    /// them, as nothing can tie it.
+    pub freedoms: BTreeMap<usize, usize>,
     /// Whether something will close loops or couple coordinates: then starts are guesses.
     pub is_closed: bool,
     pub n_drivers: usize,
@@ -97,7 +101,7 @@ impl Page {
             held: Vec::new(),
             joints: Vec::new(),
             elements: String::new(),
-            freedoms: 0,
+            freedoms: BTreeMap::new(),
             is_closed,
             n_drivers: 0,
             n_rough: 0,

@@ -54,14 +54,6 @@ impl Place {
         self.turned_back(difference(point, self.position))
     }
 
-    /// Euler parameters of another body in this one's frame: those of this one, turned round, times the other's.
-    pub fn relative(&self, other: &Place) -> [f64; 4] {
-        let ([e0, e1, e2, e3], [p0, p1, p2, p3]) = (self.orientation, other.orientation);
-        let (e, p) = ([-e1, -e2, -e3], [p1, p2, p3]);
-        let vector = sum(sum(scaled(e0, p), scaled(p0, e)), cross(e, p));
-        [e0 * p0 - dot(e, p), vector[0], vector[1], vector[2]]
-    }
-
     /// The place after a short time with these velocities, of the mass centre and w' in the body's frame.
     pub fn moved(&self, velocities: &[f64], time: f64) -> Place {
         let [e0, e1, e2, e3] = self.orientation;
