@@ -93,7 +93,12 @@ impl Constant {
         if self.radicand.is_one() || other.radicand.is_one() {
             return Self::new(coefficient, &self.radicand * &other.radicand);
         }
-        Self::new(coefficient, BigUint::one()).mul_root(&self.radicand * &other.radicand)
+        // √(g a) √(g b) = g √(a b): as radicands are free of small squares, g is all that there is to take out.
+        let shared = common_divisor(&self.radicand, &other.radicand);
+        let rest = (&self.radicand / &shared) * (&other.radicand / &shared);
+        let (root, rest) = without_square(rest);
+        let outside = Rational::from_integer((shared * root).into());
+        Self::new(product(&coefficient, &outside), rest)
     }
 
     /// `1 / (a √b) = √b / (a b)`; `None` for zero.
@@ -130,15 +135,11 @@ impl Constant {
     }
 
     /// `self · √n` for a rational `self`.
-    fn mul_root(&self, mut n: BigUint) -> Self {
+    fn mul_root(&self, n: BigUint) -> Self {
         if n.is_zero() {
             return Self::integer(0);
         }
-        let mut outside = BigUint::one();
-        let root = n.sqrt();
-        if &root * &root == n {
-            (outside, n) = (root, BigUint::one());
-        }
+        let (mut outside, mut n) = without_square(n);
         for factor in 2..LARGEST_PRIME {
             let square = BigUint::from(factor * factor);
             if square > n {
@@ -152,6 +153,12 @@ impl Constant {
         let outside = Rational::from_integer(BigInt::from_biguint(Sign::Plus, outside));
         Self::new(product(&self.coefficient, &outside), n)
     }
+}
+
+/// `(√n, 1)` if n is a square, else `(1, n)`.
+fn without_square(n: BigUint) -> (BigUint, BigUint) {
+    let root = n.sqrt();
+    if &root * &root == n { (root, BigUint::one()) } else { (BigUint::one(), n) }
 }
 
 /// A product in lowest terms. Its factors are in lowest terms already, so there is nothing to look for but what they have in common
@@ -185,18 +192,22 @@ fn sum(a: &Rational, b: &Rational) -> Rational {
     }
 }
 
-/// The greatest common divisor; `None` for one. By Euclid's algorithm as long as the numbers are large, for which `BigInt` shifts bit
-/// by bit.
+/// The greatest common divisor; `None` for one.
 fn common(a: &BigInt, b: &BigInt) -> Option<BigInt> {
-    let (mut a, mut b) = (Cow::Borrowed(a.magnitude()), Cow::Borrowed(b.magnitude()));
-    let divisor = loop {
+    let divisor = common_divisor(a.magnitude(), b.magnitude());
+    (!divisor.is_one()).then(|| divisor.into())
+}
+
+/// By Euclid's algorithm as long as the numbers are large, for which `BigUint` shifts bit by bit.
+fn common_divisor(a: &BigUint, b: &BigUint) -> BigUint {
+    let (mut a, mut b) = (Cow::Borrowed(a), Cow::Borrowed(b));
+    loop {
         match (a.to_u128(), b.to_u128()) {
-            (Some(a), Some(b)) => break BigInt::from(a.gcd(&b)),
-            _ if b.is_zero() => break BigInt::from(a.into_owned()),
+            (Some(a), Some(b)) => return a.gcd(&b).into(),
+            _ if b.is_zero() => return a.into_owned(),
             _ => (a, b) = (b.clone(), Cow::Owned(&*a % &*b)),
         }
-    };
-    (!divisor.is_one()).then_some(divisor)
+    }
 }
 
 /// `1/2*sqrt(2)`, `-3/10`.
@@ -247,6 +258,9 @@ mod tests {
         assert_eq!(root("0.5").recip(), Some(root("2")));
         assert_eq!(root("2").add(&root("8")), Some(Constant::integer(3).mul(&root("2"))));
         assert_eq!(root("2").add(&root("3")), None);
+        // 1000003 is beyond the primes whose squares are looked for.
+        let [one, other] = ["2000006", "5000015"].map(root);
+        assert_eq!(one.mul(&other), Constant::integer(1_000_003).mul(&root("10")));
     }
 
     #[test]
