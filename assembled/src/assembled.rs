@@ -209,6 +209,10 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
         self.lowered.read_joints(Moment { t, y }, out);
     }
 
+    fn turn_references(&self) -> &[u16] {
+        &self.lowered.turn_readings
+    }
+
     fn n_bodies(&self) -> usize {
         self.lowered.n_bodies()
     }

@@ -37,6 +37,8 @@ pub struct Lowered<T: Number> {
     pub(crate) work: Option<usize>,
     /// The angles whose turn references follow in the state: joint and coordinate.
     pub(crate) turns: Vec<JointCoordinate>,
+    /// Where these angles are among the readings.
+    pub(crate) turn_readings: Vec<u16>,
     pub(crate) start: Vec<T>,
 }
 
@@ -142,6 +144,7 @@ impl<T: Number> Lowered<T> {
             is_driven: model.is_driven(),
             work,
             start: start(model, &turns)?,
+            turn_readings: turns.iter().map(|turn| reading(&joints, turn)).collect(),
             joints,
             turns,
         })
@@ -254,6 +257,13 @@ fn row_info(slots: &[usize], row: &gyro_model::Row) -> RowInfo {
 }
 
 /// Positions, velocities, the work where there is any, and the turn references.
+/// The place of a coordinate's first reading.
+fn reading<T>(joints: &[Joint<T>], of: &JointCoordinate) -> u16 {
+    let before = joints[..of.joint].iter().flat_map(|joint| &joint.readings);
+    let own = &joints[of.joint].readings[..of.coordinate];
+    before.chain(own).map(|reading| reading.n_readings() as u16).sum()
+}
+
 fn start<T: Number>(model: &Model, turns: &[JointCoordinate]) -> Result<Vec<T>, AssemblyError> {
     let start = model.assemble()?;
     let work = model.has_work().then_some(0.0);

@@ -20,7 +20,7 @@ pub use mass_weighted::MassWeighted;
 pub use partition::{Corrected, Direct, Partitioned, Partitioning};
 
 use crate::violation::constraint_violation;
-use crate::{Clearance, Error, Mechanism, Ode, Partition, Real, Scalar};
+use crate::{Clearance, Error, Mechanism, Ode, Partition, Real, Scalar, refer_turns};
 
 /// A system that integrates the maximal state of a mechanism.
 pub trait Maximal: Ode {
@@ -79,7 +79,7 @@ impl<O: Ode> Correction<O> for Uncorrected {
     }
 }
 
-/// No correction of a mechanism, but what it loses is seen, and singular poses are. A library's [`Uncorrected`] knows of no mechanism.
+/// No correction of a mechanism, but what it loses is seen, singular poses are, and turns are kept. A library's [`Uncorrected`] knows of no mechanism.
 #[derive(Clone, Debug)]
 pub struct Watched<M: Mechanism> {
     phi: M::Constraints,
@@ -96,7 +96,8 @@ impl<O: Maximal<Mechanism = M, Scalar: Real>, M> Correction<O> for Watched<M>
 where
     M: Partition<Scalar = O::Scalar, State = O::State>,
 {
-    fn correct(&mut self, _: &O, _: O::Scalar, _: &mut O::State) -> Result<(), Error> {
+    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
+        refer_turns(system.mechanism(), t, y);
         Ok(())
     }
     fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {

@@ -15,14 +15,15 @@
 //! * The state is one flat buffer: seven positions `(r, p)` for each body, then six velocities `(s, w')` for each body;
 //!   then, in mechanisms with non-conservative forces or drivers only, the work that these have done (pages leave it out by
 //!   `count_work = false`); then one *turn reference* for each joint angle on whose continuous value something acts (a spring, a stop, a coupler, a driver). Solvers
-//!   integrate what follows the velocities with the rest and do not correct it.
+//!   integrate what follows the velocities with the rest; corrections leave the work alone and set turn references to their angles.
 //! * Only bodies that move freely have coordinates: those held fixed or moved by prescription are folded into the formulas, the
 //!   latter as functions of time.
 //! * The constraint rows (*joint rows* for short) are those of constrained bodies, joints, couplers and drivers, in the order of
 //!   the model page, redundant ones left out; and then one normalisation `pᵀp − 1` (eq. (12)) for each body. Functions that
 //!   speak of velocities or accelerations have the joint rows only.
-//! * A turn reference ρ has the rate of its angle, so it never strays from it by half a turn; the continuous angle with raw
-//!   sine S and cosine C is `ρ + atan2(S cos ρ − C sin ρ, C cos ρ + S sin ρ)`.
+//! * A turn reference ρ has the rate of its angle; the continuous angle with raw sine S and cosine C is
+//!   `ρ + atan2(S cos ρ − C sin ρ, C cos ρ + S sin ρ)`, as long as ρ has not strayed from it by half a turn. Where nothing is corrected
+//!   ([`Direct`], [`Uncorrected`]) it strays by what steps lose of an angle, and [`refer_turns`] sets it to its angle.
 //! * `Φ_r s + Φ_π' w' = ν` with `ν = −Φ_t`, and `Φ_r s̈ + Φ_π' ẇ' = γ`. The multipliers λ are those of eq. (17), where
 //!   `Φ_qᵀ λ` stands on the left: the reaction on a body is `−Φ_qᵀ λ`.
 //! * `p` is a unit vector wherever `w'` or `π'` is used.
@@ -89,5 +90,5 @@ pub use mechanism::{
 };
 pub use scalar::{Real, Scalar};
 pub use solver::{Control, Solver, Statistics};
-pub use turns::{JointCoordinate, Turns};
+pub use turns::{JointCoordinate, Turns, refer_turns};
 pub use violation::{Violation, violation};

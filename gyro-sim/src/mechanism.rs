@@ -65,6 +65,10 @@ pub trait Mechanism: Ode {
     /// Writes the raw joint coordinates and rates.
     fn read_joints(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Readings);
 
+    /// For each turn reference of the state, which its last elements are, the place of its angle's raw sine among the readings.
+    fn turn_references(&self) -> &[u16] {
+        &[]
+    }
     /// Number of bodies with coordinates.
     fn n_bodies(&self) -> usize;
     /// Number of joints.

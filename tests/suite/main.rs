@@ -10,6 +10,7 @@ mod extreme;
 mod finite_differences;
 mod forces;
 mod four_bar;
+mod gear_trains;
 mod generated_files;
 mod integrators;
 mod joint_jacobian;

@@ -142,6 +142,7 @@ trait Erased<T>: Any + Debug {
     fn clearance(&self, t: T, y: &[T]) -> Option<Clearance<T>>;
     fn phi_q_pattern(&self) -> &[(u16, u16)];
     fn phi_pi_pattern(&self) -> &[(u16, u16)];
+    fn turn_references(&self) -> &[u16];
     fn n_bodies(&self) -> usize;
     fn n_joints(&self) -> usize;
     fn body_name(&self, body: usize) -> &str;
@@ -297,6 +298,9 @@ where
     }
     fn phi_pi_pattern(&self) -> &[(u16, u16)] {
         Equations::phi_pi_pattern(self)
+    }
+    fn turn_references(&self) -> &[u16] {
+        Mechanism::turn_references(self)
     }
     fn n_bodies(&self) -> usize {
         Mechanism::n_bodies(self)
@@ -463,6 +467,9 @@ impl<T: Real + 'static> Mechanism for Engine<T> {
     }
     fn read_joints(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::Readings, t, y, out);
+    }
+    fn turn_references(&self) -> &[u16] {
+        self.mechanism.turn_references()
     }
     fn n_bodies(&self) -> usize {
         self.mechanism.n_bodies()

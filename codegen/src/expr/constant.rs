@@ -194,6 +194,9 @@ mod tests {
         assert_eq!(root("0.5").recip(), Some(root("2")));
         assert_eq!(root("2").add(&root("8")), Some(Constant::integer(3).mul(&root("2"))));
         assert_eq!(root("2").add(&root("3")), None);
+        // 1000003 is beyond the primes whose squares are looked for.
+        let [one, other] = ["2000006", "5000015"].map(root);
+        assert_eq!(one.mul(&other), Constant::integer(1_000_003).mul(&root("10")));
     }
 
     #[test]

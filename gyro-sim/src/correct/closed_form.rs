@@ -2,7 +2,7 @@
 
 use super::{Correction, Maximal, check_finite};
 use crate::violation::constraint_violation;
-use crate::{Error, JointSpace, Real};
+use crate::{Error, JointSpace, Real, refer_turns};
 
 /// Joint coordinates and their rates are kept, and all else follows from them.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
         Self { joints: mechanism.joint_start(), before: mechanism.start(), phi: mechanism.constraints() }
     }
 
-    /// Corrects positions and velocities. Work and turn references, which follow the velocities in the state, are left as they are.
+    /// Corrects positions and velocities. The work, which follows the velocities in the state, is left as it is.
     ///
     /// # Errors
     /// [`Error::NotFinite`] if the state is not finite.
@@ -28,6 +28,7 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
         mechanism.to_maximal(t, &self.joints, y);
         let kept = y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * mechanism.n_bodies());
         kept.for_each(|(element, before)| *element = *before);
+        refer_turns(mechanism, t, y);
         // Angles are continued from these: what is not finite must not stay among them.
         check_finite(t, y.as_ref()).inspect_err(|_| self.joints = mechanism.joint_start())
     }

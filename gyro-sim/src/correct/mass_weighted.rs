@@ -4,7 +4,7 @@ use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finit
 use crate::pivoting;
 use crate::rounding::{is_met, silence};
 use crate::violation::{Violation, constraint_violation, violation};
-use crate::{Clearance, Error, Owner, Partition, Projection, Real, Scalar};
+use crate::{Clearance, Error, Owner, Partition, Projection, Real, Scalar, refer_turns};
 
 /// The nearest state that satisfies the constraints: of all changes that do, the smallest as the masses weigh it, δᵀ M δ, first of the
 /// positions, then of the velocities. What is integrated well, because it moves much mass, is changed least.
@@ -41,6 +41,7 @@ impl<M: Partition + Projection> MassWeighted<M> {
     /// [`Error`], with `y` as it was when the failure was noticed.
     pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         self.correct_positions(mechanism, t, y)?;
+        refer_turns(mechanism, t, y);
         mechanism.velocity_residual(t, y, &mut self.rows);
         if self.is_noise(mechanism, t, y) {
             return check_finite(t, y.as_ref());

@@ -2,7 +2,7 @@
 
 use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, check_time, reach};
 use crate::violation::{Violation, constraint_violation};
-use crate::{Clearance, Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
+use crate::{Clearance, Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage, refer_turns};
 
 /// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
 #[derive(Clone, Debug)]
@@ -99,6 +99,7 @@ impl<M: Partition> Partitioning<M> {
     ) -> Result<(), Error> {
         self.correct_positions(mechanism, t, y)?;
         mechanism.solve_velocities(t, &self.independent, y)?;
+        refer_turns(mechanism, t, y);
         check_finite(t, y.as_ref())
     }
 

@@ -3,7 +3,9 @@
 use super::{Failures, Lanes, are_finite, keep};
 use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS};
 use crate::violation::constraint_violation;
-use crate::{Charted, Corrected, Error, Mechanism, Ode, Owner, Real, Rk4, Scalar, Storage, charts};
+use crate::{
+    Charted, Corrected, Error, Mechanism, Ode, Owner, Real, Rk4, Scalar, Storage, charts, refer_turns,
+};
 
 /// *Direct integration*, of maximal coordinates or, as [`JointForm`](crate::JointForm), of joint coordinates.
 #[derive(Clone, Debug)]
@@ -77,6 +79,7 @@ impl<M: Charted<Scalar: Lanes>> Partitioned<M> {
         self.correct_positions(mechanism, t, y);
         self.direct.before.as_mut().copy_from_slice(y.as_ref());
         mechanism.solve_velocities_on(t, &self.charts, y);
+        refer_turns(mechanism, t, y);
         let failures = &mut self.direct.failures;
         keep(failures.running::<M::Scalar>(), y.as_mut(), self.direct.before.as_ref());
         failures.note_not_finite(t, y.as_ref());

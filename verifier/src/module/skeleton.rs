@@ -4,7 +4,9 @@
 //! leave unread as `ANY_name`.
 
 use crate::joints::JointLayout;
-use gyro_model::{JointKind, Model, Number, Parameter, ParameterRule, RowOwner, RowUnit, Spline, to_f64};
+use gyro_model::{
+    CoordinateKind, JointKind, Model, Number, Parameter, ParameterRule, RowOwner, RowUnit, Spline, to_f64,
+};
 use std::fmt::Display;
 
 /// How the coordinate partition is chosen.
@@ -281,11 +283,32 @@ fn owner(model: &Model, owner: RowOwner) -> String {
 
 /// How many numbers are read off all joints: of an angle three, of a length two, of an orientation seven.
 pub fn n_readings(model: &Model) -> usize {
-    let of_joint = |kind: JointKind| match kind {
+    model.joints.iter().map(|joint| n_readings_of(joint.kind)).sum()
+}
+
+fn n_readings_of(kind: JointKind) -> usize {
+    match kind {
         JointKind::Spherical => 7,
-        _ => kind.coordinates().iter().map(|c| if c.is_angle() { 3 } else { 2 }).sum(),
-    };
-    model.joints.iter().map(|joint| of_joint(joint.kind)).sum()
+        _ => n_readings_of_all(kind.coordinates()),
+    }
+}
+
+fn n_readings_of_all(coordinates: &[CoordinateKind]) -> usize {
+    coordinates.iter().map(|c| if c.is_angle() { 3 } else { 2 }).sum()
+}
+
+/// Where the angle of each turn reference is among the readings.
+fn turn_references(model: &Model) -> String {
+    let turns = model.turn_references();
+    let places = turns.iter().map(|turn| {
+        let before: usize = model.joints[..turn.joint].iter().map(|joint| n_readings_of(joint.kind)).sum();
+        let own = &model.joints[turn.joint].kind.coordinates()[..turn.coordinate];
+        (before + n_readings_of_all(own)).to_string()
+    });
+    if turns.is_empty() {
+        return String::new();
+    }
+    format!("fn turn_references(&self) -> &[u16] {{ &[{}] }}", list(places))
 }
 
 fn mechanism(model: &Model, name: &str, is_tree: bool) -> String {
@@ -339,11 +362,13 @@ fn descriptions(model: &Model) -> String {
         "fn work(&self, _y: &Self::State) -> T { T::constant(0.0) }".to_owned()
     };
     format!(
-        "fn n_bodies(&self) -> usize {{ {} }}
+        "{}
+        fn n_bodies(&self) -> usize {{ {} }}
         fn n_joints(&self) -> usize {{ {} }}
         {} {} {} {} {}
         fn size(&self) -> T {{ T::constant({:?}) }}
         {work}",
+        turn_references(model),
         slots.len(),
         model.joints.len(),
         name_lookup("body_name", "body", "BODIES", &bodies),

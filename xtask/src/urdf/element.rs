@@ -15,8 +15,13 @@ pub(super) struct Findings<'d> {
 impl Findings<'_> {
     /// A mistake at an element.
     pub(super) fn problem(&mut self, node: Node<'_, '_>, words: &str) {
-        let line = format!("{}:{}: {}: {words}", self.file, self.line(node), title(node));
+        let line = self.at(node, words);
         self.problems.push(line);
+    }
+
+    /// Words on an element, with its place.
+    pub(super) fn at(&self, node: Node<'_, '_>, words: &str) -> String {
+        format!("{}:{}: {}: {words}", self.file, self.line(node), title(node))
     }
 
     /// Something at an element that the page does not have.

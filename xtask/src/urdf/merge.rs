@@ -1,7 +1,8 @@
 //! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to a root that does not float is ground.
+//! Where a link's inertia is no rigid body's (a point's, a rod's) all links that are fixed to one another there become one body.
 
-use super::robot::{Joint, Kind, Link, Robot};
-use nalgebra::IsometryMatrix3;
+use super::robot::{Inertial, Joint, Kind, Link, Robot, unphysical};
+use nalgebra::{IsometryMatrix3, Matrix3, Translation3, Vector3};
 
 /// What the root link is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,13 +16,21 @@ pub(super) enum Root {
 /// Which body each link is part of.
 #[derive(Debug)]
 pub(super) struct Merged {
-    /// The link that each body takes name, mass and inertia from; the first body is the root's, the others
-    /// have the order of the file.
-    pub(super) bodies: Vec<usize>,
+    /// The first body is the root's, the others have the order of the file.
+    pub(super) bodies: Vec<Body>,
     /// For each link its place.
     pub(super) places: Vec<Place>,
     /// Which links are no bodies of their own.
     pub(super) remarks: Vec<String>,
+}
+
+/// What links became.
+#[derive(Debug)]
+pub(super) struct Body {
+    /// The link that it is named after.
+    pub(super) link: usize,
+    /// Mass and inertia; `origin` is the body's frame in that of the link. `None` for the ground.
+    pub(super) inertial: Option<Inertial>,
 }
 
 /// Where a link's frame is.
@@ -45,6 +54,7 @@ pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec
     let mut merging = Merging {
         robot,
         root,
+        is_one_body: vec![false; robot.links.len()],
         places: vec![None; robot.links.len()],
         bodies: Vec::new(),
         remarks: Vec::new(),
@@ -54,20 +64,25 @@ pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec
     for (joint, link) in order.iter().skip(1) {
         merging.place(&robot.joints[*joint], *link, file);
     }
-    let Merging { places, bodies, remarks, problems, .. } = merging;
+    let Merging { places, mut bodies, remarks, mut problems, .. } = merging;
+    if problems.is_empty() && root == Root::Fixed && bodies.len() == 1 {
+        let name = &robot.links[order[0].1].name;
+        problems
+            .push(format!("{file}: all links are fixed to the root link `{name}`: --floating lets it move"));
+    }
     if !problems.is_empty() {
         return Err(problems);
     }
-    let mut sorted = bodies.clone();
-    if let Some(others) = sorted.get_mut(1..) {
-        others.sort_unstable();
+    let links: Vec<usize> = bodies.iter().map(|body| body.link).collect();
+    if let Some(others) = bodies.get_mut(1..) {
+        others.sort_unstable_by_key(|body| body.link);
     }
     let renumbered = |place: Place| {
-        let link = bodies[place.body];
-        Place { body: sorted.iter().position(|other| *other == link).unwrap_or(0), ..place }
+        let link = links[place.body];
+        Place { body: bodies.iter().position(|body| body.link == link).unwrap_or(0), ..place }
     };
     let places = places.into_iter().flatten().map(renumbered).collect();
-    Ok(Merged { bodies: sorted, places, remarks })
+    Ok(Merged { bodies, places, remarks })
 }
 
 /// Links from the root to the leaves, each with the joint that carries it (any number for the root).
@@ -83,6 +98,7 @@ fn order(file: &str, robot: &Robot) -> Result<Vec<(usize, usize)>, Vec<String>> 
     }
     let roots: Vec<usize> = (0..robot.links.len()).filter(|link| carriers(*link).next().is_none()).collect();
     match roots.as_slice() {
+        [] if robot.links.is_empty() => problems.push(format!("{file}: the robot has no links")),
         [] => problems.push(format!("{file}: no link is a root: every link is the child of a joint")),
         [_] => {}
         [_, others @ ..] => {
@@ -116,8 +132,10 @@ fn order(file: &str, robot: &Robot) -> Result<Vec<(usize, usize)>, Vec<String>> 
 struct Merging<'r> {
     robot: &'r Robot,
     root: Root,
+    /// For each link whether it is part of a body with all that is fixed to it.
+    is_one_body: Vec<bool>,
     places: Vec<Option<Place>>,
-    bodies: Vec<usize>,
+    bodies: Vec<Body>,
     remarks: Vec<String>,
     problems: Vec<String>,
 }
@@ -127,7 +145,7 @@ impl Merging<'_> {
     fn place_root(&mut self, link: usize, at_origin: Place, file: &str) {
         self.places[link] = match self.root {
             Root::Fixed => {
-                self.bodies.push(link);
+                self.bodies.push(Body { link, inertial: None });
                 Some(at_origin)
             }
             Root::Floating => {
@@ -143,13 +161,14 @@ impl Merging<'_> {
         let (is_fixed, has_mass) = (joint.kind == Kind::Fixed, self.robot.links[link].inertial.is_some());
         let name = &self.robot.links[link].name;
         let merged = Place { body: parent.body, pose: parent.pose * joint.origin, zero };
-        self.places[link] = if is_fixed && (self.is_ground(parent) || !has_mass) {
-            let carrier = &self.robot.links[self.bodies[parent.body]].name;
+        let is_named_after = |body: &Body| body.link == link;
+        self.places[link] = if is_fixed && self.bodies.iter().any(is_named_after) {
+            // A link without mass before it has taken it for its body.
+            Some(merged)
+        } else if is_fixed && (self.is_ground(parent) || !has_mass || self.is_one_body[link]) {
+            let carrier = &self.robot.links[self.bodies[parent.body].link].name;
             let mass = if has_mass { ", its mass with it" } else { "" };
             self.remarks.push(format!("link `{name}` is fixed to `{carrier}` and became a part of it{mass}"));
-            Some(merged)
-        } else if is_fixed && self.bodies.contains(&link) {
-            // A link without mass before it has taken it for its body.
             Some(merged)
         } else {
             self.first_of_body(link, file).map(|(body, pose)| Place { body, pose, zero })
@@ -178,9 +197,48 @@ impl Merging<'_> {
             );
             self.remarks.push(words);
         }
-        let centre = self.robot.links[massive].inertial.as_ref()?.origin;
-        self.bodies.push(massive);
+        let inertial = self.inertial(link, (massive, pose))?;
+        let centre = inertial.origin;
+        self.bodies.push(Body { link: massive, inertial: Some(inertial) });
         Some((self.bodies.len() - 1, (pose * centre).inverse()))
+    }
+
+    /// Mass and inertia of a body whose first link is `link`, in the frame of the link that it is named after: that link's alone, or, where
+    /// one of the links that are fixed to one another has an inertia that is none, those of all of them.
+    fn inertial(&mut self, link: usize, (massive, pose): (usize, IsometryMatrix3<f64>)) -> Option<Inertial> {
+        let robot = self.robot;
+        let mut parts = Vec::new();
+        self.add_parts(link, IsometryMatrix3::identity(), &mut parts);
+        let is_part =
+            |part: &(usize, IsometryMatrix3<f64>)| Some((robot.links[part.0].inertial.as_ref()?, part.1));
+        let massive_parts: Vec<_> = parts.iter().filter_map(is_part).collect();
+        let flaws: Vec<_> = massive_parts.iter().filter_map(|(inertial, _)| inertial.flaw.clone()).collect();
+        let own = robot.links[massive].inertial.as_ref()?;
+        if flaws.is_empty() {
+            return Some(own.clone());
+        }
+        parts.iter().for_each(|(part, _)| self.is_one_body[*part] = true);
+        let to_massive = pose.inverse();
+        let frames = massive_parts.iter().map(|(part, pose)| (*part, to_massive * pose * part.origin));
+        let whole = sum(own, &frames.collect::<Vec<_>>());
+        if unphysical(whole.inertia).is_some() {
+            self.problems.extend(flaws);
+            return None;
+        }
+        Some(whole)
+    }
+
+    /// A link and all that is fixed to it, with their frames in the first link's.
+    fn add_parts(
+        &self,
+        link: usize,
+        pose: IsometryMatrix3<f64>,
+        parts: &mut Vec<(usize, IsometryMatrix3<f64>)>,
+    ) {
+        parts.push((link, pose));
+        for joint in self.robot.joints.iter().filter(|j| j.parent == link && j.kind == Kind::Fixed) {
+            self.add_parts(joint.child, pose * joint.origin, parts);
+        }
     }
 
     /// The first link with mass among a link and what is fixed to it by way of links without mass, and its frame in the
@@ -195,4 +253,31 @@ impl Merging<'_> {
             Some((massive, joint.origin * pose))
         })
     }
+}
+
+/// Mass and inertia of parts together, each with its frame at its mass centre; in the axes of the first one.
+fn sum(first: &Inertial, parts: &[(&Inertial, IsometryMatrix3<f64>)]) -> Inertial {
+    let mass: f64 = parts.iter().map(|(part, _)| part.mass).sum();
+    let moment: Vector3<f64> = parts.iter().map(|(part, at)| at.translation.vector * part.mass).sum();
+    let centre = moment / mass;
+    let axes = first.origin.rotation;
+    let about_centre = |(part, at): &(&Inertial, IsometryMatrix3<f64>)| {
+        let turned = (axes.inverse() * at.rotation).into_inner();
+        let from = axes.inverse() * (at.translation.vector - centre);
+        // Steiner's theorem.
+        turned * tensor(part.inertia) * turned.transpose()
+            + (Matrix3::identity() * from.norm_squared() - from * from.transpose()) * part.mass
+    };
+    let i: Matrix3<f64> = parts.iter().map(about_centre).sum();
+    let inertia = [i.m11, i.m22, i.m33, i.m12, i.m13, i.m23];
+    Inertial {
+        origin: IsometryMatrix3::from_parts(Translation3::from(centre), axes),
+        mass,
+        inertia,
+        flaw: None,
+    }
+}
+
+fn tensor([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }

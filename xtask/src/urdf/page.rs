@@ -1,7 +1,7 @@
 //! The page of a robot as text.
 
 use super::MARK;
-use super::merge::{Merged, Place, Root};
+use super::merge::{Body, Merged, Place, Root};
 use super::names::{Names, snake_case};
 use super::robot::{Inertial, Joint, Kind, Link, Robot};
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
@@ -22,13 +22,13 @@ pub(super) fn write(
 ) -> String {
     let (mut body_names, mut joint_names) = (Names::default(), Names::default());
     let bodies: Vec<String> =
-        merged.bodies.iter().map(|link| body_names.name(&robot.links[*link].name)).collect();
+        merged.bodies.iter().map(|body| body_names.name(&robot.links[body.link].name)).collect();
     let joints: Vec<String> = robot.joints.iter().map(|joint| joint_names.name(&joint.name)).collect();
     for (was, is) in body_names.changed.iter().chain(&joint_names.changed) {
         remarks.push(format!("`{was}` is called `{is}`"));
     }
-    let page = Page { robot, merged, root, bodies, joints };
-    remarks.push(of_root(&robot.links[merged.bodies[0]], root));
+    let page = Page { robot, merged, bodies, joints };
+    remarks.push(of_root(&robot.links[merged.bodies[0].link], root));
     remarks.push("gravity is taken to be 9.81 m/s2 along -z: URDF does not say".to_owned());
     if robot.joints.iter().any(|joint| joint.friction > 0.0) {
         remarks.push(format!("Coulomb friction sets in at {COULOMB_RATE} rad/s or m/s: URDF does not say"));
@@ -57,7 +57,6 @@ fn of_root(link: &Link, root: Root) -> String {
 struct Page<'a> {
     robot: &'a Robot,
     merged: &'a Merged,
-    root: Root,
     /// Names on the page.
     bodies: Vec<String>,
     joints: Vec<String>,
@@ -79,16 +78,14 @@ impl Page<'_> {
     }
 
     fn body(&self, text: &mut String, body: usize) {
-        let link = self.merged.bodies[body];
+        let Body { link, inertial } = &self.merged.bodies[body];
         let _ = write!(text, "\n[[body]]\nname = \"{}\"\n", self.bodies[body]);
-        match &self.robot.links[link].inertial {
-            Some(inertial) if body > 0 || self.root == Root::Floating => {
-                self.moving(text, link, inertial);
-            }
-            _ => text.push_str("fixed = true\n"),
+        match inertial {
+            Some(inertial) => self.moving(text, *link, inertial),
+            None => text.push_str("fixed = true\n"),
         }
         for (index, place) in self.merged.places.iter().enumerate() {
-            if place.body == body && index != link {
+            if place.body == body && index != *link {
                 let name = &self.robot.links[index].name;
                 let (xyz, p) = (vector(&place.pose.translation.vector), euler_parameters(&place.pose));
                 let _ = writeln!(

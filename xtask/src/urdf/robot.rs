@@ -23,13 +23,15 @@ pub(super) struct Link {
     pub(super) inertial: Option<Inertial>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Inertial {
     /// Of the mass centre, in the link's frame.
     pub(super) origin: IsometryMatrix3<f64>,
     pub(super) mass: f64,
     /// Tensor elements xx, yy, zz, xy, xz, yz about the mass centre, in the frame of `origin`.
     pub(super) inertia: [f64; 6],
+    /// Why it is no rigid body's, if so: where it is written, and a cure.
+    pub(super) flaw: Option<String>,
 }
 
 #[derive(Debug)]
@@ -170,26 +172,30 @@ fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Iner
     let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| findings.number(tensor, name));
     let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|name| findings.number_or(tensor, name, 0.0));
     let inertia = [xx?, yy?, zz?, xy?, xz?, yz?];
-    if let Some(words) = unphysical(inertia) {
-        findings.problem(tensor, &words);
-        return None;
-    }
-    Some(Inertial { origin: origin?, mass, inertia })
+    let flaw = unphysical(inertia).map(|words| findings.at(tensor, &words));
+    Some(Inertial { origin: origin?, mass, inertia, flaw })
 }
 
 /// Principal moments that equal the sum of the others to this part are a lamina's, rounded.
 const LAMINA: f64 = 1e-9;
 
-/// Why a tensor is no inertia, if so.
-fn unphysical([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<String> {
-    let mut moments: Vec<f64> =
-        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).symmetric_eigenvalues().iter().copied().collect();
+/// Why a tensor is no inertia, if so, and what to do.
+pub(super) fn unphysical([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<String> {
+    let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let mut moments: Vec<f64> = tensor.symmetric_eigenvalues().iter().copied().collect();
     moments.sort_by(f64::total_cmp);
     if moments[0] <= 0.0 {
-        return Some(format!("the principal moments {moments:?} are not all positive"));
+        return Some(format!(
+            "the principal moments {moments:?} are not all positive: no body has these; write those of the real part (a thin \
+             rod has a small one about itself too)"
+        ));
     }
-    (moments[2] > (moments[0] + moments[1]) * (1.0 + LAMINA))
-        .then(|| format!("of the principal moments {moments:?} the largest exceeds the sum of the others"))
+    (moments[2] > (moments[0] + moments[1]) * (1.0 + LAMINA)).then(|| {
+        format!(
+            "of the principal moments {moments:?} the largest exceeds the sum of the others: no body has these; write \
+             those about the mass centre, in the axes of the <inertial>"
+        )
+    })
 }
 
 fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names: &[&str]) -> Option<Joint> {
@@ -198,11 +204,18 @@ fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names:
     let parent = end(findings, node, "parent", links);
     let child_link = end(findings, node, "child", links);
     let origin = findings.origin(node);
-    let axis = axis(findings, node);
+    let axis = match kind {
+        // URDF: these joints do not use it, and some programs write zeros.
+        Some(Kind::Fixed | Kind::Floating) => Some(Vector3::x()),
+        _ => axis(findings, node),
+    };
     let (damping, friction) = dynamics(findings, node);
-    let mimic = child(node, "mimic").map(|mimic| read_mimic(findings, mimic, names));
-    let mimic = match mimic {
-        Some(mimic) => Some(mimic?),
+    let mimic = match child(node, "mimic") {
+        Some(mimic) if kind == Some(Kind::Fixed) => {
+            findings.remark(mimic, "a fixed joint follows nothing");
+            None
+        }
+        Some(mimic) => Some(read_mimic(findings, mimic, names)?),
         None => None,
     };
     without_counterpart(findings, node);

@@ -84,6 +84,7 @@ impl ModuleWriter<'_> {
         let [n_couplers, n_drivers] = [e.model.couplers.len(), e.model.drivers.len()].map(index);
         let [n_bodies, n_joints, n_rows] = [e.n_slots(), e.model.joints.len(), e.n_rows()].map(index);
         let size = float(e.model.size());
+        let references = self.turn_references();
         let (y, work) = if e.model.has_work() {
             let at = index(13 * e.n_slots());
             (quote! { y }, quote! { y[#at] })
@@ -91,6 +92,7 @@ impl ModuleWriter<'_> {
             (quote! { _y }, quote! { T::constant(0.0) })
         };
         quote! {
+            #references
             fn n_bodies(&self) -> usize {
                 #n_bodies
             }
@@ -122,6 +124,34 @@ impl ModuleWriter<'_> {
             }
             fn work(&self, #y: &Self::State) -> T {
                 #work
+            }
+        }
+    }
+
+    /// Where the angles of the turn references are among the readings; nothing if there are none.
+    fn turn_references(&self) -> TokenStream {
+        let model = self.equations.model;
+        let len = |c: &Ident| {
+            if c == "Angle" {
+                3
+            } else if c == "Length" {
+                2
+            } else {
+                7
+            }
+        };
+        let places = model.turn_references().into_iter().map(|turn| {
+            let before = model.joints[..turn.joint].iter().flat_map(|joint| coordinates(joint.kind));
+            let own = coordinates(model.joints[turn.joint].kind).into_iter().take(turn.coordinate);
+            index(before.chain(own).map(|c| len(&c)).sum())
+        });
+        let places: Vec<_> = places.collect();
+        if places.is_empty() {
+            return TokenStream::new();
+        }
+        quote! {
+            fn turn_references(&self) -> &[u16] {
+                &[#(#places),*]
             }
         }
     }
