@@ -3,9 +3,10 @@
 use crate::freedom::{self, Attitude, Freedom};
 use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::joint::Joint;
-use crate::lowered::{Lowered, Moment, Place};
+use crate::lowered::Lowered;
 use crate::motion::Motion;
 use crate::number::{Number, number};
+use crate::place::{Moment, Place};
 use crate::spatial::{Inertia, Spatial};
 use crate::textbook::direction_rotation;
 use nalgebra::{Matrix3, Vector3};

@@ -1,9 +1,10 @@
 //! A lowered model with the linear algebra of a [`Solver`]; the contract of `gyro-sim` that tells its motion.
 
 use crate::error::{BuildError, Unsupported};
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::number::{Number, number};
 use crate::outputs::Solution;
+use crate::place::Moment;
 use crate::textbook::p_dot;
 use gyro_model::Model;
 use gyro_sim::{Clearance, Energy, Error, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo};

@@ -2,8 +2,9 @@
 //! descendants.
 
 use crate::limbs::Limbs;
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::number::{Number, number};
+use crate::place::Moment;
 use crate::screws::{Six, dot, plus};
 use crate::sweeps::Space;
 use nalgebra::{Matrix6, Vector6};

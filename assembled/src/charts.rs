@@ -5,9 +5,11 @@
 
 use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::joint::Dot;
-use crate::lowered::{Constrained, Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::motion::Motion;
 use crate::number::{Number, number, resolvable};
+use crate::place::Moment;
+use crate::scene::Constrained;
 use crate::textbook::{p_dot, rotated_gradient, rotation};
 use gyro_sim::charts;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};

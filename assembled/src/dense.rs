@@ -2,9 +2,10 @@
 
 use crate::assembled::{Refusal, Solver};
 use crate::error::Unsupported;
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::number::Number;
 use crate::partition;
+use crate::place::Moment;
 use gyro_model::{Model, Tree};
 use nalgebra::{DMatrix, DVector};
 

@@ -1,8 +1,9 @@
 //! Energy, and the power of what the energy does not account for.
 
 use crate::forces::Element;
-use crate::lowered::{Lowered, Moment, Place};
+use crate::lowered::Lowered;
 use crate::number::{Number, number};
+use crate::place::{Moment, Place};
 use gyro_sim::Energy;
 
 /// What enters a mechanism, W. Energy minus the integral of both stays constant.

@@ -1,8 +1,8 @@
 //! The contract of `gyro-sim` that tells the equations term by term, and what goes in and comes out at every step.
 
 use crate::assembled::{Assembled, Solver, zeros};
-use crate::lowered::Moment;
 use crate::number::Number;
+use crate::place::Moment;
 use gyro_sim::{Equations, OutputInfo, Ports};
 
 impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {

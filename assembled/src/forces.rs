@@ -2,10 +2,12 @@
 
 use crate::joint::Joint;
 use crate::law::{Amount, Law};
-use crate::lowered::{Lowered, Moment, Place, Places, vector};
+use crate::measure::Coordinate;
 use crate::motion::Motion;
 use crate::number::Number;
 use crate::path::{Path, Wrench};
+use crate::place::{Moment, Place, Places, vector};
+use crate::scene::Scene;
 use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Model};
 use nalgebra::Vector3;
 
@@ -43,15 +45,17 @@ impl<T: Number> Element<T> {
         if joints[joint].kind == JointKind::Spherical {
             return Some(Self::Ball { joint, friction: crate::number::number(model.value(friction)) });
         }
-        let coordinate = joints[joint].coordinates.first()?;
+        let described = &joints[joint];
+        described.references.first()?;
+        let coordinate = Coordinate::of(described, 0);
         let law = Law::Damper { damping: Amount::new(model, friction) };
-        Some(Self::Along { path: Path::Coordinate(*coordinate), law })
+        Some(Self::Along { path: Path::Coordinate(coordinate), law })
     }
 
     fn new(model: &Model, places: &Places<T>, joints: &[Joint<T>], kind: &ForceKind) -> Vec<Self> {
         let amount = |number| Amount::new(model, number);
         let along = |on: &JointCoordinate, law| {
-            let path = Path::Coordinate(joints[on.joint].coordinates[on.coordinate]);
+            let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
             vec![Self::Along { path, law }]
         };
         match kind {
@@ -94,31 +98,31 @@ impl<T: Number> Element<T> {
     /// Calls the sink with what the element exerts on each of its bodies, and that body's motion.
     pub(crate) fn exert(
         &self,
-        lowered: &Lowered<T>,
+        scene: &Scene<T>,
         at: Moment<'_, T>,
         mut sink: impl FnMut(&Place<T>, &Motion<T>, Wrench<T>),
     ) {
         match self {
             Self::Along { path, law } => {
-                let places = path.places(lowered);
-                let motions = places.map(|place| lowered.motion(at, place));
-                let grip = path.grip(lowered, &motions);
-                let force = law.force(&lowered.inputs, || path.value(lowered, at), grip.rate);
+                let places = path.places(scene);
+                let motions = places.map(|place| scene.motion(at, place));
+                let grip = path.grip(scene, &motions);
+                let force = law.force(&scene.inputs, || path.value(scene, at), grip.rate);
                 for ((place, motion), wrench) in places.into_iter().zip(&motions).zip(&grip.wrenches) {
                     sink(place, motion, wrench.times(force));
                 }
             }
             Self::Ball { joint, friction } => {
-                let joint = &lowered.joints[*joint];
-                let [i, j] = lowered.motions(at, joint);
+                let joint = &scene.joints[*joint];
+                let [i, j] = scene.motions(at, joint);
                 let torque = relative_angular_velocity(&i, &j) * -*friction;
                 sink(&joint.first.place, &i, Wrench::torque(-i.a.tr_mul(&(j.a * torque))));
                 sink(&joint.second.place, &j, Wrench::torque(torque));
             }
             Self::Load { place, point, force, torque, frame } => {
-                let motion = lowered.motion(at, place);
+                let motion = scene.motion(at, place);
                 let [force, torque] =
-                    [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&lowered.inputs))));
+                    [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&scene.inputs))));
                 // Both in the body's frame.
                 let (force, torque) = match frame {
                     LoadFrame::Body => (force, torque),
@@ -127,31 +131,6 @@ impl<T: Number> Element<T> {
                 let wrench = Wrench { force: motion.a * force, torque: torque + point.cross(&force) };
                 sink(place, &motion, wrench);
             }
-        }
-    }
-}
-
-impl<T: Number> Lowered<T> {
-    /// Writes `(f, n' − w̃'J'w')`, body after body.
-    pub(crate) fn applied_force(&self, at: Moment<'_, T>, out: &mut [T]) {
-        for (slot, (body, out)) in self.bodies.iter().zip(out.as_chunks_mut::<6>().0).enumerate() {
-            let w = self.w(at.y, slot);
-            out[..3].copy_from_slice((self.gravity * body.mass).as_slice());
-            out[3..].copy_from_slice((-w.cross(&(body.inertia * w))).as_slice());
-        }
-        self.add_page_force(at, out);
-    }
-
-    /// Adds what friction and the page's forces exert: `(f, n')`, body after body.
-    pub(crate) fn add_page_force(&self, at: Moment<'_, T>, out: &mut [T]) {
-        for element in &self.elements {
-            element.exert(self, at, |place, _, wrench| {
-                if let Place::Slot(slot) = place {
-                    let out = &mut out[6 * slot..6 * slot + 6];
-                    let wrench = wrench.force.iter().chain(wrench.torque.iter());
-                    out.iter_mut().zip(wrench).for_each(|(out, value)| *out += *value);
-                }
-            });
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Joints in numbers: frames normalised, and what each is made of.
 
-use crate::lowered::{Place, Places, vector};
-use crate::measure::Measure;
+use crate::kinds::{Axis, Primitive, primitives};
 use crate::number::{Number, number};
-use crate::primitives::{Axis, Primitive, primitives};
+use crate::place::{Place, Places, vector};
 use gyro_model::{CoordinateKind, JointCoordinate, JointEnd, JointKind, Model};
 use nalgebra::Vector3;
 
@@ -16,7 +15,9 @@ pub(crate) struct Joint<T> {
     pub(crate) second: End<T>,
     /// Of a rod.
     pub(crate) length: T,
-    pub(crate) coordinates: Vec<Coordinate>,
+    /// Of each coordinate where the state has its turn reference, if it is an angle that has one.
+    pub(crate) references: Vec<Option<usize>>,
+    pub(crate) index: usize,
     /// What [`gyro_sim::Mechanism::joint`] says of the readings.
     pub(crate) readings: Vec<gyro_sim::Coordinate>,
     /// The vectors of its dot-1 rows.
@@ -32,14 +33,6 @@ pub(crate) struct End<T> {
     pub(crate) f: Vector3<T>,
     pub(crate) g: Vector3<T>,
     pub(crate) h: Vector3<T>,
-}
-
-/// A scalar coordinate of a joint.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Coordinate {
-    pub(crate) joint: usize,
-    pub(crate) kind: CoordinateKind,
-    pub(crate) measure: Measure,
 }
 
 /// The vectors of a dot-1 constraint `aᵀ A_iᵀ A_j b = 0`, paper, eqs. (9) and (10).
@@ -86,17 +79,17 @@ impl<T: Number> Joint<T> {
             _ => None,
         };
         let dots = primitives(joint.kind).iter().filter_map(dot).collect();
-        let coordinate = |(coordinate, &kind): (usize, &CoordinateKind)| {
-            let measure = Measure::of(kind, reference(JointCoordinate { joint: index, coordinate }));
-            Coordinate { joint: index, kind, measure }
-        };
+        let n_coordinates = joint.kind.coordinates().len();
+        let references =
+            (0..n_coordinates).map(|coordinate| reference(JointCoordinate { joint: index, coordinate }));
         Self {
             name: joint.name.clone(),
             kind: joint.kind,
             first,
             second,
             length: number(model.value(&joint.length)),
-            coordinates: joint.kind.coordinates().iter().enumerate().map(coordinate).collect(),
+            references: references.collect(),
+            index,
             readings: readings(joint.kind),
             dots,
         }

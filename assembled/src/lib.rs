@@ -47,12 +47,14 @@
 //! ```
 #![deny(missing_docs)]
 
+mod applied;
 mod articulated;
 mod assembled;
 mod balance;
 mod careful;
 mod charts;
 pub mod child;
+mod constraints;
 mod course;
 mod dense;
 mod energy;
@@ -63,15 +65,18 @@ mod freedom;
 mod gradient;
 mod hinges;
 mod joint;
+mod kinds;
 mod law;
 mod limbs;
 mod lowered;
 mod measure;
 mod motion;
 mod number;
+mod observed;
 mod outputs;
 mod partition;
 mod path;
+mod place;
 mod primitives;
 mod projection;
 mod quick_look;
@@ -81,6 +86,7 @@ mod rebuild;
 mod recursion;
 mod rounding;
 mod rows;
+mod scene;
 mod screws;
 mod spatial;
 mod sweeps;

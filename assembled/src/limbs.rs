@@ -1,9 +1,10 @@
 //! The tree of bodies as the recursive form goes through it.
 
 use crate::joint::{End as JointEnd, Joint};
-use crate::lowered::{Lowered, Place, resting};
+use crate::lowered::Lowered;
 use crate::motion::Motion;
 use crate::number::{Number, number};
+use crate::place::{Place, resting};
 use crate::screws::{End, Screw};
 use gyro_model::{Attachment, Model, RowOwner, Support, Tree};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};

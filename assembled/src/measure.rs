@@ -1,10 +1,27 @@
 //! What constraint rows measure: primitives, and the angles between joint frames.
 
 use crate::joint::Joint;
+use crate::kinds::{Axis, Primitive};
 use crate::motion::Motion;
 use crate::number::{Number, atan2, number, sin_cos};
-use crate::primitives::{Axis, Primitive, Pull, Turning};
+use crate::primitives::{Pull, Turning};
 use gyro_model::CoordinateKind;
+
+/// A scalar coordinate of a joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coordinate {
+    pub(crate) joint: usize,
+    pub(crate) kind: CoordinateKind,
+    pub(crate) measure: Measure,
+}
+
+impl Coordinate {
+    /// One of a joint's.
+    pub(crate) fn of<T>(joint: &Joint<T>, coordinate: usize) -> Self {
+        let kind = joint.kind.coordinates()[coordinate];
+        Self { joint: joint.index, kind, measure: Measure::of(kind, joint.references[coordinate]) }
+    }
+}
 
 /// A scalar of a joint of which a row can be made.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +41,7 @@ pub(crate) struct Angle {
 
 impl Measure {
     /// A joint coordinate as its definition says: [`CoordinateKind`].
-    pub(crate) fn of(kind: CoordinateKind, reference: Option<usize>) -> Self {
+    fn of(kind: CoordinateKind, reference: Option<usize>) -> Self {
         use Axis::{F, G, H, MinusG};
         use Primitive::{Dot1, Dot2};
         let angle = |sine, cosine| Self::Angle(Angle { sine, cosine, reference });

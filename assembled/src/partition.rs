@@ -3,8 +3,9 @@
 //! Lengths are measured in units of the mechanism's size, in rows and columns alike, so that pivots compare.
 
 use crate::assembled::Refusal;
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::number::{Number, abs, number, resolvable};
+use crate::place::Moment;
 use crate::textbook::angular_velocity;
 use nalgebra::{DMatrix, DVector, Dyn, LU, RowDVector, Vector4};
 

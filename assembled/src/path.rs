@@ -1,9 +1,11 @@
 //! Coordinates along which forces act, and how a unit force along each acts on the bodies at its ends.
 
-use crate::joint::{Coordinate, Joint};
-use crate::lowered::{Lowered, Moment, Place};
+use crate::joint::Joint;
+use crate::measure::Coordinate;
 use crate::motion::Motion;
 use crate::number::Number;
+use crate::place::{Moment, Place};
+use crate::scene::Scene;
 use gyro_model::CoordinateKind;
 use nalgebra::Vector3;
 
@@ -56,10 +58,10 @@ impl<T: Number> Wrench<T> {
 
 impl<T: Number> Path<T> {
     /// The two bodies.
-    pub(crate) fn places<'a>(&'a self, lowered: &'a Lowered<T>) -> [&'a Place<T>; 2] {
+    pub(crate) fn places<'a>(&'a self, scene: &'a Scene<T>) -> [&'a Place<T>; 2] {
         match self {
             Self::Coordinate(coordinate) => {
-                let joint = &lowered.joints[coordinate.joint];
+                let joint = &scene.joints[coordinate.joint];
                 [&joint.first.place, &joint.second.place]
             }
             Self::Line(ends) => ends.each_ref().map(|(place, _)| place),
@@ -67,23 +69,23 @@ impl<T: Number> Path<T> {
     }
 
     /// The coordinate.
-    pub(crate) fn value(&self, lowered: &Lowered<T>, at: Moment<'_, T>) -> T {
+    pub(crate) fn value(&self, scene: &Scene<T>, at: Moment<'_, T>) -> T {
         match self {
             Self::Coordinate(coordinate) => {
-                let joint = &lowered.joints[coordinate.joint];
-                coordinate.measure.jet(joint, &lowered.motions(at, joint), at.y)[0]
+                let joint = &scene.joints[coordinate.joint];
+                coordinate.measure.jet(joint, &scene.motions(at, joint), at.y)[0]
             }
             Self::Line(ends) => {
                 let [first, second] =
-                    ends.each_ref().map(|(place, point)| lowered.motion(at, place).tip(point));
+                    ends.each_ref().map(|(place, point)| scene.motion(at, place).tip(point));
                 (second - first).norm()
             }
         }
     }
 
-    pub(crate) fn grip(&self, lowered: &Lowered<T>, motions: &[Motion<T>; 2]) -> Grip<T> {
+    pub(crate) fn grip(&self, scene: &Scene<T>, motions: &[Motion<T>; 2]) -> Grip<T> {
         match self {
-            Self::Coordinate(coordinate) => coordinate.grip(&lowered.joints[coordinate.joint], motions),
+            Self::Coordinate(coordinate) => coordinate.grip(&scene.joints[coordinate.joint], motions),
             Self::Line([(_, first), (_, second)]) => {
                 let [i, j] = motions;
                 let (from, to) = (i.tip(first), j.tip(second));

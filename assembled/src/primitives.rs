@@ -1,56 +1,14 @@
-//! The textbook's constraint primitives, and which of them each kind of joint is made of. Haug (1989), sections 9.4 and 11.2.
+//! The textbook's constraint primitives. Haug (1989), sections 9.4 and 11.2.
 //!
 //! A primitive is a scalar made of the joint's points and frames on its two bodies. Typed by hand for each are its value with
 //! two time derivatives, and its derivative with respect to the bodies' r and p or π'.
 
 use crate::joint::Joint;
+use crate::kinds::Primitive;
 use crate::motion::{Jet, Motion};
 use crate::number::{Number, number};
-use gyro_model::JointKind;
 use nalgebra::{RowVector3, SMatrix, Vector3};
 use std::ops::Range;
-
-/// A direction of a joint frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Axis {
-    F,
-    G,
-    H,
-    /// −g.
-    MinusG,
-}
-
-/// A scalar of a joint; i is the first body, j the second, d from the first's joint point to the second's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Primitive {
-    /// A global component of d: one of the three rows of coincident points, paper, eq. (7).
-    Point(usize),
-    /// `a_i·b_j`, paper, eqs. (9) and (10).
-    Dot1(Axis, Axis),
-    /// `a_i·d`.
-    Dot2(Axis),
-    /// `½ (d·d / l − l)` with the joint's length l.
-    Distance,
-}
-
-/// The rows of a kind of joint, in the order of [`gyro_model::Model::rows`]. To the displacement `h_i·d` of a screw comes what
-/// its angle advances it by.
-pub(crate) fn primitives(kind: JointKind) -> &'static [Primitive] {
-    use Axis::{F, G, H};
-    use Primitive::{Distance, Dot1, Dot2, Point};
-    match kind {
-        JointKind::Revolute => &[Point(0), Point(1), Point(2), Dot1(F, H), Dot1(G, H)],
-        JointKind::Spherical => &[Point(0), Point(1), Point(2)],
-        JointKind::Fixed => &[Point(0), Point(1), Point(2), Dot1(F, H), Dot1(G, H), Dot1(F, G)],
-        JointKind::Universal => &[Point(0), Point(1), Point(2), Dot1(H, H)],
-        JointKind::Cylindrical => &[Dot2(F), Dot2(G), Dot1(F, H), Dot1(G, H)],
-        JointKind::Prismatic => &[Dot2(F), Dot2(G), Dot1(F, H), Dot1(G, H), Dot1(F, G)],
-        JointKind::Planar => &[Dot2(H), Dot1(F, H), Dot1(G, H)],
-        JointKind::Screw => &[Dot2(F), Dot2(G), Dot2(H), Dot1(F, H), Dot1(G, H)],
-        JointKind::PointOnLine => &[Dot2(F), Dot2(G)],
-        JointKind::Rod => &[Distance],
-    }
-}
 
 /// How a vector fixed in a body changes along a direction when the body turns: `∂(xᵀ A a')` with respect to p (N = 4) or π'
 /// (N = 3).

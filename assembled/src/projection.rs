@@ -1,8 +1,9 @@
 //! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without forces.
 
 use crate::assembled::{Assembled, Solver};
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::number::{Number, abs};
+use crate::place::Moment;
 use gyro_sim::Projection;
 
 /// All forms alike: by Gaussian elimination with row pivoting, in work space that the first call allocates.

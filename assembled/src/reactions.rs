@@ -4,8 +4,9 @@ use crate::articulated::{Space, attitude, place_all};
 use crate::freedom::dual_directions;
 use crate::hinges::{Hinge, Hold, Link, Side};
 use crate::joint::Joint;
-use crate::lowered::{Lowered, Moment, Place};
+use crate::lowered::Lowered;
 use crate::number::{Number, number};
+use crate::place::{Moment, Place};
 use crate::spatial::Spatial;
 use nalgebra::Vector3;
 

@@ -2,10 +2,11 @@
 
 use crate::forces::relative_angular_velocity;
 use crate::joint::Joint;
-use crate::lowered::{Lowered, Moment, Place};
-use crate::measure::Measure;
+use crate::lowered::Lowered;
+use crate::measure::{Coordinate, Measure};
 use crate::motion::Motion;
 use crate::number::Number;
+use crate::place::{Moment, Place};
 use crate::textbook::{direction_rotation, relative_matrix};
 use gyro_model::JointKind;
 
@@ -35,7 +36,7 @@ impl<T: Number> Lowered<T> {
             return;
         }
         let mut rest = out;
-        for coordinate in &joint.coordinates {
+        for coordinate in (0..joint.references.len()).map(|coordinate| Coordinate::of(joint, coordinate)) {
             let rate = coordinate.grip(joint, &motions).rate;
             let written = match &coordinate.measure {
                 Measure::Angle(angle) => {

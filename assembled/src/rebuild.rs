@@ -2,9 +2,11 @@
 
 use crate::charts::{restore, set_p};
 use crate::limbs::{Hinge, Limbs};
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
+use crate::measure::Coordinate;
 use crate::motion::Motion;
 use crate::number::{Number, number, resolvable, sqrt};
+use crate::place::Moment;
 use crate::screws::{End, Screw};
 use crate::textbook::{conjugate, product, rotation};
 use gyro_model::JointKind;
@@ -55,7 +57,7 @@ fn position<T: Number>(
     (child.p, child.a) = (p, rotation(&p));
     let screws = &tree.screws[hinge.screws.clone()];
     let d = if joint.kind == JointKind::Screw {
-        let angle = joint.coordinates[0].measure.jet(joint, &[*i, *j], at.y)[0];
+        let angle = Coordinate::of(joint, 0).measure.jet(joint, &[*i, *j], at.y)[0];
         j.a * screws[0].axis * (screws[0].slide * angle)
     } else {
         let apart = j.tip(&joint.second.point) - i.tip(&joint.first.point);

@@ -1,7 +1,8 @@
 //! How near to zero rounding lets the rows come: to the rounding of their terms.
 
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::number::{Number, abs, number};
+use crate::place::Moment;
 
 /// Roundings of its terms that a row may keep.
 const EPSILONS: f64 = 16.0;

@@ -4,8 +4,8 @@
 //! a force its resultant, and its moment about the common point.
 
 use crate::joint::Joint;
+use crate::kinds::Axis;
 use crate::number::{Number, number};
-use crate::primitives::Axis;
 use gyro_model::JointKind;
 use nalgebra::Vector3;
 

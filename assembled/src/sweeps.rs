@@ -1,9 +1,11 @@
 //! The three sweeps of the recursion: out to the leaves, in to the roots, and out again.
 
 use crate::limbs::{Hinge, Limb, Limbs};
-use crate::lowered::{Body, Lowered, Moment};
+use crate::lowered::Lowered;
 use crate::motion::Motion;
 use crate::number::{Number, number};
+use crate::place::Moment;
+use crate::scene::Body;
 use crate::screws::{End, Inertia6, Screw, Six, angular, apply, carried, dot, linear, plus, six};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4, Vector6};
 

@@ -1,7 +1,9 @@
 //! Turn references: the elements of the state that tell on which turn an angle is.
 
-use crate::lowered::{Lowered, Moment};
+use crate::lowered::Lowered;
+use crate::measure::Coordinate;
 use crate::number::Number;
+use crate::place::Moment;
 
 impl<T: Number> Lowered<T> {
     /// Where the turn references begin in the state.
@@ -13,7 +15,7 @@ impl<T: Number> Lowered<T> {
     pub(crate) fn turn_rates(&self, at: Moment<'_, T>, out: &mut [T]) {
         for (out, turn) in out.iter_mut().zip(&self.turns) {
             let joint = &self.joints[turn.joint];
-            *out = joint.coordinates[turn.coordinate].grip(joint, &self.motions(at, joint)).rate;
+            *out = Coordinate::of(joint, turn.coordinate).grip(joint, &self.motions(at, joint)).rate;
         }
     }
 }
