@@ -69,6 +69,7 @@ pub fn answer<M: Partition + Ports + 'static>(
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => writeln!(output, "{}", sample_line(sample)),
         Event::Linear(linear) => writeln!(output, "{}", Reply::Linear(linear.clone()).to_line()),
+        Event::Stopped(t, state) => writeln!(output, "{}", Reply::Stopped(t, state.to_vec()).to_line()),
         Event::Forecast(forecast) => {
             writeln!(output, "{}", Reply::Forecast(forecast).to_line())?;
             output.flush()

@@ -36,6 +36,8 @@ pub enum Reply {
     Sample(Sample),
     /// The linearisation at the end.
     Linear(Linear),
+    /// The last state before the run fails, and its time, s.
+    Stopped(f64, Vec<f64>),
     /// The run has reached this time, s.
     Progress(f64),
     /// How long the run will take.
@@ -152,6 +154,11 @@ impl Reply {
                 }
                 text
             }
+            Self::Stopped(t, state) => {
+                let mut text = format!("stopped {t:?}");
+                words(&mut text, "", state);
+                text
+            }
             Self::Progress(t) => format!("progress {t:?}"),
             Self::Done(s) => {
                 let mut text = format!("done {} {}", s.steps, s.chart_switches);
@@ -191,6 +198,7 @@ impl Reply {
             "timed" => Self::Timed(words.timing()?),
             "done" => Self::Done(words.summary()?),
             "forecast" => Self::Forecast(Forecast { steps: words.next()?, seconds: words.next()? }),
+            "stopped" => return Some(Self::Stopped(words.next()?, words.rest()?)),
             "failed" => return Some(Self::Failed(rest.to_owned())),
             "refused" => return Some(Self::Refused(rest.to_owned())),
             _ => return None,
@@ -213,6 +221,10 @@ impl Words<'_> {
             *value = self.next()?;
         }
         Some(array)
+    }
+
+    fn rest(self) -> Option<Vec<f64>> {
+        self.0.map(|word| word.parse().ok()).collect()
     }
 
     fn list(&mut self, n: usize) -> Option<Vec<f64>> {
@@ -432,6 +444,7 @@ mod tests {
                 by_state: AWKWARD[1..5].to_vec(),
                 by_inputs: vec![AWKWARD[6]; 2],
             }),
+            Reply::Stopped(AWKWARD[0], AWKWARD[1..4].to_vec()),
             Reply::Progress(0.25),
             Reply::Timed(Timing {
                 measured: Measured { runs: 9, seconds: AWKWARD[1], ratio: AWKWARD[6] },

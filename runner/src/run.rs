@@ -38,6 +38,8 @@ pub struct Start {
 pub enum Event<'a> {
     /// The mechanism at a sample time.
     Sample(&'a Sample),
+    /// The last state, `(q, v)` and what follows them, and its time, s, before a solver fails.
+    Stopped(f64, &'a [f64]),
     /// The linearisation at the end, if it is asked for and there is one.
     Linear(&'a Linear),
     /// How long the run will take. Comes before a long one of fixed steps.
@@ -104,6 +106,7 @@ pub fn run_by<M: Partition + Ports + 'static>(
         Ok(()) => Ok(run.summary),
         Err(Halt::Output(error)) => Err(Failure::Output(error)),
         Err(Halt::Solver(error)) => {
+            run.tell_state(&mut told).map_err(Failure::Output)?;
             let words = describe_in(run.mechanism, approach.coordinates, &error);
             let plan = Plan { settings: &settings, approach, offers: &offers };
             // The steps' length is asked about only where stability may limit it.
@@ -395,6 +398,16 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
             let smallest = &mut self.summary.smallest_pivot;
             *smallest = Some(smallest.map_or(pivot, |before| before.min(pivot)));
         }
+    }
+
+    /// Hands on the state that the solver has kept, if it has one to show.
+    fn tell_state<F: FnMut(Event<'_>) -> io::Result<()>>(&mut self, told: &mut Told<F>) -> io::Result<()> {
+        let t = self.motion.time();
+        if self.motion.at(self.mechanism, t, &mut self.y).is_err() {
+            return Ok(());
+        }
+        let state: Vec<f64> = self.y.as_ref().iter().map(|x| x.to_f64()).collect();
+        (told.tell)(Event::Stopped(t, &state))
     }
 
     fn finish(&mut self) {

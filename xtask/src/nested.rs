@@ -341,6 +341,7 @@ fn listen(
         match Reply::parse(&line).map_err(|e| Failure::Run(format!("the program: {e}")))? {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
             Reply::Linear(linear) => tell(Event::Linear(&linear)),
+            Reply::Stopped(t, state) => tell(Event::Stopped(t, &state)),
             Reply::Progress(t) => tell(Event::Progress(t)),
             Reply::Forecast(forecast) => tell(Event::Forecast(forecast)),
             Reply::Timed(timed) => timing = Some(timed),

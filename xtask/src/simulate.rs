@@ -63,10 +63,11 @@ fn say(text: &str) -> Result<(), Failure> {
 /// Runs a scene; what there is up to a failure is kept in the outcome.
 fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     let mut progress = Progress::new(scene.settings.t_end);
-    let Outcome { samples, linear, .. } = outcome;
+    let Outcome { samples, linear, stopped, .. } = outcome;
     let mut tell = |event: Event<'_>| match event {
         Event::Sample(sample) => samples.push(sample.clone()),
         Event::Linear(found) => *linear = Some(found.clone()),
+        Event::Stopped(t, state) => *stopped = Some((t, state.to_vec())),
         Event::Forecast(forecast) => progress.foretold(&forecast),
         Event::Progress(t) => progress.reached(t),
     };
@@ -77,8 +78,20 @@ fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
         Engine::Recursive => twin(scene, Form::Recursive, &mut tell),
     };
     progress.finish();
-    outcome.summary = summary?;
+    outcome.summary = summary.map_err(|failure| with_link(scene, outcome, failure))?;
     Ok(())
+}
+
+/// A failed run where the ends of a link have come together says which link that is.
+fn with_link(scene: &Scene, outcome: &Outcome, failure: Failure) -> Failure {
+    let (Failure::Run(words), Some((t, state))) = (&failure, &outcome.stopped) else { return failure };
+    let (q, v) = state.split_at(7 * scene.model.coordinate_bodies().len());
+    match scene.model.closing_link(*t, scene.settings.step, q, v) {
+        Some(link) => Failure::Run(format!(
+            "{words}\nThe ends of link `{link}` come together at t = {t} s or within a step of it: its force has no direction there."
+        )),
+        None => failure,
+    }
 }
 
 /// Runs the runtime-assembled twin in this process.

@@ -38,6 +38,8 @@ pub(crate) struct Outcome {
     pub(crate) samples: Vec<Sample>,
     pub(crate) summary: Summary,
     pub(crate) linear: Option<Linear>,
+    /// The last state before a failure, and its time.
+    pub(crate) stopped: Option<(f64, Vec<f64>)>,
 }
 
 /// Judges a run. `run` makes companions: one whose own energy balance is open, or whose joints come apart, is taken only where there is

@@ -386,6 +386,61 @@ fn a_run_that_fails_says_where_and_keeps_whole_rows() {
     assert!(output.stdout.is_empty() && output.status.code() == Some(1));
 }
 
+/// A cart that runs into the wall to which a string ties it.
+const MEETING: &str = r#"
+format = 1
+name = "meeting"
+[[body]]
+name = "wall"
+fixed = true
+[[body]]
+name = "cart"
+mass = 1
+inertia = [1, 1, 1]
+[[joint]]
+name = "rail"
+kind = "prismatic"
+first = { body = "wall" }
+second = { body = "cart" }
+axis = [1, 0, 0]
+zero = [0, 1, 0]
+[[driver]]
+name = "winch"
+joint = "rail"
+motion = { polynomial = [1, -1] }
+[[force]]
+name = "chain"
+kind = "link"
+first = { body = "wall", point = [0, 0, 3] }
+second = { body = "cart", point = [0, 0, 2] }
+damping = 1
+[[force]]
+name = "string"
+kind = "link"
+first = { body = "wall" }
+second = { body = "cart" }
+stiffness = 1
+free_length = 0.3
+[simulation]
+t_end = 2
+step = 0.25
+correct_every = 0.25
+sample_every = 0.25
+"#;
+
+#[test]
+fn a_link_whose_ends_come_together_during_a_run_is_named_in_every_engine() {
+    let folder = Folder::new("meeting");
+    fs::write(folder.0.join("meeting.toml"), MEETING).unwrap();
+    for engine in ["generated", "assembled", "dense"] {
+        let output = simulate(&folder, &["meeting.toml", "--engine", engine, "--json"]);
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{engine}: {words}");
+        assert!(words.contains("no longer finite") && words.contains("at t = 0.75 s"), "{engine}: {words}");
+        assert!(words.contains("The ends of link `string` come together"), "{engine}: {words}");
+    }
+}
+
 #[test]
 fn bad_requests_leave_nothing_behind() {
     let folder = Folder::new("bad");

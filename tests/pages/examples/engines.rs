@@ -1,8 +1,12 @@
-//! Compares many random pages in every engine: `engines [FILE...] [FIRST_SEED COUNT]`.
+//! Compares many random pages in every engine: `engines [FILE...] [FIRST_SEED COUNT]`; with `--compile` generated modules are compiled and run
+//! by the solvers, thirty pages to a program.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 #[path = "../tests/support/engines.rs"]
 mod support;
+
+#[path = "../tests/support/compiled.rs"]
+mod compiled;
 
 use std::panic::catch_unwind;
 use support::compare;
@@ -14,6 +18,9 @@ fn main() {
     }
     let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
     let (seed, count) = (numbers.first().copied().unwrap_or(0), numbers.get(1).copied().unwrap_or(0));
+    if std::env::args().any(|argument| argument == "--compile") {
+        return compile(seed, count);
+    }
     let (mut n_compared, mut n_wrong, mut worst, mut n_forms) = (0, 0, 0.0_f64, 0);
     for seed in seed..seed + count {
         match catch_unwind(|| compare(&gyro_pages::page(seed))) {
@@ -30,5 +37,25 @@ fn main() {
     }
     println!(
         "{n_compared} pages in {n_forms} forms, {n_wrong} disagree, at worst {worst:.1e} of what is allowed"
+    );
+}
+
+/// Pages to a program: compiling takes longer than running.
+const BATCH: u64 = 30;
+
+fn compile(first: u64, count: u64) {
+    let (mut n_runs, mut n_wrong, mut worst) = (0, 0, 0.0_f64);
+    for from in (first..first + count).step_by(usize::try_from(BATCH).expect("a small number")) {
+        for (what, ratio) in compiled::compare(from..(from + BATCH).min(first + count)) {
+            n_runs += 1;
+            worst = worst.max(ratio);
+            if ratio.is_nan() || ratio > 1.0 {
+                n_wrong += 1;
+                println!("{what}: {ratio:.1e}");
+            }
+        }
+    }
+    println!(
+        "{count} pages, {n_runs} runs compared, {n_wrong} disagree, at worst {worst:.1e} of what is allowed"
     );
 }

@@ -1,0 +1,158 @@
+//! Many random pages compiled by rustc into one program and run, beside the forms of the assembled twin by the same solvers.
+
+#[path = "runs.rs"]
+mod runs;
+
+use gyro_assembled::{Careful, Dense, Recursive};
+use gyro_codegen::Module;
+use gyro_model::Model;
+use gyro_sim::{Ode, Partition, Projection};
+use runs::{Ends, maximal};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// What the ends of runs may differ by, in terms of what changes of the start by a unit in the last place do, or of roundings of each step.
+const ALLOWED: f64 = 16.0;
+
+/// How often the twin is run anew from starts that differ by a rounding.
+const DITHERS: u64 = 3;
+
+/// Roundings of the largest number that each of the steps makes.
+const ROUNDINGS: f64 = 100.0 * f64::EPSILON;
+
+/// What was compared, and by how much it differs in terms of what is allowed.
+pub type Found = Vec<(String, f64)>;
+
+/// Generates, compiles and runs the pages of these seeds.
+pub fn compare(seeds: std::ops::Range<u64>) -> Found {
+    let pages: Vec<(u64, Model, Module)> = seeds.clone().map(page).collect();
+    let folder = std::env::temp_dir().join("gyro-pages");
+    let started = std::time::Instant::now();
+    write_package(&folder, &pages);
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(["run", "--quiet", "--release", "--offline", "--manifest-path"])
+        .arg(folder.join("Cargo.toml"))
+        .output()
+        .expect("cargo can be started");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{seeds:?} compiled and run in {:.0} s", started.elapsed().as_secs_f64());
+    let text = String::from_utf8(output.stdout).expect("printed text");
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(';').collect()).collect();
+    pages.iter().flat_map(|(seed, model, _)| of_page(*seed, model, &lines)).collect()
+}
+
+fn page(seed: u64) -> (u64, Model, Module) {
+    let read = gyro_model::read_with("page.toml", &gyro_pages::page(seed), &mut gyro_pages::load);
+    let model = read.unwrap_or_else(|problems| panic!("{problems}"));
+    let module = gyro_codegen::generate_model("page.toml", &model);
+    let module = module.unwrap_or_else(|error| panic!("{seed}: {error}"));
+    (seed, model, module)
+}
+
+/// A package with a module for each page.
+fn write_package(folder: &Path, pages: &[(u64, Model, Module)]) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut main = include_str!("runs.rs").replace("//!", "//");
+    let mut calls = String::new();
+    fs::create_dir_all(folder.join("src")).expect("a temporary folder");
+    for (seed, _, module) in pages {
+        let name = &module.type_name;
+        let _ = write!(main, "#[allow(warnings)]\nmod {};\n", module.name);
+        let _ = write!(
+            calls,
+            "    let m = {}::{name}::<f64>::default();\n    print({seed}, &m, maximal(&m, &m.start()));\n",
+            module.name
+        );
+        if module.code.contains(&format!("gyro_sim::JointSpace for {name}")) {
+            let _ = writeln!(calls, "    print({seed}, &m, joint(&m));");
+        }
+        fs::write(folder.join(format!("src/{}.rs", module.name)), &module.code).expect("a file");
+    }
+    let _ = write!(main, "fn main() {{\n{calls}}}\n");
+    fs::write(folder.join("src/main.rs"), main).expect("a file");
+    let manifest = format!(
+        "[package]\nname = \"pages\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n\
+         gyro-sim = {{ path = {:?}, default-features = false }}\n[profile.release]\nopt-level = 1\ncodegen-units = 16\n",
+        root.join("gyro-sim")
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).expect("a file");
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's versions");
+}
+
+/// The forms of the twin beside what the program has printed.
+fn of_page(seed: u64, model: &Model, lines: &[Vec<&str>]) -> Found {
+    let mut forms = vec![("dense", twin(Dense::<f64>::new(model).expect("it does every model")))];
+    if Careful::<f64>::supports(model).is_ok() {
+        forms.push(("careful", twin(Careful::<f64>::new(model).expect("it is supported"))));
+    }
+    if Recursive::<f64>::supports(model).is_ok() {
+        forms.push(("recursive", twin(Recursive::<f64>::new(model).expect("it is supported"))));
+    }
+    let mut found = Found::new();
+    for line in lines.iter().filter(|line| line[0] == seed.to_string()) {
+        let generated = numbers(line[2]);
+        for (form, (ends, noise, method)) in &forms {
+            // Trees in joint coordinates and by the closed form come to where the partition comes, but for the method's error.
+            let (twin, is_same) = match line[1] {
+                "joint" | "closed form" => ("partition", false),
+                name => (name, *form == "careful"),
+            };
+            let index = ends.iter().position(|(name, _)| *name == twin).expect("it is run");
+            let ratio = match (&ends[index].1, &generated) {
+                (Ok(y), Some(generated)) => {
+                    let scale = y.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+                    let allowed = ALLOWED * (noise[index] + ROUNDINGS * scale)
+                        + if is_same { 0.0 } else { 3.0 * method };
+                    apart(y, generated) / allowed
+                }
+                (Err(error), None) if error.to_string() == line[2] => 0.0,
+                (Err(error), _) => {
+                    println!(
+                        "{seed}, {form}, {twin}: {error}; generated: {}",
+                        &line[2][..60.min(line[2].len())]
+                    );
+                    f64::NAN
+                }
+                (Ok(_), None) => {
+                    println!("{seed}, {form}, {twin} runs; generated: {}", line[2]);
+                    f64::NAN
+                }
+            };
+            found.push((format!("{seed}: {}, generated and {form}", line[1]), ratio));
+        }
+    }
+    assert!(!found.is_empty(), "{seed} was not run");
+    found
+}
+
+/// A form's ends, what moving the start by a rounding does to each, and how far apart its corrections lead: as far as the method is off.
+fn twin<M: Partition<Scalar = f64, State = Vec<f64>> + Projection>(form: M) -> (Ends, Vec<f64>, f64) {
+    let start = Ode::start(&form);
+    let ends = maximal(&form, &start);
+    let mut noise = vec![0.0_f64; ends.len()];
+    for series in 0..DITHERS {
+        let moved = maximal(&form, &super::support::dithered(&start, series));
+        for ((noise, (_, moved)), (_, end)) in noise.iter_mut().zip(&moved).zip(&ends) {
+            if let (Ok(moved), Ok(end)) = (moved, end) {
+                *noise = noise.max(apart(moved, end));
+            }
+        }
+    }
+    let good: Vec<&Vec<f64>> = ends.iter().filter_map(|(_, end)| end.as_ref().ok()).collect();
+    let method = good.iter().flat_map(|a| good.iter().map(|b| apart(a, b))).fold(0.0, f64::max);
+    (ends, noise, method)
+}
+
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    let inner = text.strip_prefix('[')?.strip_suffix(']')?;
+    inner.split(", ").map(|number| number.parse().ok()).collect()
+}
+
+/// The largest difference; both signs of Euler parameters are one orientation.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let mut b = b.to_vec();
+    super::support::alike(&mut b, a);
+    super::support::difference(a, &b)
+}
