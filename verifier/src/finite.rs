@@ -5,52 +5,21 @@
 
 use crate::atoms::Elementary;
 use crate::interpreter::{self, Given};
-use crate::joints::{Freedom, JointLayout};
 use crate::module::{Module, is_on_constraints, source_of_accelerations};
-use crate::numeric;
 use crate::point::Point;
 use crate::program::{Id, Node, Program, Source};
 use crate::proof::point_of_terms;
 use crate::seed::Seed;
+use crate::states::{self, Place, places};
 use crate::tape::{Formulas, Tape, Term, Written};
 use crate::textbook::{Sparse, Textbook};
 use gyro_model::{Model, Row, RowOwner, RowUnit};
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use std::f64::consts::{FRAC_PI_2, PI};
-
-/// Angles at which sines and cosines vanish.
-const ALIGNED: [f64; 4] = [0.0, FRAC_PI_2, -FRAC_PI_2, PI];
-
-/// Half turns, and none.
-const HALF_TURNS: [[f64; 4]; 4] =
-    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
-
-/// States of random combinations of these.
-const COMBINATIONS: usize = 12;
-
-/// How fast the last coordinate of an extreme state moves, rad/s.
-const FAST: f64 = 1e6;
-
-/// How far joints of an extreme state are torn.
-const TORN: f64 = 1e-2;
 
 /// Axes of a joint that is whole are off by less, as the dot-1 rows have it: by more than any that are torn by [`TORN`].
 const WHOLE: f64 = 0.2;
 
 /// Eq. (17), its rows and columns brought to size one, can be solved if no pivot is smaller than this.
 const REGULAR: f64 = 1e-9;
-
-/// Where functions are run.
-#[derive(Clone, Debug)]
-pub struct Place {
-    /// In words.
-    what: &'static str,
-    /// A maximal state.
-    pub state: Vec<f64>,
-    /// The joint state that it is of, if it is of one.
-    joints: Option<Vec<f64>>,
-}
 
 /// All that is not finite and should be.
 pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
@@ -74,95 +43,10 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
     problems
 }
 
-/// Where mechanisms are likely to divide by zero.
-pub fn places(model: &Model, module: &Module, seed: Seed) -> Vec<Place> {
-    let mut random = seed.numbers(1);
-    let mut places = match &module.joints {
-        Some(layout) => of_joints(model, module, layout, &mut random),
-        None => vec![Place { what: "at the start", state: module.start.clone(), joints: None }],
-    };
-    places.extend(torn(model, &module.start, &mut random));
-    places
-}
-
 /// Whether a function solves for what the rows ask. Which unknown is taken from which row is decided for joints that are whole: where axes are torn a
 /// right angle apart, the solve of a tree divides by their cosine, though eq. (17) has a solution there.
 fn is_solve(function: &str) -> bool {
     ["accelerations", "multipliers", "project", "newton_step", "solve_velocities"].contains(&function)
-}
-
-/// States of joint states.
-fn of_joints(model: &Model, module: &Module, layout: &JointLayout, random: &mut ChaCha8Rng) -> Vec<Place> {
-    let start = &module.joint_start;
-    let rates = layout.n_coordinates..layout.n_motion();
-    let resting = |joints: &[f64]| {
-        let mut joints = joints.to_vec();
-        joints[rates.clone()].fill(0.0);
-        joints
-    };
-    let mut states = vec![("at the start", start.clone()), ("at rest", resting(start))];
-    for (k, &angle) in ALIGNED.iter().enumerate() {
-        let aligned = turned(layout, start, || (angle, HALF_TURNS[k]));
-        states.push(("at rest, all angles 0, ±90 or 180 degrees", resting(&aligned)));
-        states.push(("with all angles 0, ±90 or 180 degrees", aligned));
-    }
-    for _ in 0..COMBINATIONS {
-        let mut mixed = turned(layout, start, || {
-            (ALIGNED[random.random_range(0..4)], HALF_TURNS[random.random_range(0..4)])
-        });
-        states.push(("at rest, each angle 0, ±90 or 180 degrees", resting(&mixed)));
-        mixed[rates.clone()].iter_mut().for_each(|rate| *rate = random.random_range(-100.0..100.0));
-        states.push(("with each angle 0, ±90 or 180 degrees", mixed));
-    }
-    let mut fast = start.clone();
-    fast[rates.clone()].iter_mut().next_back().into_iter().for_each(|rate| *rate = FAST);
-    states.push(("with the last body at 1e6 rad/s", fast));
-    let constants: Vec<f64> = interpreter::constants((), module);
-    let point = numeric::point(model, (), &module.start, 0.0, |x| x);
-    let place = |(what, joints): (&'static str, Vec<f64>)| {
-        let given = Given { point: &point, accelerations: &[], charts: &[], changes: &[], joints: &joints };
-        let state = interpreter::run(module, &module.programs["to_maximal"], &constants, &Elementary, &given);
-        Some(Place { what, state: state.ok()?, joints: Some(joints) })
-    };
-    states.into_iter().filter_map(place).collect()
-}
-
-/// A joint state with other angles and orientations.
-fn turned(layout: &JointLayout, start: &[f64], mut turn: impl FnMut() -> (f64, [f64; 4])) -> Vec<f64> {
-    let mut joints = start.to_vec();
-    for place in &layout.places {
-        let (angle, half) = turn();
-        match (place.of, place.of.euler()) {
-            (Freedom::Scalar(_), _) => joints[place.x] = angle,
-            (_, Some(euler)) => joints[place.x + euler..][..4].copy_from_slice(&half),
-            (_, None) => {}
-        }
-    }
-    joints
-}
-
-/// States that satisfy no constraint: bodies at rest in any half turn, and joints torn a little.
-fn torn(model: &Model, start: &[f64], random: &mut ChaCha8Rng) -> Vec<Place> {
-    let n = model.coordinate_bodies().len();
-    let mut places = Vec::new();
-    let mut add = |what, state| places.push(Place { what, state, joints: None });
-    let mut rest = start.to_vec();
-    rest[7 * n..13 * n].fill(0.0);
-    add("at rest", rest.clone());
-    for half in HALF_TURNS {
-        let mut state = rest.clone();
-        state[..7 * n].chunks_mut(7).for_each(|position| position[3..].copy_from_slice(&half));
-        add("at rest, all bodies turned by half a turn", state);
-    }
-    let mut state = start.to_vec();
-    for position in state[..7 * n].chunks_mut(7) {
-        position.iter_mut().for_each(|x| *x += random.random_range(-TORN..TORN));
-        let length = position[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
-        position[3..].iter_mut().for_each(|e| *e /= length);
-    }
-    add("with joints torn by 1e-2", state);
-    add("at a random state", numeric::random_state(model, random));
-    places
 }
 
 /// The first line of a function whose value is not finite, if any of its results is not.
@@ -183,7 +67,7 @@ fn not_finite(
         return None;
     }
     let joints = place.joints.as_ref().unwrap_or(&module.joint_start);
-    let point = numeric::point(model, (), &place.state, 0.0, |x| x);
+    let point = states::point(model, (), &place.state, 0.0, |x| x);
     let run = |function: &str, accelerations: &[f64], charts: &[[f64; 4]]| {
         let changes = vec![1.0; model.rows().len()];
         let given = Given { point: &point, accelerations, charts, changes: &changes, joints };
@@ -273,7 +157,7 @@ impl Dense {
         if !self.is_written || state.iter().any(|x| !x.is_finite()) {
             return false;
         }
-        let point: Point<f64> = numeric::point(model, (), state, 0.0, |x| x);
+        let point: Point<f64> = states::point(model, (), state, 0.0, |x| x);
         let entries = self.entries.iter().map(|&(.., id)| id);
         let reach = self.formulas.reach(entries.chain(self.others.iter().copied()));
         let read = |source| *point.given(source).expect("the textbook reads what the model says there is");

@@ -59,6 +59,7 @@ mod report;
 pub mod rounding;
 mod seed;
 mod sheet;
+mod states;
 pub mod structure;
 mod tape;
 pub mod textbook;

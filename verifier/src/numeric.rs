@@ -2,7 +2,6 @@
 
 use crate::atoms::Elementary;
 use crate::field::{Field, Precision, Real};
-use crate::finite;
 use crate::interpreter::{self, Given};
 use crate::joints::Freedom;
 use crate::module::Module;
@@ -10,11 +9,11 @@ use crate::point::Point;
 use crate::program::{Id, Source};
 use crate::proof::point_of_terms;
 use crate::seed::Seed;
+use crate::states::{places, point, random_state};
 use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Reading, Textbook};
-use gyro_model::{Model, START_TOLERANCE, to_f64};
+use gyro_model::{Model, START_TOLERANCE};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// Sine and cosine of an angle that is none.
 const VANISHING: f64 = 1e-6;
@@ -129,7 +128,7 @@ fn wrong_signs(model: &Model, module: &Module, seed: Seed) -> Option<String> {
     let reach = formulas.reach(angles.iter().flat_map(|(_, ids)| *ids));
     let constants: Vec<f64> = interpreter::constants((), module);
     let mut random = seed.numbers(0);
-    let places = finite::places(model, module, seed).into_iter().map(|place| place.state);
+    let places = places(model, module, seed).into_iter().map(|place| place.state);
     let states: Vec<_> = (0..STATES).map(|_| random_state(model, &mut random)).chain(places).collect();
     for state in states {
         let point = point(model, (), &state, random.random_range(-1.0..1.0), |x| x);
@@ -168,34 +167,4 @@ fn angles(model: &Model, textbook: &Textbook, tape: &Tape) -> Option<Vec<(usize,
 
 fn read<F: Field>(point: &Point<F>, source: Source) -> F {
     point.given(source).cloned().expect("the textbook reads what the model says there is")
-}
-
-/// A state of numbers between −1 and 1 with |p| = 1 to rounding.
-pub fn random_state(model: &Model, random: &mut ChaCha8Rng) -> Vec<f64> {
-    let n = model.coordinate_bodies().len();
-    let rest = 6 * n + usize::from(model.has_work()) + model.turn_references().len();
-    let mut state: Vec<f64> = (0..7 * n + rest).map(|_| random.random_range(-1.0..1.0)).collect();
-    for position in state[..7 * n].chunks_mut(7) {
-        let length = position[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
-        position[3..].iter_mut().for_each(|e| *e /= length);
-    }
-    state
-}
-
-/// A point of given numbers, with parameters and inputs at their defaults.
-pub fn point<F: Field>(
-    model: &Model,
-    context: F::Context,
-    state: &[f64],
-    t: f64,
-    number: impl Fn(f64) -> F,
-) -> Point<F> {
-    let values = |fields: &[gyro_model::Parameter]| fields.iter().map(|f| number(to_f64(&f.value))).collect();
-    Point {
-        context,
-        t: number(t),
-        state: state.iter().map(|&x| number(x)).collect(),
-        parameters: values(&model.parameters),
-        inputs: values(&model.inputs),
-    }
 }

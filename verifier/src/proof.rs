@@ -7,6 +7,7 @@ mod decide;
 mod joints;
 mod partition;
 mod point;
+mod residuals;
 
 pub(crate) use case::point as point_of_terms;
 

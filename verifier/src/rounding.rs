@@ -16,8 +16,8 @@ use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
 use crate::joints::JointLayout;
 use crate::module::{Module, is_on_constraints, source_of_accelerations};
-use crate::numeric;
 use crate::point::Point;
+use crate::states;
 use gyro_model::Model;
 
 /// Errors over some states, each in units in the last place of the largest number of the function's results.
@@ -177,7 +177,7 @@ fn in_single(model: &Model, module: &Module, reference: &Reference) -> Computed 
 
 /// The sample with Euler parameters of length one.
 fn exact_point<'c>(model: &Model, precision: &'c Precision, sample: &Sample) -> Point<Real<'c>> {
-    let mut point = numeric::point(model, precision, &sample.raw, sample.t, |x| Real::new(precision, x));
+    let mut point = states::point(model, precision, &sample.raw, sample.t, |x| Real::new(precision, x));
     for position in point.state[..7 * model.coordinate_bodies().len()].chunks_mut(7) {
         to_length_one(&mut position[3..]);
     }
@@ -230,7 +230,7 @@ impl<F: Field> Inputs<F> {
         number: impl Fn(f64) -> F,
     ) -> Self {
         let sample = &reference.sample;
-        let point = |state: &[f64]| numeric::point(model, context, state, sample.t, &number);
+        let point = |state: &[f64]| states::point(model, context, state, sample.t, &number);
         let [changes, joints] =
             [&sample.changes, &sample.joints].map(|numbers| numbers.iter().map(|&x| number(x)).collect());
         Self { point: point(&sample.state), corrected: point(&reference.corrected), changes, joints }

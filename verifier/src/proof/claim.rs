@@ -3,6 +3,7 @@
 use super::case::{Arguments, Case};
 use super::partition::dot;
 use super::point::stretched;
+use super::residuals::{differences, position_rates};
 use super::{joints, partition};
 use crate::field::Field;
 use crate::module::Module;
@@ -261,13 +262,6 @@ impl Claim {
     }
 }
 
-/// Of two lists; where one is longer, its rest, so that nothing escapes comparison.
-pub fn differences<F: Field>(a: &[F], b: &[F]) -> Vec<F> {
-    let both = a.iter().zip(b).map(|(a, b)| a.sub(b));
-    let rest = a.iter().skip(b.len()).chain(b.iter().skip(a.len())).cloned();
-    both.chain(rest).collect()
-}
-
 /// The matrix that the values are, minus the given one, by rows, where either has an entry. A value without a place in the matrix is a row of its own.
 fn sparse_differences<F: Field>(
     values: &[F],
@@ -318,14 +312,6 @@ fn normalisations_of_phi_q<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (values, pattern) = (case.run("phi_q", &longer), &case.module.phi_q_pattern);
     let matrix = case.textbook(&longer)?.phi_q()?;
     Some(sparse_differences(&values, pattern, matrix)[rows..].concat())
-}
-
-/// Eqs. (14) and (16) for p of any length: an integrator's stages leave the sphere.
-pub(super) fn position_rates<'a>(case: &Case<'a>, function: &str) -> Option<Vec<Term<'a>>> {
-    let (longer, n) = (stretched(&case.point, &case.factors), case.n_bodies());
-    let accelerations = vec![Term::zero(case.point.context); case.module.n_accelerations];
-    let found = case.run_with(function, &longer, &accelerations);
-    Some(differences(found.get(..7 * n)?, &case.textbook(&longer)?.position_rates()))
 }
 
 fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {

@@ -7,8 +7,8 @@
 //! derivatives of `to_maximal` by dual numbers.
 
 use super::case::{Arguments, Case};
-use super::claim::{differences, position_rates};
 use super::partition::turning;
+use super::residuals::{differences, position_rates};
 use crate::atoms::Atoms;
 use crate::field::Field;
 use crate::joints::{Freedom, JointLayout};

@@ -6,8 +6,8 @@
 //! first brought to unit length, `u = p (3 − pᵀp) / 2`; its point rows then give its position exactly.
 
 use super::case::Case;
-use super::claim::differences;
 use super::point::stretched;
+use super::residuals::differences;
 use crate::field::Field;
 use crate::point::Point;
 use crate::tape::Term;

@@ -6,8 +6,8 @@ use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
 use crate::joints::JointLayout;
 use crate::module::{Module, is_on_constraints};
-use crate::numeric;
 use crate::point::Point;
+use crate::states;
 use gyro_model::Model;
 
 /// The kernels of a trial.
@@ -48,7 +48,7 @@ pub fn trial<'c>(
         .flat_map(JointLayout::euler)
         .for_each(|e| to_length_one(&mut exact_joints[e..e + 4]));
     let constants = interpreter::constants(precision, module);
-    let start = numeric::point(model, precision, &module.start, 0.0, exactly);
+    let start = states::point(model, precision, &module.start, 0.0, exactly);
     let run = |function: &str, point: &Point<Real<'c>>| {
         let given = Given { point, accelerations: &[], charts: &[], changes: &[], joints: &exact_joints };
         interpreter::run(module, module.programs.get(function)?, &constants, &Elementary, &given).ok()
@@ -69,8 +69,8 @@ pub fn trial<'c>(
     // Both are told the same state, the one that is rounded: what is left is the kernel's own error.
     let states = [rounded(&corrected.state), rounded(&violated.state)];
     let [corrected, violated] =
-        states.each_ref().map(|state| numeric::point(model, precision, state, 0.0, exactly));
-    let [short_corrected, short_violated] = states.map(|state| numeric::point(model, (), &state, 0.0, |x| x));
+        states.each_ref().map(|state| states::point(model, precision, state, 0.0, exactly));
+    let [short_corrected, short_violated] = states.map(|state| states::point(model, (), &state, 0.0, |x| x));
     let accelerations = run("accelerations", &violated)?;
     let mut errors = [0.0; KERNELS.len()];
     for (error, kernel) in errors.iter_mut().zip(KERNELS) {
