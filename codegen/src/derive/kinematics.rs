@@ -2,11 +2,12 @@
 
 use crate::derive::constraints;
 use crate::derive::system::System;
-use crate::expr::differentiate::Derivative;
-use crate::expr::differentiate::Direction;
-use crate::expr::graph::{ExprId, Graph};
+use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::Vec3;
+use rustc_hash::FxHashMap as HashMap;
+use std::collections::BTreeSet;
 
 /// A matrix by rows, zeros included; [`non_zeros`] gives its pattern.
 pub type Matrix = Vec<Vec<ExprId>>;
@@ -36,11 +37,11 @@ impl Kinematics {
         let all: Vec<_> = phi.iter().chain(&normalisations).copied().collect();
         let n_slots = system.slots.len();
 
-        let phi_q = columns(system, &all, coordinate_directions(n_slots));
+        let rows_of_slots = rows_of_slots(system, &all);
+        let phi_q = columns(system, &all, &rows_of_slots, coordinate_directions(n_slots));
         let rotations = (0..n_slots).flat_map(|slot| (0..6).map(move |k| (slot, k)));
-        let virtual_motions = rotations.map(|(slot, k)| system.unit_motion(slot, k)).collect::<Vec<_>>();
-        let virtual_motions = virtual_motions.iter().map(|motion| system.direction(motion)).collect();
-        let phi_pi = columns(system, &phi, virtual_motions);
+        let virtual_motions = rotations.map(|(slot, k)| system.unit_direction(slot, k)).collect();
+        let phi_pi = columns(system, &phi, &rows_of_slots, virtual_motions);
 
         let time = Direction::from([(Symbol::Time, Graph::ONE)]);
         let phi_t = along(system, &phi, time);
@@ -86,9 +87,49 @@ fn coordinate_directions(n_slots: usize) -> Vec<Direction> {
         .collect()
 }
 
-fn columns(system: &mut System, rows: &[ExprId], directions: Vec<Direction>) -> Matrix {
-    let columns: Vec<_> = directions.into_iter().map(|d| along(system, rows, d)).collect();
-    (0..rows.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+/// The derivatives of some rows along directions, equally many for each slot, of rows in which the slot occurs: others do not change.
+fn columns(
+    system: &mut System,
+    rows: &[ExprId],
+    rows_of_slots: &[Vec<usize>],
+    directions: Vec<Direction>,
+) -> Matrix {
+    let mut matrix = vec![vec![Graph::ZERO; directions.len()]; rows.len()];
+    let of_each = directions.len() / rows_of_slots.len().max(1);
+    for (column, direction) in directions.into_iter().enumerate() {
+        let mut derivative = Derivative::new(&system.definitions, direction);
+        for &row in rows_of_slots[column / of_each].iter().filter(|row| **row < rows.len()) {
+            matrix[row][column] = derivative.of(&mut system.graph, rows[row]);
+        }
+    }
+    matrix
+}
+
+/// For each slot the rows that depend on where its body is.
+fn rows_of_slots(system: &System, rows: &[ExprId]) -> Vec<Vec<usize>> {
+    let (mut rows_of_slots, mut known) = (vec![Vec::new(); system.slots.len()], HashMap::default());
+    for (row, &root) in rows.iter().enumerate() {
+        slots_of(system, root, &mut known).iter().for_each(|&slot| rows_of_slots[slot].push(row));
+    }
+    rows_of_slots
+}
+
+/// The slots whose coordinates an expression depends on, symbols being what they stand for.
+fn slots_of(system: &System, root: ExprId, known: &mut HashMap<Symbol, BTreeSet<usize>>) -> BTreeSet<usize> {
+    let mut slots = BTreeSet::new();
+    for id in system.graph.reachable(&[root]) {
+        let Node::Symbol(symbol) = *system.graph.node(id) else { continue };
+        if let Symbol::Position { slot, .. } | Symbol::Euler { slot, .. } = symbol {
+            slots.insert(slot);
+        } else if let Some(definition) = system.definitions.get(symbol) {
+            if !known.contains_key(&symbol) {
+                let of_definition = slots_of(system, definition, known);
+                known.insert(symbol, of_definition);
+            }
+            slots.extend(&known[&symbol]);
+        }
+    }
+    slots
 }
 
 fn along(system: &mut System, rows: &[ExprId], direction: Direction) -> Vec<ExprId> {

@@ -194,8 +194,32 @@ impl<'m> System<'m> {
     /// What the symbols change by along a motion with the given velocities of each slot, paper eqs. (14) and (16):
     /// `ṙ = s`, `ṗ = ½ Gᵀ w'`, `Ȧ = A w̃'` and, between bodies, `(A_iᵀA_j)˙ = A_iᵀA_j w̃'_j − w̃'_i A_iᵀA_j`.
     pub fn direction(&mut self, motion: &[(Vec3, Vec3)]) -> Direction {
+        self.direction_of(motion, 0..self.slots.len(), 0..self.joints.len())
+    }
+
+    /// No motion but a unit velocity or virtual rotation: column `k` of slot `slot`, of (r, π'). What does not change with it is not named.
+    pub fn unit_direction(&mut self, slot: usize, k: usize) -> Direction {
+        let mut motion = vec![(ZERO3, ZERO3); self.slots.len()];
+        motion[slot] = if k < 3 { (UNIT3[k], ZERO3) } else { (ZERO3, UNIT3[k - 3]) };
+        let body = self.slots[slot];
+        let is_on_it = |joint: &usize| {
+            let joint = &self.joints[*joint];
+            joint.first.body == body || joint.second.body == body
+        };
+        let joints: Vec<_> = (0..self.joints.len()).filter(is_on_it).collect();
+        self.direction_of(&motion, [slot], joints)
+    }
+
+    /// What the symbols of some slots and joints change by.
+    fn direction_of(
+        &mut self,
+        motion: &[(Vec3, Vec3)],
+        slots: impl IntoIterator<Item = usize>,
+        joints: impl IntoIterator<Item = usize>,
+    ) -> Direction {
         let mut direction = Direction::new();
-        for (slot, (s, w)) in motion.iter().enumerate() {
+        for slot in slots {
+            let (s, w) = &motion[slot];
             let pose = self.poses[self.slots[slot]];
             let p_rate = self.graph.euler_rate(&pose.p, w);
             let tilde = self.graph.tilde(w);
@@ -204,7 +228,7 @@ impl<'m> System<'m> {
             direction.extend((0..4).map(|k| (Symbol::Euler { slot, k }, p_rate[k])));
             direction.extend(entries(&a_rate, |row, column| Symbol::Rotation { slot, row, column }));
         }
-        for joint in 0..self.joints.len() {
+        for joint in joints {
             let (tilde_i, tilde_j) = self.joint_tildes(joint, motion);
             let relative = self.joints[joint].relative;
             let (turned, carried) =
@@ -291,13 +315,6 @@ impl<'m> System<'m> {
     /// The velocities (s, w') of each slot.
     pub fn velocities(&self) -> Vec<(Vec3, Vec3)> {
         self.slots.iter().map(|&body| (self.poses[body].s, self.poses[body].w)).collect()
-    }
-
-    /// No motion but a unit velocity or virtual rotation: column `k` of slot `slot`, of (r, π').
-    pub fn unit_motion(&self, slot: usize, k: usize) -> Vec<(Vec3, Vec3)> {
-        let mut motion = vec![(ZERO3, ZERO3); self.slots.len()];
-        motion[slot] = if k < 3 { (UNIT3[k], ZERO3) } else { (ZERO3, UNIT3[k - 3]) };
-        motion
     }
 }
 

@@ -285,8 +285,7 @@ impl Advance {
         }
         let angle = joint_coordinate::value(system, JointCoordinate { joint: index, coordinate: 0 });
         let gradient = std::array::from_fn(|k| {
-            let rotation = system.unit_motion(slot, 3 + k);
-            let rotation = system.direction(&rotation);
+            let rotation = system.unit_direction(slot, 3 + k);
             let rate = Derivative::new(&system.definitions, rotation).of(&mut system.graph, angle);
             system.graph.mul(joint.lead, rate)
         });

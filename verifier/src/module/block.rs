@@ -6,7 +6,7 @@ use crate::program::{Id, Node, Program, Source};
 use crate::refusal::Refusal;
 use gyro_model::Model;
 use proc_macro2::Span;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use syn::spanned::Spanned;
 use syn::{Block, Expr, ExprArray, Local, Pat, Stmt, UnOp};
 
@@ -81,6 +81,8 @@ pub struct Reader<'a> {
     pub before: Option<Before>,
     pub program: Program,
     names: HashMap<String, Name>,
+    /// Names that were bound, in order, but for those of blocks that were left.
+    bound: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -97,8 +99,8 @@ impl<'a> Reader<'a> {
         sizes: Sizes,
         before: Option<Before>,
     ) -> Self {
-        let (program, names) = (Program::default(), HashMap::new());
-        Self { model, occurrences, sizes, before, program, names }
+        let (program, names, bound) = (Program::default(), HashMap::new(), Vec::new());
+        Self { model, occurrences, sizes, before, program, names, bound }
     }
 
     /// Makes an argument known; one with an underscore is not to be used.
@@ -172,6 +174,7 @@ impl<'a> Reader<'a> {
 
     fn bind(&mut self, name: String, known: Known, span: Span) -> Result<(), Refusal> {
         let entry = Name { known, line: span.start().line, is_used: false };
+        self.bound.push(name.clone());
         match self.names.insert(name.clone(), entry) {
             Some(_) => Err(Refusal::at(span, format!("`{name}` is bound twice"))),
             None => Ok(()),
@@ -249,7 +252,7 @@ impl<'a> Reader<'a> {
         let Some((Stmt::Expr(Expr::Tuple(handed), None), statements)) = inner.block.stmts.split_last() else {
             return Err(refused(block));
         };
-        let before: Vec<String> = self.names.keys().cloned().collect();
+        let start = self.bound.len();
         for statement in statements {
             let Stmt::Local(local) = statement else { return Err(refused(statement)) };
             self.binding(local)?;
@@ -258,20 +261,19 @@ impl<'a> Reader<'a> {
         if handed.elems.iter().map(text).collect::<Vec<_>>() != names {
             return Err(Refusal::at(block.span(), "a block must hand on the names that it binds"));
         }
-        for name in &names {
-            if before.contains(name) || !self.names.contains_key(name) {
-                return Err(Refusal::at(block.span(), format!("`{name}` is not bound in this block")));
-            }
+        let inside: HashSet<String> = self.bound.drain(start..).collect();
+        if let Some(name) = names.iter().find(|name| !inside.contains(*name)) {
+            return Err(Refusal::at(block.span(), format!("`{name}` is not bound in this block")));
         }
-        self.leave(&before, &names);
+        self.leave(inside, &names);
+        self.bound.extend(names);
         Ok(())
     }
 
     /// Forgets the names of a block that are not handed on.
-    fn leave(&mut self, before: &[String], handed: &[String]) {
-        let stays = |name: &String| before.contains(name) || handed.contains(name);
-        let left: Vec<String> = self.names.keys().filter(|name| !stays(name)).cloned().collect();
-        for name in left {
+    fn leave(&mut self, mut inside: HashSet<String>, handed: &[String]) {
+        handed.iter().for_each(|name| _ = inside.remove(name));
+        for name in inside {
             if let Some(entry) = self.names.remove(&name).filter(|entry| !entry.is_used) {
                 self.program.unused.push((name, entry.line));
             }

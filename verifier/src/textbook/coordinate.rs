@@ -50,8 +50,11 @@ impl<F: Field> Evaluation<'_, F> {
     /// How fast the angle of `(C, S)` changes along the motion, `(C S' − S C') / (S² + C²)`: off the constraints not the rate of the
     /// coordinate.
     pub fn angle_rate(&self, on: JointCoordinate) -> Option<F> {
-        let placed = self.joints[on.joint].placed(&self.poses(Path::Motion));
-        let (s, c) = placed.sine_and_cosine(self.textbook.model.coordinate_kind(on));
+        let (frames, mut poses) = (&self.joints[on.joint], self.still.clone());
+        for body in [frames.first.body, frames.second.body] {
+            poses[body] = self.pose(body, Path::Motion);
+        }
+        let (s, c) = frames.placed(&poses).sine_and_cosine(self.textbook.model.coordinate_kind(on));
         let zero = &self.scope.zero.value;
         let turned = &c * s.derivative(zero) - &s * c.derivative(zero);
         Some((turned * (&s * &s + &c * &c).reciprocal()?).value)

@@ -20,9 +20,9 @@ impl<F: Field> Evaluation<'_, F> {
     pub fn phi_q(&self) -> Option<Sparse<F>> {
         let (n_rows, slots) = (self.textbook.n_rows(), &self.textbook.slots);
         let mut matrix = self.derivatives(n_rows + slots.len(), 7, |slot, k| Path::Coordinate { slot, k })?;
-        for slot in 0..slots.len() {
+        for (slot, &body) in slots.iter().enumerate() {
             for k in 3..7 {
-                let pose = self.pose(slots[slot], Path::Coordinate { slot, k });
+                let pose = self.pose(body, Path::Coordinate { slot, k });
                 if let Some(rate) = self.normalisation(&pose).rate {
                     matrix.rows[n_rows + slot].insert(7 * slot + k, rate);
                 }

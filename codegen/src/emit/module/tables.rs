@@ -50,3 +50,34 @@ fn list(elements: Vec<String>, others: usize) -> String {
     let lines: String = elements.iter().map(|element| format!("{INDENT}{element},\n")).collect();
     format!("[\n{lines}]")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emit::float;
+    use quote::quote;
+
+    /// Lists of few and many numbers, and pieces of all lengths about that of a line.
+    #[test]
+    fn numbers_are_laid_out_as_the_rest_of_a_module_is() {
+        for n in [2, 3, 9, 40] {
+            let knots: Vec<f64> = (0..n).map(f64::from).collect();
+            let digits = |k: i32| (0..k % 22).fold(0.0, |x, _| (x + 3.0) / 10.0);
+            let pieces = (1..n).map(|k| [digits(k), -digits(k + 1), 1.0 + digits(k / 2), 1e-7 / 3.0]);
+            let spline = Spline { source: String::new(), knots, pieces: pieces.collect() };
+            let times = spline.knots.iter().map(|&t| float(t));
+            let pieces = spline.pieces.iter().map(|piece| piece.map(float)).map(|c| quote! { [#(#c),*] });
+            let text = |times, pieces| {
+                let tokens = quote! {
+                    const KNOTS_0: [f64; 1] = [#times];
+                    /// Polynomials.
+                    const PIECES_0: [[f64; 4]; 1] = [#pieces];
+                };
+                // The head of a module comes first.
+                format!("//!\n{}", prettyplease::unparse(&syn::parse2(tokens).expect("constants")))
+            };
+            let expected = text(quote! { #(#times),* }, quote! { #(#pieces),* });
+            assert_eq!(with_numbers(text(quote! {}, quote! {}), &[&spline]), expected);
+        }
+    }
+}
