@@ -51,14 +51,20 @@ pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, choice:
     u32::try_from(exchanged).unwrap_or(u32::MAX)
 }
 
-/// The smallest pivot of full pivoting, and of the joints' rows the one that is left last.
+/// One over the norm of the pseudoinverse of Φ_q, and of the joints' rows the one that is nearest to the span of the others. With the
+/// transposed Jacobian `Q R` the norm is that of R⁻¹, and a row's distance is one over the length of its row of R⁻¹.
 pub(crate) fn clearance<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> (T, usize) {
-    let lu = jacobian(lowered, at).full_piv_lu();
-    let mut rows = DVector::from_iterator(n_constraints(lowered), 0..n_constraints(lowered));
-    lu.p().permute_rows(&mut rows);
-    let pivot = pivots(lu.lu_internal()).map(abs).fold(T::one(), |least, pivot| least.min(pivot));
-    let last = rows.iter().rev().copied().find(|&row| row < lowered.n_rows());
-    (pivot, last.unwrap_or(0))
+    let triangle = jacobian(lowered, at).transpose().qr().r();
+    let n = triangle.ncols();
+    let is_joint = |row: &usize| *row < lowered.n_rows();
+    let Some(inverse) = triangle.solve_upper_triangular(&DMatrix::identity(n, n)) else {
+        let dependent = (0..n).find(|&row| triangle[(row, row)] == T::zero());
+        return (T::zero(), dependent.filter(is_joint).unwrap_or(0));
+    };
+    let lengths = (0..lowered.n_rows()).map(|row| (inverse.row(row).norm(), row));
+    let longest =
+        lengths.fold((T::zero(), 0), |longest, next| if next.0 > longest.0 { next } else { longest });
+    (T::one() / inverse.norm(), longest.1)
 }
 
 /// A change of the dependent positions is trusted up to this part of the smallest pivot: a larger one may lead to another way to put the

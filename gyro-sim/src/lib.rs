@@ -89,6 +89,6 @@ pub use mechanism::{
     JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
 };
 pub use scalar::{Real, Scalar};
-pub use solver::{Control, Solver, Statistics};
+pub use solver::{Control, Passage, Solver, Statistics};
 pub use turns::{JointCoordinate, Turns, refer_turns};
 pub use violation::{Violation, violation};

@@ -45,6 +45,7 @@
 mod elimination;
 #[cfg(test)]
 mod four_bar;
+mod nearness;
 
 pub use crate::rounding::is_met;
 use crate::rounding::silence;
@@ -128,10 +129,11 @@ where
     Pivots::new(elimination.columns)
 }
 
-/// How clear a state is of singular poses: the smallest pivot of full pivoting, and whose row is left with it.
+/// How clear a state is of singular poses: one over the norm of the Jacobian's pseudoinverse, which near a pose is the smallest singular
+/// value; and whose row is nearest to depending on the others.
 ///
-/// Along a motion through a singular pose it falls to zero and rises again in proportion to the distance, to within what exchanges of
-/// pivots change.
+/// It follows the state smoothly, as the smallest pivot of an elimination does not; along a motion through a singular pose it falls to zero and
+/// rises again in proportion to the distance.
 pub fn clearance<M, const NC: usize, const NQ: usize>(
     mechanism: &M,
     t: M::Scalar,
@@ -140,9 +142,9 @@ pub fn clearance<M, const NC: usize, const NQ: usize>(
 where
     M: Equations<Scalar: Real>,
 {
-    let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
-    let least = elimination.reduce(NQ);
-    Clearance { pivot: least.value, owner: Some(owner(mechanism, least.row)) }
+    let jacobian = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
+    let nearest = jacobian.nearness();
+    Clearance { pivot: nearest.value, owner: Some(owner(mechanism, nearest.row)) }
 }
 
 /// Exchanges coordinates until no dependent one changes more than [`POOR`] times as fast as an independent one; returns the number

@@ -1,5 +1,6 @@
 //! From a method and a correction to a motion.
 
+mod passages;
 mod past;
 mod poses;
 
@@ -7,6 +8,8 @@ use crate::correct::{check_finite, check_time};
 use crate::integrate::{Embedded, Method, Work};
 use crate::{Correction, Error, Ode, Real, Storage, When};
 use core::cmp::Ordering;
+use passages::Nearness;
+pub use passages::Passage;
 use past::Past;
 use poses::{Approach, Watch};
 
@@ -72,6 +75,10 @@ pub struct Statistics {
     pub longest_step: f64,
     /// Accepted steps that were extrapolated over a singular pose.
     pub leaps: u64,
+    /// Singular poses that steps of fixed length have passed so near that they may have gone on in another way than the motion does.
+    pub passages: u64,
+    /// The first of them.
+    pub first_passage: Option<Passage>,
 }
 
 /// A motion under way: a method, a correction, the time and the state.
@@ -115,6 +122,8 @@ pub struct Solver<S, T, M, C> {
     /// Where there is a singular pose ahead that must be stepped over.
     approach: Option<Approach>,
     watch: Watch,
+    /// Under steps of fixed length, where there are singular poses: how near they are.
+    nearness: Option<Nearness<T>>,
     resumes: bool,
     statistics: Statistics,
 }
@@ -159,6 +168,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             leap: None,
             approach: None,
             watch: Watch::Unknown,
+            nearness: None,
             resumes: false,
             statistics: Statistics { shortest_step: f64::INFINITY, ..Statistics::default() },
         }
@@ -197,7 +207,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         self.y.as_mut().copy_from_slice(y.as_ref());
         (self.is_untouched, self.is_checked) = (false, false);
         self.past.forget();
-        self.leap = None;
+        (self.leap, self.nearness) = (None, None);
     }
 
     /// The system has changed, as by a new value of an input: nothing that was found out about it holds any longer.
@@ -208,7 +218,8 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         self.leap = None;
     }
 
-    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again.
+    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again: singular poses that it passes
+    /// are counted ([`Statistics::passages`]).
     ///
     /// # Errors
     /// [`Error`], with state and time as they were before.
@@ -222,17 +233,19 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         if !h.is_finite() {
             return Err(Error::Setting { setting: "step", value: h.to_f64() });
         }
+        self.look_out(system);
         self.attempt(system, h);
         let after = self.after(h);
         self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
         match self.correct_trial(system, after.0) {
             Ok(is_corrected) => {
                 self.keep::<O>(after, h, (is_corrected, None));
+                self.look_back(system);
                 Ok(())
             }
             Err(error) => {
                 self.resumes = false;
-                Err(error)
+                Err(self.blame(system, error))
             }
         }
     }
@@ -261,7 +274,9 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     {
         check_time(self.t, self.t)?;
         self.trial.as_mut().copy_from_slice(self.y.as_ref());
-        self.correction.correct(system, self.t, &mut self.trial)?;
+        self.correction
+            .correct(system, self.t, &mut self.trial)
+            .map_err(|error| self.blame(system, error))?;
         core::mem::swap(&mut self.y, &mut self.trial);
         self.statistics.corrections += 1;
         (self.since_correction, self.is_untouched) = (0, false);

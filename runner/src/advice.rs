@@ -242,7 +242,7 @@ impl Plan<'_> {
 
     /// Error control looks ahead for singular poses and steps over them, and corrections keep drift from hiding which way goes on. A pose
     /// that is not passed at one tolerance may be at another, where steps end elsewhere.
-    fn over_poses(&self) -> Option<Advice> {
+    pub(crate) fn over_poses(&self) -> Option<Advice> {
         let is_controlled = self.approach.tolerance.is_some() && self.is_corrected();
         let changes = [
             Change::Integrator(Integrator::Dop853),

@@ -2,7 +2,7 @@
 
 use crate::Coordinates;
 use crate::advice::{Advice, try_words};
-use gyro_sim::{Coordinate, Error, Mechanism, Owner};
+use gyro_sim::{Coordinate, Error, Mechanism, Owner, Passage};
 use std::{fmt, io};
 
 /// Why a run has ended early.
@@ -49,6 +49,14 @@ impl Failure {
 /// An error of the solvers in words: when, whose and how much.
 pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
     describe_in(mechanism, Coordinates::Maximal, error)
+}
+
+/// What an error says besides where steps of fixed length had passed a singular pose before.
+pub(crate) fn behind<M: Mechanism>(mechanism: &M, passage: &Passage) -> String {
+    let whose = passage.owner.map_or(String::new(), |owner| {
+        format!(", where the constraints of {} depend on others", name(mechanism, owner))
+    });
+    format!("; before, at t = {} s, the steps had passed a singular pose{whose}", passage.t)
 }
 
 /// The same for a motion in these coordinates.

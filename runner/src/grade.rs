@@ -6,6 +6,7 @@
 
 use crate::companion::{Difference, departure, distance, gap, rate, size};
 use crate::{BodySample, JointSample, Sample, Summary};
+use gyro_sim::Passage;
 
 /// What a run is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,6 +34,8 @@ pub enum Reason {
     Violation(f64),
     /// The smallest pivot of the constraints: near a singular pose a mechanism may go on in another way.
     Pivot(f64),
+    /// Steps of fixed length have passed a singular pose; this is the first.
+    Passage(Passage),
 }
 
 /// What a judgement depends on besides the runs.
@@ -99,7 +102,7 @@ impl Reason {
         let (good, lost, value) = match self {
             Self::Error(_) => return Grade::Worthless,
             Self::Tolerance(times) => return if times <= TOLERANCES { Grade::Good } else { Grade::Usable },
-            Self::Work(_) => return Grade::Usable,
+            Self::Work(_) | Self::Passage(_) => return Grade::Usable,
             Self::Pivot(pivot) => return if pivot >= SMALL_PIVOT { Grade::Good } else { Grade::Usable },
             Self::Energy(drift) => (GOOD, LOST, drift),
             Self::Violation(violation) => (GOOD, APART, violation),
@@ -152,6 +155,7 @@ pub fn judge(
     let mut reasons: Vec<Reason> = balance(summary, measure.is_balanced).into_iter().map(excused).collect();
     reasons.extend(measure.tolerance.map(|_| Reason::Tolerance(in_tolerances)));
     reasons.extend(summary.smallest_pivot.map(Reason::Pivot));
+    reasons.extend(summary.statistics.first_passage.map(Reason::Passage));
     reasons.retain(|reason| reason.grade() > Grade::Good);
     let of_errors = if is_lost {
         Grade::Worthless

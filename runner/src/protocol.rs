@@ -5,8 +5,8 @@
 
 use crate::motion::Linear;
 use crate::{Approach, BodySample, Forecast, Input, JointSample, Sample, Settings, Start, Summary, Timing};
-use gyro_sim::Statistics;
 use gyro_sim::integrate::Work;
+use gyro_sim::{Owner, Passage, Statistics};
 use gyro_yardstick::Measured;
 use std::fmt::Write as _;
 use std::str::{FromStr, SplitAsciiWhitespace};
@@ -28,6 +28,9 @@ pub struct Request {
 
 /// The line after a request.
 pub const END: &str = "end";
+
+/// What stands for something that is not there.
+const NONE: &str = "none";
 
 /// One line of an answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -275,7 +278,28 @@ impl Words<'_> {
             shortest_step: self.next()?,
             longest_step: self.next()?,
             leaps: self.next()?,
+            passages: self.next()?,
+            first_passage: self.passage()?,
         })
+    }
+
+    /// A passage, or a word that there is none.
+    #[expect(clippy::option_option, reason = "a garbled line is no line without a passage")]
+    fn passage(&mut self) -> Option<Option<Passage>> {
+        let kind = self.0.next()?;
+        if kind == NONE {
+            return Some(None);
+        }
+        let index = self.next()?;
+        let owner = match kind {
+            "body" => Some(Owner::Body(index)),
+            "joint" => Some(Owner::Joint(index)),
+            "coupler" => Some(Owner::Coupler(index)),
+            "driver" => Some(Owner::Driver(index)),
+            "nobody" => None,
+            _ => return None,
+        };
+        Some(Some(Passage { t: self.next()?, pivot: self.next()?, owner }))
     }
 
     fn sample(&mut self) -> Option<Sample> {
@@ -320,7 +344,19 @@ fn statistics(text: &mut String, s: &Statistics) {
     words(text, "", &counts);
     words(text, "", &[s.limited_by_stability]);
     words(text, "", &[s.fastest_rate, s.shortest_step, s.longest_step]);
-    words(text, "", &[s.leaps]);
+    words(text, "", &[s.leaps, s.passages]);
+    let Some(Passage { t, pivot, owner }) = s.first_passage else {
+        let _ = write!(text, " {NONE}");
+        return;
+    };
+    let (kind, index) = match owner {
+        Some(Owner::Body(index)) => ("body", index),
+        Some(Owner::Joint(index)) => ("joint", index),
+        Some(Owner::Coupler(index)) => ("coupler", index),
+        Some(Owner::Driver(index)) => ("driver", index),
+        None => ("nobody", 0),
+    };
+    let _ = write!(text, " {kind} {index} {t:?} {pivot:?}");
 }
 
 /// One sample as a reply line, without its end.
@@ -435,6 +471,11 @@ mod tests {
         };
         let summary =
             Summary { steps: 10_000, chart_switches: 32, smallest_pivot: Some(0.5), ..Default::default() };
+        let first = Passage { t: AWKWARD[0], pivot: AWKWARD[4], owner: Some(Owner::Driver(3)) };
+        let passed = Summary {
+            statistics: Statistics { passages: 2, first_passage: Some(first), ..Statistics::default() },
+            ..summary
+        };
         for reply in [
             Reply::Sample(sample),
             Reply::Linear(Linear {
@@ -450,6 +491,7 @@ mod tests {
                 measured: Measured { runs: 9, seconds: AWKWARD[1], ratio: AWKWARD[6] },
                 statistics: Statistics { accepted: 3, fastest_rate: AWKWARD[4], ..Statistics::default() },
             }),
+            Reply::Done(passed),
             Reply::Done(summary),
             Reply::Forecast(Forecast { steps: 1e12, seconds: AWKWARD[0] }),
             Reply::Failed("at t = 1 s the end".to_owned()),

@@ -77,7 +77,7 @@ impl Plan<'_> {
             self.on_violation(judged, summary),
         ];
         let mut remarks: Vec<Remark> = said.into_iter().flatten().collect();
-        remarks.extend(judged.reasons.iter().filter_map(on_reason));
+        remarks.extend(judged.reasons.iter().filter_map(|reason| self.on_reason(reason)));
         remarks.into_iter().map(|remark| self.accepted(remark)).collect()
     }
 
@@ -134,7 +134,8 @@ impl Plan<'_> {
         let factor = (judged.relative / AIM).powf(1.0 / order).clamp(SHORTER[0], SHORTER[1]);
         // Shorter steps round more often, and small motions beside large ones are rounded with these.
         let largest = judged.errors.iter().map(|error| error.in_tolerances(1.0)).fold(0.0, f64::max);
-        let is_passed = judged.reasons.iter().any(|reason| matches!(reason, Reason::Pivot(_)));
+        let is_passed =
+            judged.reasons.iter().any(|reason| matches!(reason, Reason::Pivot(_) | Reason::Passage(_)));
         let is_smooth = judged.relative <= SMOOTH
             && judged.grade < Grade::Worthless
             && judged.relative.min(largest) > 30.0 * rounding
@@ -173,6 +174,26 @@ impl Plan<'_> {
         Some(Remark { words, advice, promise: Promise::Stability })
     }
 
+    fn on_reason(&self, reason: &Reason) -> Option<Remark> {
+        let words = match reason {
+            Reason::Energy(_) | Reason::Violation(_) => in_words(reason),
+            Reason::Passage(_) => {
+                let advice = self.over_poses();
+                return Some(Remark { words: in_words(reason), advice, promise: Promise::None });
+            }
+            Reason::Work(drift) => format!(
+                "The energy balance is open by {drift:.1e} of the energy that moves, though the motion is right: work and powers cannot \
+                 be trusted."
+            ),
+            Reason::Pivot(pivot) => format!(
+                "The smallest pivot of the constraints was {pivot:.1e}: the mechanism has come near a singular pose, from which it may \
+                 go on in more than one way."
+            ),
+            Reason::Error(_) | Reason::Tolerance(_) => return None,
+        };
+        Some(Remark::words(words))
+    }
+
     /// Only what has corrections can be corrected more often, and only a motion that is there is worth it.
     fn on_violation(&self, judged: &Judgement, summary: &Summary) -> Option<Remark> {
         let violation = summary.position_violation;
@@ -208,22 +229,6 @@ fn on_rejections(summary: &Summary) -> Option<Remark> {
     })
 }
 
-fn on_reason(reason: &Reason) -> Option<Remark> {
-    let words = match reason {
-        Reason::Energy(_) | Reason::Violation(_) => return Some(Remark::words(in_words(reason))),
-        Reason::Work(drift) => format!(
-            "The energy balance is open by {drift:.1e} of the energy that moves, though the motion is right: work and powers cannot be \
-             trusted."
-        ),
-        Reason::Pivot(pivot) => format!(
-            "The smallest pivot of the constraints was {pivot:.1e}: the mechanism has come near a singular pose, from which it may go \
-             on in more than one way."
-        ),
-        Reason::Error(_) | Reason::Tolerance(_) => return None,
-    };
-    Some(Remark::words(words))
-}
-
 /// A reason that a run itself tells.
 pub(crate) fn in_words(reason: &Reason) -> String {
     match reason {
@@ -237,6 +242,10 @@ pub(crate) fn in_words(reason: &Reason) -> String {
         Reason::Tolerance(times) => format!("The errors are {times:.1e} times the tolerance."),
         Reason::Work(drift) => format!("The work is off by {drift:.1e} of the energy that moves."),
         Reason::Pivot(pivot) => format!("The smallest pivot is {pivot:.1e}."),
+        Reason::Passage(passage) => format!(
+            "At t = {:.4} s steps of fixed length have passed a singular pose, from which the mechanism may have gone on in another way.",
+            passage.t
+        ),
     }
 }
 

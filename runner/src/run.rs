@@ -1,6 +1,7 @@
 //! The loop.
 
 use crate::advice::Plan;
+use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
 use crate::motion::{self, Kit, Linear, Motion};
@@ -108,6 +109,10 @@ pub fn run_by<M: Partition + Ports + 'static>(
         Err(Halt::Solver(error)) => {
             run.tell_state(&mut told).map_err(Failure::Output)?;
             let words = describe_in(run.mechanism, approach.coordinates, &error);
+            let passed =
+                run.summary.statistics.first_passage.filter(|_| !matches!(error, Error::Singular { .. }));
+            let words = describe_in(run.mechanism, approach.coordinates, &error)
+                + &passed.map_or(String::new(), |passage| behind(run.mechanism, &passage));
             let plan = Plan { settings: &settings, approach, offers: &offers };
             // The steps' length is asked about only where stability may limit it.
             let asks = matches!(error, Error::Stiff { .. } | Error::TooManySteps { .. });

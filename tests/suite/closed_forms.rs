@@ -155,12 +155,19 @@ const DRIFT_OF_FAST: f64 = 1e-10;
 const SINGULAR: [&str; 2] = ["parallelogram", "four-bar-in-line"];
 const DRIFT_OF_SINGULAR: f64 = 1e-7;
 
+/// Those whose poses are singular twice over, or of seven bars, are followed up to there: `poses.rs` has them pass, under error control.
+const UP_TO_POSE: [&str; 2] = ["peaucellier", "two-four-bars"];
+const BEFORE_POSE: f64 = 0.2;
+
 /// The paper's second; where a page asks for shorter steps, as many of those; through the pose in line, the page's own, as there
 /// shorter ones lose more.
 fn settings(page: &str, model: &Model) -> Settings {
     let asked = &model.simulation;
     if page == "four-bar-in-line" {
         return as_paged(model, asked.t_end / 100.0);
+    }
+    if UP_TO_POSE.contains(&page) {
+        return Settings { t_end: BEFORE_POSE, ..PAPER };
     }
     if asked.step >= PAPER.step {
         return PAPER;

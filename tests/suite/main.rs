@@ -2,6 +2,7 @@
 
 mod all_joints;
 mod allocation;
+mod branches;
 mod build_script;
 mod closed_forms;
 mod convergence;

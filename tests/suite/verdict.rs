@@ -4,8 +4,9 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::estimate::{deviations, expected};
+use gyro_assembled::{Careful, Dense, Number};
 use gyro_reference::JointRow;
-use gyro_runner::motion::Kit;
+use gyro_runner::motion::{Kit, Projecting};
 use gyro_runner::{
     Advice, Approach, Coordinates, Correction, Failure, Grade, Integrator, Judgement, Measure, Offers, Plan,
     Promise, Remark, Sample, Settings, Start, Summary, When, balance, companions, judge,
@@ -22,8 +23,10 @@ const MOST_STEPS: f64 = 4000.0;
 const BUDGET: u64 = 4000;
 const IMPLICIT_BUDGET: u64 = 300;
 
-/// Runs of the seeded sample; `GYRO_VERDICTS` asks for another number.
+/// Runs of the seeded sample; `GYRO_VERDICTS` asks for another number. Twins are slow: fewer runs, of fewer steps.
 const RUNS: usize = 104;
+const RUNS_OF_TWINS: usize = 26;
+const MOST_STEPS_OF_TWINS: f64 = 400.0;
 const SEED: u64 = 17;
 
 /// A good run is off by no more than so much of the motion of each coordinate or of a radian, in the strict sense of the grade, ten
@@ -37,10 +40,19 @@ const WORTHLESS_BUT_RIGHT: f64 = 0.02;
 /// Advice is followed so often at most.
 const FOLLOWED: usize = 8;
 
+/// What runs a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Form {
+    Generated,
+    /// The assembled twin: careful where it can be, else dense.
+    Twin,
+}
+
 /// A run as it is drawn.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     page: &'static str,
+    form: Form,
     is_single: bool,
     settings: Settings,
     approach: Approach,
@@ -52,23 +64,41 @@ struct Stand {
     single: (Engine<f32>, Box<dyn Kit<Engine<f32>>>),
     start: Start,
     size: f64,
+    form: Form,
     companions: HashMap<String, Option<(Vec<Sample>, Summary)>>,
 }
 
 type Outcome = (Vec<Sample>, Result<Summary, Failure>);
 
 impl Stand {
-    fn new(page: &str) -> Self {
-        fn with_kit<T: Real + 'static>(page: &str) -> (Engine<T>, Box<dyn Kit<Engine<T>>>) {
-            let engine = extreme::<T>(page);
-            let kit = engine.kit(duals(page));
-            (engine, kit)
+    fn new(page: &str, form: Form) -> Self {
+        fn with_kit<T: Real + Number + 'static>(
+            page: &str,
+            form: Form,
+        ) -> (Engine<T>, Box<dyn Kit<Engine<T>>>) {
+            let model = model(page);
+            match (form, Careful::<T>::new(&model)) {
+                (Form::Generated, _) => {
+                    let engine = extreme::<T>(page);
+                    let kit = engine.kit(duals(page));
+                    (engine, kit)
+                }
+                (Form::Twin, Ok(careful)) => (Engine::new(careful), Box::new(Projecting)),
+                (Form::Twin, Err(_)) => (Engine::new(Dense::<T>::new(&model).unwrap()), Box::new(Projecting)),
+            }
         }
         let model = model(page);
         // Free bodies are what the command line observes; these scenes have none.
         let start = Start { observed_bodies: Vec::new(), ..start_of(&model) };
         let size = model.size();
-        Self { double: with_kit(page), single: with_kit(page), start, size, companions: HashMap::new() }
+        Self {
+            double: with_kit(page, form),
+            single: with_kit(page, form),
+            start,
+            size,
+            form,
+            companions: HashMap::new(),
+        }
     }
 
     fn is_tree(&self) -> bool {
@@ -86,7 +116,8 @@ impl Stand {
 
     fn offers(&self, is_single: bool) -> Offers {
         let epsilon = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
-        Offers { joint_space: self.is_tree(), epsilon, ..Offers::ALL }
+        let derivatives = self.form == Form::Generated;
+        Offers { joint_space: self.is_tree(), derivatives, epsilon, ..Offers::ALL }
     }
 
     /// As the command line judges a run.
@@ -112,11 +143,12 @@ impl Stand {
 }
 
 /// Drawn at random: a scene in steps or tolerances from far too fine to far too coarse.
-fn draw(random: &mut Random, page: &'static str, is_tree: bool) -> Case {
+fn draw(random: &mut Random, (page, form): (&'static str, Form), is_tree: bool) -> Case {
     let simulation = model(page).simulation;
     let pick = |random: &mut Random, n: usize| random.below(n);
-    let integrator =
-        [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853, Integrator::Rodas4][pick(random, 4)];
+    let is_generated = form == Form::Generated;
+    let integrators = [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853, Integrator::Rodas4];
+    let integrator = integrators[pick(random, if is_generated { 4 } else { 3 })];
     let corrections = [
         Correction::Partition,
         Correction::MassWeighted,
@@ -135,7 +167,7 @@ fn draw(random: &mut Random, page: &'static str, is_tree: bool) -> Case {
     let (steps, budget) = if integrator == Integrator::Rodas4 {
         (IMPLICIT_BUDGET as f64, IMPLICIT_BUDGET)
     } else {
-        (MOST_STEPS, BUDGET)
+        (if is_generated { MOST_STEPS } else { MOST_STEPS_OF_TWINS }, BUDGET)
     };
     let t_end = if is_fixed {
         simulation.t_end.min(steps * step).min(1.0)
@@ -146,6 +178,7 @@ fn draw(random: &mut Random, page: &'static str, is_tree: bool) -> Case {
         [None, Some(When::Steps(1)), Some(When::Steps(7)), Some(When::Violation(1e-6))][pick(random, 4)];
     Case {
         page,
+        form,
         is_single,
         settings: Settings { t_end, step, correct_every: Some(step * 5.0), sample_every: t_end / SAMPLES },
         approach: Approach {
@@ -210,18 +243,19 @@ struct Tally {
 }
 
 struct Trial {
-    stands: HashMap<&'static str, Stand>,
+    stands: HashMap<(&'static str, Form), Stand>,
     tally: Tally,
 }
 
 impl Trial {
     fn check(&mut self, case: &Case) {
-        let stand = self.stands.get_mut(case.page).unwrap();
+        let stand = self.stands.get_mut(&(case.page, case.form)).unwrap();
         let (samples, outcome) = stand.run(case);
         let tally = &mut self.tally;
         let what = format!(
-            "{}{}, {}, step {:e} s, {} s",
+            "{}, {:?}{}, {}, step {:e} s, {} s",
             case.page,
+            case.form,
             if case.is_single { ", f32" } else { "" },
             case.approach,
             case.settings.step,
@@ -263,7 +297,8 @@ impl Trial {
         let (settings, approach) = advice.follow(&case.settings, &case.approach);
         let next =
             Case { settings, approach, is_single: case.is_single && !advice.is_of_precision(), ..*case };
-        let refused = self.stands[case.page].offers(next.is_single).refusal(&settings, &approach);
+        let refused =
+            self.stands[&(case.page, case.form)].offers(next.is_single).refusal(&settings, &approach);
         if let Some(words) = refused {
             self.tally.wrong.push(format!("{what}: the advice {advice} is refused: {words}"));
         }
@@ -285,7 +320,7 @@ impl Trial {
             return;
         }
         next.approach.budget = None;
-        let stand = self.stands.get_mut(case.page).unwrap();
+        let stand = self.stands.get_mut(&(case.page, case.form)).unwrap();
         let (samples, outcome) = stand.run(&next);
         let result = match outcome {
             Ok(new) => {
@@ -328,7 +363,7 @@ impl Trial {
                 return;
             }
             case.approach.budget = case.approach.budget.max(Some(BUDGET));
-            match self.stands[case.page].run(&case).1 {
+            match self.stands[&(case.page, case.form)].run(&case).1 {
                 Ok(_) => return,
                 Err(next) => failure = next,
             }
@@ -337,28 +372,30 @@ impl Trial {
     }
 }
 
-fn trial(n_runs: usize, seed: u64) -> Tally {
+fn trial(form: Form, n_runs: usize, seed: u64) -> Tally {
     let mut random = Random::new(seed);
+    let pages = EXTREME.map(|page| (page, form));
     let mut trial = Trial {
-        stands: EXTREME.into_iter().map(|page| (page, Stand::new(page))).collect(),
+        stands: pages.into_iter().map(|page| (page, Stand::new(page.0, form))).collect(),
         tally: Tally::default(),
     };
     for run in 0..n_runs {
-        let page = EXTREME[run % EXTREME.len()];
-        let case = draw(&mut random, page, trial.stands[page].is_tree());
+        let page = pages[run % pages.len()];
+        let case = draw(&mut random, page, trial.stands[&page].is_tree());
         trial.check(&case);
     }
     trial.tally
 }
 
-#[test]
-fn no_wrong_run_is_good_and_advice_does_what_it_says() {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse().ok());
-    let n_runs = asked("GYRO_VERDICTS").unwrap_or(RUNS);
-    let seed = asked("GYRO_SEED").map_or(SEED, |seed| seed as u64);
-    let tally = trial(n_runs, seed);
+fn asked(name: &str) -> Option<usize> {
+    std::env::var(name).ok().and_then(|n| n.parse().ok())
+}
+
+fn check(form: Form, n_runs: usize) -> Tally {
+    let n_runs = asked("GYRO_VERDICTS").unwrap_or(n_runs);
+    let tally = trial(form, n_runs, asked("GYRO_SEED").map_or(SEED, |seed| seed as u64));
     println!(
-        "{n_runs} runs: {:?}, {} failed, {} unjudged; {} right, of which worthless {}; balance worthless {}; advice followed {}",
+        "{form:?}, {n_runs} runs: {:?}, {} failed, {} unjudged; {} right, of which worthless {}; balance worthless {}; advice followed {}",
         tally.grades,
         tally.failed,
         tally.unjudged,
@@ -371,5 +408,16 @@ fn no_wrong_run_is_good_and_advice_does_what_it_says() {
     assert!(tally.wrong.is_empty(), "{} wrong:\n{}", tally.wrong.len(), tally.wrong.join("\n"));
     let most = WORTHLESS_BUT_RIGHT * tally.right as f64;
     assert!(tally.worthless_but_right.len() as f64 <= most, "{:?}", tally.worthless_but_right);
-    assert!(tally.grades.len() == 3 && tally.followed > n_runs / 10, "{:?}", tally.grades);
+    tally
+}
+
+#[test]
+fn no_wrong_run_is_good_and_advice_does_what_it_says() {
+    let tally = check(Form::Generated, RUNS);
+    assert!(tally.grades.len() == 3 && tally.followed > RUNS / 10, "{:?}", tally.grades);
+}
+
+#[test]
+fn no_wrong_run_of_a_twin_is_good() {
+    check(Form::Twin, RUNS_OF_TWINS);
 }

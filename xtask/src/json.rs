@@ -6,6 +6,7 @@ use crate::{columns, linearization, remarks};
 use gyro_model::Model;
 use gyro_runner::motion::Linear;
 use gyro_runner::{Advice, Difference, JointSample};
+use gyro_sim::Statistics;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -43,6 +44,8 @@ pub(crate) fn object(
         "evaluations": summary.statistics.work.evaluations,
         "jacobians": summary.statistics.work.jacobians,
         "corrections": summary.statistics.corrections,
+        "poses_stepped_over": summary.statistics.leaps,
+        "poses_passed": poses(scene, &summary.statistics),
         "steps_limited_by_stability": summary.statistics.limited_by_stability,
         "chart_switches": summary.chart_switches,
         "run_time_s": summary.run_time_s,
@@ -147,6 +150,16 @@ fn files(written: &[PathBuf]) -> Value {
         "plots": plots,
         "note": tables.is_empty().then_some(note),
     })
+}
+
+/// The singular poses that steps of fixed length have passed.
+fn poses(scene: &Scene, statistics: &Statistics) -> Value {
+    let first = statistics.first_passage.map(|first| {
+        let owner = first.owner.map(|owner| verdict::row_owner(&scene.model, owner));
+        let (kind, name) = owner.map(|owner| remarks::kind_and_name(&scene.model, owner)).unzip();
+        json!({ "t": first.t, "clearance": first.pivot, "owner": kind, "name": name })
+    });
+    json!({ "count": statistics.passages, "first": first })
 }
 
 /// The rows that were dropped.

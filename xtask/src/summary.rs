@@ -3,7 +3,7 @@
 use crate::args::Engine;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, compare, remarks};
+use crate::{columns, compare, remarks, verdict};
 use gyro_assembled::Careful;
 use gyro_model::{Model, Move};
 use gyro_runner::{Approach, Coordinates, Correction, JointSample, Sample, Settings, Summary, When};
@@ -175,9 +175,18 @@ fn list(values: &[f64]) -> String {
 }
 
 /// What the steps have cost and met.
-fn cost(statistics: &Statistics) -> Vec<Vec<String>> {
-    let Statistics { accepted, rejected, corrections, work, limited_by_stability, fastest_rate, .. } =
-        *statistics;
+fn cost(scene: &Scene, statistics: &Statistics) -> Vec<Vec<String>> {
+    let Statistics {
+        accepted,
+        rejected,
+        corrections,
+        work,
+        limited_by_stability,
+        fastest_rate,
+        leaps,
+        passages,
+        ..
+    } = *statistics;
     let mut rows = vec![vec!["evaluations".to_owned(), work.evaluations.to_string()]];
     if rejected > 0 {
         rows.push(vec!["rejected steps".to_owned(), rejected.to_string()]);
@@ -187,6 +196,12 @@ fn cost(statistics: &Statistics) -> Vec<Vec<String>> {
     }
     if corrections > 0 {
         rows.push(vec!["corrections".to_owned(), corrections.to_string()]);
+    }
+    if leaps > 0 {
+        rows.push(vec!["singular poses stepped over".to_owned(), leaps.to_string()]);
+    }
+    if let Some(first) = verdict::passage(scene, statistics) {
+        rows.push(vec!["singular poses passed".to_owned(), format!("{passages}, {first}")]);
     }
     if fastest_rate > 0.0 {
         rows.push(vec!["fastest rate".to_owned(), format!("{} 1/s", number(fastest_rate, FEW))]);
@@ -214,7 +229,7 @@ fn quality(scene: &Scene, samples: &[Sample], run: &Summary, last: &Sample) -> S
     if scene.settings.correct_every.is_some() {
         rows.push(vec!["chart switches".to_owned(), run.chart_switches.to_string()]);
     }
-    rows.extend(cost(&run.statistics));
+    rows.extend(cost(scene, &run.statistics));
     rows.push(vec!["samples".to_owned(), samples.len().to_string()]);
     rows.push(vec!["run time".to_owned(), format!("{} s", number(run.run_time_s, FEW))]);
     format!("\n{}", table(&rows))

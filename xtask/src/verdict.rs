@@ -5,16 +5,17 @@
 //! ([`gyro_runner::judge`]).
 
 use crate::args::{Engine, Precision};
-use crate::columns;
 use crate::failure::Failure;
 use crate::scene::Scene;
-use crate::words::{number, table};
-use gyro_model::Model;
+use crate::words::{count, number, table};
+use crate::{columns, remarks};
+use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
     Approach, Coordinates, Difference, Grade, Judgement, Measure, Plan, Reason, Remark, Sample, Settings,
     Summary, judge,
 };
+use gyro_sim::{Owner, Statistics};
 use nalgebra::DMatrix;
 use std::fmt::Write as _;
 
@@ -186,11 +187,40 @@ pub(crate) fn worthless(scene: &Scene, outcome: &Outcome, verdict: Option<&Verdi
 
 /// What a run says of itself that is not good, for those who have not asked for a verdict.
 pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
-    let reasons = gyro_runner::balance(&outcome.summary, scene.is_balanced);
-    reasons
-        .iter()
-        .map(|reason| format!("{reason} --verify tells how far the result can be trusted."))
-        .collect()
+    let reasons = gyro_runner::balance(&outcome.summary, scene.is_balanced).into_iter();
+    let all =
+        reasons.map(|reason| reason.to_string()).chain(passage_words(scene, &outcome.summary.statistics));
+    all.map(|words| format!("{words} --verify tells how far the result can be trusted.")).collect()
+}
+
+/// That steps of fixed length have passed singular poses, if they have.
+fn passage_words(scene: &Scene, statistics: &Statistics) -> Option<String> {
+    let first = passage(scene, statistics)?;
+    Some(format!(
+        "Steps of fixed length have passed {}, {first}: from there the mechanism may have gone on in another way. Under error control such poses \
+         are stepped over.",
+        count(statistics.passages, "singular pose")
+    ))
+}
+
+/// When the first singular pose was passed, and whose constraints depend on others there.
+pub(crate) fn passage(scene: &Scene, statistics: &Statistics) -> Option<String> {
+    let first = statistics.first_passage?;
+    let whose = first.owner.map_or(String::new(), |owner| {
+        let (kind, name) = remarks::kind_and_name(&scene.model, row_owner(&scene.model, owner));
+        format!(" ({kind} `{name}`)")
+    });
+    Some(format!("the first at t = {} s{whose}", number(first.t, 4)))
+}
+
+/// An owner in terms of the model: its bodies with coordinates are a mechanism's bodies.
+pub(crate) fn row_owner(model: &Model, owner: Owner) -> RowOwner {
+    match owner {
+        Owner::Body(index) => RowOwner::Body(model.coordinate_bodies()[usize::from(index)]),
+        Owner::Joint(index) => RowOwner::Joint(index.into()),
+        Owner::Coupler(index) => RowOwner::Coupler(index.into()),
+        Owner::Driver(index) => RowOwner::Driver(index.into()),
+    }
 }
 
 /// The verdict in words.

@@ -87,6 +87,8 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "method",
             "model",
             "outputs",
+            "poses_passed",
+            "poses_stepped_over",
             "redundant",
             "rejected_steps",
             "run_time_s",

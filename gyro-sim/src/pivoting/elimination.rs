@@ -8,11 +8,11 @@ use crate::{Equations, Mechanism, Real};
 /// Normalisations are its first rows and give the first pivots: they depend on nothing, so that the row that is left over in a
 /// singular pose belongs to a joint.
 pub(super) struct Elimination<T, const NC: usize, const NQ: usize> {
-    jacobian: [[T; NQ]; NC],
+    pub(super) jacobian: [[T; NQ]; NC],
     right: [T; NC],
     /// Which constraint each row was.
-    rows: [u16; NC],
-    n_normalisations: usize,
+    pub(super) rows: [u16; NC],
+    pub(super) n_normalisations: usize,
     /// The columns in the order in which they are eliminated: pivots first.
     pub(super) columns: [u16; NQ],
 }

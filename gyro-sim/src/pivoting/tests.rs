@@ -142,6 +142,23 @@ fn is_on(bar: &FourBar, side: f64, y: &State) -> f64 {
     differences.fold(0.0, f64::max)
 }
 
+#[test]
+fn the_clearance_is_smooth_and_vanishes_in_line() {
+    const TURN: f64 = 1e-3;
+    let clear =
+        |bar: &FourBar, crank: f64| clearance::<_, NC, NQ>(bar, 0.0, &bar.state(crank, 1.0, 0.0)).pivot;
+    let bar = crank_rocker();
+    for crank in crank_angles() {
+        let near = [-1.0, 0.0, 1.0].map(|k| clear(&bar, crank + k * TURN));
+        let bend = near[0] - 2.0 * near[1] + near[2];
+        // Where an elimination takes another pivot, its smallest one changes by as much as the step at once.
+        assert!(bend.abs() < 0.1 * TURN, "{crank}: {near:?}");
+    }
+    let bar = parallelogram();
+    let [near, far] = [1e-4, 2e-4].map(|crank| clear(&bar, crank));
+    assert!((far / near - 2.0).abs() < 1e-3, "{near} {far}");
+}
+
 /// Runs a parallelogram over its two poses in line; whether it has come through. The coupler must never have turned.
 fn passes(bar: &FourBar, crank: f64, rate: f64, (step, n_steps): (f64, u32)) -> Result<(), Error> {
     let mut y = bar.state(crank, 1.0, rate);

@@ -47,7 +47,7 @@ const ROUNDINGS: f64 = 64.0;
 /// And in states that are extrapolated.
 const NOISE: f64 = 4.0;
 /// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through a pose are apart.
-const FLOOR: f64 = 100.0;
+pub(super) const FLOOR: f64 = 100.0;
 
 impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     /// In a singular pose there are many ways to fail, for this one reason.
@@ -59,6 +59,7 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         let is_symptom = matches!(
             error,
             Error::NotFinite { .. }
+                | Error::Singular { owner: None, .. }
                 | Error::StepTooShort { .. }
                 | Error::TooManySteps { .. }
                 | Error::Stiff { .. }
@@ -66,11 +67,12 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         let clearance = (is_symptom && self.watch == Watch::Needed)
             .then(|| self.correction.clearance(system, self.t, &self.y))
             .flatten();
-        match clearance {
-            Some(Clearance { pivot, owner }) if pivot < T::constant(IN_POSE) => {
-                Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner }
-            }
-            _ => error,
+        let Some(Clearance { pivot, owner }) = clearance else { return error };
+        // Under steps of fixed length the pose may be one step away, or some behind.
+        let nearest = self.nearness.and_then(|nearness| nearness.nearest());
+        match nearest.or_else(|| (pivot < T::constant(IN_POSE)).then_some(pivot)) {
+            Some(pivot) => Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner },
+            None => error,
         }
     }
 

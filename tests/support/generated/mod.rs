@@ -37,6 +37,8 @@ pub mod motor;
 #[rustfmt::skip]
 pub mod parallelogram;
 #[rustfmt::skip]
+pub mod peaucellier;
+#[rustfmt::skip]
 pub mod pendulum;
 #[rustfmt::skip]
 pub mod pitching_bearings;
@@ -60,6 +62,8 @@ pub mod spherical;
 pub mod stops;
 #[rustfmt::skip]
 pub mod tether;
+#[rustfmt::skip]
+pub mod two_four_bars;
 #[rustfmt::skip]
 pub mod universal;
 #[rustfmt::skip]
