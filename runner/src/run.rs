@@ -108,7 +108,6 @@ pub fn run_by<M: Partition + Ports + 'static>(
         Err(Halt::Output(error)) => Err(Failure::Output(error)),
         Err(Halt::Solver(error)) => {
             run.tell_state(&mut told).map_err(Failure::Output)?;
-            let words = describe_in(run.mechanism, approach.coordinates, &error);
             let passed =
                 run.summary.statistics.first_passage.filter(|_| !matches!(error, Error::Singular { .. }));
             let words = describe_in(run.mechanism, approach.coordinates, &error)

@@ -894,6 +894,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeOverdamped<T> {
             rotor_wx - inner_ring_wx,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[3]
+    }
     fn n_bodies(&self) -> usize {
         3
     }

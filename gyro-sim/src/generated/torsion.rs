@@ -321,6 +321,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         );
         *out = [k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2), -t1, disc_wz];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         1
     }

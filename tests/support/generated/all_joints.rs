@@ -4304,6 +4304,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
             T::fused(-t266, t259, t260 * t267) - t282,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0, 6, 9, 16]
+    }
     fn n_bodies(&self) -> usize {
         7
     }

@@ -2539,6 +2539,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Carried<T> {
             -(k(0.26666666666666666) * T::fused(t65, t99, t96)),
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         2
     }

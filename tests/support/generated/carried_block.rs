@@ -1300,6 +1300,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
             k(0.6666666666666666) * t90,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[7]
+    }
     fn n_bodies(&self) -> usize {
         2
     }

@@ -870,6 +870,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Differential<T> {
             right_wx - case_wx,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[3, 6, 9]
+    }
     fn n_bodies(&self) -> usize {
         4
     }

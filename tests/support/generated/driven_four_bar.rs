@@ -756,6 +756,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
             rocker_wz - t76,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         3
     }

@@ -523,6 +523,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenShaft<T> {
             disc_wz - shaft_wz,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         2
     }

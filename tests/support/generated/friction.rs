@@ -671,6 +671,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
             carriage_sy,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         3
     }

@@ -441,6 +441,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
             wheel_wx,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0, 3]
+    }
     fn n_bodies(&self) -> usize {
         2
     }

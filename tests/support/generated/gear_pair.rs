@@ -429,6 +429,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GearPair<T> {
             wheel_wz,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0, 3]
+    }
     fn n_bodies(&self) -> usize {
         2
     }

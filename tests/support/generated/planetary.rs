@@ -712,6 +712,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planetary<T> {
             planet_wz - carrier_wz,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0, 3, 6]
+    }
     fn n_bodies(&self) -> usize {
         3
     }

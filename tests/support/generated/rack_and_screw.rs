@@ -804,6 +804,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for RackAndScrew<T> {
             nut_sx,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0, 5, 8]
+    }
     fn n_bodies(&self) -> usize {
         4
     }

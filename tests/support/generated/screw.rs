@@ -288,6 +288,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         );
         *out = [k(2.0) * T::fused(nut_e0, nut_e3, nut_e1 * nut_e2), -t1, nut_wz];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         1
     }

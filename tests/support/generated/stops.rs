@@ -546,6 +546,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
             disc_wz,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[2]
+    }
     fn n_bodies(&self) -> usize {
         2
     }

@@ -363,6 +363,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
             bob_wy,
         ];
     }
+    fn turn_references(&self) -> &[u16] {
+        &[0]
+    }
     fn n_bodies(&self) -> usize {
         1
     }
