@@ -94,17 +94,13 @@ fn of_page(seed: u64, model: &Model, lines: &[Vec<&str>]) -> Found {
     for line in lines.iter().filter(|line| line[0] == seed.to_string()) {
         let generated = numbers(line[2]);
         for (form, (ends, noise, method)) in &forms {
-            // Trees in joint coordinates and by the closed form come to where the partition comes, but for the method's error.
-            let (twin, is_same) = match line[1] {
-                "joint" | "closed form" => ("partition", false),
-                name => (name, *form == "careful"),
-            };
+            // Trees in joint coordinates and by the closed form come to where the partition comes.
+            let twin = if ["joint", "closed form"].contains(&line[1]) { "partition" } else { line[1] };
             let index = ends.iter().position(|(name, _)| *name == twin).expect("it is run");
             let ratio = match (&ends[index].1, &generated) {
                 (Ok(y), Some(generated)) => {
                     let scale = y.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-                    let allowed = ALLOWED * (noise[index] + ROUNDINGS * scale)
-                        + if is_same { 0.0 } else { 3.0 * method };
+                    let allowed = ALLOWED * (noise[index] + ROUNDINGS * scale) + 3.0 * method;
                     apart(y, generated) / allowed
                 }
                 (Err(error), None) if error.to_string() == line[2] => 0.0,
