@@ -136,7 +136,10 @@ impl Plan<'_> {
         let largest = judged.errors.iter().map(|error| error.in_tolerances(1.0)).fold(0.0, f64::max);
         let is_passed =
             judged.reasons.iter().any(|reason| matches!(reason, Reason::Pivot(_) | Reason::Passage(_)));
+        // Corrections at a limit of the violation come at other times in other steps.
+        let has_limit = matches!(self.approach.when, Some(When::Violation(_)));
         let is_smooth = judged.relative <= SMOOTH
+            && !has_limit
             && judged.grade < Grade::Worthless
             && judged.relative.min(largest) > 30.0 * rounding
             && !is_passed

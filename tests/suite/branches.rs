@@ -16,7 +16,7 @@ use gyro_sim_suite::{
 use std::f64::consts::{PI, TAU};
 
 /// Runs of the seeded sample; `GYRO_BRANCHES` asks for another number.
-const RUNS: usize = 120;
+const RUNS: usize = 60;
 const SEED: u64 = 3;
 
 /// Bars that are off by more, rad, have gone another way, or the run is too coarse for what it was made for.
