@@ -54,6 +54,8 @@ pub trait Correction<O: Ode> {
     /// # Errors
     /// [`Error`], with `y` as it was when the failure was noticed.
     fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error>;
+    /// Follows the turns of a state that is left as it is otherwise, because no correction is due.
+    fn refer_turns(&mut self, _system: &O, _t: O::Scalar, _y: &mut O::State) {}
     /// The largest violation of a position constraint, lengths in units of the mechanism's size.
     fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar;
     /// How often the choice of independent coordinates has changed, where there is one.
@@ -99,6 +101,9 @@ where
     fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
         refer_turns(system.mechanism(), t, y);
         Ok(())
+    }
+    fn refer_turns(&mut self, system: &O, t: O::Scalar, y: &mut O::State) {
+        refer_turns(system.mechanism(), t, y);
     }
     fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
         system.mechanism().phi(t, y, &mut self.phi);

@@ -381,6 +381,8 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         if is_due {
             self.correction.correct(system, t, &mut self.trial)?;
             self.statistics.corrections += 1;
+        } else {
+            self.correction.refer_turns(system, t, &mut self.trial);
         }
         match (0u16..).zip(self.trial.as_ref()).find(|(_, x)| !x.is_finite()) {
             Some((index, _)) => Err(Error::NotFinite { t: t.to_f64(), index }),

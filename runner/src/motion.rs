@@ -568,6 +568,9 @@ impl<M: Partition, O: Maximal<Mechanism = M, Scalar = M::Scalar, State = M::Stat
     fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
         self.0.correct(system.mechanism(), t, y)
     }
+    fn refer_turns(&mut self, system: &O, t: O::Scalar, y: &mut O::State) {
+        gyro_sim::refer_turns(system.mechanism(), t, y);
+    }
     fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
         self.0.violation(system.mechanism(), t, y)
     }
