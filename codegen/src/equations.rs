@@ -131,7 +131,7 @@ impl<'m> Equations<'m> {
         let (projection, forms_of_projection) = rotations.of_unit_parameters(graph, &projected);
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
         let energy = rotations.all(graph, &[dynamics.kinetic, dynamics.potential]);
-        Self {
+        let mut equations = Self {
             model,
             phi: rotations.all(graph, &all_phi),
             phi_q: non_zeros(&rotations.matrix(graph, &kinematics.phi_q)),
@@ -159,7 +159,11 @@ impl<'m> Equations<'m> {
             tables: system.tables,
             graph: system.graph,
             finish,
-        }
+        };
+        // Of parameters' frames an entry may be zero that is not written as one.
+        let Self { phi_q, graph, .. } = &mut equations;
+        phi_q.retain(|&(.., entry)| !vanishes(graph, &[], entry));
+        equations
     }
 
     pub fn n_slots(&self) -> usize {

@@ -21,6 +21,9 @@ const WHOLE: f64 = 0.2;
 /// Eq. (17), its rows and columns brought to size one, can be solved if no pivot is smaller than this.
 const REGULAR: f64 = 1e-9;
 
+/// A divisor of the textbook's is zero but for rounding if it is smaller: a length, m, or the square of a sine.
+const VANISHING: f64 = 1e-12;
+
 /// All that is not finite and should be.
 pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
     let textbook = Dense::new(model);
@@ -165,7 +168,14 @@ impl Dense {
         let value = |id: &Id| values[*id].unwrap_or(f64::NAN);
         let mut matrix = vec![vec![0.0; self.size]; self.size];
         self.entries.iter().for_each(|(i, k, id)| matrix[*i][*k] = value(id));
-        let is_finite = self.others.iter().all(|id| value(id).is_finite())
+        // What the textbook divides by: where it is zero, rounding may make a small number of it.
+        let divides_by = |(id, node): (usize, &Node)| match node {
+            Node::Div(_, by) if reach[id] => Some(value(by).abs()),
+            _ => None,
+        };
+        let mut divisors = self.formulas.program.nodes.iter().enumerate().filter_map(divides_by);
+        let is_finite = divisors.all(|divisor| divisor > VANISHING)
+            && self.others.iter().all(|id| value(id).is_finite())
             && matrix.iter().flatten().all(|x| x.is_finite());
         let is_whole = || {
             let mut rows = model.rows().into_iter().zip(&self.others);

@@ -184,8 +184,15 @@ impl<'a> Statements<'a> {
         let squares =
             radicands.iter().fold(BigUint::from(1_u32), |squares, r| squares.lcm(&radical(product(r))));
         let mut random = seed.numbers(0);
-        let draw = || mersenne.take().or_else(|| Prime::with_roots(&squares, &mut random));
-        self.with_nested_roots(seed, draw).ok_or(squares.bits())
+        let mut draw = || mersenne.take().or_else(|| Prime::with_roots(&squares, &mut random));
+        let mut of_test = seed.numbers(1);
+        // Most of the test is left to the one that is taken.
+        loop {
+            let prime = self.with_nested_roots(seed, &mut draw).ok_or(squares.bits())?;
+            if prime.is_prime(&mut of_test) {
+                return Ok(prime);
+            }
+        }
     }
 
     /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half angles between joint frames

@@ -146,6 +146,33 @@ fn frames_of_parameters_store_no_zeros() {
     }
 }
 
+/// Of a cross whose axes lie alike in both frames, what a product has of one component it loses by another.
+#[test]
+fn crosses_of_parameters_store_no_zeros() {
+    let page = "format = 1\nname = \"cross\"\n[parameters]\np = 1\n[[body]]\nname = \"base\"\nfixed = true\n\
+         [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+         [[joint]]\nname = \"cross\"\nkind = \"universal\"\nsecond_angle = 0.4\n\
+         first = { body = \"base\", axis = [1, \"p\", 0], zero = [0, 1, 0] }\n\
+         second = { body = \"arm\", axis = [1, \"p\", 0], zero = [0, 1, 0] }\n";
+    let page = generate_text("cross.toml", page);
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+}
+
+/// Where the textbook divides by zero but for rounding, a module may divide by zero itself.
+#[test]
+fn zero_but_for_rounding_is_zero() {
+    let page = "format = 1\nname = \"table\"\n[[body]]\nname = \"base\"\nfixed = true\norientation = [1, 1, 0, 0]\n\
+         [[body]]\nname = \"plate\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+         [[joint]]\nname = \"top\"\nkind = \"planar\"\n\
+         first = { body = \"base\", axis = [0, 0, -1], zero = [0.6, 0, 0.8] }\n\
+         second = { body = \"plate\", axis = [0, 0, -1], zero = [0, 1, 0] }\n\
+         [[driver]]\nname = \"turn\"\njoint = \"top\"\ncoordinate = \"angle\"\nmotion = { polynomial = [0, -1, 0.5] }\n";
+    let page = generate_text("table.toml", page);
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+}
+
 /// A body turned by half a turn away from its joint may have its axis at right angles to the joint's: solves of trees divide by zero there, and may.
 #[test]
 fn solves_may_need_joints_that_are_whole() {

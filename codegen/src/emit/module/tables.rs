@@ -54,7 +54,7 @@ fn list(elements: Vec<String>, others: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emit::float;
+    use crate::emit::literals::float;
     use quote::quote;
 
     /// Lists of few and many numbers, and pieces of all lengths about that of a line.

@@ -68,7 +68,12 @@ impl<'a> Expansion<'a> {
             let other_square = self.product(&value, &value)?;
             square.add(&other_square.scale(&Constant::integer(-1)));
         }
-        if let Some(literal) = self.literal_of(reduced)? {
+        // What follows from earlier relations, such as cos² = 1 − sin² where sin² = 1 − cos² is known, replaces nothing.
+        let says_more = |literal: Literal| {
+            let has_square = |(_, m): (&Constant, &Monomial)| m.powers().any(|(l, e)| l == literal && e >= 2);
+            !square.terms().any(has_square)
+        };
+        if let Some(literal) = self.literal_of(reduced)?.filter(|&literal| says_more(literal)) {
             self.rules.insert(literal, Rule { exponent: 2, value: Rc::new(square), used: false });
         }
         Some(())

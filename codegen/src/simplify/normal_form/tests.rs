@@ -61,6 +61,23 @@ fn nearly_equal_sums_are_not_shared() {
     check_exactly(&mut g, &roots, &form);
 }
 
+/// One angle written in two ways has one sine and one cosine: the second relation follows from the first.
+#[test]
+fn an_angle_in_two_forms_is_related_once() {
+    let mut g = Graph::new();
+    let [x, y, z] = [0, 1, 2].map(|k| variable(&mut g, k));
+    let (whole, parts) = (g.add(y, z), [g.mul(x, y), g.mul(x, z)]);
+    let angles = [g.mul(x, whole), g.add(parts[0], parts[1])];
+    assert_ne!(angles[0], angles[1]);
+    let [one, other] = angles.map(|angle| [g.sin(angle), g.cos(angle)]);
+    let squares = [product(&mut g, &[one[0]; 2]), product(&mut g, &[other[1]; 2])];
+    let mixed = [product(&mut g, &[one[1], one[1], y]), product(&mut g, &[other[0], other[0], y])];
+    let roots = [sum(&mut g, &squares), sum(&mut g, &mixed)];
+    let form = normal_form(&mut g, &[], &roots);
+    check(&g, &roots, &form);
+    assert_eq!(form, [Graph::ONE, y]);
+}
+
 /// Even powers of a cosine are cheaper as they are than by sines.
 #[test]
 fn the_cheaper_square_is_kept() {

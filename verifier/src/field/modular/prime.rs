@@ -1,6 +1,7 @@
 //! The prime: how it is made so that given square roots exist.
 
 use super::{Modular, arithmetic};
+use crate::field::Field;
 use gyro_model::Rational;
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
@@ -37,7 +38,8 @@ impl<const L: usize> Prime<L> {
         Self::new((BigUint::one() << *exponent) - 1_u32, BigUint::from(2_u32))
     }
 
-    /// A random prime for which every rational made of these integers has a square root; `None` if they take too many bits.
+    /// A random number that is all but surely a prime ([`Self::is_prime`] makes sure) for which every rational made of these integers has a
+    /// square root; `None` if they take too many bits.
     ///
     /// Take p ≡ −1 modulo `8 n`. An odd prime q that divides n is then a square modulo p by quadratic reciprocity: if
     /// q ≡ 1 (mod 4), (q/p) = (p/q) = (−1/q) = 1; if q ≡ 3 (mod 4), (q/p) = −(p/q) = −(−1/q) = 1, as p ≡ 3 (mod 4).
@@ -48,10 +50,27 @@ impl<const L: usize> Prime<L> {
         loop {
             let words: Vec<u32> = (0..bits / 32).map(|_| random.next_u32()).collect();
             let candidate = &step * (BigUint::new(words) + 1_u32) - 1_u32;
-            if candidate.bits() > 64 * (L as u64 - 1) && is_prime(&candidate, random) {
-                return Some(Self::new(candidate, n * 2_u32));
+            if candidate.bits() <= 64 * (L as u64 - 1) || has_small_divisor(&candidate) {
+                continue;
+            }
+            let candidate = Self::new(candidate, n * 2_u32);
+            if candidate.passes(random) {
+                return Some(candidate);
             }
         }
+    }
+
+    /// Whether it is a prime, but for a probability of 4^-60: known of Mersenne's, tested of others.
+    pub fn is_prime(&self, random: &mut impl Rng) -> bool {
+        self.value.count_ones() == self.value.bits() || (0..ROUNDS).all(|_| self.passes(random))
+    }
+
+    /// A round of Miller and Rabin's test of a number ≡ 3 (mod 4) with a random base: the odd part of `p − 1` is `(p − 1) / 2`.
+    fn passes(&self, random: &mut impl Rng) -> bool {
+        let base = BigUint::new((0..8).map(|_| random.next_u32()).collect()) + 2_u32;
+        let power = Modular::new(self, &base.into()).power(&(&self.value >> 1_u32));
+        let one = Modular::new(self, &BigInt::one());
+        power == one || power == one.neg()
     }
 
     fn new(value: BigUint, squares: BigUint) -> Self {
@@ -158,6 +177,9 @@ const MERSENNE_EXPONENTS: [u32; 4] = [521, 1279, 2281, 4423];
 /// Random bits that a prime must have besides those that its roots take: there are then enough to choose from.
 const MIN_RANDOM_BITS: u64 = 96;
 
+/// Divisors below this are tried before powers are, which take far longer.
+const SMALL: u32 = 2000;
+
 /// Rounds of Miller and Rabin's test; each lets a composite pass with probability at most 1/4.
 const ROUNDS: usize = 60;
 
@@ -184,16 +206,8 @@ fn halves(limb: u64) -> [u32; 2] {
     [limb as u32, (limb >> 32) as u32]
 }
 
-/// Miller and Rabin's test of a number ≡ 3 (mod 4) with random bases: the odd part of `p − 1` is `(p − 1) / 2`.
-fn is_prime(value: &BigUint, random: &mut impl Rng) -> bool {
-    const SMALL: [u32; 15] = [3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
-    if SMALL.iter().any(|&small| (value % small) == BigUint::ZERO) {
-        return false;
-    }
-    let (half, last) = (value >> 1_u32, value - 1_u32);
-    (0..ROUNDS).all(|_| {
-        let base = BigUint::new((0..8).map(|_| random.next_u32()).collect()) + 2_u32;
-        let power = base.modpow(&half, value);
-        power == BigUint::one() || power == last
-    })
+/// Whether a number is divisible by one below [`SMALL`].
+fn has_small_divisor(value: &BigUint) -> bool {
+    // By what is no prime nothing is found that one of its factors has not found before.
+    (3..SMALL).step_by(2).any(|divisor| (value % divisor) == BigUint::ZERO)
 }
