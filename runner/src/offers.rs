@@ -83,6 +83,10 @@ impl Offers {
                     approach.correction
                 ));
             }
+            (Coordinates::Maximal, Correction::Baumgarte(_)) if approach.integrator == Integrator::Rodas4 => {
+                "rodas4 has the derivatives of a mechanism, not those of Baumgarte's stabilisation: choose another correction, or \
+                 tsit5 or dop853"
+            }
             _ if approach.integrator == Integrator::Rodas4 && !self.derivatives => {
                 "rodas4 needs derivatives, which only generated code has"
             }
@@ -118,6 +122,11 @@ mod tests {
             (loops, joint, "joint coordinates are for"),
             (loops, Approach { correction: Correction::ClosedForm, ..controlled }, "the closed form is for"),
             (twin, stiff, "rodas4 needs derivatives"),
+            (
+                Offers::ALL,
+                Approach { correction: Correction::Baumgarte(20.0), ..stiff },
+                "rodas4 has the derivatives of",
+            ),
             (Offers::ALL, Approach { budget: Some(0), ..controlled }, "a budget of 0 steps"),
         ] {
             let found = offers.refusal(&SETTINGS, &approach).unwrap_or_default();

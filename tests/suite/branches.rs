@@ -260,6 +260,9 @@ impl Case {
             Correction::None,
         ];
         let correction = corrections[random.below(4)];
+        let steers = matches!(correction, Correction::Baumgarte(_));
+        let integrator =
+            if steers && integrator == Integrator::Rodas4 { Integrator::Dop853 } else { integrator };
         let when =
             [None, Some(When::Steps(1)), Some(When::Steps(7)), Some(When::Violation(1e-6))][random.below(4)];
         let step = t_end * 10f64.powf(-2.4 + 0.6 * random.signed());

@@ -292,6 +292,9 @@ impl<'a> Judge<'a> {
                 let approach =
                     Approach { integrator, tolerance: Some(tolerance), budget: Some(budget), ..approach };
                 let settings = self.scene.settings(1.0);
+                if matches!((integrator, correction), (Integrator::Rodas4, Correction::Baumgarte(_))) {
+                    continue; // Not offered.
+                }
                 let outcome = stand.run(&settings, &approach);
                 self.judge(what, (&settings, &approach), outcome, |_, _, size| {
                     TIMES * tolerance * (1.0 + size)

@@ -5,10 +5,10 @@
 
 use gyro_model::Model;
 use gyro_runner::motion::Kit;
-use gyro_runner::{Approach, Correction, Integrator, Sample, Settings, Start};
+use gyro_runner::{Approach, Correction, Integrator, Offers, Sample, Settings, Start};
 use gyro_sim::{Real, Scalar};
 use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Duals, Engine, coordinate, dense, moved, page, start_of};
+use gyro_sim_suite::{Duals, Engine, PAPER, coordinate, dense, moved, page, start_of};
 use std::f64::consts::TAU;
 
 /// Turns before the run, and during it.
@@ -111,7 +111,8 @@ fn approaches(speed: f64) -> Vec<Approach> {
     let integrators = [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853, Integrator::Rodas4];
     let of_both =
         |correction| integrators.map(|integrator| Approach { integrator, correction, ..Approach::default() });
-    corrections.into_iter().flat_map(of_both).collect()
+    let is_offered = |approach: &Approach| Offers::ALL.refusal(&PAPER, approach).is_none();
+    corrections.into_iter().flat_map(of_both).filter(is_offered).collect()
 }
 
 /// What a run has come to, or why it has not.

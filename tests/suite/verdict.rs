@@ -157,6 +157,8 @@ fn draw(random: &mut Random, (page, form): (&'static str, Form), is_tree: bool) 
         Correction::ClosedForm,
     ];
     let correction = corrections[pick(random, if is_tree { 5 } else { 4 })];
+    let steers = matches!(correction, Correction::Baumgarte(_));
+    let integrator = if steers && integrator == Integrator::Rodas4 { Integrator::Dop853 } else { integrator };
     let coordinates =
         if is_tree && random.signed() > 0.4 { Coordinates::Joint } else { Coordinates::Maximal };
     let is_fixed = integrator == Integrator::Rk4 || random.signed() > 0.4;

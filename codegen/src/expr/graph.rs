@@ -105,6 +105,11 @@ impl Graph {
         self.changes[id.0 as usize] == Changes::WithParameters
     }
 
+    /// Whether it changes from step to step.
+    pub fn is_changing(&self, id: ExprId) -> bool {
+        self.changes[id.0 as usize] == Changes::WithState
+    }
+
     /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from the
     /// roots completes them: what an expression needs comes shortly before it.
     pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {

@@ -1,4 +1,4 @@
-//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [--read] [FILE...]`.
+//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [--read] [--module] [FILE...]`.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_verifier::{Depth, verify};
@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
-    let (mut seed, mut count, mut prints, mut reads, mut files) = (0, 100, false, false, Vec::new());
+    let (mut seed, mut count, mut files) = (0, 100, Vec::new());
+    let (mut prints, mut reads, mut writes) = (false, false, false);
     while let Some(argument) = arguments.next() {
         let mut number = || arguments.next().and_then(|n| n.parse::<u64>().ok()).expect("a number follows");
         match argument.as_str() {
@@ -17,6 +18,7 @@ fn main() {
             "--count" => count = number(),
             "--print" => prints = true,
             "--read" => reads = true,
+            "--module" => writes = true,
             _ => files.push(argument),
         }
     }
@@ -28,6 +30,9 @@ fn main() {
     }
     if prints {
         return (seed..seed + count).for_each(|seed| println!("{}", gyro_pages::page(seed)));
+    }
+    if writes {
+        return (seed..seed + count).for_each(|seed| println!("{}", module(seed)));
     }
     if !files.is_empty() {
         return files.iter().for_each(|file| println!("{file}: {}", of_file(Path::new(file))));
@@ -56,6 +61,13 @@ fn main() {
 const SLOW: Duration = Duration::from_secs(10);
 
 const PROVED: &str = "proved";
+
+/// The module of a page, proved or not.
+fn module(seed: u64) -> String {
+    let model = gyro_model::read_with("page.toml", &gyro_pages::page(seed), &mut gyro_pages::load);
+    let model = model.unwrap_or_else(|problems| panic!("{problems}"));
+    gyro_codegen::generate_model("page.toml", &model).unwrap_or_else(|error| panic!("{error}")).code
+}
 
 fn of_file(path: &Path) -> String {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();

@@ -35,7 +35,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 35 | 3 | 68 | 6 of 12 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 7 | 19 | 0 | 26 | 0 of 10 |
 //! | corrected_solution | both | 34 | 48 | 3 | 85 | 11 of 22 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 33 | 46 | 4 | 83 | 20 of 30 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 48 | 71 | 4 | 123 | 20 of 30 |
 //!
 //! # Proof
 //!
@@ -1564,7 +1564,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Stops<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 83 operations (33 ±, 46 ×, 4 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 123 operations (48 ±, 71 ×, 4 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1577,54 +1577,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Stops<T> {
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = x0 - k(1.6);
-        let t1 = T::fused(x0, t0, k(0.6404)).sqrt();
-        let t2 = k(1.0) / t1;
-        let t3 = T::fused(x0, x0, k(0.0001)).sqrt();
-        let t4 = k(1.0) / t3;
-        let t5 = x0 * t4;
-        let t6 = T::fused(-k(2.0), t2, k(5.0) * t4);
-        let t7 = t2 * (t2 * t2);
-        let t8 = T::fused(
-            -k(0.64),
-            t7,
-            x0 * T::fused(-t0, t7, k(2.5) * (t5 * (t4 * t4))),
+        let t0 = T::fused(x0, x0, k(0.0001)).sqrt();
+        let t1 = k(1.0) / t0;
+        let t2 = t1 * t1;
+        let t3 = x0 * t1;
+        let t4 = k(2.5) * u0;
+        let t5 = k(0.8) - x0;
+        let t6 = T::fused(t5, t5, k(0.0004)).sqrt();
+        let t7 = k(1.0) / t6;
+        let t8 = t5 * t7;
+        let t9 = k(1.0) - t8;
+        let t10 = t7 * t7;
+        let t11 = T::fused(
+            -t4,
+            T::fused(-x0, t3 * t2, t1),
+            T::fused(k(1500.0), t9, u0 * T::fused(-t5, t8 * t10, t7)),
         );
-        let t9 = T::fused(
-            k(0.5),
-            k(7000.0) - T::fused(k(2400.0), t2, T::fused(k(4000.0), t5, u0 * t6)),
-            T::fused(k(1500.0), x0 * t2, u0 * t8),
+        let t12 = k(1.0) - t3;
+        let t13 = k(15.7) - x1;
+        let t14 = T::fused(t13, t13, k(0.0025)).sqrt();
+        let t15 = k(1.0) / t14;
+        let t16 = t13 * t15;
+        let t17 = k(1.0) - t16;
+        let t18 = t15 * t15;
+        let t19 = k(9.5) + x1;
+        let t20 = T::fused(t19, t19, k(0.0025)).sqrt();
+        let t21 = k(1.0) / t20;
+        let t22 = T::fused(
+            k(0.0025),
+            u1 * T::fused(-t13, t16 * t18, t15),
+            T::fused(-t19, t21, k(1.0)),
         );
-        let t10 = k(7.0) - T::fused(k(1.6), t2, x0 * t6);
-        let t11 = x1 * (x1 - k(31.4));
-        let t12 = (k(246.4925) + t11).sqrt();
-        let t13 = k(1.0) / t12;
-        let t14 = k(15.7) - x1;
-        let t15 = T::fused(
-            -k(0.002),
-            u1 * T::fused(-(t13 * t13), t11 + k(246.49), k(1.0)),
-            t14,
+        let t23 = u0 * u0;
+        let t24 = k(0.0005) * (t5 * (t7 * T::fused(t10, t5 * t23, k(1500.0) * u0)));
+        let t25 = x0 * (t1 * T::fused(-k(0.00125), t2 * (x0 * t23), u0));
+        let t26 = t25 - T::fused(-k(0.0025), t1 * t23, T::fused(k(2.0), u0, -t25)) + t24;
+        let t27 = k(1000.0)
+            * (t24 + T::fused(-k(0.001), t7 * t23, T::fused(-k(1.5), u0, t26)));
+        let t28 = k(0.8) * (t19 * (u1 * t21));
+        let t29 = u1 * u1;
+        let t30 = t13 * (t15 * T::fused(k(0.002), t18 * (t13 * t29), u1));
+        let t31 = t30 - T::fused(k(0.004), t15 * t29, T::fused(k(2.0), u1, -t30)) + t28;
+        let t32 = t12 * t4;
+        let t33 = u0 * t9;
+        let t34 = T::fused(
+            k(1500.0),
+            t5 - t6,
+            -(t32 + T::fused(k(2000.0), x0 - t0, t33 + t32)),
         );
-        let t16 = T::fused(x1, x1 + k(19.0), k(90.2525)).sqrt();
-        let t17 = k(2.25) - T::fused(k(1.25), t13 * t15, (k(9.5) + x1) / t16);
-        let t18 = T::fused(-t14, t13, k(1.0));
-        let t19 = T::fused(
-            u0,
-            t10,
-            T::fused(
-                k(1500.0),
-                t1,
-                -T::fused(k(2000.0), t3, T::fused(-k(3500.0), x0, k(1200.0))),
-            ),
-        );
-        let t20 = T::fused(
-            k(0.1),
-            u1 * t18,
-            -T::fused(
-                k(20.0),
-                t16,
-                -T::fused(k(25.0), t12, -T::fused(-k(45.0), x1, k(202.5))),
-            ),
+        let t35 = u1 * t17;
+        let t36 = T::fused(
+            k(400.0),
+            t19 - t20,
+            t35 + T::fused(-k(500.0), t13 - t14, t35),
         );
         *dfdx = [
             k(0.0),
@@ -1637,20 +1642,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Stops<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -(k(2.0) * t9),
+            -(k(2.0) * T::fused(k(2000.0), t12, t11)),
             k(0.0),
-            -t10,
+            -(k(2.0) * T::fused(k(2.5), t12, t9)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(1000.0) * t17),
+            -(k(1000.0) * T::fused(k(1.25), t17, t22)),
             k(0.0),
-            -(k(2.5) * t18),
+            -(k(2.5) * t17),
             k(0.0),
-            -(u0 * t9),
-            -(k(20.0) * (u1 * t17)),
-            -t19,
-            -t20,
+            t27,
+            k(12.5) * (t28 + T::fused(-k(1.6), u1, t31)),
+            t34 - t33,
+            -(k(0.05) * t36),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];

@@ -159,6 +159,20 @@ fn crosses_of_parameters_store_no_zeros() {
     assert!(report.is_proved(), "{report}");
 }
 
+/// The depth of a stop is a small difference: its square, written out as a polynomial, has no digits left.
+#[test]
+fn hard_stops_keep_their_digits() {
+    let page = "format = 1\nname = \"door\"\n[[body]]\nname = \"frame\"\nfixed = true\n\
+         [[body]]\nname = \"leaf\"\nmass = 0.5\ninertia = [0.25, 0.25, 0.25]\n\
+         [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [2.26, 0.51, 1.09]\nzero = [0, 1, 0]\n\
+         first = { body = \"frame\" }\nsecond = { body = \"leaf\", point = [0, 1.9, -0.5] }\n\
+         [[force]]\nname = \"end\"\nkind = \"stop\"\njoint = \"hinge\"\nside = \"upper\"\n\
+         limit = 1.5707963267948966\nstiffness = 1.5\nsoftness = 1e-9\ndamping = 0.7\n";
+    let page = generate_text("door.toml", page);
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+}
+
 /// Where the textbook divides by zero but for rounding, a module may divide by zero itself.
 #[test]
 fn zero_but_for_rounding_is_zero() {

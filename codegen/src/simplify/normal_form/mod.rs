@@ -58,12 +58,22 @@ pub fn normal_form_of(
     roots: &[ExprId],
     divisors: &[bool],
 ) -> Vec<ExprId> {
+    if loses_digits(graph, roots) {
+        return roots.to_vec();
+    }
     let relations = relations(graph, unit, roots);
     let cost = Operations::recurring(graph, roots).total();
     match search(graph, &relations, (roots, divisors)) {
         Some(form) if form.cost < cost => form.system.build(graph),
         _ => roots.to_vec(),
     }
+}
+
+/// Whether a root is taken of something that changes from step to step, such as the depth of a stop or the length of a link. It is small where a
+/// difference vanishes; as a polynomial, whose terms are not, it would have no digits left there.
+fn loses_digits(graph: &Graph, roots: &[ExprId]) -> bool {
+    let is_changing_root = |id: ExprId| matches!(graph.node(id), Node::Sqrt(_)) && graph.is_changing(id);
+    graph.reachable(roots).into_iter().any(is_changing_root)
 }
 
 /// Whether an expression is zero wherever the identities hold; not, if it is too large to be sure.
