@@ -29,6 +29,7 @@ struct Space<T> {
     accelerations: Vec<T>,
     lambda: Vec<T>,
     nu: Vec<T>,
+    readings: Vec<T>,
     /// Of [`Projection`](gyro_sim::Projection): empty until it is asked for, as it grows with the square of the mechanism.
     projection: Vec<T>,
 }
@@ -114,6 +115,7 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             accelerations: zeros(solver.accelerations_len(&lowered)),
             lambda: zeros(lowered.n_rows()),
             nu: zeros(lowered.n_rows()),
+            readings: zeros(lowered.n_readings()),
             projection: Vec::new(),
         };
         Ok(Self { lowered, solver, phi_q_pattern, phi_pi_pattern, space: RefCell::new(space) })
@@ -212,6 +214,12 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
 
     fn turn_references(&self) -> &[u16] {
         &self.lowered.turn_readings
+    }
+
+    fn refer_turns(&self, t: T, y: &mut Vec<T>) {
+        let readings = &mut self.space.borrow_mut().readings;
+        self.lowered.read_joints(Moment { t, y }, readings);
+        gyro_sim::set_turn_references(&self.lowered.turn_readings, readings, y);
     }
 
     fn n_bodies(&self) -> usize {

@@ -87,6 +87,7 @@ pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
 pub use mechanism::{
     Charted, Clearance, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian,
     JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
+    set_turn_references,
 };
 pub use scalar::{Real, Scalar};
 pub use solver::{Control, Passage, Solver, Statistics};

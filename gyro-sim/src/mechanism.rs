@@ -69,6 +69,12 @@ pub trait Mechanism: Ode {
     fn turn_references(&self) -> &[u16] {
         &[]
     }
+    /// Sets the turn references of a state to their angles: see [`refer_turns`](crate::refer_turns).
+    fn refer_turns(&self, t: Self::Scalar, y: &mut Self::State) {
+        let mut readings = self.readings();
+        self.read_joints(t, y, &mut readings);
+        set_turn_references(self.turn_references(), readings.as_ref(), y.as_mut());
+    }
     /// Number of bodies with coordinates.
     fn n_bodies(&self) -> usize;
     /// Number of joints.
@@ -428,4 +434,15 @@ pub enum Owner {
     Coupler(u16),
     /// A driver of a joint coordinate, by its index.
     Driver(u16),
+}
+
+/// Sets the last elements of a state to the angles whose raw sines and cosines begin at these places among the readings.
+pub fn set_turn_references<T: Scalar>(places: &[u16], readings: &[T], state: &mut [T]) {
+    for (reference, place) in state.iter_mut().rev().zip(places.iter().rev()) {
+        let at = usize::from(*place);
+        if let Some([sin, cos]) = readings.get(at..at + 2) {
+            let (s, c) = (reference.sin(), reference.cos());
+            *reference = *reference + (*sin * c - *cos * s).atan2(*cos * c + *sin * s);
+        }
+    }
 }

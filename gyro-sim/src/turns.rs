@@ -5,17 +5,8 @@ use crate::{Coordinate, Mechanism, Real, Scalar};
 /// Sets the turn references of a state to their angles, from which integration lets them stray: both are integrated, each with errors of
 /// its own, and once they are half a turn apart a turn would be lost. No function of the state changes by it but for rounding.
 pub fn refer_turns<M: Mechanism>(mechanism: &M, t: M::Scalar, y: &mut M::State) {
-    let places = mechanism.turn_references();
-    if places.is_empty() {
-        return;
-    }
-    let mut readings = mechanism.readings();
-    mechanism.read_joints(t, y, &mut readings);
-    let references = y.as_mut().iter_mut().rev();
-    for (reference, place) in references.zip(places.iter().rev()) {
-        let [sin, cos] = [0, 1].map(|k| readings.as_ref()[usize::from(*place) + k]);
-        let (s, c) = (reference.sin(), reference.cos());
-        *reference = *reference + (sin * c - cos * s).atan2(cos * c + sin * s);
+    if !mechanism.turn_references().is_empty() {
+        mechanism.refer_turns(t, y);
     }
 }
 

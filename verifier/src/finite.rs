@@ -35,7 +35,7 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
             let must_be_finite = match function.as_str() {
                 // Every joint state has its maximal state.
                 "to_maximal" => true,
-                function => textbook.is_regular(model, &place.state, is_solve(function)),
+                function => textbook.is_regular(model, &place.state, is_solve(module, function)),
             };
             must_be_finite.then_some((place.what, line))
         });
@@ -47,9 +47,12 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
 }
 
 /// Whether a function solves for what the rows ask. Which unknown is taken from which row is decided for joints that are whole: where axes are torn a
-/// right angle apart, the solve of a tree divides by their cosine, though eq. (17) has a solution there.
-fn is_solve(function: &str) -> bool {
-    ["accelerations", "multipliers", "project", "newton_step", "solve_velocities"].contains(&function)
+/// right angle apart, the solve of a tree divides by their cosine, though eq. (17) has a solution there. What is made of accelerations may have
+/// multipliers in it, which are solved for too: reactions, and the power of what is driven.
+fn is_solve(module: &Module, function: &str) -> bool {
+    let is_acceleration = |node: &Node| matches!(node, Node::Read(Source::Acceleration(_)));
+    ["accelerations", "project", "newton_step", "solve_velocities"].contains(&function)
+        || module.programs[function].nodes.iter().any(is_acceleration)
 }
 
 /// The first line of a function whose value is not finite, if any of its results is not.

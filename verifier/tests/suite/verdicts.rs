@@ -195,10 +195,17 @@ fn solves_may_need_joints_that_are_whole() {
          [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\nangle = -0.5\n\
          first = { body = \"arm\", point = [0, 0.45, 0], axis = [1, 1, 0], zero = [0, 0, -1] }\n\
          second = { body = \"base\", point = [0, 0, -0.05], axis = [1, 0, 0], zero = [1, 1, 0] }\n";
-    let model = gyro_model::read("arm.toml", page).unwrap_or_else(|problems| panic!("{problems}"));
-    let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
-    let report = verify(&model, &module.code, &module.constants, Depth::Quick);
-    assert!(report.is_proved(), "{report}");
+    // With its reaction, and with the power of what drives its base, they are in other functions too.
+    let driven = page.replace(
+        "fixed = \"constrained\"\nmass = 1\ninertia = [0.1, 0.2, 0.1]",
+        "driven = { translation = [0, 0, { polynomial = [0, 1] }], rotations = [] }",
+    ) + "[[output]]\nname = \"r\"\nkind = \"reaction\"\njoint = \"hinge\"\n";
+    for page in [page, &driven] {
+        let model = gyro_model::read("arm.toml", page).unwrap_or_else(|problems| panic!("{problems}"));
+        let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+        let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+        assert!(report.is_proved(), "{report}");
+    }
 }
 
 /// Roots of parameters, a dozen of them: points that have them all are found joint by joint.
