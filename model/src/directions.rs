@@ -123,8 +123,16 @@ fn direction(written: &[Number; 3], free: Option<usize>) -> Option<[Number; 3]> 
     let is_near =
         |k: usize| free != Some(k) && values[k].is_some_and(|x| x != 0.0 && x.abs() < NEARLY_ZERO * largest);
     let all_known = values.iter().all(Option::is_some);
-    (all_known && (0..3).any(is_near))
-        .then(|| std::array::from_fn(|k| if is_near(k) { Number::integer(0) } else { written[k].clone() }))
+    let without = || -> [Number; 3] {
+        std::array::from_fn(|k| if is_near(k) { Number::integer(0) } else { written[k].clone() })
+    };
+    (all_known && (0..3).any(is_near)).then(without).map(|mut meant| {
+        // The length of a direction does not count.
+        if let Some(k) = only(&meant) {
+            meant[k] = Number::integer(if values[k].is_some_and(|x| x < 0.0) { -1 } else { 1 });
+        }
+        meant
+    })
 }
 
 /// The only component of a direction that is not zero.
@@ -220,6 +228,7 @@ mod tests {
     fn what_is_nearly_exact_is_offered_exactly() {
         let offered = |written: [&str; 3], free| direction(&numbers(written), free);
         assert_eq!(offered(["1", "-3.67e-6", "2"], None), Some(numbers(["1", "0", "2"])));
+        assert_eq!(offered(["0", "-0.9999999999662689", "8.2e-6"], None), Some(numbers(["0", "-1", "0"])));
         assert_eq!(offered(["1", "-3.67e-6", "0"], Some(1)), None, "along the axis");
         assert_eq!(offered(["1", "0.0001", "0"], None), None, "so small an angle is meant");
         let turned = |written: [&str; 4]| orientation(&numbers(written));
