@@ -15,7 +15,7 @@ use std::hash::Hash;
 pub struct Drawn<'p, const L: usize> {
     prime: &'p Prime<L>,
     random: RefCell<ChaCha8Rng>,
-    /// Cosine and sine of each argument that was met, its double and its half.
+    /// Cosine and sine of each argument that was met, its double and its halves.
     circle: Table<[u64; L], (Modular<'p, L>, Modular<'p, L>)>,
     tanh: Table<[u64; L], Modular<'p, L>>,
     atan2: Table<([u64; L], [u64; L]), Modular<'p, L>>,
@@ -24,6 +24,9 @@ pub struct Drawn<'p, const L: usize> {
     roots: Table<[u64; L], Modular<'p, L>>,
     missed: Cell<bool>,
 }
+
+/// How often an argument is halved when it is new: what is met later may be a half, a quarter of it.
+const HALVINGS: u32 = 4;
 
 type Table<K, V> = RefCell<HashMap<K, V>>;
 
@@ -67,15 +70,24 @@ impl<'p, const L: usize> Drawn<'p, L> {
         if let Some(&known) = self.circle.borrow().get(&key) {
             return known;
         }
-        let half = Modular::integer(self.prime, 2).inv().map_or(undefined, |half| x.mul(&half));
-        let Some(start) = self.circle_point() else { return (undefined, undefined) };
-        // The values of half the argument, the argument and its double agree with each other.
-        let mut point = twice(start);
-        for angle in [half, *x, x.add(x)] {
-            self.learn(&angle, point);
-            point = twice(point);
+        let one_half = Modular::integer(self.prime, 2).inv().unwrap_or(undefined);
+        let half = x.mul(&one_half);
+        let known = half.key().and_then(|key| self.circle.borrow().get(&key).copied());
+        if let Some(known) = known {
+            self.learn(x, twice(known));
+            return twice(known);
         }
-        twice(twice(start))
+        let (mut angle, Some(mut point)) = (*x, self.circle_point()) else { return (undefined, undefined) };
+        for _ in 0..HALVINGS {
+            angle = angle.mul(&one_half);
+        }
+        // The values of the argument, its halves and its double agree with each other.
+        for _ in 0..=HALVINGS {
+            self.learn(&angle, point);
+            (angle, point) = (angle.add(&angle), twice(point));
+        }
+        self.learn(&angle, point);
+        self.circle.borrow().get(&key).copied().unwrap_or((undefined, undefined))
     }
 
     fn learn(&self, angle: &Modular<'p, L>, (cosine, sine): (Modular<'p, L>, Modular<'p, L>)) {
@@ -166,7 +178,13 @@ mod tests {
             assert_eq!(sin.mul(&sin).add(&cos.mul(&cos)), one);
             assert_eq!(atoms.sin(&x.neg()), sin.neg());
             assert_eq!(atoms.cos(&x.neg()), cos);
-            let half = x.mul(&Modular::integer(&prime, 2).inv().expect("two is not zero"));
+            let one_half = Modular::integer(&prime, 2).inv().expect("two is not zero");
+            let half = x.mul(&one_half);
+            // However a family of angles is met, from its smallest, its largest or between.
+            let (quarter, four) = (half.mul(&one_half), twice(twice((cos, sin))));
+            assert_eq!(twice(twice((atoms.cos(&quarter), atoms.sin(&quarter)))), (cos, sin));
+            let fourfold = x.add(&x).add(&x).add(&x);
+            assert_eq!((atoms.cos(&fourfold), atoms.sin(&fourfold)), four);
             for (angle, (cos, sin)) in
                 [(x.add(&x), twice((cos, sin))), (x, twice((atoms.cos(&half), atoms.sin(&half))))]
             {

@@ -8,8 +8,8 @@ use gyro_model::Spline;
 #[derive(Clone, Copy, Debug)]
 pub struct Formal;
 
-/// A point of the unit circle is `u⁴` of a rationally parametrised `u`, and the double angle's its square.
-const CIRCLE: f64 = 16.0;
+/// A point of the unit circle is `u¹⁶` of a rationally parametrised `u`; multiples that are met before it count up to 32.
+const CIRCLE: f64 = 1024.0;
 
 impl Atoms<Degree> for Formal {
     fn sin(&self, _: &Degree) -> Degree {

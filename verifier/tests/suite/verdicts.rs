@@ -159,6 +159,24 @@ fn crosses_of_parameters_store_no_zeros() {
     assert!(report.is_proved(), "{report}");
 }
 
+/// An angle and its double drive a body: their halves, and they, are of one family.
+#[test]
+fn angles_and_their_doubles_are_of_one_family() {
+    for [first, second] in [["[0.1, 2]", "[0.05, 1]"], ["[0.05, 1]", "[0.1, 2]"], ["[0.2, 4]", "[0.05, 1]"]] {
+        let page = format!(
+            "format = 1\nname = \"turned\"\n[[body]]\nname = \"base\"\n\
+             driven = {{ translation = [0, 0, 0], rotations = [{{ axis = [0, 0, 1], angle = {{ polynomial = {first} }} }}, \
+             {{ axis = [0, 1, 0], angle = {{ polynomial = {second} }} }}] }}\n\
+             [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+             [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [1, 1, 1]\nzero = [1, 2, 2]\n\
+             first = {{ body = \"base\" }}\nsecond = {{ body = \"arm\", point = [0, 0.2, 0] }}\n"
+        );
+        let page = generate_text("turned.toml", &page);
+        let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+        assert!(report.is_proved(), "{first}, {second}: {report}");
+    }
+}
+
 /// The depth of a stop is a small difference: its square, written out as a polynomial, has no digits left.
 #[test]
 fn hard_stops_keep_their_digits() {
