@@ -85,6 +85,10 @@ fn files_are_there(page: &str, command: &[String]) {
     }
 }
 
+fn names_a_file(command: &[String]) -> bool {
+    command[3..].first().is_some_and(|word| [".toml", ".urdf"].iter().any(|end| word.ends_with(end)))
+}
+
 /// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long ones but that
 /// they exist.
 fn run(command: &[String], folder: &Path) -> Output {
@@ -93,16 +97,19 @@ fn run(command: &[String], folder: &Path) -> Output {
         let name = Path::new(&args[at + 1]).file_name().unwrap().to_owned();
         args[at + 1] = folder.join("made").join(name).display().to_string();
     }
+    let has = |option: &str| command.iter().any(|word| word == option);
     let mut add = |words: &[&str]| args.extend(words.iter().map(|word| (*word).to_owned()));
     match command[2].as_str() {
-        "simulate" if command.len() > 3 && command[3].ends_with(".toml") => {
-            if !command.iter().any(|word| word == "--engine") {
+        "simulate" if names_a_file(command) && !has("--linearize") => {
+            if !has("--engine") {
                 add(&["--engine", "assembled"]);
             }
             add(&["--t-end", "0.01", "--out", &folder.join("run").display().to_string()]);
+            // Only compiled code does joint coordinates.
+            args.iter_mut().filter(|word| *word == "joint").for_each(|word| "maximal".clone_into(word));
         }
-        "inspect" => add(&["--no-compile"]),
-        "import" | "generate" if command.len() > 3 => {}
+        "inspect" if names_a_file(command) && !has("--no-compile") => add(&["--no-compile"]),
+        "import" | "generate" | "inspect" if names_a_file(command) => {}
         _ => args = vec![command[2].clone(), "--help".to_owned()],
     }
     Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(root()).output().unwrap()
