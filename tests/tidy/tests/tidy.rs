@@ -17,7 +17,7 @@ const CRATES: [&str; 9] = [
     "runner",
     "xtask",
     "benches",
-    "benches/yardstick",
+    "yardstick",
 ];
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
