@@ -69,6 +69,7 @@ pub trait Embedded<O: Ode<Scalar: Real>>: Method<O> {
 
 /// What the steps have cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Evaluations of the right-hand side.
     pub evaluations: u64,

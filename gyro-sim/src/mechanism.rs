@@ -425,6 +425,7 @@ pub struct RowInfo {
 
 /// The owner of a constraint row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Owner {
     /// A body's own constraint, by the index of the body.
     Body(u16),

@@ -56,6 +56,7 @@ impl Control {
 
 /// What a run has cost and met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// Steps that were kept.
     pub accepted: u64,

@@ -12,6 +12,7 @@ pub fn refer_turns<M: Mechanism>(mechanism: &M, t: M::Scalar, y: &mut M::State) 
 
 /// One coordinate of a joint and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointCoordinate<T> {
     /// Continuous angle, rad, positive by the right-hand rule from the first body to the second, and its rate.
     Angle {

@@ -17,6 +17,8 @@ pub enum Failure {
         /// What to try.
         advice: Vec<Advice>,
     },
+    /// The request could not be read.
+    Input(io::Error),
     /// The samples could not be handed on.
     Output(io::Error),
 }
@@ -32,6 +34,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Refused(words) => f.write_str(words),
             Self::Run { words, advice } => write!(f, "{words}{}", try_words(advice)),
+            Self::Input(error) => write!(f, "the request cannot be read: {error}"),
             Self::Output(error) => write!(f, "samples cannot be written: {error}"),
         }
     }

@@ -7,7 +7,7 @@ use gyro_sim::{Ports, Scalar};
 ///
 /// Each step of the integrator has the value at its own start, held over the step, as a sampled controller gives it; each
 /// sample has the value at its own time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Input {
     /// Index among the mechanism's inputs.
     pub index: usize,

@@ -73,7 +73,7 @@ pub trait Kit<M: Partition + Ports> {
 }
 
 /// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Linear {
     /// Time, s.
     pub t: f64,

@@ -17,7 +17,7 @@ use std::io;
 use std::time::{Duration, Instant};
 
 /// Where a run starts, what is fed into it and what is watched besides joints and outputs.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Start {
     /// `(r, p)` of each body with coordinates.
     pub positions: Vec<f64>,

@@ -3,7 +3,7 @@
 use gyro_sim::{JointCoordinate, Mechanism, Ports, Real, Scalar, Turns, violation};
 
 /// The mechanism at one time, in `f64` whatever the run's precision.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// Time, s.
     pub t: f64,
@@ -34,7 +34,7 @@ pub struct Sample {
 pub type JointSample = JointCoordinate<f64>;
 
 /// Pose and velocity of a body: `(r, p)` and `(s, w')`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct BodySample {
     /// Position of the mass centre, m, and Euler parameters.
     pub pose: [f64; 7],

@@ -8,7 +8,7 @@ use gyro_yardstick::{Measured, beside};
 use std::time::Duration;
 
 /// What a run costs: its steps and corrections alone, no samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Timing {
     /// Its time.
     pub measured: Measured,

@@ -12,12 +12,12 @@ use crate::verify::verify_quickly;
 use crate::{files, machine_code, remarks};
 use gyro_codegen::Module;
 use gyro_model::Model;
-use gyro_runner::protocol::{Reply, Request};
+use gyro_runner::protocol::{self, Reply, Request};
 use gyro_runner::{Event, Summary, Timing};
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File, TryLockError};
 use std::hash::{Hash, Hasher};
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
@@ -308,8 +308,7 @@ impl Session {
         mut tell: impl FnMut(Event<'_>),
     ) -> Result<(Summary, Option<Timing>), Failure> {
         let input = self.input.as_mut().expect("standard input is piped");
-        input
-            .write_all(request.to_text().as_bytes())
+        protocol::write(input, request)
             .map_err(|e| Failure::Run(format!("{}: {e}", self.program.display())))?;
         match listen(&mut self.replies, &mut tell)? {
             Some(answer) => Ok(answer),
@@ -336,9 +335,8 @@ fn listen(
     tell: &mut impl FnMut(Event<'_>),
 ) -> Result<Option<(Summary, Option<Timing>)>, Failure> {
     let mut timing = None;
-    for line in output.lines() {
-        let line = line.map_err(|e| Failure::Run(e.to_string()))?;
-        match Reply::parse(&line).map_err(|e| Failure::Run(format!("the program: {e}")))? {
+    while let Some(reply) = protocol::read(output).map_err(|e| Failure::Run(format!("the program: {e}")))? {
+        match reply {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
             Reply::Linear(linear) => tell(Event::Linear(&linear)),
             Reply::Stopped(t, state) => tell(Event::Stopped(t, &state)),
@@ -357,30 +355,36 @@ fn listen(
 mod tests {
     use super::*;
     use gyro_codegen::Sheet;
+    use gyro_runner::Sample;
 
     type Heard = Result<Option<(Summary, Option<Timing>)>, Failure>;
 
-    fn heard(text: &str) -> (Heard, usize) {
+    fn heard(text: &[u8]) -> (Heard, usize) {
         let mut n_samples = 0;
-        let outcome = listen(&mut text.as_bytes(), &mut |event: Event<'_>| {
+        let outcome = listen(&mut &text[..], &mut |event: Event<'_>| {
             n_samples += usize::from(matches!(event, Event::Sample(_)));
         });
         (outcome, n_samples)
     }
 
+    fn text(replies: &[Reply]) -> Vec<u8> {
+        let mut text = Vec::new();
+        replies.iter().for_each(|reply| protocol::write(&mut text, reply).unwrap());
+        text
+    }
+
     #[test]
     fn replies_are_heard_to_their_end() {
-        let sample = "sample 0.0 1.0 0.0 0.0 0.0 0.0 0.0 0 angle 0.0 1.0\n";
-        let (outcome, n_samples) = heard(&format!(
-            "{sample}progress 0.5\n{sample}{}\n",
-            Reply::Done(Summary { steps: 10, ..Summary::default() }).to_line()
-        ));
+        let sample = Reply::Sample(Sample::default());
+        let done = Reply::Done(Summary { steps: 10, ..Summary::default() });
+        let (outcome, n_samples) =
+            heard(&text(&[sample.clone(), Reply::Progress(0.5), sample.clone(), done]));
         assert_eq!((outcome.unwrap().unwrap().0.steps, n_samples), (10, 2));
-        let (outcome, n_samples) = heard(&format!("{sample}failed at t = 0.5 s\n"));
+        let (outcome, n_samples) = heard(&text(&[sample.clone(), Reply::Failed("at t = 0.5 s".to_owned())]));
         assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));
         assert_eq!(n_samples, 1);
-        assert!(heard(sample).0.unwrap().is_none(), "a program that was killed says nothing");
-        assert!(matches!(heard("nonsense\n").0, Err(Failure::Run(_))));
+        assert!(heard(&text(&[sample])).0.unwrap().is_none(), "a program that was killed says nothing");
+        assert!(matches!(heard(b"nonsense").0, Err(Failure::Run(_))));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 /// How long a run takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Measured {
     /// How often it was made.
     pub runs: u64,

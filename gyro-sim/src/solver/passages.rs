@@ -10,6 +10,7 @@ use crate::{Clearance, Correction, Ode, Owner, Real, Storage};
 
 /// A singular pose that steps of fixed length have passed so near that the way they have gone on in may be another than the motion's.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Passage {
     /// The time of the state nearest to the pose, s.
     pub t: f64,

@@ -15,7 +15,7 @@ use std::process::Command;
 
 /// What is linked takes, bytes.
 pub(crate) struct Sizes {
-    pub(crate) c: usize,
+    pub(crate) c: u64,
     pub(crate) wasm: u64,
 }
 

@@ -38,12 +38,13 @@ pub(crate) fn no_panic(board: &Board) -> Result<(), Failure> {
 
 /// The symbols of a program that it must not have.
 pub(crate) fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
-    let symbols = Elf::read(&program.path)?.symbols();
+    let elf = Elf::read(&program.path)?;
+    let symbols = elf.symbols();
     if symbols.is_empty() {
         return Err(Failure::Run(format!("{} has no symbols to look at", program.name)));
     }
     let is_forbidden = |name: &String| FORBIDDEN.iter().any(|part| name.contains(part));
-    Ok(symbols.into_iter().map(|(_, name)| name).filter(is_forbidden).collect())
+    Ok(symbols.iter().map(|(_, name)| name.clone()).filter(is_forbidden).collect())
 }
 
 /// Whether the accelerations that [`gyro_sim::Partitioned`] integrates are one straight line: no call, to libm or elsewhere.

@@ -89,7 +89,7 @@ impl Ran {
     }
 
     /// Bytes of code and constants.
-    pub(crate) fn text(&self) -> Result<usize, Failure> {
+    pub(crate) fn text(&self) -> Result<u64, Failure> {
         let elf = self.elf()?;
         Ok(elf.size(".text") + elf.size(".rodata"))
     }
