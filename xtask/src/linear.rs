@@ -220,10 +220,10 @@ impl System<'_> {
 /// The angular acceleration of each body in the global frame; zero for folded bodies. As `w̃'w' = 0`, it is `A ẇ'`.
 fn body_accelerations(model: &Model, y: &[f64], dy: &[f64]) -> Vec<Vector> {
     let slots = model.coordinate_bodies();
-    let mut accelerations = vec![Vector::ZERO; model.bodies.len()];
+    let mut accelerations = vec![Vector::zeros(); model.bodies.len()];
     for (slot, &body) in slots.iter().enumerate() {
         let at = 7 * slots.len() + 6 * slot + 3;
-        accelerations[body] = orientation(y, slot).rotate(Vector([dy[at], dy[at + 1], dy[at + 2]]));
+        accelerations[body] = orientation(y, slot).rotate(Vector::from([dy[at], dy[at + 1], dy[at + 2]]));
     }
     accelerations
 }
@@ -232,9 +232,9 @@ fn body_accelerations(model: &Model, y: &[f64], dy: &[f64]) -> Vec<Vector> {
 fn joint_acceleration(model: &Model, joint: &Joint, y: &[f64], accelerations: &[Vector]) -> f64 {
     let end = if is_folded(model, joint.second.body) { &joint.first } else { &joint.second };
     let slot = model.coordinate_bodies().iter().position(|&b| b == end.body);
-    let axis = Vector(model.values(&end.axis)).normalised();
+    let axis = Vector::from(model.values(&end.axis)).normalize();
     let h = slot.map_or(axis, |slot| orientation(y, slot).rotate(axis));
-    h.dot(accelerations[joint.second.body]) - h.dot(accelerations[joint.first.body])
+    h.dot(&accelerations[joint.second.body]) - h.dot(&accelerations[joint.first.body])
 }
 
 fn is_folded(model: &Model, body: usize) -> bool {
