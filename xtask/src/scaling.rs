@@ -1,10 +1,11 @@
 //! Chains of more and more bodies: what they cost to generate, to compile and to run.
 
-use crate::failure::Failure;
-use crate::files;
-use crate::machine_code::{self, SYMBOLS};
-use crate::programs::{cargo, folder, output, said, three};
-use crate::progress::Spinner;
+use gyro_cli::chain;
+use gyro_cli::failure::Failure;
+use gyro_cli::files;
+use gyro_cli::machine_code::{self, SYMBOLS};
+use gyro_cli::programs::{cargo, folder, output, said, three};
+use gyro_cli::progress::Spinner;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,10 +13,6 @@ use std::process::{Command, Stdio};
 
 /// Numbers of bodies.
 const SIZES: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
-
-/// Axes of the joints and directions across them, in turn: none parallel or at right angles to the next.
-const AXES: [([i32; 3], [i32; 3]); 3] =
-    [([1, 2, 2], [2, 1, -2]), ([2, -1, 2], [2, 2, -1]), ([-2, 1, 2], [2, 2, 1])];
 
 /// What one chain takes.
 struct Chain {
@@ -63,29 +60,6 @@ impl Chain {
     }
 }
 
-/// The page of a chain that hangs from the ground, its joints askew, at angles and rates.
-pub(crate) fn page(bodies: usize) -> String {
-    let mut text = format!(
-        "format = 1\nname = \"chain_{bodies}\"\ngravity = [0, 0, -9.81]\n\n[[body]]\nname = \"base\"\nfixed = true\n"
-    );
-    for link in 1..=bodies {
-        let _ =
-            write!(text, "\n[[body]]\nname = \"link_{link}\"\nmass = 0.5\ninertia = [2e-3, 3e-3, 4e-3]\n");
-    }
-    for link in 1..=bodies {
-        let before = if link == 1 { "base".to_owned() } else { format!("link_{}", link - 1) };
-        let (axis, zero) = AXES[link % AXES.len()];
-        let (angle, rate) = (0.1 * ((link % 5) as f64 + 1.0), 0.3 * ((link % 7) as f64 - 2.5));
-        let _ = write!(
-            text,
-            "\n[[joint]]\nname = \"hinge_{link}\"\nkind = \"revolute\"\naxis = {axis:?}\nzero = {zero:?}\nfirst = {{ body = \
-             \"{before}\", point = [0.02, -0.01, -0.1] }}\nsecond = {{ body = \"link_{link}\", point = [-0.01, 0.02, 0.1] }}\nangle = \
-             {angle:.1}\nrate = {rate:.2}\n"
-        );
-    }
-    text
-}
-
 /// A workspace of its own for the chains' crates and the program that runs them.
 struct Place {
     folder: PathBuf,
@@ -105,7 +79,7 @@ impl Place {
         for &bodies in sizes {
             let _spinner = Spinner::new(format!("generating a chain of {bodies}"));
             let name = format!("chain_{bodies}");
-            self.write(&format!("{name}/page.toml"), &page(bodies))?;
+            self.write(&format!("{name}/page.toml"), &chain::page(bodies))?;
             let page = self.folder.join(&name).join("page.toml");
             let file = fs::File::open(&page).map_err(|e| said(&page, &e))?;
             let before = children_cpu_s();
@@ -336,7 +310,7 @@ mod tests {
     #[test]
     fn the_pages_are_chains() {
         for bodies in [1, 2, 8] {
-            let model = gyro_model::read("chain.toml", &page(bodies)).unwrap();
+            let model = gyro_model::read("chain.toml", &chain::page(bodies)).unwrap();
             assert_eq!((model.degrees_of_freedom(), model.joints.len()), (bodies, bodies));
         }
     }

@@ -8,8 +8,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose modules are looked at.
-const CRATES: [&str; 9] =
-    ["model", "codegen", "gyro-sim", "assembled", "verifier", "runner", "xtask", "benches", "yardstick"];
+const CRATES: [&str; 9] = [
+    "model",
+    "codegen",
+    "gyro-sim",
+    "assembled",
+    "verifier",
+    "runner",
+    "cli",
+    "xtask",
+    "benches",
+    "yardstick",
+];
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
 const STAGES: [&str; 8] =

@@ -1,7 +1,7 @@
 //! Of a firmware's ELF file: sizes of sections, symbols, and the stack that each function takes.
 
-use crate::failure::Failure;
-use crate::programs::said;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::said;
 use object::elf::FileHeader32;
 use object::read::elf::ElfFile;
 use object::{Bytes, LittleEndian, Object, ObjectSection, ObjectSymbol, U32Bytes};

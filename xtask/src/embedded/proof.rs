@@ -6,8 +6,8 @@ use super::process::within;
 use super::stack;
 use super::tools::Tools;
 use super::{Board, failed, say, target};
-use crate::failure::Failure;
-use crate::progress::Spinner;
+use gyro_cli::failure::Failure;
+use gyro_cli::progress::Spinner;
 
 /// Parts of names, as the compiler mangles them, that nothing may have: panics, formatting, an allocator.
 const FORBIDDEN: [&str; 7] =
@@ -47,7 +47,7 @@ pub(crate) fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
     Ok(symbols.iter().map(|(_, name)| name.clone()).filter(is_forbidden).collect())
 }
 
-/// Whether the accelerations that [`gyro_sim::Partitioned`] integrates are one straight line: no call, to libm or elsewhere.
+/// Whether the accelerations that `gyro_sim::Partitioned` integrates are one straight line: no call, to libm or elsewhere.
 pub(crate) fn is_straight(tools: &Tools, program: &Program) -> Result<bool, Failure> {
     let is_derivative = |name: &str| name.contains("partition::Corrected<") && name.ends_with("::derivative");
     match stack::calls(tools, program, is_derivative)? {

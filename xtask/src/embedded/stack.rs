@@ -4,8 +4,8 @@
 use super::elf::Elf;
 use super::firmware::Program;
 use super::tools::Tools;
-use crate::failure::Failure;
-use crate::programs::output;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::output;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the code of a program says of its stack.

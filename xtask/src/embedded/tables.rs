@@ -2,7 +2,7 @@
 
 use super::foreign::Sizes;
 use super::{Board, Ran, budget};
-use crate::failure::Failure;
+use gyro_cli::failure::Failure;
 use std::fmt::Write as _;
 
 /// Instructions, least, mean and most over a run.

@@ -86,7 +86,7 @@ const FUNCTIONS: [[&str; 5]; 27] = [
 
 /// The root of a library whose module `mechanism` has this type, with the functions of these names: without them nothing would be
 /// compiled. What is not known by name is left out.
-pub(crate) fn library(type_name: &str, names: &[&str]) -> String {
+pub fn library(type_name: &str, names: &[&str]) -> String {
     let mut text = format!(
         "#[allow(warnings, clippy::all)]
 mod mechanism;
@@ -116,11 +116,11 @@ type Choice = <Module as Partition>::Independent;
 }
 
 /// Option of rustc for the library: symbols tell whose part a closure is.
-pub(crate) const SYMBOLS: &str = "-Csymbol-mangling-version=v0";
+pub const SYMBOLS: &str = "-Csymbol-mangling-version=v0";
 
 /// Bytes of each function of a compiled library, by its name on the data sheet, with what the compiler has inlined into it and the parts that
 /// are compiled apart; none without `nm`.
-pub(crate) fn bytes(library: &Path) -> Option<BTreeMap<&'static str, u64>> {
+pub fn bytes(library: &Path) -> Option<BTreeMap<&'static str, u64>> {
     let symbols = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(library)).ok()?;
     Some(sizes(&symbols))
 }

@@ -16,7 +16,7 @@ fn model(name: &str) -> String {
 }
 
 fn inspect(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask")).arg("inspect").args(args).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_gyro")).arg("inspect").args(args).output().unwrap()
 }
 
 fn json(args: &[&str]) -> Value {

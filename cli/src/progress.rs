@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Shows how far a run is once it has taken a while.
 #[derive(Debug)]
-pub(crate) struct Progress {
+pub struct Progress {
     began: Instant,
     t_end: f64,
     bar: Option<ProgressBar>,
@@ -27,12 +27,12 @@ const LONG: f64 = 10.0;
 const DIVISIONS: u64 = 1000;
 
 impl Progress {
-    pub(crate) fn new(t_end: f64) -> Self {
+    pub fn new(t_end: f64) -> Self {
         Self { began: Instant::now(), t_end, bar: None }
     }
 
     /// Says how long the run will take, if that is long.
-    pub(crate) fn foretold(&self, forecast: &Forecast) {
+    pub fn foretold(&self, forecast: &Forecast) {
         if forecast.seconds > LONG {
             let words = duration_words(forecast.seconds);
             // Nobody is left to be told if standard error is closed.
@@ -41,7 +41,7 @@ impl Progress {
     }
 
     /// The run has reached this time.
-    pub(crate) fn reached(&mut self, t: f64) {
+    pub fn reached(&mut self, t: f64) {
         if self.bar.is_none() && self.began.elapsed() < PATIENCE {
             return;
         }
@@ -52,7 +52,7 @@ impl Progress {
     }
 
     /// Takes the bar away.
-    pub(crate) fn finish(&self) {
+    pub fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
@@ -67,7 +67,7 @@ fn bar() -> ProgressBar {
 
 /// Says what is under way until it is dropped: at once on a terminal, elsewhere in lines, and only if it takes a while.
 #[derive(Debug)]
-pub(crate) struct Spinner {
+pub struct Spinner {
     bar: ProgressBar,
     /// Dropped at the end, which the thread that writes lines hears.
     _end: Option<Sender<()>>,
@@ -78,7 +78,7 @@ const FIRST_LINE: Duration = Duration::from_secs(1);
 const NEXT_LINES: Duration = Duration::from_secs(30);
 
 impl Spinner {
-    pub(crate) fn new(message: String) -> Self {
+    pub fn new(message: String) -> Self {
         let is_terminal = std::io::stderr().is_terminal();
         let end = (!is_terminal).then(|| in_lines(message.clone(), remarks::note));
         let bar = ProgressBar::new_spinner().with_message(message);
@@ -94,7 +94,7 @@ impl Drop for Spinner {
 }
 
 /// Says that a model is being derived; and, before that begins, what it takes to derive a large one.
-pub(crate) fn deriving(model: &Model) -> Spinner {
+pub fn deriving(model: &Model) -> Spinner {
     let bodies = model.coordinate_bodies().len();
     if bodies > LARGE {
         remarks::note(&format!(
@@ -134,13 +134,13 @@ fn in_lines(message: String, say: impl Fn(&str) + Send + 'static) -> Sender<()> 
 
 /// Shows how much of a list is done, one list after the other.
 #[derive(Debug)]
-pub(crate) struct Count {
+pub struct Count {
     bar: ProgressBar,
     prefix: String,
 }
 
 impl Count {
-    pub(crate) fn new(prefix: String) -> Self {
+    pub fn new(prefix: String) -> Self {
         let style = ProgressStyle::with_template("{prefix} {bar:30} {pos}/{len} {msg} ({elapsed})");
         let bar = ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.enable_steady_tick(Duration::from_millis(200));
@@ -148,7 +148,7 @@ impl Count {
     }
 
     /// A new list of so many.
-    pub(crate) fn begin(&self, what: &str, length: u64) {
+    pub fn begin(&self, what: &str, length: u64) {
         self.bar.set_prefix(format!("{} {what}", self.prefix));
         self.bar.set_length(length);
         self.bar.set_position(0);
@@ -156,7 +156,7 @@ impl Count {
     }
 
     /// One of them is done.
-    pub(crate) fn advance(&self, what: &str) {
+    pub fn advance(&self, what: &str) {
         self.bar.inc(1);
         self.bar.set_message(what.to_owned());
     }

@@ -7,26 +7,26 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// The root of the workspace that this program was built from.
-pub(crate) fn root() -> PathBuf {
+pub fn root() -> PathBuf {
     let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
     xtask.parent().unwrap_or(xtask).to_path_buf()
 }
 
 /// The largest page, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies takes.
-pub(crate) const LARGEST_PAGE: u64 = 4 << 20;
+pub const LARGEST_PAGE: u64 = 4 << 20;
 
 /// The largest table of a motion or an input that is read: two million rows and more.
-pub(crate) const LARGEST_TABLE: u64 = 64 << 20;
+pub const LARGEST_TABLE: u64 = 64 << 20;
 
 /// The text of a file that the run depends on, which nothing may overwrite from now on.
-pub(crate) fn input(path: &Path, largest: u64) -> io::Result<String> {
+pub fn input(path: &Path, largest: u64) -> io::Result<String> {
     let text = text(path, largest)?;
     write::note_input(path);
     Ok(text)
 }
 
 /// The text of an ordinary file that is not too large: a pipe or a device might have no end.
-pub(crate) fn text(path: &Path, largest: u64) -> io::Result<String> {
+pub fn text(path: &Path, largest: u64) -> io::Result<String> {
     // Before it is opened: opening a pipe waits for its other end.
     let found = fs::metadata(path)?;
     if !found.is_file() {
@@ -49,12 +49,12 @@ pub(crate) fn text(path: &Path, largest: u64) -> io::Result<String> {
 }
 
 /// The text of a model page.
-pub(crate) fn read_page(path: &Path) -> Result<String, Failure> {
+pub fn read_page(path: &Path) -> Result<String, Failure> {
     input(path, LARGEST_PAGE).map_err(|e| Failure::Usage(unreadable(path, &e)))
 }
 
 /// The text of a page of the documentation that is to be brought up to date.
-pub(crate) fn read_template(path: &Path) -> Result<String, Failure> {
+pub fn read_template(path: &Path) -> Result<String, Failure> {
     text(path, LARGEST_PAGE).map_err(|e| Failure::Usage(unreadable(path, &e)))
 }
 
@@ -73,12 +73,12 @@ fn unreadable(path: &Path, error: &io::Error) -> String {
 }
 
 /// Writes a file in a place of the tool's own. Returns whether it was written: not if it has this text already.
-pub(crate) fn write(path: &Path, text: &str) -> Result<bool, Failure> {
+pub fn write(path: &Path, text: &str) -> Result<bool, Failure> {
     write::write(path, text, Known::Place)
 }
 
 /// A path as messages and generated files show it: relative to the workspace if inside of it, with slashes.
-pub(crate) fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     let inside = fs::canonicalize(path)
         .ok()
         .and_then(|full| full.strip_prefix(fs::canonicalize(root()).ok()?).ok().map(Path::to_path_buf));

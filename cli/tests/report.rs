@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn report(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask")).arg("report").args(args).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_gyro")).arg("report").args(args).output().unwrap()
 }
 
 /// An empty folder of its own, removed at the end.

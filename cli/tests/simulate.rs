@@ -37,7 +37,7 @@ fn model(name: &str) -> String {
 }
 
 fn xtask(folder: &Folder, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(&folder.0).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_gyro")).args(args).current_dir(&folder.0).output().unwrap()
 }
 
 fn simulate(folder: &Folder, args: &[&str]) -> Output {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 /// Why a command has not done what it was asked to.
 #[derive(Debug)]
-pub(crate) enum Failure {
+pub enum Failure {
     /// What was asked for makes no sense: exit status 2.
     Usage(String),
     /// The model page has mistakes: exit status 2.
@@ -19,7 +19,7 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// What is wrong.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         match self {
             Self::Usage(words) | Self::Run(words) | Self::Worthless(words) => words.clone(),
             Self::Page(mistakes) => mistakes.render(),
@@ -27,7 +27,7 @@ impl Failure {
     }
 
     /// Says so on standard error; returns the exit status.
-    pub(crate) fn report(&self) -> ExitCode {
+    pub fn report(&self) -> ExitCode {
         let mut stderr = std::io::stderr();
         let (text, status) = match self {
             Self::Usage(words) => (format!("error: {words}\n"), 2),

@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// How a file that is to be replaced is known for the tool's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Known {
+pub enum Known {
     /// By its place: in the workspace, where nobody else writes, or named by the user as the page to be brought up to date.
     Place,
     /// By how its text begins.
@@ -28,7 +28,7 @@ const RECORD: &str = ".gyro-sim";
 static INPUTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// From now on this file is not written to.
-pub(crate) fn note_input(path: &Path) {
+pub fn note_input(path: &Path) {
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let mut inputs = INPUTS.lock().unwrap_or_else(PoisonError::into_inner);
     if !inputs.contains(&path) {
@@ -37,7 +37,7 @@ pub(crate) fn note_input(path: &Path) {
 }
 
 /// Whether a file may be written, asked before the work for it begins.
-pub(crate) fn check(path: &Path, known: Known) -> Result<(), Failure> {
+pub fn check(path: &Path, known: Known) -> Result<(), Failure> {
     let refused = |why: &str| {
         let path = path.display();
         Err(Failure::Usage(format!("{path} {why}: choose another place with --out, or move it away")))
@@ -75,7 +75,7 @@ fn is_own(path: &Path, known: Known) -> bool {
 /// Writes a file unless it has this text already. Returns whether it was written.
 ///
 /// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need be.
-pub(crate) fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
+pub fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
     check(path, known)?;
     if holds(path, text) {
         return Ok(false);
@@ -116,7 +116,7 @@ fn neighbour(path: &Path) -> io::Result<(PathBuf, fs::File)> {
 }
 
 /// Takes away what an earlier run has written, if it is still as it was written.
-pub(crate) fn remove(path: &Path) {
+pub fn remove(path: &Path) {
     if !is_input(path) && is_own(path, Known::Record) {
         // It is not there, or it stays: neither is worth more than the failure that led here.
         let _ = fs::remove_file(path);
@@ -151,12 +151,12 @@ fn line(path: &Path, text: &[u8]) -> String {
 }
 
 /// Whether a file is there with just this text.
-pub(crate) fn holds(path: &Path, text: &str) -> bool {
+pub fn holds(path: &Path, text: &str) -> bool {
     fs::read(path).is_ok_and(|old| old == text.as_bytes())
 }
 
 /// A place that cannot be written to was asked for wrongly; a full disk was not.
-pub(crate) fn unwritable(path: &Path, done: &str, error: &io::Error) -> Failure {
+pub fn unwritable(path: &Path, done: &str, error: &io::Error) -> Failure {
     use io::ErrorKind::{
         AlreadyExists, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
     };

@@ -97,7 +97,7 @@ impl Drop for Folder {
 }
 
 fn xtask(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_gyro")).args(args).output().unwrap()
 }
 
 /// Imports one of the robots; its page's path, its model and what was said.

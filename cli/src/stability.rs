@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{scaling, scene};
+use crate::{chain, scene};
 use gyro_assembled::Dense;
 use gyro_model::{Model, Number, Parameter, Rational};
 use gyro_sim::{Equations, Ode};
@@ -71,7 +71,7 @@ pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String,
 fn models(pages: &[PathBuf]) -> Result<Vec<Model>, Failure> {
     if pages.is_empty() {
         let chain =
-            gyro_model::read("chain.toml", &scaling::page(4)).map_err(|e| Failure::Usage(e.to_string()))?;
+            gyro_model::read("chain.toml", &chain::page(4)).map_err(|e| Failure::Usage(e.to_string()))?;
         return Ok(vec![scene::read(&crate::files::root().join("models/gyroscope.toml"))?, chain]);
     }
     pages.iter().map(|page| scene::read(page)).collect()

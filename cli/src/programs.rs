@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Scratch: what is built and measured on the way.
-pub(crate) fn folder() -> PathBuf {
+pub fn folder() -> PathBuf {
     files::root().join("target").join("performance")
 }
 
-pub(crate) fn said(path: &Path, error: &std::io::Error) -> Failure {
+pub fn said(path: &Path, error: &std::io::Error) -> Failure {
     Failure::Run(format!("{} cannot be used: {error}", path.display()))
 }
 
 /// Builds a program that measures, as `set` has Cargo do it; returns where it is.
-pub(crate) fn built(bench: &str, set: impl FnOnce(&mut Command)) -> Result<PathBuf, Failure> {
+pub fn built(bench: &str, set: impl FnOnce(&mut Command)) -> Result<PathBuf, Failure> {
     let _spinner = Spinner::new("building the benches".to_owned());
     let options =
         ["bench", "--no-run", "--package", "gyro-benches", "--bench", bench, "--message-format=json"];
@@ -35,12 +35,12 @@ pub(crate) fn built(bench: &str, set: impl FnOnce(&mut Command)) -> Result<PathB
         .ok_or_else(|| Failure::Run("cargo does not say where the bench is".to_owned()))
 }
 
-pub(crate) fn cargo() -> std::ffi::OsString {
+pub fn cargo() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
 /// What a command prints; its failure is this command's.
-pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
+pub fn output(command: &mut Command) -> Result<String, Failure> {
     let name = command.get_program().to_string_lossy().into_owned();
     let output = command
         .stdin(Stdio::null())
@@ -53,7 +53,7 @@ pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
 }
 
 /// Three digits, whole where there are more.
-pub(crate) fn three(value: f64) -> String {
+pub fn three(value: f64) -> String {
     let decimals = match value {
         v if v >= 100.0 => 0,
         v if v >= 10.0 => 1,

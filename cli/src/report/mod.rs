@@ -48,7 +48,7 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     fs::create_dir_all(folder.join("images")).map_err(|e| unusable(&folder, &e))?;
     names.iter().try_for_each(|name| write::check(name, &folder))?;
     let twin = nested::twin()?;
-    let machine = crate::performance::machine_in("release")?;
+    let machine = crate::machine::machine_in("release")?;
     let effort = if args.quick { Effort::quick() } else { Effort::full() };
     let mut missed = Vec::new();
     for (index, path) in pages.iter().enumerate() {
