@@ -141,59 +141,45 @@ fn a_package_outside_generates_its_own_mechanisms() {
     assert!(!refused.is_success && refused.stderr.contains("REFUTED"), "{}", refused.stderr);
 }
 
-/// The blocks of README.md in this language.
-fn of_the_readme(language: &str) -> Vec<String> {
-    let page = fs::read_to_string(root().join("README.md")).unwrap();
+/// The blocks of the tutorial in this language.
+fn of_the_tutorial(language: &str) -> Vec<String> {
+    let page = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
     let fence = format!("```{language}\n");
     page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
 }
 
-/// The page, the manifest, the build script and the lines of Rust that README.md shows make a package that builds and runs.
+/// The model file, the manifest, the build script and the program of docs/tutorial.md make a package that builds and runs, and prints
+/// what the tutorial says.
 #[test]
-fn the_readme_s_example_builds_and_runs() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme");
+fn the_tutorial_s_package_builds_and_runs() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tutorial");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("src")).unwrap();
-    let tables = of_the_readme("toml");
-    let [page, dependencies, ..] = &tables[..] else { panic!("a page and dependencies") };
-    let (script, lines): (Vec<String>, Vec<String>) =
-        of_the_readme("rust,ignore").into_iter().partition(|block| block.contains("// build.rs"));
+    let [model, manifest] = &of_the_tutorial("toml")[..] else { panic!("a model file and a manifest") };
+    let [script, program] = &of_the_tutorial("rust,ignore")[..] else { panic!("a script and a program") };
     let clone = root().display().to_string();
-    let head = "[package]\nname = \"readme\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n[profile.dev]\ndebug = false\n\n";
-    let manifest = format!("{head}{}", dependencies.replace("path/to/the/clone", &clone));
-    // What generates the items stands outside of functions, all else is a program.
-    let text = lines.join("\n");
-    let (items, body): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with("include!"));
-    let body: Vec<String> = body.into_iter().map(once_imported()).collect();
-    let main = format!(
-        "#![allow(warnings)]\n{}\nfn main() -> Result<(), gyro_sim::Error> {{\n{}\nprintln!(\"{{:?}} {{:?}}\", state, x);\nOk(())\n}}\n",
-        items.join("\n"),
-        body.join("\n")
-    );
+    let manifest =
+        manifest.replace("path/to/the/clone", &clone) + "\n[workspace]\n\n[profile.dev]\ndebug = false\n";
     let files = [
         ("Cargo.toml", &manifest),
-        ("build.rs", &script[0]),
-        ("src/main.rs", &main),
-        ("pendulum.toml", page),
+        ("build.rs", script),
+        ("src/main.rs", program),
+        ("cart-pendulum.toml", model),
     ];
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested");
     let said = cargo(&folder, &target, "run", &[]);
-    assert!(said.is_success, "{}\n{main}", said.stderr);
-    assert!(said.stdout.contains("[") && !said.stdout.contains("NaN"), "{}", said.stdout);
+    assert!(said.is_success, "{}", said.stderr);
+    let printed = of_the_tutorial("text").into_iter().find(|block| block.starts_with("joint coordinates:"));
+    let [found, expected] = [said.stdout, printed.unwrap()].map(|text| numbers(&text));
+    assert_eq!([found.len(), expected.len()], [8, 8]);
+    let error = difference(&found, &expected, 0.0);
+    assert!(error <= AGREEMENT, "off by {error:e}:\n{found:?}\n{expected:?}");
 }
 
-/// Names are imported once: the snippets of a page are not one program.
-fn once_imported() -> impl FnMut(&str) -> String {
-    let mut known: Vec<String> = Vec::new();
-    move |line| {
-        let Some(names) = line.strip_prefix("use gyro_sim::{").and_then(|rest| rest.strip_suffix("};"))
-        else {
-            return line.to_owned();
-        };
-        let new: Vec<&str> =
-            names.split(", ").filter(|name| !known.iter().any(|other| other == name)).collect();
-        known.extend(new.iter().map(|name| (*name).to_owned()));
-        format!("use gyro_sim::{{{}}};", new.join(", "))
-    }
+/// The numbers between the brackets of each line.
+fn numbers(printed: &str) -> Vec<f64> {
+    let inside = |line: &str| Some(line.split_once('[')?.1.trim_end().trim_end_matches(']').to_owned());
+    let lines: Vec<String> = printed.lines().filter_map(inside).collect();
+    lines.iter().flat_map(|line| line.split(", ").map(|x| x.parse::<f64>().unwrap())).collect()
 }

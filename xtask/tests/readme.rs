@@ -1,4 +1,4 @@
-//! What README.md and the pages of docs/ tell the reader to type works as it is typed.
+//! What README.md and the documents in docs/ tell the reader to type works as it is typed.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use gyro_model::Model;
@@ -16,14 +16,19 @@ fn blocks(page: &str, language: &str) -> Vec<String> {
     page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
 }
 
-/// README.md and the pages of docs/, with their names.
-fn pages() -> Vec<(String, String)> {
-    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
-    let mut pages: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|e| e == "md")).collect();
-    pages.push(root().join("README.md"));
+/// README.md, ARCHITECTURE.md and the documents in docs/ and its folders but the report, with their paths in the clone.
+fn pages() -> Vec<(PathBuf, String)> {
+    let mut pages = vec![PathBuf::from("README.md"), PathBuf::from("ARCHITECTURE.md")];
+    for folder in ["docs", "docs/decisions"].map(Path::new) {
+        let entries = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().file_name());
+        pages.extend(
+            entries.map(|name| folder.join(name)).filter(|path| path.extension().is_some_and(|e| e == "md")),
+        );
+    }
     pages.sort();
     let page = |path: PathBuf| {
-        (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(path).unwrap())
+        let text = fs::read_to_string(root().join(&path)).unwrap();
+        (path, text)
     };
     pages.into_iter().map(page).collect()
 }
@@ -80,6 +85,10 @@ fn files_are_there(page: &str, command: &[String]) {
     }
 }
 
+fn names_a_file(command: &[String]) -> bool {
+    command[3..].first().is_some_and(|word| [".toml", ".urdf"].iter().any(|end| word.ends_with(end)))
+}
+
 /// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long ones but that
 /// they exist.
 fn run(command: &[String], folder: &Path) -> Output {
@@ -88,16 +97,19 @@ fn run(command: &[String], folder: &Path) -> Output {
         let name = Path::new(&args[at + 1]).file_name().unwrap().to_owned();
         args[at + 1] = folder.join("made").join(name).display().to_string();
     }
+    let has = |option: &str| command.iter().any(|word| word == option);
     let mut add = |words: &[&str]| args.extend(words.iter().map(|word| (*word).to_owned()));
     match command[2].as_str() {
-        "simulate" if command.len() > 3 && command[3].ends_with(".toml") => {
-            if !command.iter().any(|word| word == "--engine") {
+        "simulate" if names_a_file(command) && !has("--linearize") => {
+            if !has("--engine") {
                 add(&["--engine", "assembled"]);
             }
             add(&["--t-end", "0.01", "--out", &folder.join("run").display().to_string()]);
+            // Only compiled code does joint coordinates.
+            args.iter_mut().filter(|word| *word == "joint").for_each(|word| "maximal".clone_into(word));
         }
-        "inspect" => add(&["--no-compile"]),
-        "import" | "generate" if command.len() > 3 => {}
+        "inspect" if names_a_file(command) && !has("--no-compile") => add(&["--no-compile"]),
+        "import" | "generate" | "inspect" if names_a_file(command) => {}
         _ => args = vec![command[2].clone(), "--help".to_owned()],
     }
     Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(root()).output().unwrap()
@@ -107,7 +119,8 @@ fn run(command: &[String], folder: &Path) -> Output {
 fn every_command_works_as_it_is_typed() {
     let folder = Folder::new();
     let mut number = 0;
-    for (name, page) in pages() {
+    for (path, page) in pages() {
+        let name = path.display().to_string();
         for command in commands(&page) {
             let command: Vec<String> = command.into_iter().skip_while(|word| word.contains('=')).collect();
             files_are_there(&name, &command);
@@ -147,6 +160,14 @@ fn the_pendulum_is_the_one_that_is_shipped() {
     assert!((moments[0] - length * length / 3.0).abs() < 1e-3 * moments[0], "{moments:?}");
 }
 
+/// The model file of the tutorial is the one that is shipped.
+#[test]
+fn the_cart_and_pendulum_are_those_that_are_shipped() {
+    let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let shipped = fs::read_to_string(root().join("examples/cart-pendulum/cart-pendulum.toml")).unwrap();
+    assert_eq!(blocks(&tutorial, "toml")[0], shipped);
+}
+
 /// From the mass centre to the hinge.
 fn arm(model: &Model) -> [f64; 3] {
     model.values(&model.joints[0].second.point)
@@ -161,13 +182,13 @@ fn the_version_of_rust_is_the_manifest_s_and_links_lead_somewhere() {
     let version = version.split('"').next().unwrap();
     assert!(readme.contains(&format!("Rust {version} or newer")), "{version}");
     for (name, page) in pages() {
+        let folder = root().join(name.parent().unwrap());
         for link in blocks_removed(&page).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             let path = link.split('#').next().unwrap();
             if path.is_empty() || path.contains("://") {
                 continue;
             }
-            let folder = if name == "README.md" { root() } else { root().join("docs") };
-            assert!(folder.join(path).exists(), "{name}: {link}");
+            assert!(folder.join(path).exists(), "{}: {link}", name.display());
         }
     }
 }
