@@ -8,7 +8,7 @@ use crate::verify::verify_quickly;
 use crate::words::table;
 use crate::{files, json, machine_code, nested, remarks, scene};
 use gyro_codegen::{
-    Elimination, Form, Function, Module, Operations, Sheet, generate_by, generate_model, large,
+    Elimination, Form, Function, Kernel, Module, Operations, Sheet, generate_by, generate_model, large,
 };
 use gyro_model::Model;
 use rayon::prelude::*;
@@ -21,8 +21,7 @@ use std::io::Write as _;
 struct Inspection {
     model: Model,
     sheet: Sheet,
-    /// By the name of the function.
-    bytes: Option<BTreeMap<&'static str, u64>>,
+    bytes: Option<BTreeMap<Kernel, u64>>,
     /// What the accelerations would take by a factorisation of all of eq. (17). Trees only.
     saddle: Option<usize>,
     elements: Vec<Element>,
@@ -43,12 +42,12 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
     let said = |e: gyro_codegen::Error| Failure::Usage(format!("{}: {e}", args.model.display()));
     let module = generate_model(&page, &model).map_err(said)?;
     verify_quickly(&model, &module)?;
-    let saddle = module.sheet.function("joint_accelerations").is_some();
+    let saddle = module.sheet.function(Kernel::JointAccelerations).is_some();
     let saddle = saddle.then(|| generate_by(Elimination::Saddle, &page, &model)).transpose().map_err(said)?;
     let elements = variants(&model).into_par_iter().map(|variant| Element::of(&page, variant)).collect();
     drop(spinner);
     let bytes = if args.no_compile { None } else { bytes(&module)? };
-    let saddle = saddle.and_then(|module| total(&module.sheet, "accelerations"));
+    let saddle = saddle.and_then(|module| total(&module.sheet, Kernel::Accelerations));
     let inspection = Inspection { model, sheet: module.sheet, bytes, saddle, elements };
     let text = if args.json { format!("{:#}\n", inspection.to_json()) } else { inspection.to_text() };
     // Nobody is left to be told if standard output is closed.
@@ -56,9 +55,9 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn bytes(module: &Module) -> Result<Option<BTreeMap<&'static str, u64>>, Failure> {
-    let names: Vec<&str> = module.sheet.functions.iter().map(|function| function.name).collect();
-    let bytes = machine_code::bytes(&nested::library(module, &names)?);
+fn bytes(module: &Module) -> Result<Option<BTreeMap<Kernel, u64>>, Failure> {
+    let kernels: Vec<Kernel> = module.sheet.functions.iter().map(|function| function.kernel).collect();
+    let bytes = machine_code::bytes(&nested::library(module, &kernels)?);
     if bytes.is_none() {
         remarks::warn("the machine code is not measured: `nm` is not installed");
     }
@@ -73,17 +72,18 @@ impl Element {
         Self { what: variant.what, sheet: variant.model.and_then(sheet) }
     }
 
-    fn row(&self, whole: &Sheet, kernels: &[&str]) -> Vec<String> {
-        let cell = |name: &&str| {
+    fn row(&self, whole: &Sheet, kernels: &[Kernel]) -> Vec<String> {
+        let cell = |total: &dyn Fn(&Sheet) -> Option<usize>| {
             let Ok(sheet) = &self.sheet else { return "cannot be assembled".to_owned() };
-            let (with, without) = (total(whole, name), total(sheet, name));
-            match (with, without) {
+            match (total(whole), total(sheet)) {
                 (Some(with), Some(without)) if with == without => without.to_string(),
                 (Some(with), Some(without)) => format!("{without} ({:+})", without as i64 - with as i64),
                 (_, without) => without.map_or("none".to_owned(), |without| without.to_string()),
             }
         };
-        [self.what.clone()].into_iter().chain(kernels.iter().map(cell)).collect()
+        let of_kernels = kernels.iter().map(|&kernel| cell(&|sheet| total(sheet, kernel)));
+        let of_all = cell(&|sheet| Some(total_of_all(sheet)));
+        [self.what.clone()].into_iter().chain(of_kernels).chain([of_all]).collect()
     }
 
     fn to_json(&self, whole: &Sheet) -> Value {
@@ -94,9 +94,9 @@ impl Element {
         let functions: Map<String, Value> = (sheet.functions.iter())
             .map(|function| {
                 let now = function.operations.total();
-                let before = total(whole, function.name);
+                let before = total(whole, function.kernel);
                 let change = before.map(|before| now as i64 - before as i64);
-                (function.name.to_owned(), json!({ "operations": now, "change": change }))
+                (function.kernel.name().to_owned(), json!({ "operations": now, "change": change }))
             })
             .collect();
         json!({ "what": self.what, "degrees_of_freedom": sheet.degrees_of_freedom(), "functions": functions })
@@ -104,23 +104,21 @@ impl Element {
 }
 
 /// What the table of elements shows: the kernels of a run.
-const KERNELS: [&str; 6] = [
-    "accelerations",
-    "joint_accelerations",
-    "corrected_accelerations",
-    "newton_step",
-    "solve_velocities",
-    "outputs",
+const KERNELS: [Kernel; 6] = [
+    Kernel::Accelerations,
+    Kernel::JointAccelerations,
+    Kernel::CorrectedAccelerations,
+    Kernel::NewtonStep,
+    Kernel::SolveVelocities,
+    Kernel::Outputs,
 ];
 
-/// All functions together.
-const ALL: &str = "all functions";
+fn total(sheet: &Sheet, kernel: Kernel) -> Option<usize> {
+    sheet.function(kernel).map(|function| function.operations.total())
+}
 
-fn total(sheet: &Sheet, name: &str) -> Option<usize> {
-    if name == ALL {
-        return Some(sheet.functions.iter().map(|function| function.operations.total()).sum());
-    }
-    sheet.function(name).map(|function| function.operations.total())
+fn total_of_all(sheet: &Sheet) -> usize {
+    sheet.functions.iter().map(|function| function.operations.total()).sum()
 }
 
 impl Inspection {
@@ -157,10 +155,10 @@ impl Inspection {
         let n_columns = head.len() - usize::from(self.bytes.is_none());
         let mut rows = vec![head[..n_columns].iter().map(|&word| word.to_owned()).collect::<Vec<_>>()];
         for function in &self.sheet.functions {
-            let bytes = self.bytes.iter().map(|bytes| bytes.get(function.name));
+            let bytes = self.bytes.iter().map(|bytes| bytes.get(&function.kernel));
             let bytes = bytes.map(|bytes| bytes.map_or(String::new(), u64::to_string));
             let cells = [
-                function.name.to_owned(),
+                function.kernel.name().to_owned(),
                 large(function.passes.written_out),
                 function.passes.shared.to_string(),
                 function.passes.emitted.to_string(),
@@ -176,7 +174,7 @@ impl Inspection {
     fn choices(&self) -> String {
         let mut text = String::new();
         for function in self.sheet.functions.iter().filter(|function| !function.forms.is_empty()) {
-            let _ = writeln!(text, "\nways of writing {}", function.name);
+            let _ = writeln!(text, "\nways of writing {}", function.kernel.name());
             let row = |form: &Form| {
                 let taken = if form.is_taken { "taken" } else { "" };
                 let Operations { functions, .. } = form.operations;
@@ -195,7 +193,7 @@ impl Inspection {
                 let _ = writeln!(text, "  normal form of {what}: {before} before, {after} after");
             }
         }
-        if let Some((ours, saddle)) = total(&self.sheet, "accelerations").zip(self.saddle) {
+        if let Some((ours, saddle)) = total(&self.sheet, Kernel::Accelerations).zip(self.saddle) {
             let _ = writeln!(
                 text,
                 "\naccelerations through the null space of the joints: {ours}; by a factorisation of all of eq. (17): {saddle}"
@@ -205,12 +203,13 @@ impl Inspection {
     }
 
     fn element_table(&self) -> String {
-        let has = |name: &&str| self.sheet.function(name).is_some();
-        let kernels: Vec<&str> = KERNELS.into_iter().filter(has).chain([ALL]).collect();
-        let mut rows =
-            vec![["the same model"].into_iter().chain(kernels.iter().copied()).map(str::to_owned).collect()];
-        let whole =
-            kernels.iter().map(|name| total(&self.sheet, name).map_or(String::new(), |n| n.to_string()));
+        let has = |kernel: &Kernel| self.sheet.function(*kernel).is_some();
+        let kernels: Vec<Kernel> = KERNELS.into_iter().filter(has).collect();
+        let names = kernels.iter().map(|kernel| kernel.name());
+        let head = ["the same model"].into_iter().chain(names).chain(["all functions"]);
+        let whole = kernels.iter().filter_map(|&kernel| total(&self.sheet, kernel));
+        let whole = whole.chain([total_of_all(&self.sheet)]).map(|total| total.to_string());
+        let mut rows = vec![head.map(str::to_owned).collect()];
         rows.push(["as it is".to_owned()].into_iter().chain(whole).collect());
         rows.extend(self.elements.iter().map(|element| element.row(&self.sheet, &kernels)));
         format!(
@@ -250,7 +249,7 @@ fn facts(facts: &[(&str, String)]) -> String {
     facts.iter().map(|(what, value)| format!("  {what:<24}  {value}\n")).collect()
 }
 
-fn function_json(function: &Function, bytes: Option<&BTreeMap<&'static str, u64>>) -> Value {
+fn function_json(function: &Function, bytes: Option<&BTreeMap<Kernel, u64>>) -> Value {
     let operations = |operations: &Operations| {
         json!({
             "additions": operations.additions,
@@ -263,14 +262,14 @@ fn function_json(function: &Function, bytes: Option<&BTreeMap<&'static str, u64>
     let form = |form: &Form| json!({ "name": form.name, "operations": operations(&form.operations), "is_taken": form.is_taken });
     let passes = function.passes;
     json!({
-        "name": function.name,
-        "computes": function.computes,
+        "name": function.kernel.name(),
+        "computes": function.kernel.computes(),
         "operations": operations(&function.operations),
         "passes": { "written_out": passes.written_out, "shared": passes.shared, "emitted": passes.emitted },
         "results": function.results,
         "zeros": function.zeros,
         "forms": function.forms.iter().map(form).collect::<Vec<_>>(),
         "normal_form": function.reductions.iter().map(|r| json!({ "what": r.what, "before": r.before, "after": r.after })).collect::<Vec<_>>(),
-        "machine_code_bytes": bytes.and_then(|bytes| bytes.get(function.name)),
+        "machine_code_bytes": bytes.and_then(|bytes| bytes.get(&function.kernel)),
     })
 }

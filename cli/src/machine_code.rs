@@ -1,92 +1,98 @@
 //! Machine code of a generated module: a library that has each of its functions for `f64`, and what `nm` says of it.
 
 use crate::programs::output;
+use gyro_codegen::Kernel;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Each function of a data sheet: its name there and in the library, what it takes besides the mechanism and the time, and returns.
-const FUNCTIONS: [[&str; 5]; 27] = [
-    ["phi", "phi", "y: &State, out: &mut <Module as Mechanism>::Constraints", "y, out", ""],
-    ["phi_q", "phi_q", "y: &State, out: &mut <Module as Equations>::PhiQ", "y, out", ""],
-    ["phi_pi", "phi_pi", "y: &State, out: &mut <Module as Equations>::PhiPi", "y, out", ""],
-    ["nu", "nu", "y: &State, out: &mut Rows", "y, out", ""],
-    ["gamma", "gamma", "y: &State, out: &mut Rows", "y, out", ""],
-    ["velocity_residual", "velocity_residual", "y: &State, out: &mut Rows", "y, out", ""],
-    [
-        "applied_force",
-        "applied_force",
-        "y: &State, out: &mut <Module as Equations>::Velocities",
-        "y, out",
-        "",
-    ],
-    ["accelerations", "accelerations", "y: &State, out: &mut Accelerations", "y, out", ""],
-    ["multipliers", "multipliers", "y: &State, a: &Accelerations, out: &mut Rows", "y, a, out", ""],
-    [
-        "project",
-        "project",
-        "y: &State, rows: &Rows, out: &mut <Module as Equations>::Velocities",
-        "y, rows, out",
-        "",
-    ],
-    ["derivative", "derivative", "y: &State, dy: &mut State", "y, dy", ""],
-    ["energy", "energy", "y: &State", "y", "Energy<f64>"],
-    ["read_joints", "read_joints", "y: &State, out: &mut <Module as Mechanism>::Readings", "y, out", ""],
-    ["outputs", "outputs", "y: &State, out: &mut <Module as Ports>::Outputs", "y, out", ""],
-    ["chart vectors", "independent", "y: &State", "y", "Choice"],
-    ["newton_step", "newton_step", "choice: &Choice, y: &mut State", "choice, y", "Result<(), Error>"],
-    [
-        "solve_velocities",
-        "solve_velocities",
-        "choice: &Choice, y: &mut State",
-        "choice, y",
-        "Result<(), Error>",
-    ],
-    ["joint_accelerations", "joint_accelerations", "x: &Joints, out: &mut Rates", "x, out", ""],
-    ["joint_derivative", "joint_derivative", "x: &Joints, dx: &mut Joints", "x, dx", ""],
-    ["to_maximal", "to_maximal", "x: &Joints, y: &mut State", "x, y", ""],
-    ["to_joints", "to_joints", "y: &State, x: &mut Joints", "y, x", ""],
-    ["joint_accelerations_at", "joint_accelerations_at", "y: &State, out: &mut Rates", "y, out", ""],
-    [
-        "corrected_accelerations",
-        "corrected_accelerations",
-        "y: &State, out: &mut <Module as Equations>::Velocities",
-        "y, out",
-        "",
-    ],
-    [
-        "corrected_multipliers",
-        "corrected_multipliers",
-        "y: &State, a: &<Module as Equations>::Velocities, out: &mut Rows",
-        "y, a, out",
-        "",
-    ],
-    [
-        "corrected_solution",
-        "corrected_solution",
-        "y: &State, out: &mut <Module as JointSpace>::Solution",
-        "y, out",
-        "",
-    ],
-    [
-        "joint_jacobian",
-        "joint_jacobian",
-        "x: &Joints, dfdx: &mut <Module as JointJacobian>::Jacobian, dfdt: &mut Joints",
-        "x, dfdx, dfdt",
-        "",
-    ],
-    [
-        "joint_input_jacobian",
-        "joint_input_jacobian",
-        "x: &Joints, out: &mut <Module as JointJacobian>::InputJacobian",
-        "x, out",
-        "",
-    ],
-];
+/// How a function of the library is called.
+struct Call {
+    /// Its name.
+    function: &'static str,
+    /// What it takes besides the mechanism and the time, and how that is passed on.
+    takes: &'static str,
+    passes: &'static str,
+    returns: &'static str,
+}
 
-/// The root of a library whose module `mechanism` has this type, with the functions of these names: without them nothing would be
-/// compiled. What is not known by name is left out.
-pub fn library(type_name: &str, names: &[&str]) -> String {
+/// Of each kernel; none of what is called within `set_parameters`.
+fn call(kernel: Kernel) -> Option<Call> {
+    let [function, takes, passes, returns] = match kernel {
+        Kernel::ParameterSetup => return None,
+        Kernel::Phi => ["phi", "y: &State, out: &mut <Module as Mechanism>::Constraints", "y, out", ""],
+        Kernel::PhiQ => ["phi_q", "y: &State, out: &mut <Module as Equations>::PhiQ", "y, out", ""],
+        Kernel::PhiPi => ["phi_pi", "y: &State, out: &mut <Module as Equations>::PhiPi", "y, out", ""],
+        Kernel::Nu => ["nu", "y: &State, out: &mut Rows", "y, out", ""],
+        Kernel::Gamma => ["gamma", "y: &State, out: &mut Rows", "y, out", ""],
+        Kernel::VelocityResidual => ["velocity_residual", "y: &State, out: &mut Rows", "y, out", ""],
+        Kernel::AppliedForce => {
+            ["applied_force", "y: &State, out: &mut <Module as Equations>::Velocities", "y, out", ""]
+        }
+        Kernel::Accelerations => ["accelerations", "y: &State, out: &mut Accelerations", "y, out", ""],
+        Kernel::Multipliers => {
+            ["multipliers", "y: &State, a: &Accelerations, out: &mut Rows", "y, a, out", ""]
+        }
+        Kernel::Project => [
+            "project",
+            "y: &State, rows: &Rows, out: &mut <Module as Equations>::Velocities",
+            "y, rows, out",
+            "",
+        ],
+        Kernel::Derivative => ["derivative", "y: &State, dy: &mut State", "y, dy", ""],
+        Kernel::Energy => ["energy", "y: &State", "y", "Energy<f64>"],
+        Kernel::ReadJoints => {
+            ["read_joints", "y: &State, out: &mut <Module as Mechanism>::Readings", "y, out", ""]
+        }
+        Kernel::Outputs => ["outputs", "y: &State, out: &mut <Module as Ports>::Outputs", "y, out", ""],
+        Kernel::ChartVectors => ["independent", "y: &State", "y", "Choice"],
+        Kernel::NewtonStep => {
+            ["newton_step", "choice: &Choice, y: &mut State", "choice, y", "Result<(), Error>"]
+        }
+        Kernel::SolveVelocities => {
+            ["solve_velocities", "choice: &Choice, y: &mut State", "choice, y", "Result<(), Error>"]
+        }
+        Kernel::JointAccelerations => ["joint_accelerations", "x: &Joints, out: &mut Rates", "x, out", ""],
+        Kernel::JointDerivative => ["joint_derivative", "x: &Joints, dx: &mut Joints", "x, dx", ""],
+        Kernel::ToMaximal => ["to_maximal", "x: &Joints, y: &mut State", "x, y", ""],
+        Kernel::ToJoints => ["to_joints", "y: &State, x: &mut Joints", "y, x", ""],
+        Kernel::JointAccelerationsAt => {
+            ["joint_accelerations_at", "y: &State, out: &mut Rates", "y, out", ""]
+        }
+        Kernel::CorrectedAccelerations => [
+            "corrected_accelerations",
+            "y: &State, out: &mut <Module as Equations>::Velocities",
+            "y, out",
+            "",
+        ],
+        Kernel::CorrectedMultipliers => [
+            "corrected_multipliers",
+            "y: &State, a: &<Module as Equations>::Velocities, out: &mut Rows",
+            "y, a, out",
+            "",
+        ],
+        Kernel::CorrectedSolution => {
+            ["corrected_solution", "y: &State, out: &mut <Module as JointSpace>::Solution", "y, out", ""]
+        }
+        Kernel::JointJacobian => [
+            "joint_jacobian",
+            "x: &Joints, dfdx: &mut <Module as JointJacobian>::Jacobian, dfdt: &mut Joints",
+            "x, dfdx, dfdt",
+            "",
+        ],
+        Kernel::JointInputJacobian => [
+            "joint_input_jacobian",
+            "x: &Joints, out: &mut <Module as JointJacobian>::InputJacobian",
+            "x, out",
+            "",
+        ],
+    };
+    Some(Call { function, takes, passes, returns })
+}
+
+/// The root of a library whose module `mechanism` has this type, with the functions of these kernels: without them nothing would be
+/// compiled.
+pub fn library(type_name: &str, kernels: &[Kernel]) -> String {
     let mut text = format!(
         "#[allow(warnings, clippy::all)]
 mod mechanism;
@@ -101,12 +107,12 @@ type Accelerations = <Module as Equations>::Accelerations;
 type Choice = <Module as Partition>::Independent;
 "
     );
-    if names.iter().any(|name| name.contains("joint_")) {
+    let calls: Vec<_> = kernels.iter().filter_map(|&kernel| call(kernel)).collect();
+    if calls.iter().any(|call| [call.takes, call.returns].iter().any(|text| text.contains("Joints"))) {
         text +=
             "type Joints = <Module as JointSpace>::Joints;\ntype Rates = <Module as JointSpace>::Rates;\n";
     }
-    let wanted = FUNCTIONS.iter().filter(|[name, ..]| names.contains(name));
-    for [_, function, takes, passes, returns] in wanted {
+    for Call { function, takes, passes, returns } in calls {
         let returns = if returns.is_empty() { String::new() } else { format!(" -> {returns}") };
         text += &format!(
             "#[inline(never)]\npub fn {function}(module: &Module, t: f64, {takes}){returns} {{ module.{function}(t, {passes}) }}\n"
@@ -118,18 +124,19 @@ type Choice = <Module as Partition>::Independent;
 /// Option of rustc for the library: symbols tell whose part a closure is.
 pub const SYMBOLS: &str = "-Csymbol-mangling-version=v0";
 
-/// Bytes of each function of a compiled library, by its name on the data sheet, with what the compiler has inlined into it and the parts that
+/// Bytes of each function of a compiled library, with what the compiler has inlined into it and the parts that
 /// are compiled apart; none without `nm`.
-pub fn bytes(library: &Path) -> Option<BTreeMap<&'static str, u64>> {
+pub fn bytes(library: &Path) -> Option<BTreeMap<Kernel, u64>> {
     let symbols = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(library)).ok()?;
     Some(sizes(&symbols))
 }
 
-fn sizes(symbols: &str) -> BTreeMap<&'static str, u64> {
+fn sizes(symbols: &str) -> BTreeMap<Kernel, u64> {
     let mut sizes = BTreeMap::new();
     for (function, size) in symbols.lines().filter_map(size) {
-        if let Some([name, ..]) = FUNCTIONS.iter().find(|[_, known, ..]| *known == function) {
-            *sizes.entry(*name).or_default() += size;
+        let is_called = |kernel: &Kernel| call(*kernel).is_some_and(|call| call.function == function);
+        if let Some(kernel) = Kernel::all().find(is_called) {
+            *sizes.entry(kernel).or_default() += size;
         }
     }
     sizes
@@ -159,24 +166,16 @@ mod tests {
 0000000000000000 0000000000000400 R chain::phi
                  U libm::sin
 ";
-        assert_eq!(sizes(symbols), BTreeMap::from([("accelerations", 0x111), ("chart vectors", 0x20)]));
+        assert_eq!(
+            sizes(symbols),
+            BTreeMap::from([(Kernel::Accelerations, 0x111), (Kernel::ChartVectors, 0x20)])
+        );
     }
 
     #[test]
-    fn only_what_is_named_is_in_the_library() {
-        let text = library("Top", &["phi", "no such function"]);
+    fn only_what_is_asked_for_is_in_the_library() {
+        let text = library("Top", &[Kernel::ParameterSetup, Kernel::Phi]);
         assert!(text.contains("module.phi(t, y, out)") && text.contains("mechanism::Top<f64>"), "{text}");
         assert!(!text.contains("gamma") && !text.contains("type Joints"), "{text}");
-    }
-
-    /// Every function that a module may have has its place here.
-    #[test]
-    fn the_list_is_complete() {
-        let page = crate::files::root().join("models").join("gyroscope.toml");
-        let model = crate::scene::read(&page).unwrap();
-        let module = gyro_codegen::generate_model("gyroscope.toml", &model).unwrap();
-        for function in &module.sheet.functions {
-            assert!(FUNCTIONS.iter().any(|[name, ..]| *name == function.name), "{}", function.name);
-        }
     }
 }

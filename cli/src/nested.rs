@@ -10,7 +10,7 @@ use crate::progress::{self, Spinner};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
 use crate::{files, machine_code, remarks};
-use gyro_codegen::Module;
+use gyro_codegen::{Kernel, Module};
 use gyro_model::Model;
 use gyro_runner::protocol::{self, Reply, Request};
 use gyro_runner::{Event, Summary, Timing};
@@ -56,9 +56,9 @@ pub(crate) fn twin() -> Result<PathBuf, Failure> {
     Ok(package.program_file())
 }
 
-/// Compiles the functions of these names for `f64`, optimised; the library, in which each has its symbol.
-pub(crate) fn library(module: &Module, names: &[&str]) -> Result<PathBuf, Failure> {
-    let root = machine_code::library(&module.type_name, names);
+/// Compiles these kernels for `f64`, optimised; the library, in which each has its symbol.
+pub(crate) fn library(module: &Module, kernels: &[Kernel]) -> Result<PathBuf, Failure> {
+    let root = machine_code::library(&module.type_name, kernels);
     let package = Package::new(module, ("lib.rs", root), &["--", machine_code::SYMBOLS]);
     build(&package)?;
     Ok(package.built(&format!("lib{}.rlib", package.name.replace('-', "_"))))

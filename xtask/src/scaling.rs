@@ -6,6 +6,7 @@ use gyro_cli::files;
 use gyro_cli::machine_code::{self, SYMBOLS};
 use gyro_cli::programs::{cargo, folder, output, said, three};
 use gyro_cli::progress::Spinner;
+use gyro_codegen::Kernel;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -159,8 +160,8 @@ impl Place {
         }
         for chain in chains {
             let library = built.join("release").join(format!("libchain_{}.rlib", chain.bodies));
-            chain.bytes =
-                machine_code::bytes(&library).map(|bytes| bytes.get("accelerations").copied().unwrap_or(0));
+            chain.bytes = machine_code::bytes(&library)
+                .map(|bytes| bytes.get(&Kernel::Accelerations).copied().unwrap_or(0));
         }
         Ok(())
     }
@@ -214,19 +215,19 @@ fn manifest(name: &str, ours: &[(&str, &str)], beside: &[String]) -> String {
 }
 
 /// What is compiled of a chain: all but joint coordinates.
-const COMPILED: [&str; 12] = [
-    "accelerations",
-    "multipliers",
-    "derivative",
-    "phi",
-    "phi_q",
-    "gamma",
-    "velocity_residual",
-    "energy",
-    "read_joints",
-    "chart vectors",
-    "newton_step",
-    "solve_velocities",
+const COMPILED: [Kernel; 12] = [
+    Kernel::Accelerations,
+    Kernel::Multipliers,
+    Kernel::Derivative,
+    Kernel::Phi,
+    Kernel::PhiQ,
+    Kernel::Gamma,
+    Kernel::VelocityResidual,
+    Kernel::Energy,
+    Kernel::ReadJoints,
+    Kernel::ChartVectors,
+    Kernel::NewtonStep,
+    Kernel::SolveVelocities,
 ];
 
 fn library(bodies: usize) -> String {
@@ -287,7 +288,8 @@ fn twin<M: Equations<Scalar = f64> + Ode<State = Vec<f64>> + 'static>(twin: M, e
 
 /// The total of the accelerations in a module's data sheet.
 fn flops(module: &str) -> String {
-    let row = module.lines().find(|line| line.starts_with("//! | accelerations |")).unwrap_or_default();
+    let begins = format!("//! | {} |", Kernel::Accelerations.name());
+    let row = module.lines().find(|line| line.starts_with(&begins)).unwrap_or_default();
     row.split('|').nth(6).unwrap_or_default().trim().to_owned()
 }
 

@@ -3,6 +3,7 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{self, ident, index};
+use crate::kernels::Kernel;
 use gyro_model::{JointKind, RowOwner, RowUnit};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -12,24 +13,22 @@ impl ModuleWriter<'_> {
         let name = ident(self.type_name);
         let e = self.equations;
         let [n_rows, n_all, n_readings] = [e.n_rows(), e.phi.len(), e.readings.len()].map(index);
-        let phi = self.filling("phi", "Writes Φ", "Constraints", &self.functions.phi);
-        let residual = self.filling(
-            "velocity_residual",
-            "Writes Φ_r s + Φ_π' w' − ν",
-            "Rows",
-            &self.functions.velocity_residual,
-        );
-        let energy = self.function("Kinetic and potential energy", &self.functions.energy, |body, t, y| {
-            let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
-            quote! {
-                fn energy(&self, #t: T, #y: &Self::State) -> gyro_sim::Energy<T> {
-                    #statements
-                    gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
+        let phi = self.filling(Kernel::Phi, "Writes Φ", "Constraints");
+        let residual = self.filling(Kernel::VelocityResidual, "Writes Φ_r s + Φ_π' w' − ν", "Rows");
+        let energy = self.function(
+            "Kinetic and potential energy",
+            self.kernels.roots(Kernel::Energy),
+            |body, t, y| {
+                let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
+                quote! {
+                    fn energy(&self, #t: T, #y: &Self::State) -> gyro_sim::Energy<T> {
+                        #statements
+                        gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
+                    }
                 }
-            }
-        });
-        let readings =
-            self.filling("read_joints", "Writes the joint readings", "Readings", &self.functions.read_joints);
+            },
+        );
+        let readings = self.filling(Kernel::ReadJoints, "Writes the joint readings", "Readings");
         let (corrected, tables) = (self.corrected_derivative(), self.tables());
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {

@@ -15,7 +15,7 @@ use self::writer::ModuleWriter;
 use crate::emit::data_sheet::Sheet;
 use crate::emit::literals::Literals;
 use crate::equations::Equations;
-use crate::kernels::Functions;
+use crate::kernels::Kernels;
 use gyro_model::Start;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -44,13 +44,13 @@ pub struct Text {
 pub fn write(
     file_name: &str,
     type_name: &str,
-    (equations, functions): (&Equations, Functions),
+    (equations, kernels): (&Equations, Kernels),
     start: &Start,
 ) -> Text {
     let literals = Literals::default();
-    let module = ModuleWriter { equations, type_name, functions, literals };
+    let module = ModuleWriter { equations, type_name, kernels, literals };
     let tokens = module.tokens(start);
-    let sheet = Sheet::of(equations, &module.functions);
+    let sheet = Sheet::of(equations, &module.kernels);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);

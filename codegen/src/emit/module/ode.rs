@@ -3,6 +3,7 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{ident, index};
+use crate::kernels::Kernel;
 use gyro_model::Start;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -48,7 +49,7 @@ impl ModuleWriter<'_> {
     /// The same between two corrections, where there are cheaper accelerations for it.
     pub fn corrected_derivative(&self) -> Option<TokenStream> {
         self.equations.joint_space.as_ref()?;
-        if self.functions.derivative_needs_multipliers(&self.equations.graph) {
+        if self.kernels.derivative_needs_multipliers(&self.equations.graph) {
             return None;
         }
         let what = "Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes";
@@ -64,9 +65,9 @@ impl ModuleWriter<'_> {
 
     fn derivative_with(&self, name: &TokenStream, what: &str, solve: &TokenStream) -> TokenStream {
         let n_positions = 7 * self.equations.n_slots();
-        self.function(what, &self.functions.derivative, |body, _, _| {
+        self.function(what, self.kernels.roots(Kernel::Derivative), |body, _, _| {
             let (statements, (positions, rest)) = (&body.statements, body.values.split_at(n_positions));
-            let places = (0..self.equations.accelerations.len()).map(index);
+            let places = (0..self.equations.n_velocities()).map(index);
             quote! {
                 fn #name(&self, t: T, y: &Self::State, dy: &mut Self::State) {
                     #solve

@@ -4,6 +4,7 @@ use super::writer::ModuleWriter;
 use crate::emit::tokens::{Variables, ident, index};
 use crate::expr::graph::{ExprId, Node};
 use crate::expr::symbol::Symbol;
+use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -58,10 +59,10 @@ impl ModuleWriter<'_> {
     /// The unrolled solves with their charts.
     fn by_charts(&self) -> TokenStream {
         let name = ident(self.type_name);
-        let n_charts = index(self.functions.chart_vectors.len() / 4);
+        let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let vectors = self.function(
             "The four-vectors whose largest components are the special Euler parameters",
-            &self.functions.chart_vectors,
+            self.kernels.roots(Kernel::ChartVectors),
             |body, _, y| {
                 let statements = &body.statements;
                 let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
@@ -76,13 +77,13 @@ impl ModuleWriter<'_> {
         let newton = self.solve(
             "newton_step_on",
             "One Newton step of the dependent positions",
-            &self.functions.newton_step,
+            self.kernels.roots(Kernel::NewtonStep),
             0,
         );
         let velocities = self.solve(
             "solve_velocities_on",
             "Solves eq. (19) for the dependent velocities",
-            &self.functions.solve_velocities,
+            self.kernels.roots(Kernel::SolveVelocities),
             7 * self.equations.n_slots(),
         );
         quote! {

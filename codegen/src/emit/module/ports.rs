@@ -3,6 +3,7 @@
 use super::writer::ModuleWriter;
 use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
+use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -65,7 +66,7 @@ impl ModuleWriter<'_> {
     }
 
     fn outputs(&self) -> TokenStream {
-        let roots = &self.functions.outputs;
+        let roots = self.kernels.roots(Kernel::Outputs);
         if roots.is_empty() {
             return quote! {
                 fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
