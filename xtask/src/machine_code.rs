@@ -32,7 +32,7 @@ const FUNCTIONS: [[&str; 5]; 27] = [
     ["derivative", "derivative", "y: &State, dy: &mut State", "y, dy", ""],
     ["energy", "energy", "y: &State", "y", "Energy<f64>"],
     ["read_joints", "read_joints", "y: &State, out: &mut <Module as Mechanism>::Readings", "y, out", ""],
-    ["outputs", "outputs", "y: &State, out: &mut <Module as Ports>::Outputs", "y, out", ""],
+    ["outputs", "outputs", "y: &State, out: &mut <Module as Mechanism>::Outputs", "y, out", ""],
     ["chart vectors", "independent", "y: &State", "y", "Choice"],
     ["newton_step", "newton_step", "choice: &Choice, y: &mut State", "choice, y", "Result<(), Error>"],
     [
@@ -71,14 +71,14 @@ const FUNCTIONS: [[&str; 5]; 27] = [
     [
         "joint_jacobian",
         "joint_jacobian",
-        "x: &Joints, dfdx: &mut <Module as JointJacobian>::Jacobian, dfdt: &mut Joints",
+        "x: &Joints, dfdx: &mut <Module as JointSpace>::Jacobian, dfdt: &mut Joints",
         "x, dfdx, dfdt",
         "",
     ],
     [
         "joint_input_jacobian",
         "joint_input_jacobian",
-        "x: &Joints, out: &mut <Module as JointJacobian>::InputJacobian",
+        "x: &Joints, out: &mut <Module as JointSpace>::InputJacobian",
         "x, out",
         "",
     ],
@@ -92,10 +92,10 @@ pub(crate) fn library(type_name: &str, names: &[&str]) -> String {
 mod mechanism;
 
 #[allow(unused_imports)]
-use gyro_sim::{{Energy, Equations, Error, JointJacobian, JointSpace, Mechanism, Ode, Partition, Ports, Projection}};
+use gyro_sim::{{Energy, Equations, Error, JointSpace, Mechanism, Partition}};
 
 pub type Module = mechanism::{type_name}<f64>;
-type State = <Module as Ode>::State;
+type State = <Module as Mechanism>::State;
 type Rows = <Module as Mechanism>::Rows;
 type Accelerations = <Module as Equations>::Accelerations;
 type Choice = <Module as Partition>::Independent;
@@ -153,7 +153,7 @@ mod tests {
     fn symbols_count_by_their_last_word() {
         let symbols = "0000000000000000 0000000000000010 T chain::accelerations
 0000000000000000 0000000000000100 t <chain::mechanism::Chain2<T> as gyro_sim::mechanism::Equations>::accelerations
-0000000000000000 0000000000000200 T chain::accelerations_buffer
+0000000000000000 0000000000000200 T chain::accelerations_other
 0000000000000000 0000000000000001 t gyro_sim::apart::apart::<(f64, f64), <chain::mechanism::Chain2<f64> as gyro_sim::mechanism::Equations>::accelerations::{closure#1}>
 0000000000000000 0000000000000020 T chain::independent
 0000000000000000 0000000000000400 R chain::phi

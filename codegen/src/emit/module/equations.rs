@@ -32,6 +32,7 @@ impl ModuleWriter<'_> {
         let accelerations =
             self.filling("accelerations", "Solves eq. (17)", "Accelerations", &f.accelerations);
         let multipliers = self.multipliers("multipliers", "Accelerations", &f.multipliers);
+        let project = self.projection();
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Equations for #name<T> {
                 type Velocities = [T; #n_velocities];
@@ -40,17 +41,13 @@ impl ModuleWriter<'_> {
                 #[doc = #rest]
                 type Accelerations = [T; #n_solved];
 
-                fn velocities(&self) -> Self::Velocities {
-                    [T::constant(0.0); #n_velocities]
-                }
-                fn phi_q_values(&self) -> Self::PhiQ {
-                    [T::constant(0.0); #n_phi_q]
-                }
-                fn phi_pi_values(&self) -> Self::PhiPi {
-                    [T::constant(0.0); #n_phi_pi]
-                }
-                fn accelerations_buffer(&self) -> Self::Accelerations {
-                    [T::constant(0.0); #n_solved]
+                fn terms(&self) -> gyro_sim::Terms<Self> {
+                    gyro_sim::Terms {
+                        velocities: [T::constant(0.0); #n_velocities],
+                        phi_q: [T::constant(0.0); #n_phi_q],
+                        phi_pi: [T::constant(0.0); #n_phi_pi],
+                        accelerations: [T::constant(0.0); #n_solved],
+                    }
                 }
                 fn phi_q_pattern(&self) -> &[(u16, u16)] {
                     &[#(#phi_q_pattern),*]
@@ -62,14 +59,14 @@ impl ModuleWriter<'_> {
                 #(#filling)*
                 #accelerations
                 #multipliers
+                #project
             }
         }
     }
 
-    pub fn projection(&self) -> TokenStream {
-        let name = ident(self.type_name);
+    fn projection(&self) -> TokenStream {
         let what = "Solves eq. (17) without forces, the changes of the rows for γ";
-        let project = self.function(what, &self.functions.project, |body, t, y| {
+        self.function(what, &self.functions.project, |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
             let reads_rows = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Change(_)));
             let rows = ident(if reads_rows { "rows" } else { "_rows" });
@@ -79,12 +76,7 @@ impl ModuleWriter<'_> {
                     *out = [#(#values),*];
                 }
             }
-        });
-        quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::Projection for #name<T> {
-                #project
-            }
-        }
+        })
     }
 
     /// λ, the accelerations being known.

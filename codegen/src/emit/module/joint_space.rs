@@ -47,21 +47,31 @@ impl ModuleWriter<'_> {
             &f.corrected_solution,
         );
         let n_solution = index(space.solution.len());
+        let sizes = space.jacobian.as_ref().map(|j| [j.by_state.len(), j.by_inputs.len()].map(index));
+        let [(jacobian_type, zero_jacobian), (input_jacobian_type, zero_input_jacobian)] = match sizes {
+            Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
+            None => [(); 2].map(|()| (quote! { () }, quote! { () })),
+        };
+        let jacobian = self.joint_jacobian();
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
                 type Solution = [T; #n_solution];
+                type Jacobian = #jacobian_type;
+                type InputJacobian = #input_jacobian_type;
 
+                fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+                    gyro_sim::JointBuffers {
+                        rates: [T::constant(0.0); #n_rates],
+                        solution: [T::constant(0.0); #n_solution],
+                        jacobian: #zero_jacobian,
+                        input_jacobian: #zero_input_jacobian,
+                    }
+                }
                 fn joint_start(&self) -> Self::Joints {
                     let k = T::constant;
                     [#(k(#start)),*]
-                }
-                fn rates(&self) -> Self::Rates {
-                    [T::constant(0.0); #n_rates]
-                }
-                fn solution(&self) -> Self::Solution {
-                    [T::constant(0.0); #n_solution]
                 }
 
                 #accelerations
@@ -72,15 +82,15 @@ impl ModuleWriter<'_> {
                 #corrected
                 #multipliers
                 #solution
+                #jacobian
             }
         })
     }
 
     /// Nothing for mechanisms that are no trees, or too large.
-    pub fn joint_jacobian(&self) -> Option<TokenStream> {
+    fn joint_jacobian(&self) -> Option<TokenStream> {
         let jacobian = self.equations.joint_space.as_ref()?.jacobian.as_ref()?;
-        let (name, f) = (ident(self.type_name), &self.functions);
-        let (n_state, n_inputs) = (index(jacobian.by_state.len()), index(jacobian.by_inputs.len()));
+        let f = &self.functions;
         let out = quote! { dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints };
         let what = "Writes ∂f/∂x and ∂f/∂t";
         let by_state = self.of_joints("joint_jacobian", what, &out, &f.joint_jacobian, |values| {
@@ -100,20 +110,8 @@ impl ModuleWriter<'_> {
             self.of_joints("joint_input_jacobian", "Writes ∂f/∂(inputs)", &out, roots, write)
         };
         Some(quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for #name<T> {
-                type Jacobian = [T; #n_state];
-                type InputJacobian = [T; #n_inputs];
-
-                fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-                    [T::constant(0.0); #n_state]
-                }
-                fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-                    [T::constant(0.0); #n_inputs]
-                }
-
-                #by_state
-                #by_inputs
-            }
+            #by_state
+            #by_inputs
         })
     }
 
@@ -135,10 +133,10 @@ impl ModuleWriter<'_> {
         let what = "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes";
         self.function(what, &self.functions.joint_derivative, |body, _, _| {
             let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
-            let places = (0..n_u).map(index);
+            let (places, n_rates) = ((0..n_u).map(index), index(n_u));
             quote! {
                 fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
-                    let mut rates = gyro_sim::JointSpace::rates(self);
+                    let mut rates = [T::constant(0.0); #n_rates];
                     gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
                     #statements
                     *dx = [#(#coordinates,)* #(rates[#places],)* #(#rest),*];
