@@ -9,7 +9,7 @@ use gyro_assembled::Careful;
 use gyro_model::{
     Joint, JointKind, JointStartSpec, Model, Number, Quaternion, Rational, Support, Tree, Vector,
 };
-use gyro_sim::Ode;
+use gyro_sim::Mechanism;
 use nalgebra::{DMatrix, DVector};
 
 /// A mechanism linearised about its start.

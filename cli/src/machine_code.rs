@@ -44,7 +44,7 @@ fn call(kernel: Kernel) -> Option<Call> {
         Kernel::ReadJoints => {
             ["read_joints", "y: &State, out: &mut <Module as Mechanism>::Readings", "y, out", ""]
         }
-        Kernel::Outputs => ["outputs", "y: &State, out: &mut <Module as Ports>::Outputs", "y, out", ""],
+        Kernel::Outputs => ["outputs", "y: &State, out: &mut <Module as Mechanism>::Outputs", "y, out", ""],
         Kernel::ChartVectors => ["independent", "y: &State", "y", "Choice"],
         Kernel::NewtonStep => {
             ["newton_step", "choice: &Choice, y: &mut State", "choice, y", "Result<(), Error>"]
@@ -76,13 +76,13 @@ fn call(kernel: Kernel) -> Option<Call> {
         }
         Kernel::JointJacobian => [
             "joint_jacobian",
-            "x: &Joints, dfdx: &mut <Module as JointJacobian>::Jacobian, dfdt: &mut Joints",
+            "x: &Joints, dfdx: &mut <Module as JointSpace>::Jacobian, dfdt: &mut Joints",
             "x, dfdx, dfdt",
             "",
         ],
         Kernel::JointInputJacobian => [
             "joint_input_jacobian",
-            "x: &Joints, out: &mut <Module as JointJacobian>::InputJacobian",
+            "x: &Joints, out: &mut <Module as JointSpace>::InputJacobian",
             "x, out",
             "",
         ],
@@ -98,10 +98,10 @@ pub fn library(type_name: &str, kernels: &[Kernel]) -> String {
 mod mechanism;
 
 #[allow(unused_imports)]
-use gyro_sim::{{Energy, Equations, Error, JointJacobian, JointSpace, Mechanism, Ode, Partition, Ports, Projection}};
+use gyro_sim::{{Energy, Equations, Error, JointSpace, Mechanism, Partition}};
 
 pub type Module = mechanism::{type_name}<f64>;
-type State = <Module as Ode>::State;
+type State = <Module as Mechanism>::State;
 type Rows = <Module as Mechanism>::Rows;
 type Accelerations = <Module as Equations>::Accelerations;
 type Choice = <Module as Partition>::Independent;
@@ -160,7 +160,7 @@ mod tests {
     fn symbols_count_by_their_last_word() {
         let symbols = "0000000000000000 0000000000000010 T chain::accelerations
 0000000000000000 0000000000000100 t <chain::mechanism::Chain2<T> as gyro_sim::mechanism::Equations>::accelerations
-0000000000000000 0000000000000200 T chain::accelerations_buffer
+0000000000000000 0000000000000200 T chain::accelerations_other
 0000000000000000 0000000000000001 t gyro_sim::apart::apart::<(f64, f64), <chain::mechanism::Chain2<f64> as gyro_sim::mechanism::Equations>::accelerations::{closure#1}>
 0000000000000000 0000000000000020 T chain::independent
 0000000000000000 0000000000000400 R chain::phi

@@ -119,8 +119,9 @@ impl Package {
 /// the name of anything.
 fn main(module: &Module, precision: Precision) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
-    let has = |name: &str| module.code.contains(&format!("gyro_sim::{name} for {type_name}"));
-    let kit = match (has("JointSpace"), has("JointJacobian")) {
+    let has = |text: String| module.code.contains(&text);
+    let is_tree = has(format!("gyro_sim::JointSpace for {type_name}"));
+    let kit = match (is_tree, has("fn joint_jacobian(".to_owned())) {
         (true, true) => "TreeWithJacobian",
         (true, false) => "Tree",
         (false, _) => "WithDuals",

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
-use gyro_sim::{Mechanism, Projection, Scalar};
+use gyro_sim::{Equations, Scalar};
 use gyro_verifier::field::{Precision, Real};
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{DOUBLE_DIGITS, Kind, Reference, Rounding, Spread, error, measure, references};
@@ -136,7 +136,7 @@ impl std::fmt::Display for Short {
 /// The errors of a twin in one function on the states of one kind; `None` if it has no such function.
 fn of_twin<M>(module: &Module, twin: &M, references: &[Reference<'_>], row: &Rounding) -> Option<Spread>
 where
-    M: Projection<Scalar = f64>,
+    M: Equations<Scalar = f64>,
 {
     let of_kind = references.iter().filter(|reference| reference.sample.kind == row.kind);
     let errors = of_kind.filter_map(|reference| {
@@ -157,17 +157,17 @@ fn counterpart(function: &str) -> &str {
 /// What a twin gives for a function of the module; `None` if its results have no meaning of their own, or the twin has no such function.
 fn computed<M>(module: &Module, twin: &M, function: &str, reference: &Reference<'_>) -> Option<Vec<f64>>
 where
-    M: Projection<Scalar = f64>,
+    M: Equations<Scalar = f64>,
 {
     let (t, mut y) = (reference.sample.t, twin.start());
     y.as_mut().iter_mut().zip(reference.state(function)).for_each(|(y, x)| *y = Scalar::constant(*x));
     let rows = |write: &dyn Fn(&mut M::Rows)| {
-        let mut out = twin.rows();
+        let mut out = twin.buffers().rows;
         write(&mut out);
         out.as_ref().to_vec()
     };
     let accelerations = || {
-        let mut out = twin.accelerations_buffer();
+        let mut out = twin.terms().accelerations;
         twin.accelerations(t, &y, &mut out);
         out
     };
@@ -179,30 +179,30 @@ where
             rows(&|out| twin.multipliers(t, &y, &accelerations(), out))
         }
         "accelerations" | "corrected_accelerations" | "joint_accelerations_at" => {
-            accelerations().as_ref()[..twin.velocities().as_ref().len()].to_vec()
+            accelerations().as_ref()[..twin.terms().velocities.as_ref().len()].to_vec()
         }
         "phi" => {
-            let mut out = Mechanism::constraints(twin);
+            let mut out = twin.buffers().constraints;
             twin.phi(t, &y, &mut out);
             out.as_ref().to_vec()
         }
         "phi_q" => {
-            let mut out = twin.phi_q_values();
+            let mut out = twin.terms().phi_q;
             twin.phi_q(t, &y, &mut out);
             at_places(&module.phi_q_pattern, twin.phi_q_pattern(), out.as_ref())
         }
         "phi_pi" => {
-            let mut out = twin.phi_pi_values();
+            let mut out = twin.terms().phi_pi;
             twin.phi_pi(t, &y, &mut out);
             at_places(&module.phi_pi_pattern, twin.phi_pi_pattern(), out.as_ref())
         }
         "applied_force" => {
-            let mut out = twin.velocities();
+            let mut out = twin.terms().velocities;
             twin.applied_force(t, &y, &mut out);
             out.as_ref().to_vec()
         }
         "project" => {
-            let (mut rows, mut out) = (twin.rows(), twin.velocities());
+            let (mut rows, mut out) = (twin.buffers().rows, twin.terms().velocities);
             rows.as_mut().copy_from_slice(&reference.sample.changes);
             twin.project(t, &y, &rows, &mut out);
             out.as_ref().to_vec()

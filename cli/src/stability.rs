@@ -5,7 +5,7 @@ use crate::progress::Spinner;
 use crate::{chain, scene};
 use gyro_assembled::Dense;
 use gyro_model::{Model, Number, Parameter, Rational};
-use gyro_sim::{Equations, Ode};
+use gyro_sim::{Equations, Mechanism};
 use gyro_verifier::field::Precision;
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{KERNELS, Trial, relative_error, trial};
@@ -228,7 +228,7 @@ impl Configuration {
         let twin = Dense::<f64>::new(&self.model).ok()?;
         let mut y = twin.start();
         y.as_mut_slice().copy_from_slice(&state);
-        let mut out = twin.accelerations_buffer();
+        let mut out = twin.terms().accelerations;
         twin.accelerations(0.0, &y, &mut out);
         let computed: &[f64] = out.as_ref();
         Some((errors, relative_error(&accelerations, &computed[..accelerations.len()], &[])))

@@ -3,7 +3,7 @@
 use crate::motion::Kit;
 use crate::protocol::{Reply, Request, read, write};
 use crate::{Event, Failure, Settings, Summary, run_by, time_by};
-use gyro_sim::{Partition, Ports};
+use gyro_sim::{Partition, Real};
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// beside it, and writes the samples to standard output as they come.
 ///
 /// The exit code says whether the last run was complete; the last line of its answer says why not.
-pub fn main<M: Partition + Ports + 'static, K: Kit<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
+pub fn main<M: Partition<Scalar: Real> + 'static, K: Kit<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
     answer_all(|request, output| {
         let (mut mechanism, kit) = build(&request.parameters);
         answer(&mut mechanism, &kit, request, output)
@@ -45,7 +45,7 @@ pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Sum
 ///
 /// # Errors
 /// The failure of the run or of its output.
-pub fn answer<M: Partition + Ports + 'static>(
+pub fn answer<M: Partition<Scalar: Real> + 'static>(
     mechanism: &mut M,
     kit: &dyn Kit<M>,
     request: &Request,

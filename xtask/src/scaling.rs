@@ -235,7 +235,7 @@ fn library(bodies: usize) -> String {
     format!(
         "{functions}
 pub fn start() -> State {{ Module::default().start() }}
-pub fn buffer() -> Accelerations {{ Module::default().accelerations_buffer() }}
+pub fn buffer() -> Accelerations {{ Module::default().terms().accelerations }}
 "
     )
 }
@@ -244,7 +244,7 @@ pub fn buffer() -> Accelerations {{ Module::default().accelerations_buffer() }}
 fn program(sizes: &[usize]) -> String {
     let mut text = "use gyro_assembled::{Careful, Recursive};
 use gyro_benches::{Clock, Kernel, interleaved};
-use gyro_sim::{Equations, Ode};
+use gyro_sim::{Equations, Mechanism};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -273,8 +273,8 @@ fn main() {
     }
 }
 
-fn twin<M: Equations<Scalar = f64> + Ode<State = Vec<f64>> + 'static>(twin: M, expected: &[f64]) -> Kernel<'static> {
-    let (y, mut out) = (twin.start(), twin.accelerations_buffer());
+fn twin<M: Equations<Scalar = f64, State = Vec<f64>> + 'static>(twin: M, expected: &[f64]) -> Kernel<'static> {
+    let (y, mut out) = (twin.start(), twin.terms().accelerations);
     twin.accelerations(0.0, &y, &mut out);
     let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     for (a, b) in out.as_ref().iter().zip(expected) {

@@ -7,7 +7,7 @@ use gyro_assembled::Dense;
 use gyro_model::{ForceKind, Model, Number, Rational, to_f64};
 use gyro_runner::{Approach, Coordinates, Correction, Integrator, JointSample, Sample, Settings, When};
 use gyro_sim::integrate::{Method, Work};
-use gyro_sim::{Differentiable, Dop853, Kutta4, Ode, Rodas4, Tsit5};
+use gyro_sim::{Dop853, Kutta4, Mechanism, Ode, Rodas4, System, Tsit5};
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// `ẏ = λ y` for a complex y, in real and imaginary part.
@@ -16,42 +16,35 @@ struct Test(Complex<f64>);
 impl Ode for Test {
     type Scalar = f64;
     type State = [f64; 2];
+    type Jacobian = [f64; 4];
 
-    fn start(&self) -> [f64; 2] {
-        [1.0, 0.0]
-    }
-    fn derivative(&self, _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
+    fn derivative(&self, _: &(), _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
         let rate = self.0 * Complex::new(y[0], y[1]);
         *dy = [rate.re, rate.im];
     }
-}
-
-impl Differentiable for Test {
-    type Jacobian = [f64; 4];
-
-    fn jacobian_buffer(&self) -> [f64; 4] {
-        [0.0; 4]
-    }
-    fn jacobian(&self, _: f64, _: &[f64; 2], dfdy: &mut [f64; 4], dfdt: &mut [f64; 2]) {
+    fn jacobian(&self, _: &(), _: f64, _: &[f64; 2], dfdy: &mut [f64; 4], dfdt: &mut [f64; 2]) {
         *dfdy = [self.0.re, -self.0.im, self.0.im, self.0.re];
         *dfdt = [0.0; 2];
     }
 }
 
+const START: [f64; 2] = [1.0, 0.0];
+
 /// |R(z)|: by how much a step of a method changes a motion that grows or turns like e^z. The method itself says it.
 pub(crate) fn amplification(integrator: Integrator, z: Complex<f64>) -> f64 {
     fn of<M: Method<Test>>(mut method: M, test: &Test) -> f64 {
-        method.attempt(test, 0.0, 1.0, &test.start(), false, &mut Work::default());
+        let system = System { dynamics: test, model: &() };
+        method.attempt(system, 0.0, 1.0, &START, false, &mut Work::default());
         let [re, im] = *method.end();
         re.hypot(im)
     }
     let test = Test(z);
-    let y = test.start();
+    let y = START;
     match integrator {
         Integrator::Rk4 => of(Kutta4::new(&y), &test),
         Integrator::Tsit5 => of(Tsit5::new(&y), &test),
         Integrator::Dop853 => of(Dop853::new(&y), &test),
-        Integrator::Rodas4 => of(Rodas4::new(&test, &y), &test),
+        Integrator::Rodas4 => of(Rodas4::new(&y, [0.0; 4]), &test),
     }
 }
 

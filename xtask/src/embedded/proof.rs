@@ -49,7 +49,7 @@ pub(crate) fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
 
 /// Whether the accelerations that `gyro_sim::Partitioned` integrates are one straight line: no call, to libm or elsewhere.
 pub(crate) fn is_straight(tools: &Tools, program: &Program) -> Result<bool, Failure> {
-    let is_derivative = |name: &str| name.contains("partition::Corrected<") && name.ends_with("::derivative");
+    let is_derivative = |name: &str| name.contains("::Corrected as ") && name.ends_with("::derivative");
     match stack::calls(tools, program, is_derivative)? {
         Some(calls) => Ok(!calls),
         None => Err(Failure::Run(format!("{} has no derivative of its own", program.name))),

@@ -30,6 +30,7 @@ impl ModuleWriter<'_> {
         ];
         let accelerations = self.filling(Kernel::Accelerations, "Solves eq. (17)", "Accelerations");
         let multipliers = self.multipliers(Kernel::Multipliers, "Accelerations");
+        let project = self.projection();
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Equations for #name<T> {
                 type Velocities = [T; #n_velocities];
@@ -38,17 +39,13 @@ impl ModuleWriter<'_> {
                 #[doc = #rest]
                 type Accelerations = [T; #n_solved];
 
-                fn velocities(&self) -> Self::Velocities {
-                    [T::constant(0.0); #n_velocities]
-                }
-                fn phi_q_values(&self) -> Self::PhiQ {
-                    [T::constant(0.0); #n_phi_q]
-                }
-                fn phi_pi_values(&self) -> Self::PhiPi {
-                    [T::constant(0.0); #n_phi_pi]
-                }
-                fn accelerations_buffer(&self) -> Self::Accelerations {
-                    [T::constant(0.0); #n_solved]
+                fn terms(&self) -> gyro_sim::Terms<Self> {
+                    gyro_sim::Terms {
+                        velocities: [T::constant(0.0); #n_velocities],
+                        phi_q: [T::constant(0.0); #n_phi_q],
+                        phi_pi: [T::constant(0.0); #n_phi_pi],
+                        accelerations: [T::constant(0.0); #n_solved],
+                    }
                 }
                 fn phi_q_pattern(&self) -> &[(u16, u16)] {
                     &[#(#phi_q_pattern),*]
@@ -60,14 +57,14 @@ impl ModuleWriter<'_> {
                 #(#filling)*
                 #accelerations
                 #multipliers
+                #project
             }
         }
     }
 
-    pub fn projection(&self) -> TokenStream {
-        let name = ident(self.type_name);
+    fn projection(&self) -> TokenStream {
         let what = "Solves eq. (17) without forces, the changes of the rows for γ";
-        let project = self.function(what, self.kernels.roots(Kernel::Project), |body, t, y| {
+        self.function(what, self.kernels.roots(Kernel::Project), |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
             let reads_rows = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Change(_)));
             let rows = ident(if reads_rows { "rows" } else { "_rows" });
@@ -77,12 +74,7 @@ impl ModuleWriter<'_> {
                     *out = [#(#values),*];
                 }
             }
-        });
-        quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::Projection for #name<T> {
-                #project
-            }
-        }
+        })
     }
 
     /// λ, the accelerations being known.

@@ -3,6 +3,7 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{Body, ident, index};
+use crate::joint_space::JointSpace;
 use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -43,21 +44,31 @@ impl ModuleWriter<'_> {
             "Solution",
         );
         let n_solution = index(space.solution.len());
+        let sizes = space.jacobian.as_ref().map(|j| [self.n_by_state(space), j.by_inputs.roots.len()].map(index));
+        let [(jacobian_type, zero_jacobian), (input_jacobian_type, zero_input_jacobian)] = match sizes {
+            Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
+            None => [(); 2].map(|()| (quote! { () }, quote! { () })),
+        };
+        let jacobian = self.joint_jacobian();
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
                 type Solution = [T; #n_solution];
+                type Jacobian = #jacobian_type;
+                type InputJacobian = #input_jacobian_type;
 
+                fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+                    gyro_sim::JointBuffers {
+                        rates: [T::constant(0.0); #n_rates],
+                        solution: [T::constant(0.0); #n_solution],
+                        jacobian: #zero_jacobian,
+                        input_jacobian: #zero_input_jacobian,
+                    }
+                }
                 fn joint_start(&self) -> Self::Joints {
                     let k = T::constant;
                     [#(k(#start)),*]
-                }
-                fn rates(&self) -> Self::Rates {
-                    [T::constant(0.0); #n_rates]
-                }
-                fn solution(&self) -> Self::Solution {
-                    [T::constant(0.0); #n_solution]
                 }
 
                 #accelerations
@@ -68,22 +79,26 @@ impl ModuleWriter<'_> {
                 #corrected
                 #multipliers
                 #solution
+                #jacobian
             }
         })
     }
 
-    /// Nothing for mechanisms that are no trees, or too large.
-    pub fn joint_jacobian(&self) -> Option<TokenStream> {
-        let space = self.equations.joint_space.as_ref()?;
-        let jacobian = space.jacobian.as_ref()?;
-        let name = ident(self.type_name);
+    /// Elements of ∂f/∂x.
+    fn n_by_state(&self, space: &JointSpace) -> usize {
         let n_joints = space.start.len() + usize::from(self.equations.power.is_some());
-        let n_state = n_joints * n_joints;
-        let (n_state_index, n_inputs) = (index(n_state), index(jacobian.by_inputs.roots.len()));
+        n_joints * n_joints
+    }
+
+    /// Nothing for mechanisms that are no trees, or too large.
+    fn joint_jacobian(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        space.jacobian.as_ref()?;
+        let n_by_state = self.n_by_state(space);
         let out = quote! { dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints };
         let what = "Writes ∂f/∂x and ∂f/∂t";
         let by_state = self.of_joints(Kernel::JointJacobian, what, &out, |values| {
-            let (by_state, by_time) = values.split_at(n_state);
+            let (by_state, by_time) = values.split_at(n_by_state);
             quote! {
                 *dfdx = [#(#by_state),*];
                 *dfdt = [#(#by_time),*];
@@ -99,20 +114,8 @@ impl ModuleWriter<'_> {
             self.of_joints(Kernel::JointInputJacobian, "Writes ∂f/∂(inputs)", &out, write)
         };
         Some(quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for #name<T> {
-                type Jacobian = [T; #n_state_index];
-                type InputJacobian = [T; #n_inputs];
-
-                fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-                    [T::constant(0.0); #n_state_index]
-                }
-                fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-                    [T::constant(0.0); #n_inputs]
-                }
-
-                #by_state
-                #by_inputs
-            }
+            #by_state
+            #by_inputs
         })
     }
 
@@ -133,10 +136,10 @@ impl ModuleWriter<'_> {
         let what = "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes";
         self.function(what, self.kernels.roots(Kernel::JointDerivative), |body, _, _| {
             let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
-            let places = (0..n_u).map(index);
+            let (places, n_rates) = ((0..n_u).map(index), index(n_u));
             quote! {
                 fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
-                    let mut rates = gyro_sim::JointSpace::rates(self);
+                    let mut rates = [T::constant(0.0); #n_rates];
                     gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
                     #statements
                     *dx = [#(#coordinates,)* #(rates[#places],)* #(#rest),*];

@@ -60,22 +60,16 @@ pub fn write(
 
 impl ModuleWriter<'_> {
     fn tokens(&self, start: &Start) -> TokenStream {
-        let (tables, definition, ode) = (self.tables_of_motions(), self.definition(), self.ode(start));
-        let (mechanism, partition) = (self.mechanism(), self.partition());
-        let (equations, projection) = (self.equations(), self.projection());
-        let (joint_space, joint_jacobian) = (self.joint_space(), self.joint_jacobian());
-        let ports = self.ports();
+        let (tables, definition, mechanism) =
+            (self.tables_of_motions(), self.definition(), self.mechanism(start));
+        let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
         quote! {
             #tables
             #definition
-            #ode
             #mechanism
             #partition
             #equations
-            #projection
             #joint_space
-            #joint_jacobian
-            #ports
         }
     }
 }

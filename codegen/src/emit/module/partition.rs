@@ -60,6 +60,7 @@ impl ModuleWriter<'_> {
     fn by_charts(&self) -> TokenStream {
         let name = ident(self.type_name);
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
+        let n_state = index(self.equations.n_state());
         let vectors = self.function(
             "The four-vectors whose largest components are the special Euler parameters",
             self.kernels.roots(Kernel::ChartVectors),
@@ -67,7 +68,7 @@ impl ModuleWriter<'_> {
                 let statements = &body.statements;
                 let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
                 quote! {
-                    fn chart_vectors(&self, #y: &Self::State) -> Self::Vectors {
+                    fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
                         #statements
                         [#(#vectors),*]
                     }
@@ -87,33 +88,32 @@ impl ModuleWriter<'_> {
             7 * self.equations.n_slots(),
         );
         quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::Charted for #name<T> {
-                type Vectors = [[T; 4]; #n_charts];
-
+            /// The solves of the partition, for the charts that are given as unit vectors.
+            impl<T: gyro_sim::Scalar> #name<T> {
                 #vectors
                 #newton
                 #velocities
             }
 
-            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
-                type Independent = gyro_sim::charts::Charts<#n_charts>;
+            impl<T: gyro_sim::Lanes> gyro_sim::Partition for #name<T> {
+                type Independent = gyro_sim::charts::Charts<T, #n_charts>;
 
                 fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-                    gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+                    gyro_sim::charts::best(&self.chart_vectors(y))
                 }
                 fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-                    gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+                    gyro_sim::charts::follow(&self.chart_vectors(y), choice)
                 }
                 fn newton_step(
                     &self, t: T, choice: &Self::Independent, y: &mut Self::State,
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
-                    gyro_sim::Charted::newton_step_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    self.newton_step_on(t, &gyro_sim::charts::one_hot(choice), y);
                     Ok(())
                 }
                 fn solve_velocities(
                     &self, t: T, choice: &Self::Independent, y: &mut Self::State,
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
-                    gyro_sim::Charted::solve_velocities_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    self.solve_velocities_on(t, &gyro_sim::charts::one_hot(choice), y);
                     Ok(())
                 }
             }
@@ -126,12 +126,14 @@ impl ModuleWriter<'_> {
         let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element(root, place));
         let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
         let y = ident(if places.is_empty() { "_y" } else { "y" });
+        let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
+        let n_state = index(self.equations.n_state());
         self.function(what, &roots, |body, t, _| {
             let (statements, values) = (&body.statements, &body.values);
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let charts = ident(if charted { "charts" } else { "_charts" });
             quote! {
-                fn #name(&self, #t: T, #charts: &Self::Vectors, #y: &mut Self::State) {
+                fn #name(&self, #t: T, #charts: &[[T; 4]; #n_charts], #y: &mut [T; #n_state]) {
                     #statements
                     #(y[#places] = #values;)*
                 }

@@ -17,71 +17,47 @@ mod partition;
 pub use baumgarte::Baumgarte;
 pub use closed_form::ClosedForm;
 pub use mass_weighted::MassWeighted;
-pub use partition::{Corrected, Direct, Partitioned, Partitioning};
+pub use partition::{Direct, Partitioned, Partitioning};
 
 use crate::violation::constraint_violation;
 use crate::{Clearance, Error, Mechanism, Ode, Partition, Real, Scalar, refer_turns};
 
-/// A system that integrates the maximal state of a mechanism.
-pub trait Maximal: Ode {
-    /// The mechanism.
-    type Mechanism: Mechanism<Scalar = Self::Scalar, State = Self::State>;
-
-    /// The mechanism.
-    fn mechanism(&self) -> &Self::Mechanism;
-}
-
-impl<M: Mechanism> Maximal for M {
-    type Mechanism = M;
-
-    fn mechanism(&self) -> &M {
-        self
-    }
-}
-
-impl<M: Mechanism> Maximal for Corrected<'_, M> {
-    type Mechanism = M;
-
-    fn mechanism(&self) -> &M {
-        self.0
-    }
-}
-
-/// A way back onto the constraints.
-pub trait Correction<O: Ode> {
+/// A way back onto the constraints, for the equations `D` of a model `M`: a correction implements this for the equations that it admits.
+pub trait Correction<D: Ode<M>, M = ()> {
     /// Corrects positions and velocities.
     ///
     /// # Errors
     /// [`Error`], with `y` as it was when the failure was noticed.
-    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error>;
-    /// Follows the turns of a state that is left as it is otherwise, because no correction is due.
-    fn refer_turns(&mut self, _system: &O, _t: O::Scalar, _y: &mut O::State) {}
+    fn correct(&mut self, model: &M, t: D::Scalar, y: &mut D::State) -> Result<(), Error>;
+    /// Sets the turn references of a state that is not due for a correction.
+    fn refer_turns(&mut self, _model: &M, _t: D::Scalar, _y: &mut D::State) {}
     /// The largest violation of a position constraint, lengths in units of the mechanism's size.
-    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar;
+    fn violation(&mut self, model: &M, t: D::Scalar, y: &D::State) -> D::Scalar;
     /// How often the choice of independent coordinates has changed, where there is one.
     fn switches(&self) -> u64 {
         0
     }
-    /// How clear a state is of singular poses; `None` where there are none, or nobody can tell.
-    fn clearance(&self, _system: &O, _t: O::Scalar, _y: &O::State) -> Option<Clearance<O::Scalar>> {
+    /// How far a state is from singular poses; `None` where there are none, or where this is not known.
+    fn clearance(&self, _model: &M, _t: D::Scalar, _y: &D::State) -> Option<Clearance<D::Scalar>> {
         None
     }
 }
 
-/// No correction.
+/// No correction; admits any equations.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Uncorrected;
 
-impl<O: Ode> Correction<O> for Uncorrected {
-    fn correct(&mut self, _: &O, _: O::Scalar, _: &mut O::State) -> Result<(), Error> {
+impl<D: Ode<M>, M> Correction<D, M> for Uncorrected {
+    fn correct(&mut self, _: &M, _: D::Scalar, _: &mut D::State) -> Result<(), Error> {
         Ok(())
     }
-    fn violation(&mut self, _: &O, _: O::Scalar, _: &O::State) -> O::Scalar {
-        O::Scalar::constant(0.0)
+    fn violation(&mut self, _: &M, _: D::Scalar, _: &D::State) -> D::Scalar {
+        D::Scalar::constant(0.0)
     }
 }
 
-/// No correction of a mechanism, but what it loses is seen, singular poses are, and turns are kept. A library's [`Uncorrected`] knows of no mechanism.
+/// No correction of a mechanism, but its drift is measured, singular poses are detected, and turn references are kept. ([`Uncorrected`]
+/// does not know that its system is a mechanism.)
 #[derive(Clone, Debug)]
 pub struct Watched<M: Mechanism> {
     phi: M::Constraints,
@@ -90,27 +66,28 @@ pub struct Watched<M: Mechanism> {
 impl<M: Mechanism> Watched<M> {
     /// Work space for a mechanism.
     pub fn new(mechanism: &M) -> Self {
-        Self { phi: mechanism.constraints() }
+        Self { phi: mechanism.buffers().constraints }
     }
 }
 
-impl<O: Maximal<Mechanism = M, Scalar: Real>, M> Correction<O> for Watched<M>
+impl<D, M> Correction<D, M> for Watched<M>
 where
-    M: Partition<Scalar = O::Scalar, State = O::State>,
+    M: Partition<Scalar: Real>,
+    D: Ode<M, Scalar = M::Scalar, State = M::State>,
 {
-    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
-        refer_turns(system.mechanism(), t, y);
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        refer_turns(mechanism, t, y);
         Ok(())
     }
-    fn refer_turns(&mut self, system: &O, t: O::Scalar, y: &mut O::State) {
-        refer_turns(system.mechanism(), t, y);
+    fn refer_turns(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) {
+        refer_turns(mechanism, t, y);
     }
-    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
-        system.mechanism().phi(t, y, &mut self.phi);
-        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        mechanism.phi(t, y, &mut self.phi);
+        constraint_violation(mechanism, self.phi.as_ref(), |x| x).value
     }
-    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
-        system.mechanism().clearance(t, y)
+    fn clearance(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> Option<Clearance<M::Scalar>> {
+        mechanism.clearance(t, y)
     }
 }
 
@@ -139,7 +116,7 @@ pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
 /// The largest coordinate of a mass centre in units of the mechanism's size.
 fn reach<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
-    let bodies = y.as_ref().chunks_exact(7).take(mechanism.n_bodies());
+    let bodies = y.as_ref().chunks_exact(7).take(mechanism.description().bodies.len());
     let coordinates = bodies.flat_map(|body| body.iter().take(3));
     let zero = M::Scalar::constant(0.0);
     coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
@@ -150,7 +127,7 @@ pub(crate) fn check_time<T: Real>(t: T, t_end: T) -> Result<(), Error> {
     if t.is_finite() && t_end.is_finite() {
         return Ok(());
     }
-    Err(Error::NoEnd { t: t.to_f64(), t_end: t_end.to_f64() })
+    Err(Error::InvalidEndTime { t: t.to_f64(), t_end: t_end.to_f64() })
 }
 
 pub(crate) fn check_finite<T: Real>(t: T, state: &[T]) -> Result<(), Error> {

@@ -46,12 +46,14 @@ mod elimination;
 #[cfg(test)]
 mod four_bar;
 mod nearness;
+mod rounding;
 
-pub use crate::rounding::is_met;
-use crate::rounding::silence;
+pub use rounding::is_met;
+pub(crate) use rounding::silence;
 
+use crate::contract::Storage;
 use crate::violation::constraint_violation;
-use crate::{Clearance, Equations, Error, Mechanism, Owner, Real, Scalar, Storage};
+use crate::{Clearance, Equations, Error, Mechanism, Owner, Real, Scalar};
 use elimination::Elimination;
 
 /// Which `NC` of the `NQ` coordinates are dependent.
@@ -192,7 +194,7 @@ where
     M: Equations<Scalar: Real>,
 {
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
-    let mut phi = mechanism.constraints();
+    let mut phi = mechanism.buffers().constraints;
     mechanism.phi(t, y, &mut phi);
     silence(mechanism, t, y, &mut phi);
     elimination.set_right(mechanism, phi.as_ref());
@@ -228,7 +230,7 @@ where
     M: Equations<Scalar: Real>,
 {
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
-    let mut residual = mechanism.rows();
+    let mut residual = mechanism.buffers().rows;
     mechanism.velocity_residual(t, y, &mut residual);
     // The normalisations' rates 2 pᵀṗ = pᵀGᵀw' are zero for any w'.
     elimination.set_right(mechanism, residual.as_ref());
@@ -244,7 +246,11 @@ where
 
 /// The fastest rate of a coordinate, lengths in units of the size.
 pub(crate) fn fastest<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
-    let velocities = y.as_ref().iter().skip(7 * mechanism.n_bodies()).take(6 * mechanism.n_bodies());
+    let velocities = y
+        .as_ref()
+        .iter()
+        .skip(7 * mechanism.description().bodies.len())
+        .take(6 * mechanism.description().bodies.len());
     let rates = velocities.enumerate().map(|(k, v)| if k % 6 < 3 { *v / mechanism.size() } else { *v });
     rates.fold(
         M::Scalar::constant(0.0),
@@ -303,10 +309,9 @@ fn refuse_singular<M: Mechanism<Scalar: Real>>(
 
 /// The owner of a constraint row, normalisations included.
 fn owner<M: Mechanism<Scalar: Real>>(mechanism: &M, row: usize) -> Owner {
-    match row.checked_sub(mechanism.rows().as_ref().len()) {
-        None => mechanism.row(row).owner,
-        Some(body) => Owner::Body(u16::try_from(body).unwrap_or(u16::MAX)),
-    }
+    let rows = mechanism.description().rows;
+    let body = || u16::try_from(row.saturating_sub(rows.len())).unwrap_or(u16::MAX);
+    rows.get(row).map_or_else(|| Owner::Body(body()), |row| row.owner)
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@
 //! # fn main() {
 //! use gyro_sim::lanes::{Lanes, Partitioned, f64x8};
 //! use gyro_sim::generated::gyroscope_parameters::{GyroscopeParameters, Parameters};
-//! use gyro_sim::Ode;
+//! use gyro_sim::Mechanism;
 //!
 //! let rotor_mass = f64x8::from_lanes(|lane| 0.08 + 0.001 * lane as f64);
 //! let gyroscopes = GyroscopeParameters::new(Parameters { rotor_mass, ..Parameters::default() });
@@ -41,6 +41,7 @@
 //! # fn main() {}
 //! ```
 
+mod chart;
 mod failures;
 mod packs;
 mod partition;
@@ -50,47 +51,7 @@ pub use failures::{Failures, MAX_LANES};
 pub use partition::{Direct, Partitioned};
 pub use wide::{f32x8, f64x4, f64x8};
 
-use crate::{Real, Scalar};
-use core::fmt::Debug;
-use core::ops::{BitAnd, BitOr, Not};
-
-/// A pack of lanes, on which a solver can decide lane by lane.
-pub trait Lanes: Scalar {
-    /// The number in one lane.
-    type Lane: Real;
-    /// Yes or no for each lane.
-    type Mask: Copy
-        + Debug
-        + BitAnd<Output = Self::Mask>
-        + BitOr<Output = Self::Mask>
-        + Not<Output = Self::Mask>;
-    /// Number of lanes, at most [`MAX_LANES`].
-    const COUNT: usize;
-
-    /// A pack of these lanes.
-    fn from_lanes(lane: impl FnMut(usize) -> Self::Lane) -> Self;
-    /// The number in a lane.
-    fn lane(&self, index: usize) -> Self::Lane;
-    /// Absolute values.
-    #[must_use]
-    fn abs(self) -> Self;
-    /// Where this one is greater.
-    fn greater(self, other: Self) -> Self::Mask;
-    /// Where this one is at most the other.
-    fn at_most(self, other: Self) -> Self::Mask;
-    /// Where this one is neither infinite nor NaN.
-    fn is_finite(self) -> Self::Mask;
-    /// The one where the mask says so, elsewhere the other.
-    #[must_use]
-    fn select(mask: Self::Mask, one: Self, other: Self) -> Self;
-    /// A bit for each lane, the first one lowest.
-    fn bits(mask: Self::Mask) -> u32;
-    /// The mask of these bits.
-    fn mask(bits: u32) -> Self::Mask {
-        let lane = |index| Self::Lane::constant(f64::from(bits >> index & 1));
-        Self::from_lanes(lane).greater(Self::constant(0.0))
-    }
-}
+pub use crate::Lanes;
 
 /// All lanes.
 const fn all<T: Lanes>() -> u32 {
@@ -101,7 +62,7 @@ const fn all<T: Lanes>() -> u32 {
 fn are_finite<T: Lanes>(numbers: &[T]) -> T::Mask {
     // Zero times anything else is no number, and stays none in a sum.
     let zero = T::constant(0.0);
-    numbers.iter().fold(zero, |sum, x| T::fused(*x, zero, sum)).is_finite()
+    numbers.iter().fold(zero, |sum, x| T::fused(*x, zero, sum)).finite()
 }
 
 /// Takes back what has changed in other lanes than these.

@@ -18,7 +18,7 @@ pub fn is_met<M>(mechanism: &M, t: M::Scalar, y: &M::State, phi: &M::Constraints
 where
     M: Equations<Scalar: Real>,
 {
-    let mut sizes = mechanism.constraints();
+    let mut sizes = mechanism.buffers().constraints;
     add_units(mechanism, sizes.as_mut());
     add_coordinates(mechanism, t, y, sizes.as_mut());
     add_turns(mechanism, t, y, phi.as_ref(), sizes.as_mut());
@@ -35,7 +35,7 @@ pub(crate) fn silence<M>(mechanism: &M, t: M::Scalar, y: &M::State, phi: &mut M:
 where
     M: Equations<Scalar: Real>,
 {
-    let mut sizes = mechanism.constraints();
+    let mut sizes = mechanism.buffers().constraints;
     add_turns(mechanism, t, y, phi.as_ref(), sizes.as_mut());
     let rounding = M::Scalar::EPSILON * M::Scalar::constant(SILENT_EPSILONS);
     for (row, size) in phi.as_mut().iter_mut().zip(sizes.as_ref()) {
@@ -46,9 +46,8 @@ where
 }
 
 fn add_units<M: Equations<Scalar: Real>>(mechanism: &M, sizes: &mut [M::Scalar]) {
-    let n_rows = sizes.len().saturating_sub(mechanism.n_bodies());
     for (row, size) in sizes.iter_mut().enumerate() {
-        let is_length = row < n_rows && mechanism.row(row).is_length;
+        let is_length = mechanism.description().is_length(row);
         *size = if is_length { mechanism.size() } else { M::Scalar::constant(1.0) };
     }
 }
@@ -60,7 +59,7 @@ fn add_coordinates<M: Equations<Scalar: Real>>(
     y: &M::State,
     sizes: &mut [M::Scalar],
 ) {
-    let mut slopes = mechanism.phi_q_values();
+    let mut slopes = mechanism.terms().phi_q;
     mechanism.phi_q(t, y, &mut slopes);
     for (&(row, column), slope) in mechanism.phi_q_pattern().iter().zip(slopes.as_ref()) {
         if let (Some(size), Some(q)) = (sizes.get_mut(usize::from(row)), y.as_ref().get(usize::from(column)))
@@ -79,12 +78,12 @@ fn add_turns<M: Equations<Scalar: Real>>(
     phi: &[M::Scalar],
     sizes: &mut [M::Scalar],
 ) {
-    let first = 13 * mechanism.n_bodies();
+    let first = 13 * mechanism.description().bodies.len();
     if y.as_ref().len() <= first {
         return;
     }
     let (one, turn) = (M::Scalar::constant(1.0), M::Scalar::constant(TAU));
-    let (mut turned, mut without) = (y.clone(), mechanism.constraints());
+    let (mut turned, mut without) = (y.clone(), mechanism.buffers().constraints);
     for place in first..y.as_ref().len() {
         let (before, after) = (y.as_ref().get(place), turned.as_mut().get_mut(place));
         let (Some(&before), Some(after)) = (before, after) else { return };

@@ -5,10 +5,10 @@
 //! | [`Kutta4`] | 4, fixed steps | the paper's settings; [`Rk4`] is its bare step, for small machines |
 //! | [`Tsit5`] | 5(4) | moderate tolerances |
 //! | [`Dop853`] | 8(5, 3) | fine tolerances; the cheapest on smooth motions from 1e-5 on |
-//! | [`Rodas4`] | 4(3), L-stable | stiff scenes; needs a [`Differentiable`](crate::Differentiable) system |
+//! | [`Rodas4`] | 4(3), L-stable | stiff scenes; needs a system with a [Jacobian](crate::Ode::Jacobian) |
 //!
-//! A method holds its own work space, whose size is in the type of the state: nothing is allocated. It knows neither mechanisms nor
-//! corrections; [`Solver`](crate::Solver) brings them together.
+//! A method holds its own work space, whose size is part of the type of the state: nothing is allocated. Methods do not depend on
+//! mechanisms or corrections; [`Solver`](crate::Solver) combines them.
 
 mod dop853;
 mod kutta4;
@@ -23,48 +23,59 @@ pub use rk4::Rk4;
 pub use rodas4::Rodas4;
 pub use tsit5::Tsit5;
 
-use crate::{Ode, Real, Scalar, Storage};
+use crate::contract::Storage;
+use crate::{Ode, Real, Scalar, System};
 
 /// A one-step method: a step of a given length from a given state, and the states within it.
-pub trait Method<O: Ode> {
+///
+/// A method that estimates its own error has an [`ERROR_ORDER`](Method::ERROR_ORDER) and implements [`Method::error`]; without them it is
+/// for steps of fixed length.
+pub trait Method<D: Ode<M>, M = ()> {
     /// Order p: over a given time the error of fixed steps h shrinks like hᵖ.
     const ORDER: u32;
-    /// The largest |hλ| of a decaying motion (real λ) that the method follows without growing; infinite for L-stable ones.
+    /// The largest |hλ| of a decaying motion (real λ) that the method follows without growing; infinite for L-stable methods.
     const STABILITY: f64;
+    /// The error estimate shrinks like h to the power of this; zero for a method without an estimate.
+    const ERROR_ORDER: u32 = 0;
 
-    /// Steps from `y` at `t` to [`Method::end`] at `t + h`, and counts what it evaluates. Where `resumes` is said, `t` and `y` are
-    /// those of the last attempt, or its end exactly as it was after [`Method::carry`] has said that it is known there: what has been
-    /// found out there is used again.
+    /// Steps from `y` at `t` to [`Method::end`] at `t + h`, and counts what it evaluates. With `resumes`, `t` and `y` are those of the
+    /// last attempt, or its end exactly as it was after [`Method::carry`] has returned that its slope is known: what was found there is
+    /// used again.
     fn attempt(
         &mut self,
-        system: &O,
-        t: O::Scalar,
-        h: O::Scalar,
-        y: &O::State,
+        system: System<'_, D, M>,
+        t: D::Scalar,
+        h: D::Scalar,
+        y: &D::State,
         resumes: bool,
         work: &mut Work,
     );
     /// Where the last attempt ended.
-    fn end(&self) -> &O::State;
+    fn end(&self) -> &D::State;
     /// Makes the end of the last attempt the start of the next; returns whether the slope there is known already.
     fn carry(&mut self) -> bool;
     /// Prepares [`Method::between`] within the last attempt, before it is carried.
-    fn prepare(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, work: &mut Work);
+    fn prepare(
+        &mut self,
+        system: System<'_, D, M>,
+        t: D::Scalar,
+        h: D::Scalar,
+        y: &D::State,
+        work: &mut Work,
+    );
     /// Writes the state at `t + θ h` within the step that was prepared, 0 ≤ θ ≤ 1.
-    fn between(&self, theta: O::Scalar, out: &mut O::State);
-    /// Numerator and denominator, squared, of an estimate of the fastest rate |λ| of the system that the last attempt has seen; both zero
-    /// where it has seen none.
-    fn rate(&self) -> [O::Scalar; 2];
-}
-
-/// A method that estimates its own error.
-pub trait Embedded<O: Ode<Scalar: Real>>: Method<O> {
-    /// The estimate shrinks like h to the power of this.
-    const ERROR_ORDER: u32;
-
-    /// The estimated error of the last attempt in units of what is tolerated, the root mean square over the elements of the state, and the
-    /// index of the worst. The weights say what is tolerated of each element. Infinite where the attempt has led to what is not finite.
-    fn error(&self, h: O::Scalar, weights: &O::State) -> (O::Scalar, usize);
+    fn between(&self, theta: D::Scalar, out: &mut D::State);
+    /// Numerator and denominator, squared, of an estimate of the fastest rate |λ| of the system that the last attempt has met; both
+    /// zero where there is no estimate.
+    fn rate(&self) -> [D::Scalar; 2];
+    /// The estimated error of the last attempt in units of the tolerance, the root mean square over the elements of the state, and the
+    /// index of the worst. The weights are the tolerated errors of each element. Infinite where the result of the attempt is not finite.
+    fn error(&self, _h: D::Scalar, _weights: &D::State) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real,
+    {
+        (D::Scalar::constant(0.0), 0)
+    }
 }
 
 /// What the steps have cost.
