@@ -1,5 +1,6 @@
 //! A lowered model with the linear algebra of a [`Solver`]; the contract of `gyro-sim` that tells its motion.
 
+use crate::description::OwnedDescription;
 use crate::error::{BuildError, Unsupported};
 use crate::lowered::Lowered;
 use crate::number::{Number, number};
@@ -7,7 +8,7 @@ use crate::outputs::Solution;
 use crate::place::Moment;
 use crate::textbook::p_dot;
 use gyro_model::Model;
-use gyro_sim::{Clearance, Energy, Error, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo};
+use gyro_sim::{Buffers, Clearance, Description, Energy, Error, Mechanism, Owner, Partition};
 use nalgebra::Vector4;
 use std::cell::{RefCell, RefMut};
 use std::fmt::Debug;
@@ -17,6 +18,7 @@ use std::fmt::Debug;
 pub struct Assembled<T: Number, S> {
     pub(crate) lowered: Lowered<T>,
     pub(crate) solver: S,
+    description: OwnedDescription,
     pub(crate) phi_q_pattern: Vec<(u16, u16)>,
     pub(crate) phi_pi_pattern: Vec<(u16, u16)>,
     /// Work space. A mechanism is constant to its callers, so it is borrowed inside each call and never across.
@@ -30,7 +32,7 @@ struct Space<T> {
     lambda: Vec<T>,
     nu: Vec<T>,
     readings: Vec<T>,
-    /// Of [`Projection`](gyro_sim::Projection): empty until it is asked for, as it grows with the square of the mechanism.
+    /// Of [`project`](gyro_sim::Equations::project): empty until it is asked for, as it grows with the square of the mechanism.
     projection: Vec<T>,
 }
 
@@ -118,7 +120,8 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             readings: zeros(lowered.n_readings()),
             projection: Vec::new(),
         };
-        Ok(Self { lowered, solver, phi_q_pattern, phi_pi_pattern, space: RefCell::new(space) })
+        let description = OwnedDescription::new(model, &lowered);
+        Ok(Self { lowered, solver, description, phi_q_pattern, phi_pi_pattern, space: RefCell::new(space) })
     }
 
     /// The owner of a constraint row, normalisations included.
@@ -143,9 +146,27 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
     }
 }
 
-impl<T: Number, S: Solver<T>> Ode for Assembled<T, S> {
+impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
     type Scalar = T;
     type State = Vec<T>;
+    type Rows = Vec<T>;
+    type Constraints = Vec<T>;
+    type Readings = Vec<T>;
+    type Outputs = Vec<T>;
+
+    fn description(&self) -> &Description<'_> {
+        self.description.get()
+    }
+
+    fn buffers(&self) -> Buffers<Self> {
+        let lowered = &self.lowered;
+        Buffers {
+            rows: zeros(lowered.n_rows()),
+            constraints: zeros(lowered.n_rows() + lowered.n_bodies()),
+            readings: zeros(lowered.n_readings()),
+            outputs: zeros(lowered.n_outputs()),
+        }
+    }
 
     fn start(&self) -> Vec<T> {
         self.lowered.start.clone()
@@ -177,24 +198,6 @@ impl<T: Number, S: Solver<T>> Ode for Assembled<T, S> {
         }
         lowered.turn_rates(at, &mut dy[lowered.first_turn()..]);
     }
-}
-
-impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
-    type Rows = Vec<T>;
-    type Constraints = Vec<T>;
-    type Readings = Vec<T>;
-
-    fn rows(&self) -> Vec<T> {
-        zeros(self.lowered.n_rows())
-    }
-
-    fn constraints(&self) -> Vec<T> {
-        zeros(self.lowered.n_rows() + self.lowered.n_bodies())
-    }
-
-    fn readings(&self) -> Vec<T> {
-        zeros(self.lowered.n_readings())
-    }
 
     fn phi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.lowered.phi(Moment { t, y }, out);
@@ -212,51 +215,24 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
         self.lowered.read_joints(Moment { t, y }, out);
     }
 
-    fn turn_references(&self) -> &[u16] {
-        &self.lowered.turn_readings
-    }
-
     fn refer_turns(&self, t: T, y: &mut Vec<T>) {
         let readings = &mut self.space.borrow_mut().readings;
         self.lowered.read_joints(Moment { t, y }, readings);
         gyro_sim::set_turn_references(&self.lowered.turn_readings, readings, y);
     }
 
-    fn n_bodies(&self) -> usize {
-        self.lowered.n_bodies()
-    }
-
-    fn n_joints(&self) -> usize {
-        self.lowered.joints.len()
-    }
-
-    fn body_name(&self, body: usize) -> &str {
-        &self.lowered.bodies[body].name
-    }
-
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        let joint = &self.lowered.joints[joint];
-        JointInfo { name: &joint.name, coordinates: &joint.readings }
-    }
-
-    fn coupler_name(&self, coupler: usize) -> &str {
-        &self.lowered.coupler_names[coupler]
-    }
-
-    fn driver_name(&self, driver: usize) -> &str {
-        &self.lowered.driver_names[driver]
-    }
-
-    fn row(&self, row: usize) -> RowInfo {
-        self.lowered.row_infos[row]
-    }
-
     fn size(&self) -> T {
         self.lowered.size
     }
 
-    fn work(&self, y: &Vec<T>) -> T {
-        self.lowered.work.map_or(T::zero(), |work| y[work])
+    fn outputs(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        let at = Moment { t, y };
+        self.with_solution(at, |solution| self.lowered.outputs(at, solution, out));
+    }
+
+    fn set_input(&mut self, index: usize, value: T) -> bool {
+        let input = self.lowered.inputs.get_mut(index);
+        input.map(|(_, present)| *present = value).is_some()
     }
 }
 

@@ -1,9 +1,10 @@
-//! The contract of `gyro-sim` that tells the equations term by term, and what goes in and comes out at every step.
+//! The contract of `gyro-sim` that tells the equations term by term.
 
 use crate::assembled::{Assembled, Solver, zeros};
 use crate::number::Number;
 use crate::place::Moment;
-use gyro_sim::{Equations, OutputInfo, Ports};
+use crate::projection;
+use gyro_sim::{Equations, Terms};
 
 impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
     type Velocities = Vec<T>;
@@ -11,20 +12,13 @@ impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
     type PhiPi = Vec<T>;
     type Accelerations = Vec<T>;
 
-    fn velocities(&self) -> Vec<T> {
-        zeros(self.lowered.n_v())
-    }
-
-    fn phi_q_values(&self) -> Vec<T> {
-        zeros(self.phi_q_pattern.len())
-    }
-
-    fn phi_pi_values(&self) -> Vec<T> {
-        zeros(self.phi_pi_pattern.len())
-    }
-
-    fn accelerations_buffer(&self) -> Vec<T> {
-        zeros(self.solver.accelerations_len(&self.lowered))
+    fn terms(&self) -> Terms<Self> {
+        Terms {
+            velocities: zeros(self.lowered.n_v()),
+            phi_q: zeros(self.phi_q_pattern.len()),
+            phi_pi: zeros(self.phi_pi_pattern.len()),
+            accelerations: zeros(self.solver.accelerations_len(&self.lowered)),
+        }
     }
 
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
@@ -70,39 +64,8 @@ impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
     fn multipliers(&self, t: T, y: &Vec<T>, accelerations: &Vec<T>, lambda: &mut Vec<T>) {
         self.solver.multipliers(&self.lowered, t, y, accelerations, lambda);
     }
-}
 
-impl<T: Number, S: Solver<T>> Ports for Assembled<T, S> {
-    type Outputs = Vec<T>;
-
-    fn outputs_buffer(&self) -> Vec<T> {
-        zeros(self.lowered.n_outputs())
-    }
-
-    fn outputs(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        let at = Moment { t, y };
-        self.with_solution(at, |solution| self.lowered.outputs(at, solution, out));
-    }
-
-    fn n_outputs(&self) -> usize {
-        self.lowered.n_outputs()
-    }
-
-    fn output(&self, index: usize) -> OutputInfo<'_> {
-        let none = OutputInfo { name: "", suffix: "", unit: "" };
-        self.lowered.output_infos().nth(index).unwrap_or(none)
-    }
-
-    fn n_inputs(&self) -> usize {
-        self.lowered.inputs.len()
-    }
-
-    fn input_name(&self, index: usize) -> &str {
-        self.lowered.inputs.get(index).map_or("", |(name, _)| name)
-    }
-
-    fn set_input(&mut self, index: usize, value: T) -> bool {
-        let input = self.lowered.inputs.get_mut(index);
-        input.map(|(_, present)| *present = value).is_some()
+    fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, out: &mut Vec<T>) {
+        projection::project(&self.lowered, Moment { t, y }, rows, &mut self.work(), out);
     }
 }

@@ -32,7 +32,7 @@
 //! # Example
 //! ```
 //! use gyro_assembled::Careful;
-//! use gyro_sim::{Mechanism, Ode, Partitioned};
+//! use gyro_sim::{Mechanism, Partitioned};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/gyroscope.toml");
@@ -57,6 +57,7 @@ pub mod child;
 mod constraints;
 mod course;
 mod dense;
+mod description;
 mod energy;
 mod equations;
 mod error;

@@ -17,8 +17,6 @@ pub struct Lowered<T: Number> {
     pub(crate) scene: Scene<T>,
     pub(crate) rows: Vec<Row<T>>,
     pub(crate) row_infos: Vec<RowInfo>,
-    pub(crate) coupler_names: Vec<String>,
-    pub(crate) driver_names: Vec<String>,
     pub(crate) elements: Vec<Element<T>>,
     pub(crate) outputs: Vec<Output<T>>,
     pub(crate) size: T,
@@ -59,8 +57,6 @@ impl<T: Number> Lowered<T> {
         Ok(Self {
             rows: rows.iter().map(|row| Row::new(model, &slots, &scene.joints, row)).collect(),
             row_infos: rows.iter().map(|row| row_info(&slots, row)).collect(),
-            coupler_names: model.couplers.iter().map(|coupler| coupler.name.clone()).collect(),
-            driver_names: model.drivers.iter().map(|driver| driver.name.clone()).collect(),
             elements: Element::all(model, &places, &scene.joints),
             outputs: model.outputs.iter().map(|output| Output::new(model, &places, output)).collect(),
             size: number(model.size()),

@@ -3,24 +3,15 @@
 use crate::lowered::Lowered;
 use crate::motion::{Motion, along_pi};
 use crate::number::Number;
-use crate::outputs::{Output, Quantity, Solution};
+use crate::outputs::{Quantity, Solution};
 use crate::place::{Moment, Place};
 use crate::rows::Row;
-use gyro_sim::OutputInfo;
 use nalgebra::Vector3;
 
 impl<T: Number> Lowered<T> {
     /// Number of numbers of all outputs.
     pub(crate) fn n_outputs(&self) -> usize {
         self.outputs.iter().map(|output| output.columns.len()).sum()
-    }
-
-    /// Name, suffix and unit of each number.
-    pub(crate) fn output_infos(&self) -> impl Iterator<Item = OutputInfo<'_>> {
-        let columns = |output: &'_ Output<T>| output.columns.iter();
-        self.outputs.iter().flat_map(move |output| {
-            columns(output).map(|&(suffix, unit)| OutputInfo { name: &output.name, suffix, unit })
-        })
     }
 
     /// Writes all outputs.

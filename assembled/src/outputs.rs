@@ -5,10 +5,9 @@ use crate::place::{Place, Places, vector};
 use gyro_model::{Model, OutputKind, RowOwner};
 use nalgebra::Vector3;
 
-/// A named output.
+/// An output; its name is in the description.
 #[derive(Clone, Debug)]
 pub(crate) struct Output<T> {
-    pub(crate) name: String,
     pub(crate) columns: &'static [(&'static str, &'static str)],
     pub(crate) quantity: Quantity<T>,
 }
@@ -64,6 +63,6 @@ impl<T: Number> Output<T> {
             OutputKind::Energy => Quantity::Energy,
             OutputKind::Power => Quantity::Power,
         };
-        Self { name: output.name.clone(), columns: output.kind.columns(), quantity }
+        Self { columns: output.kind.columns(), quantity }
     }
 }

@@ -1,22 +1,24 @@
 //! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without forces.
 
-use crate::assembled::{Assembled, Solver};
 use crate::lowered::Lowered;
 use crate::number::{Number, abs};
 use crate::place::Moment;
-use gyro_sim::Projection;
 
-/// All forms alike: by Gaussian elimination with row pivoting, in work space that the first call allocates.
-impl<T: Number, S: Solver<T>> Projection for Assembled<T, S> {
-    fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, out: &mut Vec<T>) {
-        let n = self.lowered.n_v() + self.lowered.n_rows();
-        let work = &mut *self.work();
-        build(&self.lowered, Moment { t, y }, rows, work);
-        solve(work, n);
-        // The solution has taken the place of the right-hand side.
-        for (out, row) in out.iter_mut().zip(work.chunks_exact(n + 1)) {
-            *out = row[n];
-        }
+/// Writes the change of the velocities' coordinates. All forms alike: by Gaussian elimination with row pivoting, in work space that the
+/// first call allocates.
+pub(crate) fn project<T: Number>(
+    lowered: &Lowered<T>,
+    at: Moment<'_, T>,
+    rows: &[T],
+    work: &mut Vec<T>,
+    out: &mut [T],
+) {
+    let n = lowered.n_v() + lowered.n_rows();
+    build(lowered, at, rows, work);
+    solve(work, n);
+    // The solution has taken the place of the right-hand side.
+    for (out, row) in out.iter_mut().zip(work.chunks_exact(n + 1)) {
+        *out = row[n];
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
 use gyro_runner::{Approach, Event, Failure, Settings, Start, Summary, motion, run_by};
-use gyro_sim::{Partition, Ports, Projection};
+use gyro_sim::{Equations, Partition, Real};
 use std::fmt;
 
 /// Which of the twin's forms.
@@ -76,7 +76,7 @@ pub fn quick_look(
     }
 }
 
-fn simulate<M: Partition + Ports + Projection + 'static>(
+fn simulate<M: Partition<Scalar: Real> + Equations + 'static>(
     mechanism: Result<M, BuildError>,
     plan: (&Settings, &Approach),
     start: &Start,

@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::sheet::Sheet;
-use gyro_sim::{Equations, JointForm, JointSpace, Ode, Partition, Partitioned, Rk4};
+use gyro_sim::{Equations, Joint, JointSpace, Mechanism, Partition, Partitioned, Rk4};
 use gyro_yardstick::{FLOPS, STEP};
 use std::fmt;
 use std::hint::black_box;
@@ -117,20 +117,20 @@ where
 {
     let flops = move |functions: &[&str]| Some(sheet.flops(functions));
     let mut kernels = Vec::new();
-    let (mut x, mut out) = (mechanism.joint_start(), mechanism.rates());
+    let (mut x, mut out) = (mechanism.joint_start(), mechanism.joint_buffers().rates);
     mechanism.to_joints(0.0, y, &mut x);
     kernels.push(Kernel::new(JOINTS, GENERATED, flops(&["joint_accelerations"]), move || {
         mechanism.joint_accelerations(0.0, black_box(&x), black_box(&mut out));
     }));
-    let (state, mut out) = (y.clone(), mechanism.rates());
+    let (state, mut out) = (y.clone(), mechanism.joint_buffers().rates);
     kernels.push(Kernel::new(JOINTS_AT, GENERATED, flops(&["joint_accelerations_at"]), move || {
         mechanism.joint_accelerations_at(0.0, black_box(&state), black_box(&mut out));
     }));
-    let (state, mut out) = (y.clone(), mechanism.velocities());
+    let (state, mut out) = (y.clone(), mechanism.terms().velocities);
     kernels.push(Kernel::new(BODIES, CORRECTED, flops(&["corrected_accelerations"]), move || {
         mechanism.corrected_accelerations(0.0, black_box(&state), black_box(&mut out));
     }));
-    let (state, mut out) = (y.clone(), mechanism.solution());
+    let (state, mut out) = (y.clone(), mechanism.joint_buffers().solution);
     kernels.push(Kernel::new(LOADS, CORRECTED, flops(&["corrected_solution"]), move || {
         mechanism.corrected_solution(0.0, black_box(&state), black_box(&mut out));
     }));
@@ -154,11 +154,11 @@ where
     M::State: 'a,
 {
     let mut kernels = Vec::new();
-    let (state, mut out) = (y.clone(), mechanism.accelerations_buffer());
+    let (state, mut out) = (y.clone(), mechanism.terms().accelerations);
     kernels.push(Kernel::new(BODIES, side, flops(&["accelerations"]), move || {
         mechanism.accelerations(0.0, black_box(&state), black_box(&mut out));
     }));
-    let (state, mut out, mut lambda) = (y.clone(), mechanism.accelerations_buffer(), mechanism.rows());
+    let (state, mut out, mut lambda) = (y.clone(), mechanism.terms().accelerations, mechanism.buffers().rows);
     kernels.push(Kernel::new(LOADS, side, flops(&["accelerations", "multipliers"]), move || {
         mechanism.accelerations(0.0, black_box(&state), black_box(&mut out));
         mechanism.multipliers(0.0, black_box(&state), black_box(&out), black_box(&mut lambda));
@@ -190,15 +190,15 @@ where
     M: Equations + Partition<Scalar = f64>,
     M::State: 'a,
 {
-    let (state, mut out) = (y.clone(), mechanism.constraints());
+    let (state, mut out) = (y.clone(), mechanism.buffers().constraints);
     let phi = Kernel::new(PHI, side, flops(&["phi"]), move || {
         mechanism.phi(0.0, black_box(&state), black_box(&mut out));
     });
-    let (state, mut out) = (y.clone(), mechanism.phi_q_values());
+    let (state, mut out) = (y.clone(), mechanism.terms().phi_q);
     let phi_q = Kernel::new(PHI_Q, side, flops(&["phi_q"]), move || {
         mechanism.phi_q(0.0, black_box(&state), black_box(&mut out));
     });
-    let (state, mut out) = (y.clone(), mechanism.rows());
+    let (state, mut out) = (y.clone(), mechanism.buffers().rows);
     let gamma = Kernel::new(GAMMA, side, flops(&["gamma"]), move || {
         mechanism.gamma(0.0, black_box(&state), black_box(&mut out));
     });

@@ -4,7 +4,7 @@ use crate::Kernel;
 use crate::kernels::{CORRECTIONS, STEPS_PER_CORRECTION};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
-use gyro_sim::{Charted, JointForm, JointSpace, Mechanism, Ode, Partition, Partitioned, Rk4, Scalar, charts};
+use gyro_sim::{Joint, JointSpace, Mechanism, Partition, Partitioned, Rk4, Scalar, charts};
 use gyro_yardstick::STEP;
 use std::hint::black_box;
 
@@ -101,10 +101,10 @@ where
     fn joint_accelerations_named(&self, what: &'static str) -> Pair<'static> {
         self.pair(
             what,
-            for_each(self.joints.clone(), Gyroscope::<T::Lane>::default().rates(), |x, out| {
+            for_each(self.joints.clone(), Gyroscope::<T::Lane>::default().joint_buffers().rates, |x, out| {
                 Gyroscope::default().joint_accelerations(T::Lane::constant(0.0), x, out);
             }),
-            for_each(vec![self.packed_joints], Gyroscope::<T>::default().rates(), |x, out| {
+            for_each(vec![self.packed_joints], Gyroscope::<T>::default().joint_buffers().rates, |x, out| {
                 Gyroscope::default().joint_accelerations(T::constant(0.0), x, out);
             }),
         )

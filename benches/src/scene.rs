@@ -2,7 +2,7 @@
 
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_maximal::GyroscopeMaximal};
-use gyro_sim::{Equations, Ode, Rk4};
+use gyro_sim::{Equations, Mechanism, Rk4};
 use gyro_yardstick::{Floor, STEP};
 
 /// Steps to the state at which kernels are measured: 0.37 s, where nothing is zero.
@@ -152,7 +152,7 @@ fn turned(p: [f64; 4], v: [f64; 3]) -> [f64; 3] {
 }
 
 fn accelerations<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State, from: usize) -> Vec<f64> {
-    let mut out = mechanism.accelerations_buffer();
+    let mut out = mechanism.terms().accelerations;
     mechanism.accelerations(0.0, y, &mut out);
     out.as_ref()[from..from + 18].to_vec()
 }
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn the_maximal_state_meets_the_constraints() {
         let scene = Scene::new();
-        let (mut phi, mut rates) = (scene.generated.constraints(), scene.generated.rows());
+        let (mut phi, mut rates) = (scene.generated.buffers().constraints, scene.generated.buffers().rows);
         scene.generated.phi(0.0, &scene.maximal, &mut phi);
         scene.generated.velocity_residual(0.0, &scene.maximal, &mut rates);
         assert!(phi.iter().all(|x| x.abs() < 1e-15), "{phi:?}");

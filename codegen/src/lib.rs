@@ -48,15 +48,21 @@ mod solve;
 
 pub use emit::data_sheet::{Function, Sheet, large};
 pub use expr::schedule::{Operations, Passes};
+pub use kernels::Kernel;
 pub use simplify::cheapest::Form;
 pub use simplify::normal_form::Reduction;
 
+use derive::system::System;
+use derive::{Observed, Textbook};
 use emit::module;
-use equations::Equations;
-use kernels::Functions;
-use simplify::parameter_setup;
+use equations::{Equations, Parts, Rotations};
+use joint_space::{Candidates, Coordinates, JointSpace};
+use kernels::Kernels;
+use solve::Solution;
+use solve::forward_dynamics::ForwardDynamics;
+use solve::partition::Partition;
 
-use gyro_model::{AssemblyError, Diagnostics, Model};
+use gyro_model::{AssemblyError, Diagnostics, Model, Start};
 use std::fmt;
 
 /// A generated module.
@@ -154,14 +160,32 @@ pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
 /// Why no consistent start exists.
 pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = Equations::derive(model, elimination, &start);
-    let mut kernels = Functions::of(&equations);
-    for roots in kernels.recurring_mut() {
-        *roots = equations.finish.finished(&mut equations.graph, roots);
-    }
-    kernels.set_up = parameter_setup::separate(&mut equations.graph, kernels.recurring_mut());
+    let mut equations = equations(model, elimination, &start);
+    let mut kernels = Kernels::of(&equations);
+    kernels.finish(&mut equations.graph, equations.passes);
     let type_name = module::type_name(&model.name);
     let module::Text { code, constants, sheet } =
         module::write(file_name, &type_name, (&equations, kernels), &start);
     Ok(Module { name: model.name.clone(), type_name, code, constants, sheet })
+}
+
+/// From the model to what its module computes: derives, solves and chooses.
+fn equations<'m>(model: &'m Model, elimination: Elimination, start: &Start) -> Equations<'m> {
+    let mut system = System::new(model);
+    let textbook = Textbook::derive(&mut system);
+    let forward_dynamics = ForwardDynamics::of(&mut system, &textbook.kinematics);
+    let solution = Solution::of(&mut system, &textbook, &forward_dynamics, elimination);
+    let observed = Observed::derive(&mut system, &textbook, &solution.lambda);
+    let partition = Partition::of(&mut system, &textbook.kinematics);
+    let definitions = system.definitions.clone();
+    let mut rotations = Rotations::of(&mut system, &definitions);
+    let solved = rotations.cheapest(&mut system.graph, &solution.solved);
+    let joint_space = Coordinates::cover(&system).then(|| {
+        let coordinates = Coordinates::derive(&mut system, &textbook);
+        let candidates = Candidates::solve(&mut system, &textbook, &coordinates);
+        JointSpace::choose(&mut system, (&textbook, &observed), coordinates, candidates, &solved.roots, start)
+    });
+    let projection = forward_dynamics.projection(&mut system.graph, &textbook.kinematics);
+    let parts = Parts { textbook, solution, observed, projection, partition };
+    Equations::choose(system, rotations, &parts, solved, joint_space)
 }

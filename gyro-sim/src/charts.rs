@@ -7,44 +7,49 @@
 //! parameter is the largest component of a four-vector that the mechanism supplies, and four charts a joint never
 //! become singular.
 
-use crate::{Real, Scalar};
+use crate::{Lanes, Real};
 
-/// The special Euler parameter, 0 to 3, of each of `N` joints.
-pub type Charts<const N: usize> = [u8; N];
+/// The special Euler parameter, 0 to 3, of each of `N` joints, in each lane.
+pub type Charts<T, const N: usize> = [<T as Lanes>::Chart; N];
 
 /// A chart is left only once another component is larger by this factor, so that rounding cannot make it flicker. Any
 /// factor above one works; the special component stays above 1/(2 · 1.25) of the vector's length.
 pub(crate) const HYSTERESIS: f64 = 1.25;
 
 /// The chart of the largest component of each vector.
-pub fn best<T: Real, const N: usize>(vectors: &[[T; 4]; N]) -> Charts<N> {
-    vectors.map(|vector| largest(&vector))
+pub fn best<T: Lanes, const N: usize>(vectors: &[[T; 4]; N]) -> Charts<T, N> {
+    vectors.map(|vector| T::best_chart(&vector))
 }
 
 /// Switches the charts that have become poor; returns the number of switches.
-pub fn follow<T: Real, const N: usize>(vectors: &[[T; 4]; N], charts: &mut Charts<N>) -> u32 {
-    let mut switches = 0;
-    for (vector, chart) in vectors.iter().zip(charts) {
-        let candidate = largest(vector);
-        if component(vector, candidate) > component(vector, *chart) * T::constant(HYSTERESIS) {
-            *chart = candidate;
-            switches += 1;
-        }
-    }
-    switches
+pub fn follow<T: Lanes, const N: usize>(vectors: &[[T; 4]; N], charts: &mut Charts<T, N>) -> u32 {
+    vectors.iter().zip(charts).map(|(vector, chart)| T::follow_chart(vector, chart)).sum()
 }
 
 /// For each joint the unit four-vector of its special parameter, as the generated solves take it: choosing by
 /// multiplication keeps them free of branches.
-pub fn one_hot<T: Scalar, const N: usize>(charts: &Charts<N>) -> [[T; 4]; N] {
-    charts.map(|chart| core::array::from_fn(|k| T::constant(if k == usize::from(chart) { 1.0 } else { 0.0 })))
+pub fn one_hot<T: Lanes, const N: usize>(charts: &Charts<T, N>) -> [[T; 4]; N] {
+    charts.map(T::one_hot)
+}
+
+/// Switches a chart that has become poor; returns the number of switches.
+#[inline]
+pub(crate) fn follow_largest<T: Real>(vector: &[T; 4], chart: &mut u8) -> u32 {
+    let candidate = largest(vector);
+    let is_poor = component(vector, candidate) > component(vector, *chart) * T::constant(HYSTERESIS);
+    if is_poor {
+        *chart = candidate;
+    }
+    u32::from(is_poor)
 }
 
 fn component<T: Real>(vector: &[T; 4], chart: u8) -> T {
     vector[usize::from(chart & 3)].abs()
 }
 
-fn largest<T: Real>(vector: &[T; 4]) -> u8 {
+/// The index of the largest component.
+#[inline]
+pub(crate) fn largest<T: Real>(vector: &[T; 4]) -> u8 {
     (1..4).fold(0, |best, k| if component(vector, k) > component(vector, best) { k } else { best })
 }
 
@@ -54,7 +59,7 @@ mod tests {
 
     #[test]
     fn a_chart_is_kept_until_another_is_clearly_better() {
-        let mut charts = best(&[[0.9, 0.1, 0.3, 0.2]]);
+        let mut charts = best::<f64, 1>(&[[0.9, 0.1, 0.3, 0.2]]);
         assert_eq!(charts, [0]);
         assert_eq!((follow(&[[0.6, 0.7, 0.0, 0.0]], &mut charts), charts), (0, [0]));
         assert_eq!((follow(&[[0.5, -0.7, 0.0, 0.0]], &mut charts), charts), (1, [1]));

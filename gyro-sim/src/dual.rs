@@ -1,6 +1,8 @@
 //! Dual numbers: derivatives without a symbol, to the last bits.
 
-use crate::{Differentiable, Ode, Scalar, Storage};
+use crate::contract::Storage;
+use crate::{Ode, Scalar};
+use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number with its derivatives in `N` directions. Any kernel that is generic over its scalar can be evaluated with it.
@@ -101,57 +103,62 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     }
 }
 
-/// A system with its Jacobian by [`Dual`] numbers, `N` columns at a time: for systems that come without one.
-#[derive(Clone, Copy, Debug)]
-pub struct ByDuals<'a, O, D, J, const N: usize> {
-    system: O,
-    in_duals: D,
-    zeros: &'a J,
+/// The equations `D` with their Jacobian by [`Dual`] numbers, `N` columns at a time: for equations that do not offer one.
+#[derive(Clone, Debug)]
+pub struct ByDuals<D, M, S, J, const N: usize> {
+    dynamics: D,
+    in_duals: M,
+    /// A state in dual numbers, of which the number of elements counts.
+    state: S,
+    jacobian: PhantomData<fn() -> J>,
 }
 
-impl<'a, O, D, J, const N: usize> ByDuals<'a, O, D, J, N> {
-    /// The same system twice, in plain and in dual numbers, and a zeroed buffer for the Jacobian, n × n numbers for a state of n.
-    pub fn new(system: O, in_duals: D, zeros: &'a J) -> Self {
-        Self { system, in_duals, zeros }
+impl<D, M, S, J, const N: usize> ByDuals<D, M, S, J, N> {
+    /// The equations, the same model in dual numbers and a state of it.
+    pub fn new(dynamics: D, in_duals: M, state: S) -> Self {
+        Self { dynamics, in_duals, state, jacobian: PhantomData }
+    }
+
+    /// The model in dual numbers, for its inputs and parameters: they are not those of the model that is integrated.
+    pub fn in_duals_mut(&mut self) -> &mut M {
+        &mut self.in_duals
     }
 }
 
-impl<O: Ode, D, J, const N: usize> Ode for ByDuals<'_, O, D, J, N> {
-    type Scalar = O::Scalar;
-    type State = O::State;
-
-    fn start(&self) -> Self::State {
-        self.system.start()
-    }
-    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        self.system.derivative(t, y, dy);
-    }
-}
-
-impl<O, D, J, const N: usize> Differentiable for ByDuals<'_, O, D, J, N>
+impl<D, M, Dualled, S, J, const N: usize> Ode<M> for ByDuals<D, Dualled, S, J, N>
 where
-    O: Ode,
-    D: Ode<Scalar = Dual<O::Scalar, N>>,
-    J: Storage<O::Scalar>,
+    D: Ode<M> + Ode<Dualled, Scalar = Dual<<D as Ode<M>>::Scalar, N>, State = S>,
+    J: Storage<<D as Ode<M>>::Scalar>,
+    S: Storage<Dual<<D as Ode<M>>::Scalar, N>>,
 {
+    type Scalar = <D as Ode<M>>::Scalar;
+    type State = <D as Ode<M>>::State;
     type Jacobian = J;
 
-    fn jacobian_buffer(&self) -> J {
-        self.zeros.clone()
+    fn derivative(&self, model: &M, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        Ode::<M>::derivative(&self.dynamics, model, t, y, dy);
     }
 
-    fn jacobian(&self, t: O::Scalar, y: &O::State, dfdy: &mut J, dfdt: &mut O::State) {
-        let (mut arguments, n) = (self.in_duals.start(), y.as_ref().len());
+    fn jacobian(
+        &self,
+        _: &M,
+        t: Self::Scalar,
+        y: &Self::State,
+        dfdy: &mut Self::Jacobian,
+        dfdt: &mut Self::State,
+    ) {
+        let (mut arguments, n) = (self.state.clone(), y.as_ref().len());
         let mut slopes = arguments.clone();
         // The columns, and after them time.
         for from in (0..=n).step_by(N) {
             let unit = |index: usize| {
-                core::array::from_fn(|k| O::Scalar::constant(if from + k == index { 1.0 } else { 0.0 }))
+                core::array::from_fn(|k| Self::Scalar::constant(if from + k == index { 1.0 } else { 0.0 }))
             };
             for (index, (argument, value)) in arguments.as_mut().iter_mut().zip(y.as_ref()).enumerate() {
                 *argument = Dual { value: *value, slopes: unit(index) };
             }
-            self.in_duals.derivative(Dual { value: t, slopes: unit(n) }, &arguments, &mut slopes);
+            let time = Dual { value: t, slopes: unit(n) };
+            Ode::<Dualled>::derivative(&self.dynamics, &self.in_duals, time, &arguments, &mut slopes);
             for (row, (slopes, dfdt)) in
                 dfdy.as_mut().chunks_exact_mut(n).zip(slopes.as_ref().iter().zip(dfdt.as_mut()))
             {
@@ -164,13 +171,5 @@ where
                 }
             }
         }
-    }
-}
-
-impl<O: crate::Maximal, D, J, const N: usize> crate::Maximal for ByDuals<'_, O, D, J, N> {
-    type Mechanism = O::Mechanism;
-
-    fn mechanism(&self) -> &O::Mechanism {
-        self.system.mechanism()
     }
 }

@@ -77,7 +77,7 @@ pub enum Error {
         value: f64,
     },
     /// The time to start from or to go to is not finite, or the time to interpolate at not within the last step.
-    NoEnd {
+    InvalidEndTime {
         /// Time, s.
         t: f64,
         /// The time to go to, s.
@@ -118,7 +118,7 @@ impl fmt::Display for Error {
                 write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
             }
             Self::Setting { setting, value } => write!(f, "{setting} = {value} s is no length of a step"),
-            Self::NoEnd { t, t_end } => write!(f, "at t = {t} s there is no way to t = {t_end} s"),
+            Self::InvalidEndTime { t, t_end } => write!(f, "at t = {t} s there is no way to t = {t_end} s"),
             Self::TooManySteps { t, steps } => {
                 write!(f, "at t = {t} s the budget of {steps} steps is used up")
             }

@@ -58,6 +58,7 @@ extern crate self as gyro_sim;
 pub mod admissible;
 mod apart;
 pub mod charts;
+mod contract;
 pub mod correct;
 mod dual;
 mod error;
@@ -67,9 +68,7 @@ pub mod generated;
 pub mod integrate;
 #[cfg(feature = "lanes")]
 pub mod lanes;
-mod mechanism;
 pub mod pivoting;
-mod rounding;
 mod scalar;
 mod solver;
 pub mod spline;
@@ -77,19 +76,19 @@ mod turns;
 mod violation;
 
 pub use apart::apart;
+pub use contract::{
+    Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, Joint, JointBuffers,
+    JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo, System, Terms,
+    set_turn_references,
+};
 pub use correct::{
-    Baumgarte, ClosedForm, Corrected, Correction, Direct, MassWeighted, Maximal, Partitioned, Partitioning,
-    Uncorrected, Watched, When,
+    Baumgarte, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning, Uncorrected, Watched,
+    When,
 };
 pub use dual::{ByDuals, Dual};
 pub use error::Error;
 pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
-pub use mechanism::{
-    Charted, Clearance, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian,
-    JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
-    set_turn_references,
-};
-pub use scalar::{Real, Scalar};
+pub use scalar::{Lanes, Real, Scalar};
 pub use solver::{Control, Passage, Solver, Statistics};
 pub use turns::{JointCoordinate, Turns, refer_turns};
 pub use violation::{Violation, violation};

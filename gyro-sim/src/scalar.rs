@@ -1,8 +1,8 @@
 //! What a number must offer: little for the generated kernels, a little more for the solvers around them.
 
-use crate::{fused, spline};
+use crate::{charts, fused, spline};
 use core::fmt::Debug;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A number of a generated kernel: `f32`, `f64`, a pack of SIMD lanes, a dual number.
 ///
@@ -59,6 +59,105 @@ pub trait Real: Scalar + PartialOrd {
     fn is_finite(self) -> bool;
     /// For messages.
     fn to_f64(self) -> f64;
+}
+
+/// A pack of lanes, on which a solver can decide lane by lane. A [`Real`] number is a pack of one lane; those of SIMD registers come with
+/// the feature `lanes`.
+pub trait Lanes: Scalar {
+    /// The number in one lane.
+    type Lane: Real;
+    /// A truth value for each lane.
+    type Mask: Copy
+        + Debug
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
+    /// For each lane the special Euler parameter of a joint: see [`charts`](mod@crate::charts).
+    type Chart: Copy + Debug + PartialEq;
+    /// Number of lanes, at most eight.
+    const COUNT: usize;
+
+    /// A pack of these lanes.
+    fn from_lanes(lane: impl FnMut(usize) -> Self::Lane) -> Self;
+    /// The number in a lane.
+    fn lane(&self, index: usize) -> Self::Lane;
+    /// Absolute values.
+    #[must_use]
+    fn absolute(self) -> Self;
+    /// Where this one is greater.
+    fn greater(self, other: Self) -> Self::Mask;
+    /// Where this one is at most the other.
+    fn at_most(self, other: Self) -> Self::Mask;
+    /// Where this one is neither infinite nor NaN.
+    fn finite(self) -> Self::Mask;
+    /// The first where the mask is true, elsewhere the second.
+    #[must_use]
+    fn select(mask: Self::Mask, one: Self, other: Self) -> Self;
+    /// A bit for each lane, the first one lowest.
+    fn bits(mask: Self::Mask) -> u32;
+    /// The mask of these bits.
+    fn mask(bits: u32) -> Self::Mask {
+        let lane = |index| Self::Lane::constant(f64::from(bits >> index & 1));
+        Self::from_lanes(lane).greater(Self::constant(0.0))
+    }
+    /// The chart of the largest component of a four-vector.
+    fn best_chart(vector: &[Self; 4]) -> Self::Chart;
+    /// Switches to another chart where this one has become poor; returns the number of switches.
+    fn follow_chart(vector: &[Self; 4], chart: &mut Self::Chart) -> u32;
+    /// The unit four-vector of the special parameter.
+    fn one_hot(chart: Self::Chart) -> [Self; 4];
+}
+
+impl<T: Real> Lanes for T {
+    type Lane = Self;
+    type Mask = bool;
+    type Chart = u8;
+    const COUNT: usize = 1;
+
+    #[inline]
+    fn from_lanes(mut lane: impl FnMut(usize) -> Self) -> Self {
+        lane(0)
+    }
+    #[inline]
+    fn lane(&self, _: usize) -> Self {
+        *self
+    }
+    #[inline]
+    fn absolute(self) -> Self {
+        self.abs()
+    }
+    #[inline]
+    fn greater(self, other: Self) -> bool {
+        self > other
+    }
+    #[inline]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline]
+    fn finite(self) -> bool {
+        self.is_finite()
+    }
+    #[inline]
+    fn select(mask: bool, one: Self, other: Self) -> Self {
+        if mask { one } else { other }
+    }
+    #[inline]
+    fn bits(mask: bool) -> u32 {
+        u32::from(mask)
+    }
+    #[inline]
+    fn best_chart(vector: &[Self; 4]) -> u8 {
+        charts::largest(vector)
+    }
+    #[inline]
+    fn follow_chart(vector: &[Self; 4], chart: &mut u8) -> u32 {
+        charts::follow_largest(vector, chart)
+    }
+    #[inline]
+    fn one_hot(chart: u8) -> [Self; 4] {
+        core::array::from_fn(|k| Self::constant(if k == usize::from(chart) { 1.0 } else { 0.0 }))
+    }
 }
 
 impl Scalar for f64 {

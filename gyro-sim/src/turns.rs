@@ -5,13 +5,14 @@ use crate::{Coordinate, Mechanism, Real, Scalar};
 /// Sets the turn references of a state to their angles, from which integration lets them stray: both are integrated, each with errors of
 /// its own, and once they are half a turn apart a turn would be lost. No function of the state changes by it but for rounding.
 pub fn refer_turns<M: Mechanism>(mechanism: &M, t: M::Scalar, y: &mut M::State) {
-    if !mechanism.turn_references().is_empty() {
+    if !mechanism.description().turn_references.is_empty() {
         mechanism.refer_turns(t, y);
     }
 }
 
 /// One coordinate of a joint and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointCoordinate<T> {
     /// Continuous angle, rad, positive by the right-hand rule from the first body to the second, and its rate.
     Angle {
@@ -52,7 +53,7 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
     /// Takes the angles of a state at time `t` to lie nearest to the given ones, one number for each coordinate, joint after
     /// joint (those of lengths and orientations are not looked at); angles that `nearest` does not cover to zero.
     pub fn new(mechanism: &M, t: M::Scalar, y: &M::State, nearest: &[M::Scalar]) -> Self {
-        let mut turns = Self { readings: mechanism.readings(), last: mechanism.readings() };
+        let mut turns = Self { readings: mechanism.buffers().readings, last: mechanism.buffers().readings };
         mechanism.read_joints(t, y, &mut turns.readings);
         let zero = M::Scalar::constant(0.0);
         for_each_angle(mechanism, |index, at| {
@@ -78,11 +79,9 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
         joint: usize,
         index: usize,
     ) -> Option<JointCoordinate<M::Scalar>> {
-        if joint >= mechanism.n_joints() {
-            return None;
-        }
-        let before: usize = (0..joint).map(|j| mechanism.joint(j).n_readings()).sum();
-        let coordinates = mechanism.joint(joint).coordinates;
+        let joints = mechanism.description().joints;
+        let coordinates = joints.get(joint)?.coordinates;
+        let before: usize = joints.iter().take(joint).map(|joint| joint.n_readings()).sum();
         let kind = coordinates.get(index)?;
         let at = before + coordinates[..index].iter().map(|c| c.n_readings()).sum::<usize>();
         Some(match kind {
@@ -118,8 +117,8 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
 /// Calls `f` with the index among all coordinates and the place of its readings for each angle.
 fn for_each_angle<M: Mechanism>(mechanism: &M, mut f: impl FnMut(usize, usize)) {
     let (mut index, mut at) = (0, 0);
-    for joint in 0..mechanism.n_joints() {
-        for coordinate in mechanism.joint(joint).coordinates {
+    for joint in mechanism.description().joints {
+        for coordinate in joint.coordinates {
             if *coordinate == Coordinate::Angle {
                 f(index, at);
             }

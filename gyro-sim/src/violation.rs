@@ -24,7 +24,7 @@ pub(crate) fn constraint_violation<M: Mechanism, T: Real>(
     phi: &[M::Scalar],
     read: impl Fn(M::Scalar) -> T,
 ) -> Violation<T> {
-    let (rows, normalisations) = phi.split_at(phi.len().saturating_sub(mechanism.n_bodies()));
+    let (rows, normalisations) = phi.split_at(phi.len().saturating_sub(mechanism.description().bodies.len()));
     let normalisations = normalisations.iter().map(|&x| read(x).abs()).zip((0u16..).map(Owner::Body));
     worst(joint_rows(mechanism, rows, &read).chain(normalisations))
 }
@@ -36,8 +36,8 @@ fn joint_rows<M: Mechanism, T: Real>(
     read: impl Fn(M::Scalar) -> T,
 ) -> impl Iterator<Item = (T, Owner)> {
     let size = read(mechanism.size());
-    rows.iter().enumerate().map(move |(index, &value)| {
-        let (row, value) = (mechanism.row(index), read(value));
+    rows.iter().zip(mechanism.description().rows).map(move |(&value, row)| {
+        let value = read(value);
         (if row.is_length { (value / size).abs() } else { value.abs() }, row.owner)
     })
 }

@@ -33,7 +33,7 @@ pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
 pub use parse::{read, read_with};
 pub use redundancy::{Analysis, analyse};
-pub use spatial::{Quaternion, Vector};
+pub use spatial::{Quaternion, Vector, unit_vector};
 pub use spline::Spline;
 pub use tree::{Attachment, Link, Tree};
 pub use validate::ParameterRule;

@@ -3,7 +3,7 @@
 use num_dual::Dual2_64;
 
 use crate::kinematics::{Scalar, product};
-use crate::{Body, Model, Number, Quaternion, Spline, Vector};
+use crate::{Body, Model, Number, Quaternion, Spline, Vector, unit_vector};
 
 /// A function of time with values in rad or m.
 #[derive(Clone, Debug)]
@@ -91,14 +91,14 @@ impl BodyMotion {
         let unit = Quaternion(p.map(|e| e.re));
         let turning = |rate: [f64; 4]| {
             let [_, x, y, z] = (unit.conjugate() * Quaternion(rate)).0;
-            Vector([2.0 * x, 2.0 * y, 2.0 * z])
+            Vector::from([2.0 * x, 2.0 * y, 2.0 * z])
         };
         Prescribed {
-            r: Vector(r.map(|x| x.re)),
+            r: Vector::from(r.map(|x| x.re)),
             p: unit,
-            s: Vector(r.map(|x| x.v1)),
+            s: Vector::from(r.map(|x| x.v1)),
             w: turning(p.map(|e| e.v1)),
-            ds: Vector(r.map(|x| x.v2)),
+            ds: Vector::from(r.map(|x| x.v2)),
             dw: turning(p.map(|e| e.v2)),
         }
     }
@@ -110,9 +110,9 @@ impl BodyMotion {
         let p0 = body.unit_orientation(model).0.map(D::from);
         let p = self.rotations.iter().fold(p0, |p, (axis, angle)| {
             let exact = axis.each_ref().map(|x| model.exact(x));
-            let axis = Vector::unit(&exact).unwrap_or(Vector([0.0, 0.0, 1.0]));
+            let axis = unit_vector(&exact).unwrap_or(Vector::from([0.0, 0.0, 1.0]));
             let half = angle.at(model, t) * 0.5;
-            let [x, y, z] = axis.0.map(|x| half.sin() * x);
+            let [x, y, z] = axis.map(|x| half.sin() * x).into();
             product(p, [half.cos(), x, y, z])
         });
         (r, p)

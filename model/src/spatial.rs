@@ -1,14 +1,13 @@
 //! Vectors and Euler parameters in `f64`: just what the assembly of the start needs.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::Mul;
 
 use num_traits::{Signed, Zero};
 
 use crate::{Rational, to_f64};
 
 /// A vector of three components.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Vector(pub [f64; 3]);
+pub type Vector = nalgebra::Vector3<f64>;
 
 /// Euler parameters `(e0, e1, e2, e3)`, scalar first, paper section 2.
 ///
@@ -17,71 +16,11 @@ pub struct Vector(pub [f64; 3]);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion(pub [f64; 4]);
 
-impl Vector {
-    /// The null vector.
-    pub const ZERO: Self = Self([0.0; 3]);
-
-    /// The unit vector along an exact direction of any length; `None` if that length is zero.
-    ///
-    /// The scaling is exact, so no direction is too long or too short for it.
-    pub fn unit(direction: &[Rational; 3]) -> Option<Self> {
-        scaled(direction).map(|v| Self(v).normalised())
-    }
-
-    /// Scalar product.
-    pub fn dot(self, other: Self) -> f64 {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        a * x + b * y + c * z
-    }
-
-    /// Vector product.
-    pub fn cross(self, other: Self) -> Self {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        Self([b * z - c * y, c * x - a * z, a * y - b * x])
-    }
-
-    /// Euclidean length.
-    pub fn norm(self) -> f64 {
-        self.dot(self).sqrt()
-    }
-
-    /// The vector of length one in the same direction; not a number if the length is zero.
-    pub fn normalised(self) -> Self {
-        let norm = self.norm();
-        Self(self.0.map(|x| x / norm))
-    }
-}
-
-impl Add for Vector {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] + other.0[k]))
-    }
-}
-
-impl Sub for Vector {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] - other.0[k]))
-    }
-}
-
-impl Neg for Vector {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
-    }
-}
-
-impl Mul<f64> for Vector {
-    type Output = Self;
-
-    fn mul(self, factor: f64) -> Self {
-        Self(self.0.map(|x| x * factor))
-    }
+/// The unit vector along an exact direction of any length; `None` if that length is zero.
+///
+/// The scaling is exact, so no direction is too long or too short for it.
+pub fn unit_vector(direction: &[Rational; 3]) -> Option<Vector> {
+    scaled(direction).map(|v| Vector::from(v).normalize())
 }
 
 impl Quaternion {
@@ -104,7 +43,7 @@ impl Quaternion {
     /// The largest of the four parameters comes from the diagonal of `A`, the others from sums and differences of its
     /// off-diagonal elements, so nothing cancels.
     pub fn from_frame(f: Vector, g: Vector, h: Vector) -> Self {
-        let ([a00, a10, a20], [a01, a11, a21], [a02, a12, a22]) = (f.0, g.0, h.0);
+        let ([a00, a10, a20], [a01, a11, a21], [a02, a12, a22]) = (f.into(), g.into(), h.into());
         // Four times the squares of e0 to e3: paper, eq. (3).
         let squares =
             [1.0 + a00 + a11 + a22, 1.0 + a00 - a11 - a22, 1.0 - a00 + a11 - a22, 1.0 - a00 - a11 + a22];
@@ -156,7 +95,7 @@ impl Quaternion {
 
     /// `A(p) v`: from the body's frame to the frame that `p` is measured in.
     pub fn rotate(self, v: Vector) -> Vector {
-        Vector(self.matrix().map(|row| Vector(row).dot(v)))
+        Vector::from(self.matrix().map(|row| Vector::from(row).dot(&v)))
     }
 
     /// `A(p)ᵀ v`: from the frame that `p` is measured in to the body's frame.
@@ -199,7 +138,7 @@ mod tests {
     fn samples() -> Vec<Quaternion> {
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.5, 0.8]];
         let turn = |axis: [f64; 3], half: f64| {
-            let [x, y, z] = (Vector(axis).normalised() * half.sin()).0;
+            let [x, y, z] = (Vector::from(axis).normalize() * half.sin()).into();
             Quaternion([half.cos(), x, y, z])
         };
         axes.iter().flat_map(|&axis| (-6..=6).map(move |k| turn(axis, 0.25 * f64::from(k)))).collect()
@@ -208,7 +147,8 @@ mod tests {
     #[test]
     fn a_frame_gives_back_its_quaternion() {
         for p in samples() {
-            let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| p.rotate(Vector(e)));
+            let columns =
+                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| p.rotate(Vector::from(e)));
             let back = Quaternion::from_frame(columns[0], columns[1], columns[2]).nearest(p);
             for k in 0..4 {
                 assert!((back.0[k] - p.0[k]).abs() <= TOLERANCE, "{p:?} came back as {back:?}");
@@ -218,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_product_turns_as_its_factors_do() {
-        let v = Vector([0.2, -0.7, 0.4]);
+        let v = Vector::from([0.2, -0.7, 0.4]);
         for p in samples() {
             for q in samples() {
                 let difference = (p * q).rotate(v) - p.rotate(q.rotate(v));
@@ -230,6 +170,8 @@ mod tests {
     #[test]
     fn the_matrix_of_a_quarter_turn_about_z_takes_x_to_y() {
         let p = Quaternion::about_z(std::f64::consts::FRAC_PI_2);
-        assert!((p.rotate(Vector([1.0, 0.0, 0.0])) - Vector([0.0, 1.0, 0.0])).norm() <= TOLERANCE);
+        assert!(
+            (p.rotate(Vector::from([1.0, 0.0, 0.0])) - Vector::from([0.0, 1.0, 0.0])).norm() <= TOLERANCE
+        );
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// How a motion is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Approach {
     /// The method.
     pub integrator: Integrator,
@@ -25,7 +25,7 @@ pub struct Approach {
 }
 
 /// The method.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Integrator {
     /// Kutta's classical method of order 4, fixed steps.
     #[default]
@@ -39,7 +39,7 @@ pub enum Integrator {
 }
 
 /// What is integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Coordinates {
     /// Positions and Euler parameters of all bodies, the paper's.
     #[default]
@@ -49,7 +49,7 @@ pub enum Coordinates {
 }
 
 /// How constraints are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Correction {
     /// The paper's coordinate partitioning.
     #[default]
@@ -65,7 +65,7 @@ pub enum Correction {
 }
 
 /// When to correct.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum When {
     /// After so many steps.
     Steps(u32),

@@ -17,6 +17,8 @@ pub enum Failure {
         /// What to try.
         advice: Vec<Advice>,
     },
+    /// The request could not be read.
+    Input(io::Error),
     /// The samples could not be handed on.
     Output(io::Error),
 }
@@ -32,6 +34,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Refused(words) => f.write_str(words),
             Self::Run { words, advice } => write!(f, "{words}{}", try_words(advice)),
+            Self::Input(error) => write!(f, "the request cannot be read: {error}"),
             Self::Output(error) => write!(f, "samples cannot be written: {error}"),
         }
     }
@@ -72,7 +75,7 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
             element(index)
         ),
         Error::Setting { setting, value } => format!("{setting} = {value} s is no length of a step"),
-        Error::NoEnd { t, t_end } => format!("at t = {t} s there is no way to t = {t_end} s"),
+        Error::InvalidEndTime { t, t_end } => format!("at t = {t} s there is no way to t = {t_end} s"),
         Error::TooManySteps { t, steps } => format!("at t = {t} s the budget of {steps} steps is used up"),
         Error::Stiff { t, rate, step } => format!(
             "at t = {t} s a rate of {rate:.4e}/s allows this method steps of no more than {step:.3e} s, too many for its budget"
@@ -103,17 +106,19 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
 
 fn name<M: Mechanism>(mechanism: &M, owner: Owner) -> String {
     match owner {
-        Owner::Body(body) => format!("body `{}`", mechanism.body_name(usize::from(body))),
-        Owner::Joint(joint) => format!("joint `{}`", mechanism.joint(usize::from(joint)).name),
-        Owner::Coupler(coupler) => format!("coupler `{}`", mechanism.coupler_name(usize::from(coupler))),
-        Owner::Driver(driver) => format!("driver `{}`", mechanism.driver_name(usize::from(driver))),
+        Owner::Body(body) => format!("body `{}`", mechanism.description().bodies[usize::from(body)]),
+        Owner::Joint(joint) => format!("joint `{}`", mechanism.description().joints[usize::from(joint)].name),
+        Owner::Coupler(coupler) => {
+            format!("coupler `{}`", mechanism.description().couplers[usize::from(coupler)])
+        }
+        Owner::Driver(driver) => format!("driver `{}`", mechanism.description().drivers[usize::from(driver)]),
     }
 }
 
 /// What an element of the state is: `(r, p)` of each body, `(s, w')` of each body, work, turn references.
 fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
-    let positions = 7 * mechanism.n_bodies();
-    let velocities = positions + 6 * mechanism.n_bodies();
+    let positions = 7 * mechanism.description().bodies.len();
+    let velocities = positions + 6 * mechanism.description().bodies.len();
     let (body, what) = if index < positions {
         (index / 7, if index % 7 < 3 { "position" } else { "orientation" })
     } else if index < velocities {
@@ -122,13 +127,14 @@ fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
     } else {
         return "the work done or the count of a joint's turns".to_owned();
     };
-    format!("the {what} of body `{}`", mechanism.body_name(body))
+    format!("the {what} of body `{}`", mechanism.description().bodies[body])
 }
 
 /// What an element of the joint state is: the coordinates of each joint, then their rates.
 fn joint_element<M: Mechanism>(mechanism: &M, index: usize) -> String {
     let sizes = |of: fn(&Coordinate) -> usize| {
-        let joints = (0..mechanism.n_joints()).map(|joint| mechanism.joint(joint));
+        let joints =
+            (0..mechanism.description().joints.len()).map(|joint| mechanism.description().joints[joint]);
         joints.flat_map(move |joint| {
             let size = joint.coordinates.iter().map(of).sum();
             std::iter::repeat_n(joint.name.to_owned(), size)
@@ -140,7 +146,9 @@ fn joint_element<M: Mechanism>(mechanism: &M, index: usize) -> String {
     match all.into_iter().nth(index) {
         Some((what, name)) => format!("the {what} of joint `{name}`"),
         // Each joint of a tree carries one body, the others are free.
-        None if mechanism.n_joints() == mechanism.n_bodies() => "the work done".to_owned(),
+        None if mechanism.description().joints.len() == mechanism.description().bodies.len() => {
+            "the work done".to_owned()
+        }
         None => "a free body's motion or the work done".to_owned(),
     }
 }

@@ -14,7 +14,7 @@ const TRIAL: Duration = Duration::from_millis(20);
 const AT_ONCE: u32 = 16;
 
 /// Steps of a run, and the time that they will take at the pace of the first ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Forecast {
     /// Number of steps.
     pub steps: f64,

@@ -1,13 +1,13 @@
 //! Numbers that are fed in at every step.
 
-use gyro_sim::{Ports, Scalar};
+use gyro_sim::{Mechanism, Scalar};
 
 /// What one of the mechanism's inputs is over time: linear between the rows of a table, and held beyond its ends. A table of
 /// one row is a constant.
 ///
 /// Each step of the integrator has the value at its own start, held over the step, as a sampled controller gives it; each
 /// sample has the value at its own time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Input {
     /// Index among the mechanism's inputs.
     pub index: usize,
@@ -33,7 +33,7 @@ pub fn any_varies(inputs: &[Input]) -> bool {
 }
 
 /// Sets all inputs to their values at a time.
-pub(crate) fn set<M: Ports>(mechanism: &mut M, inputs: &[Input], t: f64) {
+pub(crate) fn set<M: Mechanism>(mechanism: &mut M, inputs: &[Input], t: f64) {
     for input in inputs {
         mechanism.set_input(input.index, M::Scalar::constant(input.at(t)));
     }

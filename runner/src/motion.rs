@@ -3,13 +3,13 @@
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
 use crate::offers::Offers;
 use crate::pivots;
-use gyro_sim::integrate::{Embedded, Method};
+use gyro_sim::integrate::Method;
 use gyro_sim::{
-    Baumgarte, ByDuals, Clearance, ClosedForm, Control, Coordinate, Correction, Differentiable, Dop853, Dual,
-    Error, JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
-    Partitioning, Ports, Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected,
-    Watched, When,
+    Baumgarte, ByDuals, Clearance, ClosedForm, Control, Coordinate, Corrected, Correction, Dop853, Dual,
+    Equations, Error, Exact, Joint, JointSpace, Kutta4, MassWeighted, Mechanism, Ode, Partition,
+    Partitioning, Real, Rodas4, Scalar, Solver, Statistics, Tsit5, Uncorrected, Watched, When,
 };
+use std::fmt::Debug;
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
 pub trait Motion<M: Mechanism> {
@@ -44,7 +44,7 @@ pub trait Motion<M: Mechanism> {
 }
 
 /// What there is to begin motions of a mechanism with: more for some than for others.
-pub trait Kit<M: Partition + Ports> {
+pub trait Kit<M: Partition<Scalar: Real>> {
     /// A motion from a maximal state at time zero; in words why there cannot be one.
     ///
     /// # Errors
@@ -73,7 +73,7 @@ pub trait Kit<M: Partition + Ports> {
 }
 
 /// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Linear {
     /// Time, s.
     pub t: f64,
@@ -128,29 +128,19 @@ pub struct Tree<D>(pub D);
 #[derive(Clone, Copy, Debug)]
 pub struct TreeWithJacobian<D>(pub D);
 
-/// A system with inputs.
-pub trait Feed: Ode {
-    /// Sets an input until it is set anew.
-    fn feed(&mut self, index: usize, value: Self::Scalar);
-}
-
-impl<M: Ports> Feed for M {
-    fn feed(&mut self, index: usize, value: M::Scalar) {
-        self.set_input(index, value);
-    }
-}
-
 /// Columns of a Jacobian that are computed at a time.
 pub const COLUMNS: usize = 4;
 
-impl<M: Partition + Ports + 'static> Kit<M> for Any {
+impl<M: Partition<Scalar: Real> + 'static> Kit<M> for Any {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         only_explicit(approach)?;
         match approach.correction {
-            Keeping::Partition => Ok(explicit(Slopes::corrected(), partitioning(mechanism, y), approach, y)),
+            Keeping::Partition => {
+                Ok(explicit(Slopes::of(Corrected), partitioning(mechanism, y), approach, y))
+            }
             Keeping::None => {
-                Ok(explicit(Slopes::exact(), Boxed(Box::new(Watched::new(mechanism))), approach, y))
+                Ok(explicit(Slopes::of(Exact), Boxed(Box::new(Watched::new(mechanism))), approach, y))
             }
             other => {
                 Err(format!("the correction {other} needs a projection, which this mechanism does not have"))
@@ -159,7 +149,7 @@ impl<M: Partition + Ports + 'static> Kit<M> for Any {
     }
 }
 
-impl<M: Partition + Ports + Projection + 'static> Kit<M> for Projecting {
+impl<M: Partition<Scalar: Real> + Equations + 'static> Kit<M> for Projecting {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         only_explicit(approach)?;
@@ -182,14 +172,14 @@ impl<M: Partition + Ports + Projection + 'static> Kit<M> for Projecting {
 
 impl<M, D> Kit<M> for WithDuals<D>
 where
-    M: Partition + Ports + Projection + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
+    M: Partition<Scalar: Real> + Equations + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         let correction = keeping(mechanism, approach, y)?;
         if approach.integrator == Integrator::Rodas4 {
-            return Ok(implicit(mechanism, approach, self.0.clone(), correction, y));
+            return Ok(implicit(approach, self.0.clone(), correction, y));
         }
         Ok(maximal(approach, correction, y))
     }
@@ -209,8 +199,8 @@ where
 
 impl<M, D> Kit<M> for Tree<D>
 where
-    M: Partition + Ports + Projection + JointSpace + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + JointSpace + Clone + 'static,
+    M: Partition<Scalar: Real> + JointSpace + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -218,9 +208,8 @@ where
         }
         let x = joints(mechanism, y);
         if approach.integrator == Integrator::Rodas4 {
-            let duals = JointDuals(self.0.clone(), vec![M::Scalar::constant(0.0); square(x.as_ref())]);
-            let method = Rodas4::new(&duals.system(mechanism), &x);
-            return Ok(adaptive(duals, method, Uncorrected, approach, &x));
+            let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
+            return Ok(adaptive(joint_duals(&self.0), method, Uncorrected, approach, &x));
         }
         Ok(explicit(Joint, Uncorrected, approach, &x))
     }
@@ -240,12 +229,11 @@ where
     fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
         let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
         let zero = M::Scalar::constant(0.0);
-        let duals = JointDuals(self.0.clone(), vec![zero; square(x.as_ref())]);
-        let (mut by_state, mut by_time) = (duals.1.clone(), x.clone());
+        let (mut by_state, mut by_time) = (vec![zero; square(x.as_ref())], x.clone());
         let mut slope = x.clone();
         mechanism.joint_derivative(time, &x, &mut slope);
-        duals.system(mechanism).jacobian(time, &x, &mut by_state, &mut by_time);
-        let n_inputs = mechanism.n_inputs();
+        joint_duals(&self.0).jacobian(mechanism, time, &x, &mut by_state, &mut by_time);
+        let n_inputs = mechanism.description().inputs.len();
         let mut by_inputs = vec![zero; n_inputs * x.as_ref().len()];
         for input in 0..n_inputs {
             let column = input_column(&self.0, input, time, x.as_ref());
@@ -265,8 +253,12 @@ where
 
 impl<M, D> Kit<M> for TreeWithJacobian<D>
 where
-    M: Partition + Ports + Projection + JointJacobian + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
+    M: Partition<Scalar: Real>
+        + JointSpace<
+            Jacobian: AsRef<[M::Scalar]> + AsMut<[M::Scalar]> + Debug,
+            InputJacobian: AsRef<[M::Scalar]>,
+        > + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -274,7 +266,7 @@ where
         }
         let x = joints(mechanism, y);
         if approach.integrator == Integrator::Rodas4 {
-            let method = Rodas4::new(&JointForm(mechanism), &x);
+            let method = Rodas4::new(&x, mechanism.joint_buffers().jacobian);
             return Ok(adaptive(Joint, method, Uncorrected, approach, &x));
         }
         Ok(explicit(Joint, Uncorrected, approach, &x))
@@ -295,8 +287,8 @@ where
     fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
         let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
         let (mut slope, mut by_time) = (x.clone(), x.clone());
-        let (mut by_state, mut by_inputs) =
-            (mechanism.joint_jacobian_buffer(), mechanism.input_jacobian_buffer());
+        let buffers = mechanism.joint_buffers();
+        let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
         mechanism.joint_derivative(time, &x, &mut slope);
         mechanism.joint_jacobian(time, &x, &mut by_state, &mut by_time);
         mechanism.joint_input_jacobian(time, &x, &mut by_inputs);
@@ -327,8 +319,8 @@ fn only_explicit(approach: &Approach) -> Result<(), String> {
 }
 
 /// The work of all applied forces over the mechanism's size and of all moments over a radian, J.
-fn work_scale<M: Projection<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
-    let mut forces = mechanism.velocities();
+fn work_scale<M: Equations<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
+    let mut forces = mechanism.terms().velocities;
     mechanism.applied_force(Scalar::constant(t), y, &mut forces);
     let size = mechanism.size().to_f64();
     let work = |(k, force): (usize, &M::Scalar)| {
@@ -345,12 +337,12 @@ fn square<T>(state: &[T]) -> usize {
 /// ∂f/∂u of one input. What the input is set to does not matter: it enters linearly.
 fn input_column<T: Real, D>(duals: &D, input: usize, t: T, x: &[T]) -> Vec<T>
 where
-    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Feed + Clone,
+    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Clone,
 {
     let mut duals = duals.clone();
     let (mut arguments, zero, one) = (duals.joint_start(), T::constant(0.0), T::constant(1.0));
     let slopes = core::array::from_fn(|k| if k == 0 { one } else { zero });
-    duals.feed(input, Dual { value: zero, slopes });
+    duals.set_input(input, Dual { value: zero, slopes });
     for (argument, value) in arguments.as_mut().iter_mut().zip(x) {
         *argument = Dual::new(*value);
     }
@@ -362,7 +354,7 @@ where
 /// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after joint.
 fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
     let mut x = mechanism.joint_start();
-    let coordinates = (0..mechanism.n_joints()).flat_map(|joint| mechanism.joint(joint).coordinates);
+    let coordinates = mechanism.description().joints.iter().flat_map(|joint| joint.coordinates);
     let mut place = 0;
     for (coordinate, angle) in coordinates.zip(nearest) {
         if let (Coordinate::Angle, Some(x)) = (coordinate, x.as_mut().get_mut(place)) {
@@ -381,14 +373,8 @@ fn joints<M: JointSpace>(mechanism: &M, y: &M::State) -> M::Joints {
     x
 }
 
-/// What a system of a mechanism is, however long the mechanism is borrowed.
-trait Lens<M: Mechanism>: 'static {
-    type State: Storage<M::Scalar> + 'static;
-    type System<'a>: Ode<Scalar = M::Scalar, State = Self::State>
-    where
-        M: 'a;
-
-    fn system<'a>(&'a self, mechanism: &'a M) -> Self::System<'a>;
+/// Equations of a mechanism that are integrated, and how their state is shown.
+trait Lens<M: Mechanism>: Ode<M, Scalar = M::Scalar, State: 'static> + 'static {
     /// Writes the maximal state.
     fn show(&self, mechanism: &M, t: M::Scalar, from: &Self::State, to: &mut M::State);
     fn set_input(&mut self, _index: usize, _value: f64) {}
@@ -398,146 +384,74 @@ fn copy<M: Mechanism>(from: &M::State, to: &mut M::State) {
     to.as_mut().copy_from_slice(from.as_ref());
 }
 
-/// A mechanism as a system of its own.
-struct Exact<'a, M>(&'a M);
-
-impl<M: Ode> Ode for Exact<'_, M> {
-    type Scalar = M::Scalar;
-    type State = M::State;
-
-    fn start(&self) -> M::State {
-        self.0.start()
-    }
-    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
-        self.0.derivative(t, y, dy);
-    }
-}
-
-impl<M: Mechanism> Maximal for Exact<'_, M> {
-    type Mechanism = M;
-
-    fn mechanism(&self) -> &M {
-        self.0
-    }
-}
-
-type Derivative<M> = dyn Fn(&M, <M as Ode>::Scalar, &<M as Ode>::State, &mut <M as Ode>::State);
+type Derivative<M> =
+    dyn Fn(&M, <M as Mechanism>::Scalar, &<M as Mechanism>::State, &mut <M as Mechanism>::State);
 
 /// Maximal coordinates: one of the right-hand sides that a mechanism has there. Boxed, like corrections, so that integrators are not
 /// compiled anew for each.
 struct Slopes<M: Mechanism>(Box<Derivative<M>>);
 
-impl<M: Mechanism> Slopes<M> {
-    /// Exact on the constraints and off them.
-    fn exact() -> Self {
-        Self(Box::new(|mechanism, t, y, dy| mechanism.derivative(t, y, dy)))
-    }
-    /// For states that are corrected every few steps.
-    fn corrected() -> Self {
-        Self(Box::new(|mechanism, t, y, dy| mechanism.corrected_derivative(t, y, dy)))
+impl<M: Mechanism + 'static> Slopes<M> {
+    fn of(dynamics: impl Ode<M, Scalar = M::Scalar, State = M::State> + 'static) -> Self {
+        Self(Box::new(move |mechanism, t, y, dy| dynamics.derivative(mechanism, t, y, dy)))
     }
 }
 
-impl<M: Projection> Slopes<M> {
-    /// Baumgarte's, at this rate.
-    fn steered(rate: f64) -> Self {
-        Self(Box::new(move |mechanism, t, y, dy| {
-            Baumgarte { mechanism, rate: Scalar::constant(rate) }.derivative(t, y, dy);
-        }))
-    }
-}
-
-/// A mechanism with one of its right-hand sides.
-struct Sloped<'a, M: Mechanism>(&'a M, &'a Derivative<M>);
-
-impl<M: Mechanism> Ode for Sloped<'_, M> {
+impl<M: Mechanism> Ode<M> for Slopes<M> {
     type Scalar = M::Scalar;
     type State = M::State;
+    type Jacobian = ();
 
-    fn start(&self) -> M::State {
-        self.0.start()
-    }
-    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
-        self.1(self.0, t, y, dy);
+    fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        self.0(mechanism, t, y, dy);
     }
 }
 
-impl<M: Mechanism> Maximal for Sloped<'_, M> {
-    type Mechanism = M;
-
-    fn mechanism(&self) -> &M {
-        self.0
-    }
-}
-
-impl<M: Mechanism<Scalar: 'static, State: 'static> + 'static> Lens<M> for Slopes<M> {
-    type State = M::State;
-    type System<'a> = Sloped<'a, M>;
-
-    fn system<'a>(&'a self, mechanism: &'a M) -> Sloped<'a, M> {
-        Sloped(mechanism, &*self.0)
-    }
+impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Slopes<M> {
     fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
         copy::<M>(from, to);
     }
 }
 
-/// The mechanism in dual numbers, and zeros for a Jacobian.
-struct Duals<D, T>(D, Vec<T>);
+/// Maximal coordinates, with a Jacobian by dual numbers.
+type Duals<D, T> = ByDuals<Exact, D, <D as Mechanism>::State, Vec<T>, COLUMNS>;
 
 impl<M, D> Lens<M> for Duals<D, M::Scalar>
 where
     M: Mechanism<State: 'static, Scalar: 'static> + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>, State: 'static> + 'static,
 {
-    type State = M::State;
-    type System<'a> = ByDuals<'a, Exact<'a, M>, Exact<'a, D>, Vec<M::Scalar>, COLUMNS>;
-
-    fn system<'a>(&'a self, mechanism: &'a M) -> Self::System<'a> {
-        ByDuals::new(Exact(mechanism), Exact(&self.0), &self.1)
-    }
     fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
         copy::<M>(from, to);
     }
     fn set_input(&mut self, index: usize, value: f64) {
-        self.0.feed(index, Scalar::constant(value));
+        self.in_duals_mut().set_input(index, Scalar::constant(value));
     }
 }
 
-/// Joint coordinates.
-struct Joint;
-
 impl<M: JointSpace<Joints: 'static> + 'static> Lens<M> for Joint {
-    type State = M::Joints;
-    type System<'a> = JointForm<'a, M>;
-
-    fn system<'a>(&'a self, mechanism: &'a M) -> JointForm<'a, M> {
-        JointForm(mechanism)
-    }
     fn show(&self, mechanism: &M, t: M::Scalar, from: &M::Joints, to: &mut M::State) {
         mechanism.to_maximal(t, from, to);
     }
 }
 
 /// Joint coordinates, with a Jacobian by dual numbers.
-struct JointDuals<D, T>(D, Vec<T>);
+type JointDuals<D, T> = ByDuals<Joint, D, <D as JointSpace>::Joints, Vec<T>, COLUMNS>;
+
+fn joint_duals<D: JointSpace + Clone, T>(duals: &D) -> JointDuals<D, T> {
+    ByDuals::new(Joint, duals.clone(), duals.joint_start())
+}
 
 impl<M, D> Lens<M> for JointDuals<D, M::Scalar>
 where
     M: JointSpace<Joints: 'static, Scalar: 'static> + 'static,
-    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>, Joints: 'static> + 'static,
 {
-    type State = M::Joints;
-    type System<'a> = ByDuals<'a, JointForm<'a, M>, JointForm<'a, D>, Vec<M::Scalar>, COLUMNS>;
-
-    fn system<'a>(&'a self, mechanism: &'a M) -> Self::System<'a> {
-        ByDuals::new(JointForm(mechanism), JointForm(&self.0), &self.1)
-    }
     fn show(&self, mechanism: &M, t: M::Scalar, from: &M::Joints, to: &mut M::State) {
         mechanism.to_maximal(t, from, to);
     }
     fn set_input(&mut self, index: usize, value: f64) {
-        self.0.feed(index, Scalar::constant(value));
+        self.in_duals_mut().set_input(index, Scalar::constant(value));
     }
 }
 
@@ -548,43 +462,46 @@ trait Keeps<M: Mechanism> {
     fn switches(&self) -> u64;
 }
 
-impl<M: Mechanism, C: Correction<M>> Keeps<M> for C {
+/// All of them admit exact equations, and those that `maximal` chooses for them.
+impl<M: Mechanism, C: Correction<Exact, M>> Keeps<M> for C {
     fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
-        Correction::correct(self, mechanism, t, y)
+        Correction::<Exact, M>::correct(self, mechanism, t, y)
     }
     fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
-        Correction::violation(self, mechanism, t, y)
+        Correction::<Exact, M>::violation(self, mechanism, t, y)
     }
     fn switches(&self) -> u64 {
-        Correction::switches(self)
+        Correction::<Exact, M>::switches(self)
     }
 }
 
 struct Boxed<M: Mechanism>(Box<dyn Keeps<M>>);
 
-impl<M: Partition, O: Maximal<Mechanism = M, Scalar = M::Scalar, State = M::State>> Correction<O>
-    for Boxed<M>
+impl<M, D> Correction<D, M> for Boxed<M>
+where
+    M: Partition<Scalar: Real>,
+    D: Ode<M, Scalar = M::Scalar, State = M::State>,
 {
-    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
-        self.0.correct(system.mechanism(), t, y)
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.0.correct(mechanism, t, y)
     }
-    fn refer_turns(&mut self, system: &O, t: O::Scalar, y: &mut O::State) {
-        gyro_sim::refer_turns(system.mechanism(), t, y);
+    fn refer_turns(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) {
+        gyro_sim::refer_turns(mechanism, t, y);
     }
-    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
-        self.0.violation(system.mechanism(), t, y)
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        self.0.violation(mechanism, t, y)
     }
     fn switches(&self) -> u64 {
         self.0.switches()
     }
-    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
-        system.mechanism().clearance(t, y)
+    fn clearance(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> Option<Clearance<M::Scalar>> {
+        mechanism.clearance(t, y)
     }
 }
 
 fn keeping<M>(mechanism: &M, approach: &Approach, y: &M::State) -> Result<Boxed<M>, String>
 where
-    M: Partition + Projection + 'static,
+    M: Partition<Scalar: Real> + Equations + 'static,
 {
     Ok(Boxed(match approach.correction {
         Keeping::Partition => return Ok(partitioning(mechanism, y)),
@@ -594,7 +511,7 @@ where
     }))
 }
 
-fn partitioning<M: Partition + 'static>(mechanism: &M, y: &M::State) -> Boxed<M> {
+fn partitioning<M: Partition<Scalar: Real> + 'static>(mechanism: &M, y: &M::State) -> Boxed<M> {
     Boxed(Box::new(Partitioning::new(mechanism, Scalar::constant(0.0), y)))
 }
 
@@ -606,15 +523,15 @@ fn in_maximal<M, D>(
     y: &M::State,
 ) -> Result<Box<dyn Motion<M>>, String>
 where
-    M: Partition + Ports + Projection + JointSpace + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
+    M: Partition<Scalar: Real> + JointSpace + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     let correction = match approach.correction {
         Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
         _ => keeping(mechanism, approach, y)?,
     };
     if approach.integrator == Integrator::Rodas4 {
-        return Ok(implicit(mechanism, approach, duals.clone(), correction, y));
+        return Ok(implicit(approach, duals.clone(), correction, y));
     }
     Ok(maximal(approach, correction, y))
 }
@@ -622,44 +539,36 @@ where
 /// Explicit methods in maximal coordinates.
 fn maximal<M>(approach: &Approach, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
 where
-    M: Partition + Projection + 'static,
+    M: Partition<Scalar: Real> + Equations + 'static,
 {
     let slopes = match approach.correction {
         // The projection is as good as it is only with accelerations that are exact off the constraints.
-        Keeping::None | Keeping::MassWeighted => Slopes::exact(),
-        Keeping::Baumgarte(rate) => Slopes::steered(rate),
-        _ => Slopes::corrected(),
+        Keeping::None | Keeping::MassWeighted => Slopes::of(Exact),
+        Keeping::Baumgarte(rate) => Slopes::of(Baumgarte { rate: M::Scalar::constant(rate) }),
+        _ => Slopes::of(Corrected),
     };
     explicit(slopes, correction, approach, y)
 }
 
 /// Rodas in maximal coordinates.
-fn implicit<M, D>(
-    mechanism: &M,
-    approach: &Approach,
-    duals: D,
-    correction: Boxed<M>,
-    y: &M::State,
-) -> Box<dyn Motion<M>>
+fn implicit<M, D>(approach: &Approach, duals: D, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
 where
-    M: Partition + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
+    M: Partition<Scalar: Real> + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + 'static,
 {
-    let duals = Duals(duals, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
-    let method = Rodas4::new(&duals.system(mechanism), y);
-    adaptive(duals, method, correction, approach, y)
+    let method = Rodas4::new(y, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
+    let start = duals.start();
+    adaptive(ByDuals::new(Exact, duals, start), method, correction, approach, y)
 }
 
 fn explicit<M, L, C>(lens: L, correction: C, approach: &Approach, y: &L::State) -> Box<dyn Motion<M>>
 where
     M: Mechanism<Scalar: Real> + 'static,
     L: Lens<M>,
-    C: for<'a> Correction<L::System<'a>> + 'static,
+    C: Correction<L, M> + 'static,
 {
     match approach.integrator {
-        Integrator::Rk4 => {
-            Box::new(Fixed(Moving { lens, solver: solver(Kutta4::new(y), correction, approach, y) }))
-        }
+        Integrator::Rk4 => Box::new(Fixed(solver(lens, Kutta4::new(y), correction, approach, y))),
         Integrator::Tsit5 => adaptive(lens, Tsit5::new(y), correction, approach, y),
         _ => adaptive(lens, Dop853::new(y), correction, approach, y),
     }
@@ -675,18 +584,22 @@ fn adaptive<M, L, A, C>(
 where
     M: Mechanism<Scalar: Real> + 'static,
     L: Lens<M>,
-    A: for<'a> Embedded<L::System<'a>> + 'static,
-    C: for<'a> Correction<L::System<'a>> + 'static,
+    A: Method<L, M> + 'static,
+    C: Correction<L, M> + 'static,
 {
-    Box::new(Adaptive(Moving { lens, solver: solver(method, correction, approach, y) }))
+    Box::new(Adaptive(solver(lens, method, correction, approach, y)))
 }
 
-fn solver<S: Storage<T>, T: Real, A, C>(
+fn solver<L, S, T: Real, A, C>(
+    lens: L,
     method: A,
     correction: C,
     approach: &Approach,
     y: &S,
-) -> Solver<S, T, A, C> {
+) -> Solver<L, S, T, A, C>
+where
+    S: Clone + Debug + AsRef<[T]> + AsMut<[T]>,
+{
     let mut control = Control::default();
     if let Some(tolerance) = approach.tolerance {
         control = control.with_tolerance(tolerance);
@@ -700,66 +613,56 @@ fn solver<S: Storage<T>, T: Real, A, C>(
         // Never, or when the schedule says so.
         _ => When::Steps(u32::MAX),
     };
-    Solver::new(method, correction, T::constant(0.0), y).with_control(control)
-}
-
-struct Moving<L, S, T, A, C> {
-    lens: L,
-    solver: Solver<S, T, A, C>,
+    Solver::with_correction(lens, method, correction, T::constant(0.0), y).with_control(control)
 }
 
 /// A method without an error estimate.
-struct Fixed<L, S, T, A, C>(Moving<L, S, T, A, C>);
+struct Fixed<L, S, T, A, C>(Solver<L, S, T, A, C>);
 
 /// A method with one.
-struct Adaptive<L, S, T, A, C>(Moving<L, S, T, A, C>);
+struct Adaptive<L, S, T, A, C>(Solver<L, S, T, A, C>);
 
 macro_rules! motion {
-    ($type:ident, $method:ident, |$self:ident, $mechanism:ident, $t_end:ident| $towards:expr) => {
+    ($type:ident, |$self:ident, $mechanism:ident, $t_end:ident| $towards:expr) => {
         impl<M, L, A, C> Motion<M> for $type<L, L::State, M::Scalar, A, C>
         where
             M: Mechanism<Scalar: Real> + 'static,
             L: Lens<M>,
-            A: for<'a> $method<L::System<'a>>,
-            C: for<'a> Correction<L::System<'a>>,
+            A: Method<L, M>,
+            C: Correction<L, M>,
         {
             fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
-                let moving = &mut self.0;
-                moving.solver.step(&moving.lens.system(mechanism), Scalar::constant(h))
+                self.0.step(mechanism, Scalar::constant(h))
             }
             fn step_towards(&mut $self, $mechanism: &M, $t_end: f64) -> Result<(), Error> {
                 $towards
             }
             fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
-                let moving = &mut self.0;
-                moving.solver.correct(&moving.lens.system(mechanism))
+                self.0.correct(&mechanism)
             }
             fn time(&self) -> f64 {
-                self.0.solver.time().to_f64()
+                self.0.time().to_f64()
             }
             fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error> {
-                let (moving, t) = (&mut self.0, Scalar::constant(t));
-                let mut state = moving.solver.state().clone();
-                moving.solver.interpolate(&moving.lens.system(mechanism), t, &mut state)?;
-                moving.lens.show(mechanism, t, &state, y);
+                let (solver, t) = (&mut self.0, Scalar::constant(t));
+                let mut state = solver.state().clone();
+                solver.interpolate(mechanism, t, &mut state)?;
+                solver.dynamics().show(mechanism, t, &state, y);
                 Ok(())
             }
             fn set_input(&mut self, index: usize, value: f64) {
-                self.0.lens.set_input(index, value);
-                self.0.solver.system_has_changed();
+                self.0.dynamics_mut().set_input(index, value);
+                self.0.system_has_changed();
             }
             fn statistics(&self) -> Statistics {
-                *self.0.solver.statistics()
+                *self.0.statistics()
             }
             fn chart_switches(&self) -> u64 {
-                self.0.solver.correction().switches()
+                Correction::<L, M>::switches(self.0.correction())
             }
         }
     };
 }
 
-motion!(Adaptive, Embedded, |self, mechanism, t_end| {
-    let moving = &mut self.0;
-    moving.solver.step_towards(&moving.lens.system(mechanism), Scalar::constant(t_end))
-});
-motion!(Fixed, Method, |self, mechanism, t_end| self.step(mechanism, t_end - self.time()));
+motion!(Adaptive, |self, mechanism, t_end| self.0.step_towards(mechanism, Scalar::constant(t_end)));
+motion!(Fixed, |self, mechanism, t_end| self.step(mechanism, t_end - self.time()));

@@ -5,16 +5,16 @@ use gyro_sim::{Equations, Real, Scalar};
 /// The smallest pivot of Φ_q, joint rows and normalisations, by full pivoting (Golub and Van Loan, *Matrix Computations*, section 3.4.8);
 /// lengths in units of the mechanism's size.
 pub(crate) fn smallest<M: Equations<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
-    let mut values = mechanism.phi_q_values();
+    let mut values = mechanism.terms().phi_q;
     mechanism.phi_q(Scalar::constant(t), y, &mut values);
     let size = mechanism.size().to_f64();
-    let n_columns = 7 * mechanism.n_bodies();
-    let n_rows = mechanism.constraints().as_ref().len();
-    let n_joint_rows = n_rows - mechanism.n_bodies();
+    let n_columns = 7 * mechanism.description().bodies.len();
+    let n_rows = mechanism.buffers().constraints.as_ref().len();
+    let n_joint_rows = n_rows - mechanism.description().bodies.len();
     let mut matrix = vec![vec![0.0; n_columns]; n_rows];
     for ((row, column), value) in mechanism.phi_q_pattern().iter().zip(values.as_ref()) {
         let (row, column) = (usize::from(*row), usize::from(*column));
-        let is_length = row < n_joint_rows && mechanism.row(row).is_length;
+        let is_length = row < n_joint_rows && mechanism.description().rows[row].is_length;
         let row_scale = if is_length { 1.0 / size } else { 1.0 };
         let column_scale = if column % 7 < 3 { size } else { 1.0 };
         matrix[row][column] = value.to_f64() * row_scale * column_scale;

@@ -12,12 +12,12 @@ use crate::{
     Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
     describe, describe_in,
 };
-use gyro_sim::{Error, JointCoordinate, Partition, Ports, Real, Scalar, Turns};
+use gyro_sim::{Error, JointCoordinate, Partition, Real, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
 /// Where a run starts, what is fed into it and what is watched besides joints and outputs.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Start {
     /// `(r, p)` of each body with coordinates.
     pub positions: Vec<f64>,
@@ -63,7 +63,7 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// [`Failure::Run`] if a solver fails or the start does not fit the mechanism; [`Failure::Output`] from `tell`.
-pub fn run<M: Partition + Ports + 'static>(
+pub fn run<M: Partition<Scalar: Real> + 'static>(
     mechanism: &mut M,
     settings: &Settings,
     start: &Start,
@@ -78,7 +78,7 @@ pub fn run<M: Partition + Ports + 'static>(
 ///
 /// # Errors
 /// As [`run`]; [`Failure::Run`] also if the approach does not suit the mechanism.
-pub fn run_by<M: Partition + Ports + 'static>(
+pub fn run_by<M: Partition<Scalar: Real> + 'static>(
     mechanism: &mut M,
     kit: &dyn Kit<M>,
     (settings, approach): (&Settings, &Approach),
@@ -158,7 +158,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Told<F> {
 }
 
 /// Says how long many fixed steps will take; refuses them where that is longer than anyone wants to wait.
-fn foretell<M: Partition + Ports + 'static, F: FnMut(Event<'_>) -> io::Result<()>>(
+fn foretell<M: Partition<Scalar: Real> + 'static, F: FnMut(Event<'_>) -> io::Result<()>>(
     mechanism: &M,
     kit: &dyn Kit<M>,
     (settings, approach): (&Settings, &Approach),
@@ -211,7 +211,7 @@ fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), 
 }
 
 /// The state under way, with its solvers.
-struct Run<'a, M: Partition + Ports> {
+struct Run<'a, M: Partition<Scalar: Real>> {
     mechanism: &'a mut M,
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
@@ -229,7 +229,7 @@ struct Run<'a, M: Partition + Ports> {
     summary: Summary,
 }
 
-impl<'a, M: Partition + Ports> Run<'a, M> {
+impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
     fn new(
         mechanism: &'a mut M,
         mut motion: Box<dyn Motion<M>>,
@@ -385,9 +385,10 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
 
     /// The continuous angle of each coordinate at the last reading; zero for what is no angle.
     fn angles(&self) -> Vec<f64> {
-        let joints = 0..self.mechanism.n_joints();
-        let all = joints
-            .flat_map(|joint| (0..self.mechanism.joint(joint).coordinates.len()).map(move |k| (joint, k)));
+        let joints = 0..self.mechanism.description().joints.len();
+        let all = joints.flat_map(|joint| {
+            (0..self.mechanism.description().joints[joint].coordinates.len()).map(move |k| (joint, k))
+        });
         let angle = |(joint, k)| match self.turns.coordinate(self.mechanism, joint, k) {
             Some(JointCoordinate::Angle { position, .. }) => position.to_f64(),
             _ => 0.0,
@@ -426,7 +427,7 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
 pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
     let mut state = mechanism.start();
     refuse_misfit(mechanism, state.as_ref().len(), start)?;
-    let (known, rest) = state.as_mut().split_at_mut(13 * mechanism.n_bodies());
+    let (known, rest) = state.as_mut().split_at_mut(13 * mechanism.description().bodies.len());
     let (work, references) = rest.split_at_mut(rest.len() - start.turn_references.len());
     work.fill(Scalar::constant(0.0));
     for (element, value) in known.iter_mut().zip(start.positions.iter().chain(&start.velocities)) {
@@ -440,12 +441,12 @@ pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::Sta
 
 /// Whether the state holds more than positions, velocities and turn references.
 fn counts_work<M: Partition>(mechanism: &M, start: &Start) -> bool {
-    mechanism.start().as_ref().len() > 13 * mechanism.n_bodies() + start.turn_references.len()
+    mechanism.start().as_ref().len() > 13 * mechanism.description().bodies.len() + start.turn_references.len()
 }
 
 /// At most the work is left of the state when positions, velocities and turn references are taken away.
 fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> Result<(), Failure> {
-    let n_bodies = mechanism.n_bodies();
+    let n_bodies = mechanism.description().bodies.len();
     let found = [start.positions.len(), start.velocities.len(), start.turn_references.len()];
     let left = length.checked_sub(found.iter().sum());
     let fits = found[0] == 7 * n_bodies

@@ -1,9 +1,9 @@
 //! What is recorded at a sample time.
 
-use gyro_sim::{JointCoordinate, Mechanism, Ports, Real, Scalar, Turns, violation};
+use gyro_sim::{JointCoordinate, Mechanism, Real, Scalar, Turns, violation};
 
 /// The mechanism at one time, in `f64` whatever the run's precision.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// Time, s.
     pub t: f64,
@@ -34,7 +34,7 @@ pub struct Sample {
 pub type JointSample = JointCoordinate<f64>;
 
 /// Pose and velocity of a body: `(r, p)` and `(s, w')`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct BodySample {
     /// Position of the mass centre, m, and Euler parameters.
     pub pose: [f64; 7],
@@ -51,17 +51,17 @@ impl Sample {
 
 /// Takes samples; holds the buffers that this needs.
 #[derive(Debug)]
-pub(crate) struct Observer<'a, M: Ports> {
+pub(crate) struct Observer<'a, M: Mechanism> {
     observed_bodies: &'a [usize],
     phi: M::Constraints,
     residual: M::Rows,
     outputs: M::Outputs,
 }
 
-impl<'a, M: Ports<Scalar: Real>> Observer<'a, M> {
+impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
     pub(crate) fn new(mechanism: &M, observed_bodies: &'a [usize]) -> Self {
-        let (phi, residual) = (mechanism.constraints(), mechanism.rows());
-        Self { observed_bodies, phi, residual, outputs: mechanism.outputs_buffer() }
+        let (phi, residual) = (mechanism.buffers().constraints, mechanism.buffers().rows);
+        Self { observed_bodies, phi, residual, outputs: mechanism.buffers().outputs }
     }
 
     pub(crate) fn sample(
@@ -96,7 +96,7 @@ impl<'a, M: Ports<Scalar: Real>> Observer<'a, M> {
         mechanism.phi(t, y, &mut self.phi);
         mechanism.velocity_residual(t, y, &mut self.residual);
         let phi = self.phi.as_ref();
-        let (joint_rows, norms) = phi.split_at(phi.len() - mechanism.n_bodies());
+        let (joint_rows, norms) = phi.split_at(phi.len() - mechanism.description().bodies.len());
         let worst = |rows| violation(mechanism, rows).value.to_f64();
         let worst_norm = norms.iter().map(|norm| norm.abs().to_f64()).fold(0.0, f64::max);
         [worst(joint_rows), worst(self.residual.as_ref()), worst_norm]
@@ -105,8 +105,9 @@ impl<'a, M: Ports<Scalar: Real>> Observer<'a, M> {
 
 /// All coordinates of all joints at the last reading.
 fn coordinates<M: Mechanism<Scalar: Real>>(mechanism: &M, turns: &Turns<M>) -> Vec<JointSample> {
-    let all = (0..mechanism.n_joints())
-        .flat_map(|joint| (0..mechanism.joint(joint).coordinates.len()).map(move |index| (joint, index)));
+    let all = (0..mechanism.description().joints.len()).flat_map(|joint| {
+        (0..mechanism.description().joints[joint].coordinates.len()).map(move |index| (joint, index))
+    });
     all.filter_map(|(joint, index)| turns.coordinate(mechanism, joint, index)).map(in_f64).collect()
 }
 
@@ -125,7 +126,7 @@ fn in_f64<T: Real>(coordinate: JointCoordinate<T>) -> JointSample {
 }
 
 fn body<M: Mechanism<Scalar: Real>>(mechanism: &M, slot: usize, y: &M::State) -> BodySample {
-    let (y, velocities) = (y.as_ref(), 7 * mechanism.n_bodies());
+    let (y, velocities) = (y.as_ref(), 7 * mechanism.description().bodies.len());
     BodySample {
         pose: std::array::from_fn(|k| y[7 * slot + k].to_f64()),
         velocity: std::array::from_fn(|k| y[velocities + 6 * slot + k].to_f64()),

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// How a run is to be made; all times in seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     /// Length of the run. One of 0 has the start as its only sample.
     pub t_end: f64,

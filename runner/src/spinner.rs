@@ -2,8 +2,8 @@
 
 use crate::Start;
 use gyro_sim::{
-    Coordinate, Energy, Error, JointInfo, Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo,
-    charts,
+    Buffers, Coordinate, Description, Energy, Error, JointInfo, Mechanism, OutputInfo, Owner, Partition,
+    RowInfo, charts,
 };
 
 /// State: r, p, s, w'.
@@ -34,9 +34,37 @@ impl Spinner {
     }
 }
 
-impl Ode for Spinner {
+impl Mechanism for Spinner {
     type Scalar = f64;
     type State = [f64; 13];
+    type Rows = [f64; 5];
+    type Constraints = [f64; 6];
+    type Readings = [f64; 3];
+    type Outputs = [f64; 1];
+
+    fn description(&self) -> &Description<'_> {
+        const ROWS: [RowInfo; 5] = {
+            const LENGTH: RowInfo = RowInfo { owner: Owner::Joint(0), is_length: true };
+            const NUMBER: RowInfo = RowInfo { owner: Owner::Joint(0), is_length: false };
+            [LENGTH, LENGTH, LENGTH, NUMBER, NUMBER]
+        };
+        const DESCRIPTION: Description<'static> = Description {
+            size: 1.0,
+            bodies: &["rotor"],
+            joints: &[JointInfo { name: "axle", coordinates: &[Coordinate::Angle] }],
+            couplers: &["gear"],
+            drivers: &["crank"],
+            rows: &ROWS,
+            has_work: false,
+            turn_references: &[],
+            inputs: &["torque"],
+            outputs: &[OutputInfo { name: "motor", suffix: "", unit: "N*m" }],
+        };
+        &DESCRIPTION
+    }
+    fn buffers(&self) -> Buffers<Self> {
+        Buffers { rows: [0.0; 5], constraints: [0.0; 6], readings: [0.0; 3], outputs: [0.0] }
+    }
 
     fn start(&self) -> [f64; 13] {
         let mut state = [0.0; 13];
@@ -51,22 +79,6 @@ impl Ode for Spinner {
         }
         dy[10] = self.torque;
     }
-}
-
-impl Mechanism for Spinner {
-    type Rows = [f64; 5];
-    type Constraints = [f64; 6];
-    type Readings = [f64; 3];
-
-    fn rows(&self) -> [f64; 5] {
-        [0.0; 5]
-    }
-    fn constraints(&self) -> [f64; 6] {
-        [0.0; 6]
-    }
-    fn readings(&self) -> [f64; 3] {
-        [0.0; 3]
-    }
     fn phi(&self, _: f64, y: &[f64; 13], out: &mut [f64; 6]) {
         let norm: f64 = y[3..7].iter().map(|e| e * e).sum();
         *out = [y[0], y[1], y[2], y[5], y[6], norm - 1.0];
@@ -80,56 +92,9 @@ impl Mechanism for Spinner {
     fn read_joints(&self, _: f64, y: &[f64; 13], out: &mut [f64; 3]) {
         *out = [2.0 * y[3] * y[4], y[3] * y[3] - y[4] * y[4], y[10]];
     }
-    fn n_bodies(&self) -> usize {
-        1
-    }
-    fn n_joints(&self) -> usize {
-        1
-    }
-    fn body_name(&self, _: usize) -> &str {
-        "rotor"
-    }
-    fn joint(&self, _: usize) -> JointInfo<'_> {
-        JointInfo { name: "axle", coordinates: &[Coordinate::Angle] }
-    }
-    fn coupler_name(&self, _: usize) -> &str {
-        "gear"
-    }
-    fn driver_name(&self, _: usize) -> &str {
-        "crank"
-    }
-    fn row(&self, row: usize) -> RowInfo {
-        RowInfo { owner: Owner::Joint(0), is_length: row < 3 }
-    }
-    fn size(&self) -> f64 {
-        1.0
-    }
-    fn work(&self, _: &[f64; 13]) -> f64 {
-        0.0
-    }
-}
-
-/// The torque goes in and comes out.
-impl Ports for Spinner {
-    type Outputs = [f64; 1];
-
-    fn outputs_buffer(&self) -> [f64; 1] {
-        [0.0]
-    }
+    /// The torque goes in and comes out.
     fn outputs(&self, _: f64, _: &[f64; 13], out: &mut [f64; 1]) {
         *out = [self.torque];
-    }
-    fn n_outputs(&self) -> usize {
-        1
-    }
-    fn output(&self, _: usize) -> OutputInfo<'_> {
-        OutputInfo { name: "motor", suffix: "", unit: "N*m" }
-    }
-    fn n_inputs(&self) -> usize {
-        1
-    }
-    fn input_name(&self, _: usize) -> &str {
-        "torque"
     }
     fn set_input(&mut self, index: usize, value: f64) -> bool {
         if index == 0 {
@@ -140,7 +105,7 @@ impl Ports for Spinner {
 }
 
 impl Partition for Spinner {
-    type Independent = charts::Charts<1>;
+    type Independent = charts::Charts<f64, 1>;
 
     fn independent(&self, _: f64, y: &[f64; 13]) -> Self::Independent {
         charts::best(&Self::tangent(y))

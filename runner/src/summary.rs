@@ -4,7 +4,7 @@ use crate::Sample;
 use gyro_sim::Statistics;
 
 /// The figures of a whole run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Summary {
     /// Steps of the integrator.
     pub steps: u64,

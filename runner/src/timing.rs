@@ -3,12 +3,12 @@
 use crate::motion::Kit;
 use crate::run::{scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
-use gyro_sim::{Error, Partition, Ports, Real, Scalar, Statistics};
+use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
 use gyro_yardstick::{Measured, beside};
 use std::time::Duration;
 
 /// What a run costs: its steps and corrections alone, no samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Timing {
     /// Its time.
     pub measured: Measured,
@@ -20,7 +20,7 @@ pub struct Timing {
 ///
 /// # Errors
 /// [`Failure::Run`] as of [`run_by`](crate::run_by).
-pub fn time_by<M: Partition + Ports + 'static>(
+pub fn time_by<M: Partition<Scalar: Real> + 'static>(
     mechanism: &M,
     kit: &dyn Kit<M>,
     (settings, approach): (&Settings, &Approach),

@@ -52,7 +52,7 @@ const FAULTS: &[Fault] = &[
     fault("derive/joint_coordinate.rs", "bob", "«graph.mat_vec(&j.a, &joint.second.point)»);\n    let (point_i", "graph.transposed_vec(&j.a, &joint.second.point)"),
     fault("derive/joint_coordinate.rs", "slider", "let u = «system.graph.mat_vec(&a, u)»;", "*u"),
     // What vanishes where |p| = 1.
-    fault("kernels.rs", "free-body", "phi: «equations.phi.clone()»,", "equations.phi.iter().map(|_| Graph::ZERO).collect()"),
+    fault("kernels.rs", "free-body", "Source::Equations(|e| «e.phi.clone()».into())", "e.phi.iter().map(|_| Graph::ZERO).collect::<Vec<_>>()"),
     // Rotations and their rates.
     fault("expr/vector.rs", "bob", "let sum = self.dot(&[g[0][k], g[1][k], g[2][k]], w);\n            «self.mul(half, sum)»", "sum"),
     fault("expr/vector.rs", "bob", "[«[n1, e0, e3, n2]», [n2", "[n1, e0, n3, e2]"),
@@ -164,9 +164,9 @@ const FAULTS: &[Fault] = &[
     fault("simplify/scales.rs", "bob", "let c = «c.mul(&inverse)»;", "c"),
     fault("simplify/scales.rs", "bob", "terms[first..].iter_mut().for_each(|(c, _)| *c = «c.neg()»);", "c.clone()"),
     fault("simplify/scales.rs", "bob", "total.map_or(constant, |total| «self.graph.add(total, constant)»)", "total"),
-    fault("joint_space/candidates.rs", "pair", "let linear = if is_global { motion.t } else { «system.graph.mat_vec(&a, &motion.t)» };", "motion.t"),
-    fault("joint_space/candidates.rs", "pair", "motion = «motion.plus(graph, &yielded)»;", "yielded"),
-    fault("joint_space/candidates.rs", "spherical", "let p_rate = «graph.euler_rate(&p, &w)»;", "p"),
+    fault("joint_space/motions.rs", "pair", "let linear = if is_global { motion.t } else { «system.graph.mat_vec(&a, &motion.t)» };", "motion.t"),
+    fault("joint_space/motions.rs", "pair", "motion = «motion.plus(graph, &yielded)»;", "yielded"),
+    fault("joint_space/maps.rs", "spherical", "let p_rate = «graph.euler_rate(&p, &w)»;", "p"),
     fault("joint_space/multipliers.rs", "bob", "lambda[row] = «graph.neg(supplied)»;", "supplied"),
     fault("joint_space/multipliers.rs", "pair", "lacking[parent.slot] = «lacking[parent.slot].plus(graph, &carried)»;", "carried"),
     fault("joint_space/multipliers.rs", "pair", "let turned = «graph.mat_vec(&carriage.rotation, &at_joint.rho)»;", "at_joint.rho"),

@@ -6,8 +6,8 @@ use gyro_assembled::{Careful, Dense};
 use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_viscous::GyroscopeViscous};
 use gyro_sim::integrate::{Embedded, Method};
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, JointCoordinate, JointForm,
-    JointSpace, Kutta4, MassWeighted, Ode, Partition, Partitioned, Partitioning, Rodas4, Solver, Tsit5,
+    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Joint, JointCoordinate,
+    JointSpace, Kutta4, MassWeighted, Mechanism, Partition, Partitioned, Partitioning, Rodas4, Solver, Tsit5,
     Turns, Uncorrected, violation,
 };
 use gyro_sim_suite::model;
@@ -49,13 +49,13 @@ fn simulation<M: Partition<Scalar = f64>>(mechanism: &M, corrections: u32) -> (f
     let mut y = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &y);
     let mut turns = Turns::new(mechanism, 0.0, &y, &[]);
-    let (mut phi, mut worst) = (mechanism.constraints(), 0.0_f64);
+    let (mut phi, mut worst) = (mechanism.buffers().constraints, 0.0_f64);
     for interval in 0..corrections {
         let t = f64::from(interval) * 5e-4;
         solver.advance(mechanism, t, 1e-4, 5, &mut y).unwrap();
         turns.update(mechanism, t + 5e-4, 5e-4, &y);
         mechanism.phi(t, &y, &mut phi);
-        let n_rows = phi.as_ref().len() - mechanism.n_bodies();
+        let n_rows = phi.as_ref().len() - mechanism.description().bodies.len();
         worst = worst.max(violation(mechanism, &phi.as_ref()[..n_rows]).value);
     }
     match turns.coordinate(mechanism, 0, 0) {
@@ -95,7 +95,7 @@ macro_rules! count_with {
 
 fn fixed<O, M, C>(system: &O, method: M, correction: C, y: &O::State) -> f64
 where
-    O: Ode<Scalar = f64>,
+    O: Mechanism<Scalar = f64>,
     M: Method<O>,
     C: Correction<O>,
 {
@@ -106,7 +106,7 @@ where
 
 fn adaptive<O, M, C>(system: &O, method: M, correction: C, control: Control, y: &O::State) -> f64
 where
-    O: Ode<Scalar = f64>,
+    O: Mechanism<Scalar = f64>,
     M: Embedded<O>,
     C: Correction<O>,
 {

@@ -3,7 +3,7 @@
 
 use gyro_assembled::Careful;
 use gyro_model::{Model, parse_decimal};
-use gyro_sim::{Ode, Partitioned};
+use gyro_sim::{Mechanism, Partitioned};
 use gyro_sim_suite::{cargo, difference};
 use std::fmt::Write;
 use std::fs;

@@ -5,8 +5,8 @@
 use gyro_reference::{DoubleDouble, Gyroscope as Reference, JointRow, Start as ReferenceStart, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim::{
-    Direct, Error, JointCoordinate, JointForm, JointSpace, Mechanism, Ode, Partition, Partitioned, Rk4,
-    Turns, generated as shipped,
+    Direct, Error, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Rk4, Turns,
+    generated as shipped,
 };
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, Run, coordinate, fed, generated, model, simulate, violated_start};
@@ -147,7 +147,7 @@ fn check_compiled(extreme: &Extreme) {
 
 /// A joint state is all coordinates, then all rates, then perhaps work.
 fn joint_row<M: JointSpace<Scalar = f64>>(mechanism: &M, t: f64, x: &M::Joints) -> JointRow {
-    let n = mechanism.rates().as_ref().len();
+    let n = mechanism.joint_buffers().rates.as_ref().len();
     let (positions, rates) = x.as_ref().split_at(n);
     JointRow { t, positions: positions.to_vec(), rates: rates[..n].to_vec(), orientations: Vec::new() }
 }
@@ -219,9 +219,9 @@ const CORRECTED: f64 = 1e-12;
 const FOLLOWED: f64 = 1e-9;
 
 fn position_violation(mechanism: &Engine, y: &Vec<f64>) -> f64 {
-    let mut phi = mechanism.constraints();
+    let mut phi = mechanism.buffers().constraints;
     mechanism.phi(0.0, y, &mut phi);
-    gyro_sim::violation(mechanism, &phi[..mechanism.rows().len()]).value
+    gyro_sim::violation(mechanism, &phi[..mechanism.buffers().rows.len()]).value
 }
 
 /// α, β, φ and their rates.

@@ -62,9 +62,10 @@ fn drawn(mechanism: &Engine, model: &Model, random: &mut Random) -> Vec<f64> {
 
 /// The least length of (sine, cosine) of all angles.
 fn least_angle(mechanism: &Engine, values: &[f64]) -> f64 {
-    let mut readings = mechanism.readings();
+    let mut readings = mechanism.buffers().readings;
     mechanism.read_joints(T, &values.to_vec(), &mut readings);
-    let joints = (0..mechanism.n_joints()).flat_map(|joint| mechanism.joint(joint).coordinates);
+    let joints = (0..mechanism.description().joints.len())
+        .flat_map(|joint| mechanism.description().joints[joint].coordinates);
     let (mut least, mut at) = (f64::INFINITY, 0);
     for coordinate in joints {
         if *coordinate == Coordinate::Angle {
@@ -87,19 +88,19 @@ fn moved(values: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
 }
 
 fn phi(mechanism: &Engine, t: f64, values: &[f64]) -> Vec<f64> {
-    let mut out = mechanism.constraints();
+    let mut out = mechanism.buffers().constraints;
     mechanism.phi(t, &values.to_vec(), &mut out);
     out
 }
 
 fn velocity_residual(mechanism: &Engine, t: f64, values: &[f64]) -> Vec<f64> {
-    let mut out = mechanism.rows();
+    let mut out = mechanism.buffers().rows;
     mechanism.velocity_residual(t, &values.to_vec(), &mut out);
     out
 }
 
 fn gamma(mechanism: &Engine, values: &[f64]) -> Vec<f64> {
-    let mut out = mechanism.rows();
+    let mut out = mechanism.buffers().rows;
     mechanism.gamma(T, &values.to_vec(), &mut out);
     out
 }
@@ -123,14 +124,14 @@ fn q_dot(values: &[f64], n_bodies: usize) -> Vec<f64> {
 
 /// ν.
 fn nu(mechanism: &Engine, values: &[f64]) -> Vec<f64> {
-    let mut out = mechanism.rows();
+    let mut out = mechanism.buffers().rows;
     mechanism.nu(T, &values.to_vec(), &mut out);
     out
 }
 
 /// The three comparisons at a state, each as the difference relative to its largest value.
 fn errors(mechanism: &Engine, line: &Line, values: &[f64]) -> [f64; 3] {
-    let (y, n_bodies) = (values.to_vec(), mechanism.n_bodies());
+    let (y, n_bodies) = (values.to_vec(), mechanism.description().bodies.len());
     let jacobian = phi_q(mechanism, T, &y);
     let in_column = |column: usize| {
         let mut direction = vec![0.0; 7 * n_bodies];
@@ -141,7 +142,7 @@ fn errors(mechanism: &Engine, line: &Line, values: &[f64]) -> [f64; 3] {
     };
     let direction = q_dot(values, n_bodies);
     let step = line.step / direction.iter().map(|x| x.abs()).fold(1.0, f64::max);
-    let n_rows = mechanism.rows().len();
+    let n_rows = mechanism.buffers().rows.len();
     // The motion of a moment, time included.
     let phi_dot =
         derivative(step, |by| phi(mechanism, T + by, &moved(values, &direction, by))[..n_rows].to_vec());

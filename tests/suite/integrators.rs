@@ -6,12 +6,12 @@ use gyro_reference::Gyroscope as Reference;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::integrate::Method;
 use gyro_sim::{
-    ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, JointForm, JointSpace, Kutta4,
+    ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Joint, JointSpace, Kutta4,
     MassWeighted, Ode, Partitioning, Real, Rodas4, Solver, Tsit5, Uncorrected, When,
 };
 use std::sync::LazyLock;
 
-type State = <Gyroscope<f64> as Ode>::State;
+type State = <Gyroscope<f64> as Mechanism>::State;
 
 /// Samples of a second.
 const SAMPLES: u32 = 10;
@@ -29,7 +29,7 @@ fn error<T: Real>(sample: u32, x: &[T]) -> f64 {
 }
 
 /// The same of a maximal state.
-fn error_at<T: Real>(sample: u32, gyroscope: &Gyroscope<T>, y: &<Gyroscope<T> as Ode>::State) -> f64 {
+fn error_at<T: Real>(sample: u32, gyroscope: &Gyroscope<T>, y: &<Gyroscope<T> as Mechanism>::State) -> f64 {
     let mut x = gyroscope.joint_start();
     gyroscope.to_joints(T::constant(1.0), y, &mut x);
     error(sample, &x)

@@ -4,7 +4,7 @@
 use crate::joint_space::random_state;
 use gyro_runner::motion::{Linear, TreeWithJacobian};
 use gyro_runner::{Approach, Event, Settings, run_by};
-use gyro_sim::{Dual, JointJacobian, Mechanism, Ode, Ports, generated as shipped};
+use gyro_sim::{Dual, JointSpace, Mechanism, generated as shipped};
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, dense, model, start_of};
 use nalgebra::{DMatrix, DVector};
@@ -31,7 +31,7 @@ struct Twin<'a, M> {
     n_rates: usize,
 }
 
-impl<M: JointJacobian<Scalar = f64>> Twin<'_, M> {
+impl<M: JointSpace<Scalar = f64>> Twin<'_, M> {
     fn maximal(&self, t: f64, x: &[f64]) -> Vec<f64> {
         let (mut joints, mut y) = (self.mechanism.joint_start(), self.mechanism.start());
         joints.as_mut().copy_from_slice(x);
@@ -40,7 +40,7 @@ impl<M: JointJacobian<Scalar = f64>> Twin<'_, M> {
     }
 
     fn velocities(&self, t: f64, x: &[f64]) -> Vec<f64> {
-        let n = self.dense.n_bodies();
+        let n = self.dense.description().bodies.len();
         self.maximal(t, x)[7 * n..13 * n].to_vec()
     }
 
@@ -52,7 +52,7 @@ impl<M: JointJacobian<Scalar = f64>> Twin<'_, M> {
         let mut dx = dx.as_ref().to_vec();
         let (y, mut dy) = (self.maximal(t, x), self.dense.start());
         self.dense.derivative(t, &y, &mut dy);
-        let n = self.dense.n_bodies();
+        let n = self.dense.description().bodies.len();
         let still = slope(STEP, |h| {
             let moved = x.iter().zip(&dx[..self.n_coordinates]).map(|(x, dx)| x + h * dx);
             let moved: Vec<_> = moved.chain(x[self.n_coordinates..].iter().copied()).collect();
@@ -81,22 +81,23 @@ impl<M: JointJacobian<Scalar = f64>> Twin<'_, M> {
 
 fn check<M>(page: &str, mechanism: &M)
 where
-    M: JointJacobian<Scalar = f64> + Ports + Clone,
+    M: JointSpace<Scalar = f64> + Clone,
 {
     let (model, mut random) = (model(page), Random::new(5));
-    let (n_rates, n) = (mechanism.rates().as_ref().len(), mechanism.joint_start().as_ref().len());
+    let (n_rates, n) =
+        (mechanism.joint_buffers().rates.as_ref().len(), mechanism.joint_start().as_ref().len());
     let n_coordinates = n - n_rates - usize::from(model.has_work());
     let mut worst = 0.0_f64;
     for _ in 0..STATES {
         let (t, x) = (random.signed(), random_state(&model, mechanism, &mut random));
         let (mut mechanism, mut dense) = (mechanism.clone(), dense(&model));
-        let inputs: Vec<f64> = (0..mechanism.n_inputs()).map(|_| random.signed()).collect();
+        let inputs: Vec<f64> = (0..mechanism.description().inputs.len()).map(|_| random.signed()).collect();
         for (index, &value) in inputs.iter().enumerate() {
             assert!(mechanism.set_input(index, value) && dense.set_input(index, value));
         }
-        let (mut by_state, mut by_time) = (mechanism.joint_jacobian_buffer(), mechanism.joint_start());
+        let (mut by_state, mut by_time) = (mechanism.joint_buffers().jacobian, mechanism.joint_start());
         mechanism.joint_jacobian(t, &x, &mut by_state, &mut by_time);
-        let mut by_inputs = mechanism.input_jacobian_buffer();
+        let mut by_inputs = mechanism.joint_buffers().input_jacobian;
         mechanism.joint_input_jacobian(t, &x, &mut by_inputs);
 
         let twin = Twin { mechanism: &mechanism, dense, n_coordinates, n_rates };

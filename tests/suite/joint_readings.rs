@@ -38,7 +38,8 @@ fn agrees(found: JointCoordinate<f64>, planted: &JointStart, index: usize) -> bo
 fn check_pose(what: &str, mechanism: &Engine, model: &Model, start: &Start) {
     let y = state_at(model, start);
     let joints = start.joints.iter().enumerate();
-    let places = joints.map(|(joint, planted)| (joint, planted, mechanism.joint(joint).coordinates.len()));
+    let places = joints
+        .map(|(joint, planted)| (joint, planted, mechanism.description().joints[joint].coordinates.len()));
     let places: Vec<_> =
         places.flat_map(|(joint, p, n)| (0..n).map(move |index| (joint, p, index))).collect();
     // The turn of an angle is known to whoever starts the run; a third of a turn off still names it.
@@ -48,7 +49,7 @@ fn check_pose(what: &str, mechanism: &Engine, model: &Model, start: &Start) {
         let found = turns.coordinate(mechanism, joint, index).unwrap();
         assert!(agrees(found, planted, index), "{what}, joint {joint}: {found:?}, planted {planted:?}");
     }
-    let (mut phi, mut residual) = (mechanism.constraints(), mechanism.rows());
+    let (mut phi, mut residual) = (mechanism.buffers().constraints, mechanism.buffers().rows);
     mechanism.phi(0.0, &y, &mut phi);
     mechanism.velocity_residual(0.0, &y, &mut residual);
     let n_rows = residual.len();

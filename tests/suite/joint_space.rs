@@ -85,7 +85,7 @@ fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
         mechanism.to_maximal(t, &x, &mut y);
 
         // The state satisfies the constraints, and leads back to the joint state.
-        let (mut phi, mut residual) = (mechanism.constraints(), mechanism.rows());
+        let (mut phi, mut residual) = (mechanism.buffers().constraints, mechanism.buffers().rows);
         mechanism.phi(t, &y, &mut phi);
         mechanism.velocity_residual(t, &y, &mut residual);
         worst[0] = worst[0].max(largest(phi.as_ref())).max(largest(residual.as_ref()));
@@ -94,21 +94,21 @@ fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
         worst[1] = worst[1].max(difference(back.as_ref(), x.as_ref()));
 
         // One acceleration, three ways.
-        let mut exact = mechanism.accelerations_buffer();
+        let mut exact = mechanism.terms().accelerations;
         mechanism.accelerations(t, &y, &mut exact);
-        let mut corrected = mechanism.velocities();
+        let mut corrected = mechanism.terms().velocities;
         mechanism.corrected_accelerations(t, &y, &mut corrected);
         worst[2] = worst[2].max(difference(exact.as_ref(), corrected.as_ref()));
-        let (mut lambda, mut short) = (mechanism.rows(), mechanism.rows());
+        let (mut lambda, mut short) = (mechanism.buffers().rows, mechanism.buffers().rows);
         mechanism.multipliers(t, &y, &exact, &mut lambda);
         mechanism.corrected_multipliers(t, &y, &corrected, &mut short);
         worst[6] = worst[6].max(difference(lambda.as_ref(), short.as_ref()));
-        let mut both = mechanism.solution();
+        let mut both = mechanism.joint_buffers().solution;
         mechanism.corrected_solution(t, &y, &mut both);
         let (v, of_rows) = both.as_ref().split_at(corrected.as_ref().len());
         worst[2] = worst[2].max(difference(exact.as_ref(), v));
         worst[6] = worst[6].max(difference(lambda.as_ref(), of_rows));
-        let (mut rates, mut rates_at) = (mechanism.rates(), mechanism.rates());
+        let (mut rates, mut rates_at) = (mechanism.joint_buffers().rates, mechanism.joint_buffers().rates);
         mechanism.joint_accelerations(t, &x, &mut rates);
         mechanism.joint_accelerations_at(t, &y, &mut rates_at);
         worst[3] = worst[3].max(difference(rates.as_ref(), rates_at.as_ref()));

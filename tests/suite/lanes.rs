@@ -9,10 +9,7 @@ use gyro_sim::generated::{
     heavy_top::HeavyTop,
 };
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
-use gyro_sim::{
-    Charted, Direct, Error, JointForm, JointSpace, Mechanism, Ode, Partition, Partitioned, Real, Scalar,
-    Storage,
-};
+use gyro_sim::{Direct, Error, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Storage};
 use gyro_sim_suite::Random;
 
 /// Long enough for a rotor at 100 rad/s to switch charts in every lane.
@@ -103,11 +100,11 @@ where
 fn corrected_runs_agree<S, P>(name: &str, scalar: &S, packs: &P) -> (usize, u64)
 where
     S: JointSpace + Partition<Scalar: Real>,
-    P: Charted<Scalar: Lanes<Lane = <S as Ode>::Scalar>>,
+    P: Charted<Scalar: Lanes<Lane = <S as Mechanism>::Scalar>>,
 {
     let to_maximal = |x: &S::Joints| {
         let mut y = scalar.start();
-        scalar.to_maximal(<S as Ode>::Scalar::constant(0.0), x, &mut y);
+        scalar.to_maximal(<S as Mechanism>::Scalar::constant(0.0), x, &mut y);
         y
     };
     let states: Vec<_> = starts(scalar, P::Scalar::COUNT).iter().map(to_maximal).collect();
@@ -119,7 +116,7 @@ where
     let mut switches = 0;
     let mut alone = |mut y: S::State| {
         let mut solver = Partitioned::new(scalar, &y);
-        let h = <S as Ode>::Scalar::constant(STEP);
+        let h = <S as Mechanism>::Scalar::constant(STEP);
         let error = run(|interval| solver.advance(scalar, time(interval), h, STEPS, &mut y));
         switches += solver.switches();
         (y, error)
@@ -229,7 +226,7 @@ fn lanes_converge_one_by_one() {
     };
     let expected: Vec<_> = states.into_iter().map(alone).collect();
     same("corrections", (&y, solver.failures()), &expected);
-    let mut phi = packs.constraints();
+    let mut phi = packs.buffers().constraints;
     packs.phi(f64x8::splat(0.0), &y, &mut phi);
     assert!(phi.iter().all(|row| row.lane(4).abs() < 1e-14));
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{JointCoordinate, Ode, Partitioned, Turns};
+use gyro_sim::{JointCoordinate, Mechanism, Partitioned, Turns};
 use gyro_sim_suite::{cargo, say};
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -113,26 +113,34 @@ fn compare(model: &Model, what: &str) -> f64 {
 
 /// s̈, ẇ', λ of lengths, λ of angles, and the derivative's.
 fn solution<M: Equations<Scalar = f64, State = Vec<f64>>>(twin: &M, y: &Vec<f64>) -> [Vec<f64>; 5] {
-    let (mut out, mut lambda, mut dy) = (twin.accelerations_buffer(), twin.rows(), twin.start());
+    let (mut out, mut lambda, mut dy) = (twin.terms().accelerations, twin.buffers().rows, twin.start());
     twin.accelerations(T, y, &mut out);
     twin.multipliers(T, y, &out, &mut lambda);
     twin.derivative(T, y, &mut dy);
     let of_bodies = |range: std::ops::Range<usize>| {
-        let bodies = out.as_ref().chunks_exact(6).take(twin.n_bodies());
+        let bodies = out.as_ref().chunks_exact(6).take(twin.description().bodies.len());
         bodies.flat_map(|body| body[range.clone()].to_vec()).collect::<Vec<_>>()
     };
     let of_rows = |is_length: bool| {
         let rows = lambda.as_ref().iter().enumerate();
-        rows.filter(|(row, _)| twin.row(*row).is_length == is_length).map(|(_, x)| *x).collect()
+        rows.filter(|(row, _)| twin.description().rows[*row].is_length == is_length)
+            .map(|(_, x)| *x)
+            .collect()
     };
-    [of_bodies(0..3), of_bodies(3..6), of_rows(true), of_rows(false), dy[7 * twin.n_bodies()..].to_vec()]
+    [
+        of_bodies(0..3),
+        of_bodies(3..6),
+        of_rows(true),
+        of_rows(false),
+        dy[7 * twin.description().bodies.len()..].to_vec(),
+    ]
 }
 
 /// What each kind of the solution may cancel below: products of rates, the same at an arm of the mechanism's size, and the largest
 /// force at such an arm.
 fn scales(twin: &Dense<f64>, y: &[f64], solution: &[Vec<f64>; 5]) -> [f64; 5] {
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-    let velocities = &y[7 * twin.n_bodies()..13 * twin.n_bodies()];
+    let velocities = &y[7 * twin.description().bodies.len()..13 * twin.description().bodies.len()];
     let rate = velocities.chunks_exact(6).map(|body| largest(&body[3..])).fold(0.0, f64::max);
     let (turning, size) = (rate * rate, twin.size());
     [size * turning, turning, 0.0, size * largest(&solution[2]), turning]
@@ -149,7 +157,9 @@ fn corrections_meet_the_constraints_and_keep_what_meets_them() {
             correct(&twin, &mut kept);
             assert!(difference(&kept, &y, 1.0) <= CORRECTED, "{page}: {:e}", difference(&kept, &y, 1.0));
             let mut moved = y.clone();
-            moved[..13 * twin.n_bodies()].iter_mut().for_each(|x| *x += VIOLATION * random.signed());
+            moved[..13 * twin.description().bodies.len()]
+                .iter_mut()
+                .for_each(|x| *x += VIOLATION * random.signed());
             correct(&twin, &mut moved);
             assert!(violation(&twin, &moved) <= CORRECTED, "{page}: {:e}", violation(&twin, &moved));
             let far = difference(&moved, &y, 1.0);
@@ -160,11 +170,11 @@ fn corrections_meet_the_constraints_and_keep_what_meets_them() {
 
 /// The worst of Φ and of the velocity residual, over lengths and rates of the state.
 fn violation(twin: &Recursive<f64>, y: &Vec<f64>) -> f64 {
-    let (mut phi, mut rates) = (twin.constraints(), twin.rows());
+    let (mut phi, mut rates) = (twin.buffers().constraints, twin.buffers().rows);
     twin.phi(T, y, &mut phi);
     twin.velocity_residual(T, y, &mut rates);
     let largest = |values: &[f64]| values.iter().fold(1.0, |largest: f64, x| largest.max(x.abs()));
-    let (q, v) = y.split_at(7 * twin.n_bodies());
+    let (q, v) = y.split_at(7 * twin.description().bodies.len());
     let worst = |values: &[f64]| values.iter().fold(0.0, |worst: f64, x| worst.max(x.abs()));
     (worst(&phi) / largest(q)).max(worst(&rates) / (largest(q) * largest(v)))
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
-use gyro_sim::{Direct, Equations, Error, Mechanism, Ode, Partitioned, Ports, Real, Turns, violation};
+use gyro_sim::{Direct, Equations, Error, Mechanism, Partitioned, Real, Turns, violation};
 use gyro_sim_suite::{Engine, Random, for_each_generated, in_single_precision, model, pages};
 use std::collections::BTreeSet;
 
@@ -40,25 +40,25 @@ fn hard_state(start: &[f64], random: &mut Random) -> Vec<f64> {
 /// Calls everything once, through a corrected step and a reading of the turns.
 fn exercise<T: Real + 'static>(mechanism: &Engine<T>, y: &Vec<T>) -> Result<(), Error> {
     let t = T::constant(0.0);
-    let (mut phi, mut rows) = (mechanism.constraints(), mechanism.rows());
+    let (mut phi, mut rows) = (mechanism.buffers().constraints, mechanism.buffers().rows);
     mechanism.phi(t, y, &mut phi);
     mechanism.velocity_residual(t, y, &mut rows);
     violation(mechanism, &rows);
     mechanism.gamma(t, y, &mut rows);
     mechanism.nu(t, y, &mut rows);
-    let (mut phi_q, mut phi_pi) = (mechanism.phi_q_values(), mechanism.phi_pi_values());
+    let (mut phi_q, mut phi_pi) = (mechanism.terms().phi_q, mechanism.terms().phi_pi);
     mechanism.phi_q(t, y, &mut phi_q);
     mechanism.phi_pi(t, y, &mut phi_pi);
-    let mut velocities = mechanism.velocities();
+    let mut velocities = mechanism.terms().velocities;
     mechanism.applied_force(t, y, &mut velocities);
-    let (mut accelerations, mut outputs) = (mechanism.accelerations_buffer(), mechanism.outputs_buffer());
+    let (mut accelerations, mut outputs) = (mechanism.terms().accelerations, mechanism.buffers().outputs);
     mechanism.accelerations(t, y, &mut accelerations);
     mechanism.multipliers(t, y, &accelerations, &mut rows);
     mechanism.outputs(t, y, &mut outputs);
     mechanism.energy(t, y);
     let mut turns = Turns::new(mechanism, t, y, &[]);
     turns.update(mechanism, t, T::constant(f64::INFINITY), y);
-    for joint in 0..=mechanism.n_joints() {
+    for joint in 0..=mechanism.description().joints.len() {
         turns.coordinate(mechanism, joint, 0);
     }
     let mut solver = Partitioned::new(mechanism, y);

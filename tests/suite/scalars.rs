@@ -1,7 +1,7 @@
 //! Kernels take any scalar: packs of lanes and dual numbers run the same generated source.
 
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Ode, Scalar};
+use gyro_sim::{Mechanism, Scalar};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Two numbers side by side.
@@ -157,14 +157,14 @@ impl Scalar for Dual {
 
 type Mechanism<T> = GyroscopeCombinedOffsets<T>;
 
-fn derivative<T: Scalar>(y: &<Mechanism<T> as Ode>::State) -> <Mechanism<T> as Ode>::State {
+fn derivative<T: Scalar>(y: &<Mechanism<T> as Mechanism>::State) -> <Mechanism<T> as Mechanism>::State {
     let (mechanism, mut dy) = (Mechanism::<T>::default(), *y);
     mechanism.derivative(T::constant(0.0), y, &mut dy);
     dy
 }
 
 /// The start, with every element moved a little, differently for each `seed`.
-fn state(seed: f64) -> <Mechanism<f64> as Ode>::State {
+fn state(seed: f64) -> <Mechanism<f64> as Mechanism>::State {
     let mut y = Mechanism::<f64>::default().start();
     for (k, y) in (0u8..).zip(&mut y) {
         *y += 1e-3 * (seed + f64::from(k)).sin();

@@ -5,7 +5,7 @@
 
 use gyro_assembled::Careful;
 use gyro_model::Model;
-use gyro_sim::{Equations, Mechanism, Ode, Ports, Projection};
+use gyro_sim::{Equations, Mechanism};
 use gyro_sim_suite::{
     Engine, Matrix, Random, careful, dense, difference, for_each_generated, is_open, model, phi_pi, phi_q,
     shelves, state,
@@ -63,14 +63,14 @@ fn kind(name: &'static str, values: Vec<f64>) -> Kind {
 fn terms(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     let (t, y) = (T, values.to_vec());
     let mut kinds = Vec::new();
-    let mut constraints = mechanism.constraints();
+    let mut constraints = mechanism.buffers().constraints;
     mechanism.phi(t, &y, &mut constraints);
-    let n_rows = mechanism.rows().len();
+    let n_rows = mechanism.buffers().rows.len();
     let (rows, normalisations) = constraints.split_at(n_rows);
     kinds.extend(by_unit(mechanism, ["Φ, lengths", "Φ, pure"], rows));
     // |p| = 1 to rounding: what is left is rounding, of the scale of one.
     kinds.push(Kind { scale: 1.0, ..kind("normalisations", normalisations.to_vec()) });
-    let mut out = mechanism.rows();
+    let mut out = mechanism.buffers().rows;
     mechanism.nu(t, &y, &mut out);
     kinds.push(kind("ν", out.clone()));
     mechanism.gamma(t, &y, &mut out);
@@ -79,7 +79,7 @@ fn terms(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     kinds.extend(by_unit(mechanism, ["velocity, lengths", "velocity, pure"], &out));
     kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q(mechanism, T, &y)));
     kinds.extend(by_block(["Φ_r", "Φ_π'"], 6, &phi_pi(mechanism, T, &y)));
-    let mut force = mechanism.velocities();
+    let mut force = mechanism.terms().velocities;
     mechanism.applied_force(t, &y, &mut force);
     let mut forces = halves(["f", "n' − w̃'J'w'"], 6, &force);
     // A body with equal moments has no gyroscopic torque but rounding.
@@ -92,7 +92,7 @@ fn terms(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
 
 /// Readings: sines and cosines, Euler parameters and rates all have values up to 2π or 2 · [`RATE`].
 fn readings_and_energy(mechanism: &Engine, model: &Model, y: &Vec<f64>) -> Vec<Kind> {
-    let mut readings = mechanism.readings();
+    let mut readings = mechanism.buffers().readings;
     mechanism.read_joints(T, y, &mut readings);
     let energy = mechanism.energy(T, y);
     let weight: f64 = model.values(&model.gravity).map(f64::abs).iter().sum::<f64>();
@@ -121,7 +121,7 @@ fn drawn(mechanism: &Engine, model: &Model, random: &mut Random) -> (Vec<f64>, f
 /// The condition number of `Φ_π' M⁻¹ Φ_π'ᵀ`, rows of lengths and pure rows scaled so that the largest element of the diagonal is one.
 fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
     let rows = phi_pi(mechanism, T, &values.to_vec()).rows;
-    let n_columns = 6 * mechanism.n_bodies();
+    let n_columns = 6 * mechanism.description().bodies.len();
     let jacobian = DMatrix::from_fn(rows.len(), n_columns, |row, column| rows[row][column]);
     let mut mobility = DMatrix::zeros(n_columns, n_columns);
     for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
@@ -134,7 +134,7 @@ fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
         mobility.view_mut((6 * slot, 6 * slot), (6, 6)).copy_from(&inverse);
     }
     let matrix = &jacobian * mobility * jacobian.transpose();
-    let is_length = |row: usize| mechanism.row(row).is_length;
+    let is_length = |row: usize| mechanism.description().rows[row].is_length;
     let largest = |row: usize| {
         let alike = (0..matrix.nrows()).filter(|&other| is_length(other) == is_length(row));
         alike.map(|other| matrix[(other, other)]).fold(0.0, f64::max)
@@ -148,16 +148,16 @@ fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
 /// What follows from eq. (17).
 fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     let y = &values.to_vec();
-    let (mut accelerations, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
+    let (mut accelerations, mut lambda) = (mechanism.terms().accelerations, mechanism.buffers().rows);
     mechanism.accelerations(T, y, &mut accelerations);
     mechanism.multipliers(T, y, &accelerations, &mut lambda);
-    let n_velocities = 6 * mechanism.n_bodies();
+    let n_velocities = 6 * mechanism.description().bodies.len();
     let mut kinds = halves(["s̈", "ẇ'"], 6, &accelerations[..n_velocities]);
     kinds.extend(by_unit(mechanism, ["λ, forces", "λ, torques"], &lambda));
     kinds.extend(projections(mechanism, y));
     let mut dy = mechanism.start();
     mechanism.derivative(T, y, &mut dy);
-    let (q_dot, rest) = dy.split_at(7 * mechanism.n_bodies());
+    let (q_dot, rest) = dy.split_at(7 * mechanism.description().bodies.len());
     let (v_dot, others) = rest.split_at(n_velocities);
     let (power, turns) = others.split_at(usize::from(model.has_work()));
     kinds.extend(halves(["ṙ", "ṗ"], 7, q_dot));
@@ -172,9 +172,10 @@ fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
 /// mechanism's size, and the other way round.
 fn projections(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
     let of_rows = |names: [&'static str; 2], is_length: bool| {
-        let (mut rows, mut motion) = (mechanism.rows(), mechanism.velocities());
+        let (mut rows, mut motion) = (mechanism.buffers().rows, mechanism.terms().velocities);
         for (row, change) in rows.iter_mut().enumerate() {
-            *change = if mechanism.row(row).is_length == is_length { y[row % y.len()] } else { 0.0 };
+            *change =
+                if mechanism.description().rows[row].is_length == is_length { y[row % y.len()] } else { 0.0 };
         }
         mechanism.project(T, y, &rows, &mut motion);
         let mut kinds = halves(names, 6, &motion);
@@ -189,10 +190,12 @@ fn projections(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
 
 /// Each output by itself, numbers of one unit together. A torque is as inexact as the forces at an arm of the mechanism's size.
 fn outputs(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
-    let mut out = mechanism.outputs_buffer();
+    let mut out = mechanism.buffers().outputs;
     mechanism.outputs(T, y, &mut out);
-    let unit = |index: usize| (mechanism.output(index).name, mechanism.output(index).unit);
-    let places: Vec<usize> = (0..mechanism.n_outputs()).collect();
+    let unit = |index: usize| {
+        (mechanism.description().outputs[index].name, mechanism.description().outputs[index].unit)
+    };
+    let places: Vec<usize> = (0..mechanism.description().outputs.len()).collect();
     let groups = places.chunk_by(|&a, &b| unit(a) == unit(b));
     let of_group = |group: &[usize]| {
         let forces = places.iter().filter(|&&k| unit(k) == (unit(group[0]).0, "N")).map(|&k| out[k].abs());
@@ -206,7 +209,10 @@ fn outputs(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
 /// Rows apart by what they measure.
 fn by_unit(mechanism: &Engine, names: [&'static str; 2], rows: &[f64]) -> Vec<Kind> {
     let of = |is_length: bool| {
-        let rows = rows.iter().enumerate().filter(|(row, _)| mechanism.row(*row).is_length == is_length);
+        let rows = rows
+            .iter()
+            .enumerate()
+            .filter(|(row, _)| mechanism.description().rows[*row].is_length == is_length);
         rows.map(|(_, value)| *value).collect()
     };
     vec![kind(names[0], of(true)), kind(names[1], of(false))]

@@ -28,17 +28,18 @@ impl Matrix {
 
 /// Φ_q with respect to (r, p), normalisation rows included.
 pub fn phi_q(mechanism: &Engine, t: f64, y: &Vec<f64>) -> Matrix {
-    let mut values = mechanism.phi_q_values();
+    let mut values = mechanism.terms().phi_q;
     mechanism.phi_q(t, y, &mut values);
-    let (n_rows, n_columns) = (mechanism.constraints().len(), 7 * mechanism.n_bodies());
+    let (n_rows, n_columns) =
+        (mechanism.buffers().constraints.len(), 7 * mechanism.description().bodies.len());
     Matrix::scattered(n_rows, n_columns, mechanism.phi_q_pattern(), &values)
 }
 
 /// (Φ_r, Φ_π').
 pub fn phi_pi(mechanism: &Engine, t: f64, y: &Vec<f64>) -> Matrix {
-    let mut values = mechanism.phi_pi_values();
+    let mut values = mechanism.terms().phi_pi;
     mechanism.phi_pi(t, y, &mut values);
-    let (n_rows, n_columns) = (mechanism.rows().len(), 6 * mechanism.n_bodies());
+    let (n_rows, n_columns) = (mechanism.buffers().rows.len(), 6 * mechanism.description().bodies.len());
     Matrix::scattered(n_rows, n_columns, mechanism.phi_pi_pattern(), &values)
 }
 

@@ -4,7 +4,7 @@ use crate::Engine;
 use gyro_model::{
     CoordinateKind, JointCoordinate, JointKind, JointStartSpec, Model, Number, Start, Support, parse_decimal,
 };
-use gyro_sim::{Mechanism, Ode};
+use gyro_sim::Mechanism;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -49,7 +49,7 @@ impl Random {
 /// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second; work and turn
 /// references up to one.
 pub fn state(mechanism: &Engine, rate: f64, random: &mut Random) -> Vec<f64> {
-    let (mut y, n_bodies, size) = (mechanism.start(), mechanism.n_bodies(), mechanism.size());
+    let (mut y, n_bodies, size) = (mechanism.start(), mechanism.description().bodies.len(), mechanism.size());
     let (positions, rest) = y.split_at_mut(7 * n_bodies);
     for q in positions.as_chunks_mut::<7>().0 {
         q[..3].iter_mut().for_each(|r| *r += size * random.signed());

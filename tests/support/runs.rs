@@ -6,7 +6,7 @@ use gyro_runner::motion::Kit;
 use gyro_runner::{
     Approach, Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run, run_by,
 };
-use gyro_sim::{Equations, Mechanism, Ports, Real};
+use gyro_sim::{Equations, Mechanism, Real};
 
 /// The paper's settings for one second, section 7.
 pub const PAPER: Settings =
@@ -131,8 +131,9 @@ pub fn coordinate(sample: &Sample, index: usize) -> (f64, f64) {
 /// # Panics
 /// If there is none.
 pub fn output(mechanism: &Engine, sample: &Sample, name: &str) -> Vec<f64> {
-    let is_asked = |index: &usize| mechanism.output(*index).name == name;
-    let found: Vec<f64> = (0..mechanism.n_outputs()).filter(is_asked).map(|k| sample.outputs[k]).collect();
+    let is_asked = |index: &usize| mechanism.description().outputs[*index].name == name;
+    let found: Vec<f64> =
+        (0..mechanism.description().outputs.len()).filter(is_asked).map(|k| sample.outputs[k]).collect();
     assert!(!found.is_empty(), "there is no output `{name}`");
     found
 }
@@ -145,7 +146,7 @@ pub fn multipliers(mechanism: &Engine, model: &Model, sample: &Sample) -> Vec<f6
     let first = |joint: usize| -> usize { model.joints[..joint].iter().map(n_samples).sum() };
     let turns = model.turn_references().into_iter();
     values.extend(turns.map(|turn| coordinate(sample, first(turn.joint) + turn.coordinate).0));
-    let (mut accelerations, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
+    let (mut accelerations, mut lambda) = (mechanism.terms().accelerations, mechanism.buffers().rows);
     mechanism.accelerations(sample.t, &values, &mut accelerations);
     mechanism.multipliers(sample.t, &values, &accelerations, &mut lambda);
     lambda

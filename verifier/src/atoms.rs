@@ -5,6 +5,7 @@ mod elementary;
 mod formal;
 
 pub use drawn::Drawn;
+pub(crate) use drawn::HALVINGS;
 pub use elementary::Elementary;
 pub use formal::Formal;
 

@@ -110,7 +110,6 @@ const BEFORE: [(&str, Before); 4] = [
         "corrected_derivative",
         Before {
             buffer: "accelerations",
-            made_by: "gyro_sim :: Equations :: velocities (self)",
             call: "gyro_sim :: JointSpace :: corrected_accelerations (self , t , y , & mut accelerations) ;",
         },
     ),
@@ -118,7 +117,6 @@ const BEFORE: [(&str, Before); 4] = [
         "joint_derivative",
         Before {
             buffer: "rates",
-            made_by: "gyro_sim :: JointSpace :: rates (self)",
             call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
         },
     ),
@@ -126,7 +124,6 @@ const BEFORE: [(&str, Before); 4] = [
 
 const ACCELERATIONS: Before = Before {
     buffer: "accelerations",
-    made_by: "gyro_sim :: Equations :: accelerations_buffer (self)",
     call: "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;",
 };
 
@@ -172,7 +169,7 @@ impl Module {
         let tokens: TokenStream =
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
-        let jacobian = text.contains("gyro_sim::JointJacobian");
+        let jacobian = text.contains("fn joint_jacobian(");
         let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };
         let joints = JointLayout::of(model);
         let name = type_name(&model.name);

@@ -1,8 +1,8 @@
 //! The table of packs of lanes: measured by a program that is compiled for this machine's own processor.
 
-use crate::failure::Failure;
-use crate::programs::{built, folder, output, three};
-use crate::progress::Spinner;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::{built, folder, output, three};
+use gyro_cli::progress::Spinner;
 use std::fmt::Write as _;
 use std::process::Command;
 

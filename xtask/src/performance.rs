@@ -1,12 +1,12 @@
 //! `cargo xtask performance`: measures generated code, the floor and the twins, and writes the tables of docs/performance.md.
 
 use crate::args::PerformanceArgs;
-use crate::failure::Failure;
-use crate::files;
 use crate::lanes;
-use crate::programs::{built, folder, output, said, three};
-use crate::progress::Spinner;
 use crate::scaling;
+use gyro_cli::failure::Failure;
+use gyro_cli::files;
+use gyro_cli::programs::{built, folder, output, said, three};
+use gyro_cli::progress::Spinner;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -137,28 +137,9 @@ fn run_table(rows: &[&Row]) -> String {
 fn machine() -> Result<String, Failure> {
     let flags = std::env::var("RUSTFLAGS").unwrap_or_default();
     let flags = if flags.is_empty() { "no further flags".to_owned() } else { format!("flags `{flags}`") };
-    Ok(format!("{}; profile `bench` (optimised, thin LTO, one codegen unit), {flags}.\n", hardware()?))
-}
-
-/// The same for programs that are compiled with a profile.
-pub(crate) fn machine_in(profile: &str) -> Result<String, Failure> {
-    Ok(format!("{}; profile `{profile}`", hardware()?))
-}
-
-/// Processor, system and compiler.
-fn hardware() -> Result<String, Failure> {
-    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model =
-        info.lines().find_map(|line| line.strip_prefix("model name")).and_then(|l| l.split_once(": "));
-    let cpu = model.map_or("a processor of unknown name", |(_, name)| name);
-    let cores = std::thread::available_parallelism().map_or(0, std::num::NonZero::get);
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let version = output(Command::new(rustc).arg("--version"))?;
     Ok(format!(
-        "{cpu}, {cores} cores, {} {}; {}",
-        std::env::consts::ARCH,
-        std::env::consts::OS,
-        version.trim()
+        "{}; profile `bench` (optimised, thin LTO, one codegen unit), {flags}.\n",
+        gyro_cli::machine::hardware()?
     ))
 }
 

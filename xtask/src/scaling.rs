@@ -1,10 +1,12 @@
 //! Chains of more and more bodies: what they cost to generate, to compile and to run.
 
-use crate::failure::Failure;
-use crate::files;
-use crate::machine_code::{self, SYMBOLS};
-use crate::programs::{cargo, folder, output, said, three};
-use crate::progress::Spinner;
+use gyro_cli::chain;
+use gyro_cli::failure::Failure;
+use gyro_cli::files;
+use gyro_cli::machine_code::{self, SYMBOLS};
+use gyro_cli::programs::{cargo, folder, output, said, three};
+use gyro_cli::progress::Spinner;
+use gyro_codegen::Kernel;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,10 +14,6 @@ use std::process::{Command, Stdio};
 
 /// Numbers of bodies.
 const SIZES: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
-
-/// Axes of the joints and directions across them, in turn: none parallel or at right angles to the next.
-const AXES: [([i32; 3], [i32; 3]); 3] =
-    [([1, 2, 2], [2, 1, -2]), ([2, -1, 2], [2, 2, -1]), ([-2, 1, 2], [2, 2, 1])];
 
 /// What one chain takes.
 struct Chain {
@@ -63,29 +61,6 @@ impl Chain {
     }
 }
 
-/// The page of a chain that hangs from the ground, its joints askew, at angles and rates.
-pub(crate) fn page(bodies: usize) -> String {
-    let mut text = format!(
-        "format = 1\nname = \"chain_{bodies}\"\ngravity = [0, 0, -9.81]\n\n[[body]]\nname = \"base\"\nfixed = true\n"
-    );
-    for link in 1..=bodies {
-        let _ =
-            write!(text, "\n[[body]]\nname = \"link_{link}\"\nmass = 0.5\ninertia = [2e-3, 3e-3, 4e-3]\n");
-    }
-    for link in 1..=bodies {
-        let before = if link == 1 { "base".to_owned() } else { format!("link_{}", link - 1) };
-        let (axis, zero) = AXES[link % AXES.len()];
-        let (angle, rate) = (0.1 * ((link % 5) as f64 + 1.0), 0.3 * ((link % 7) as f64 - 2.5));
-        let _ = write!(
-            text,
-            "\n[[joint]]\nname = \"hinge_{link}\"\nkind = \"revolute\"\naxis = {axis:?}\nzero = {zero:?}\nfirst = {{ body = \
-             \"{before}\", point = [0.02, -0.01, -0.1] }}\nsecond = {{ body = \"link_{link}\", point = [-0.01, 0.02, 0.1] }}\nangle = \
-             {angle:.1}\nrate = {rate:.2}\n"
-        );
-    }
-    text
-}
-
 /// A workspace of its own for the chains' crates and the program that runs them.
 struct Place {
     folder: PathBuf,
@@ -105,7 +80,7 @@ impl Place {
         for &bodies in sizes {
             let _spinner = Spinner::new(format!("generating a chain of {bodies}"));
             let name = format!("chain_{bodies}");
-            self.write(&format!("{name}/page.toml"), &page(bodies))?;
+            self.write(&format!("{name}/page.toml"), &chain::page(bodies))?;
             let page = self.folder.join(&name).join("page.toml");
             let file = fs::File::open(&page).map_err(|e| said(&page, &e))?;
             let before = children_cpu_s();
@@ -185,8 +160,8 @@ impl Place {
         }
         for chain in chains {
             let library = built.join("release").join(format!("libchain_{}.rlib", chain.bodies));
-            chain.bytes =
-                machine_code::bytes(&library).map(|bytes| bytes.get("accelerations").copied().unwrap_or(0));
+            chain.bytes = machine_code::bytes(&library)
+                .map(|bytes| bytes.get(&Kernel::Accelerations).copied().unwrap_or(0));
         }
         Ok(())
     }
@@ -240,19 +215,19 @@ fn manifest(name: &str, ours: &[(&str, &str)], beside: &[String]) -> String {
 }
 
 /// What is compiled of a chain: all but joint coordinates.
-const COMPILED: [&str; 12] = [
-    "accelerations",
-    "multipliers",
-    "derivative",
-    "phi",
-    "phi_q",
-    "gamma",
-    "velocity_residual",
-    "energy",
-    "read_joints",
-    "chart vectors",
-    "newton_step",
-    "solve_velocities",
+const COMPILED: [Kernel; 12] = [
+    Kernel::Accelerations,
+    Kernel::Multipliers,
+    Kernel::Derivative,
+    Kernel::Phi,
+    Kernel::PhiQ,
+    Kernel::Gamma,
+    Kernel::VelocityResidual,
+    Kernel::Energy,
+    Kernel::ReadJoints,
+    Kernel::ChartVectors,
+    Kernel::NewtonStep,
+    Kernel::SolveVelocities,
 ];
 
 fn library(bodies: usize) -> String {
@@ -260,7 +235,7 @@ fn library(bodies: usize) -> String {
     format!(
         "{functions}
 pub fn start() -> State {{ Module::default().start() }}
-pub fn buffer() -> Accelerations {{ Module::default().accelerations_buffer() }}
+pub fn buffer() -> Accelerations {{ Module::default().terms().accelerations }}
 "
     )
 }
@@ -269,7 +244,7 @@ pub fn buffer() -> Accelerations {{ Module::default().accelerations_buffer() }}
 fn program(sizes: &[usize]) -> String {
     let mut text = "use gyro_assembled::{Careful, Recursive};
 use gyro_benches::{Clock, Kernel, interleaved};
-use gyro_sim::{Equations, Ode};
+use gyro_sim::{Equations, Mechanism};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -298,8 +273,8 @@ fn main() {
     }
 }
 
-fn twin<M: Equations<Scalar = f64> + Ode<State = Vec<f64>> + 'static>(twin: M, expected: &[f64]) -> Kernel<'static> {
-    let (y, mut out) = (twin.start(), twin.accelerations_buffer());
+fn twin<M: Equations<Scalar = f64, State = Vec<f64>> + 'static>(twin: M, expected: &[f64]) -> Kernel<'static> {
+    let (y, mut out) = (twin.start(), twin.terms().accelerations);
     twin.accelerations(0.0, &y, &mut out);
     let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     for (a, b) in out.as_ref().iter().zip(expected) {
@@ -313,7 +288,8 @@ fn twin<M: Equations<Scalar = f64> + Ode<State = Vec<f64>> + 'static>(twin: M, e
 
 /// The total of the accelerations in a module's data sheet.
 fn flops(module: &str) -> String {
-    let row = module.lines().find(|line| line.starts_with("//! | accelerations |")).unwrap_or_default();
+    let begins = format!("//! | {} |", Kernel::Accelerations.name());
+    let row = module.lines().find(|line| line.starts_with(&begins)).unwrap_or_default();
     row.split('|').nth(6).unwrap_or_default().trim().to_owned()
 }
 
@@ -336,7 +312,7 @@ mod tests {
     #[test]
     fn the_pages_are_chains() {
         for bodies in [1, 2, 8] {
-            let model = gyro_model::read("chain.toml", &page(bodies)).unwrap();
+            let model = gyro_model::read("chain.toml", &chain::page(bodies)).unwrap();
             assert_eq!((model.degrees_of_freedom(), model.joints.len()), (bodies, bodies));
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::support::careful_models;
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{Equations, Partition, Partitioned, Ports};
+use gyro_sim::{Equations, Mechanism, Partition, Partitioned};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -30,15 +30,15 @@ static ALLOCATOR: Counting = Counting;
 /// How often this thread allocates in two corrections with five steps of this length each and one evaluation of every term.
 fn allocations<M>(mechanism: &M, step: f64) -> usize
 where
-    M: Partition<Scalar = f64, State = Vec<f64>> + Equations + Ports,
+    M: Partition<Scalar = f64, State = Vec<f64>> + Equations,
 {
     let mut y = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &y);
     let (mut constraints, mut rows, mut lambda) =
-        (mechanism.constraints(), mechanism.rows(), mechanism.rows());
-    let (mut readings, mut accelerations) = (mechanism.readings(), mechanism.accelerations_buffer());
-    let (mut phi_q, mut phi_pi) = (mechanism.phi_q_values(), mechanism.phi_pi_values());
-    let mut outputs = mechanism.outputs_buffer();
+        (mechanism.buffers().constraints, mechanism.buffers().rows, mechanism.buffers().rows);
+    let (mut readings, mut accelerations) = (mechanism.buffers().readings, mechanism.terms().accelerations);
+    let (mut phi_q, mut phi_pi) = (mechanism.terms().phi_q, mechanism.terms().phi_pi);
+    let mut outputs = mechanism.buffers().outputs;
     let before = ALLOCATIONS.with(Cell::get);
     for interval in 0..2 {
         let advanced = solver.advance(mechanism, f64::from(interval) * 5.0 * step, step, 5, &mut y);

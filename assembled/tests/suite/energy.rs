@@ -3,7 +3,7 @@
 use crate::support::{Random, assert_close, dense, models, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::Model;
-use gyro_sim::{Direct, Mechanism, Ode, Ports};
+use gyro_sim::{Direct, Mechanism};
 
 /// Step and length of the runs. The fourth power of the step times the rates of the test models, 30 rad/s, is 1e-10.
 const STEP: f64 = 1e-4;
@@ -54,7 +54,7 @@ fn the_balance_closes_for_every_force_alone() {
             check(&what, &model, &mechanism);
             let mut with = mechanism.start();
             mechanism.derivative(0.0, &mechanism.start(), &mut with);
-            let n = mechanism.n_bodies();
+            let n = mechanism.description().bodies.len();
             assert_ne!(with[7 * n..13 * n], rates[7 * n..13 * n], "{what} does nothing");
         }
     }
@@ -78,15 +78,16 @@ fn a_driver_and_driven_bodies_feed_in_what_the_powers_say() {
     carried.derivative(0.3, &carried.start(), &mut rates);
     let powers = self::outputs(&carried, 0.3, &carried.start());
     let power: f64 = powers.iter().filter(|((name, _), _)| *name == "power").map(|(_, power)| power).sum();
-    let work = 13 * carried.n_bodies();
+    let work = 13 * carried.description().bodies.len();
     assert_close("the rate of work", &[power], &rates[work..=work], 1e-3, 1e-13);
 }
 
 /// Name and suffix of each output with its value.
 fn outputs<'a>(mechanism: &'a Dense<f64>, t: f64, y: &Vec<f64>) -> Vec<((&'a str, &'a str), f64)> {
-    let mut values = mechanism.outputs_buffer();
+    let mut values = mechanism.buffers().outputs;
     mechanism.outputs(t, y, &mut values);
-    let infos = (0..mechanism.n_outputs()).map(|index| mechanism.output(index));
+    let infos =
+        (0..mechanism.description().outputs.len()).map(|index| mechanism.description().outputs[index]);
     infos.map(|info| (info.name, info.suffix)).zip(values).collect()
 }
 
@@ -96,7 +97,8 @@ fn an_input_is_what_the_caller_sets() {
     let mut mechanism = dense(&model);
     let y = state_near(&mechanism, 0.1, &mut Random(3));
     let rates = |mechanism: &mut Dense<f64>, torque: f64| {
-        let index = (0..mechanism.n_inputs()).find(|&index| mechanism.input_name(index) == "torque");
+        let index = (0..mechanism.description().inputs.len())
+            .find(|&index| mechanism.description().inputs[index] == "torque");
         assert!(mechanism.set_input(index.expect("it is there"), torque));
         let mut rates = y.clone();
         mechanism.derivative(0.0, &y, &mut rates);
@@ -110,5 +112,5 @@ fn an_input_is_what_the_caller_sets() {
     let [first, second] = [(&none, &one), (&one, &two)]
         .map(|(from, to)| to.iter().zip(from).map(|(to, from)| to - from).collect::<Vec<f64>>());
     assert_close("the motor is linear", &first, &second, 1.0, 1e-11);
-    assert!(!mechanism.set_input(mechanism.n_inputs(), 0.0));
+    assert!(!mechanism.set_input(mechanism.description().inputs.len(), 0.0));
 }

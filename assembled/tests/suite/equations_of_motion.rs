@@ -2,7 +2,7 @@
 
 use crate::support::{Random, assert_close, careful_models, dense_phi_pi, state_near};
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{Equations, Mechanism, Ode};
+use gyro_sim::{Equations, Mechanism};
 use nalgebra::{DMatrix, DVector};
 
 const STATES: usize = 200;
@@ -14,10 +14,10 @@ const TIME: f64 = 0.3;
 const AGREEMENT: f64 = 1e-10;
 
 fn accelerations<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> (Vec<f64>, Vec<f64>) {
-    let (mut a, mut lambda) = (mechanism.accelerations_buffer(), mechanism.rows());
+    let (mut a, mut lambda) = (mechanism.terms().accelerations, mechanism.buffers().rows);
     mechanism.accelerations(TIME, y, &mut a);
     mechanism.multipliers(TIME, y, &a, &mut lambda);
-    (a.as_ref()[..6 * mechanism.n_bodies()].to_vec(), lambda.as_ref().to_vec())
+    (a.as_ref()[..6 * mechanism.description().bodies.len()].to_vec(), lambda.as_ref().to_vec())
 }
 
 fn for_each_state(
@@ -55,7 +55,7 @@ fn both_forms_leave_no_residual_in_equation_17() {
     for_each_state(0.3, |what, model, dense, careful, y| {
         let phi_pi = dense_phi_pi(dense, TIME, &y);
         let mass = mass_matrix(model);
-        let (mut force, mut gamma) = (dense.velocities(), dense.rows());
+        let (mut force, mut gamma) = (dense.terms().velocities, dense.buffers().rows);
         dense.applied_force(TIME, &y, &mut force);
         dense.gamma(TIME, &y, &mut gamma);
         for (a, lambda) in [accelerations(dense, &y), accelerations(careful, &y)] {

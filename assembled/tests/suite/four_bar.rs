@@ -2,7 +2,7 @@
 
 use crate::support::{dense, max_norm, model, phi, test_model, velocity_residual};
 use gyro_assembled::{Careful, Form, Unsupported};
-use gyro_sim::{Mechanism, Ode, Partitioned};
+use gyro_sim::{Mechanism, Partitioned};
 
 #[test]
 fn the_dense_partition_keeps_the_loop_closed() {

@@ -4,7 +4,7 @@ use crate::support::{
     Random, assert_close, dense_phi_pi, dense_phi_q, normalise, phi, state_near, twins, velocity_residual,
 };
 use gyro_assembled::Dense;
-use gyro_sim::{Equations, Mechanism, Ode};
+use gyro_sim::{Equations, Mechanism};
 
 const STATES: usize = 50;
 
@@ -41,7 +41,7 @@ fn derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 fn phi_q_is_the_difference_quotient_of_phi() {
     for_each_state(|what, mechanism, y| {
         let phi_q = dense_phi_q(mechanism, TIME, &y);
-        for column in 0..7 * mechanism.n_bodies() {
+        for column in 0..7 * mechanism.description().bodies.len() {
             let quotient = derivative(|step| {
                 let mut y = y.clone();
                 y[column] += step;
@@ -57,7 +57,7 @@ fn phi_q_is_the_difference_quotient_of_phi() {
 fn phi_pi_is_half_phi_p_g_transposed() {
     for_each_state(|what, mechanism, y| {
         let (phi_q, phi_pi) = (dense_phi_q(mechanism, TIME, &y), dense_phi_pi(mechanism, TIME, &y));
-        for body in 0..mechanism.n_bodies() {
+        for body in 0..mechanism.description().bodies.len() {
             let [e0, e1, e2, e3] = [0, 1, 2, 3].map(|k| y[7 * body + 3 + k]);
             let g = [[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]];
             for row in 0..phi_pi.nrows() {
@@ -75,7 +75,7 @@ fn phi_pi_is_half_phi_p_g_transposed() {
 fn nu_is_minus_the_difference_quotient_of_phi_in_time() {
     let mut driven = 0;
     for_each_state(|what, mechanism, y| {
-        let mut nu = mechanism.rows();
+        let mut nu = mechanism.buffers().rows;
         mechanism.nu(TIME, &y, &mut nu);
         let phi_t = derivative(|step| phi(mechanism, TIME + step, &y));
         let expected: Vec<f64> = phi_t[..nu.len()].iter().map(|rate| -rate).collect();
@@ -88,8 +88,8 @@ fn nu_is_minus_the_difference_quotient_of_phi_in_time() {
 #[test]
 fn the_velocity_residual_is_phi_pi_times_the_velocities_less_nu() {
     for_each_state(|what, mechanism, y| {
-        let n = mechanism.n_bodies();
-        let mut nu = mechanism.rows();
+        let n = mechanism.description().bodies.len();
+        let mut nu = mechanism.buffers().rows;
         mechanism.nu(TIME, &y, &mut nu);
         let v = nalgebra::DVector::from_column_slice(&y[7 * n..13 * n]);
         let expected = dense_phi_pi(mechanism, TIME, &y) * v - nalgebra::DVector::from_vec(nu);
@@ -105,13 +105,13 @@ fn gamma_is_minus_the_change_of_the_velocity_residual_at_constant_velocities() {
         mechanism.derivative(TIME, &y, &mut rate);
         let change = derivative(|step| {
             let mut moved = y.clone();
-            let n = 7 * mechanism.n_bodies();
+            let n = 7 * mechanism.description().bodies.len();
             moved[..n].iter_mut().zip(&rate).for_each(|(q, rate)| *q += step * rate);
             normalise(&mut moved[..n]);
             velocity_residual(mechanism, TIME + step, &moved)
         });
         let expected: Vec<f64> = change.iter().map(|change| -change).collect();
-        let mut gamma = mechanism.rows();
+        let mut gamma = mechanism.buffers().rows;
         mechanism.gamma(TIME, &y, &mut gamma);
         assert_close(what, &gamma, &expected, 1.0, DIFFERENCE);
     });

@@ -3,7 +3,7 @@
 use crate::support::{Random, assert_close, careful_models, dense, read_text, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::{JointKind, Model, Number, OutputKind, Support};
-use gyro_sim::{Mechanism, Ode, Ports, Rk4};
+use gyro_sim::{Mechanism, Rk4};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 const STATES: usize = 50;
@@ -102,7 +102,7 @@ fn a_joint_pulls_as_newton_and_euler_ask_it_to() {
             let frame = i * Matrix3::from_columns(&[f, h.cross(&f), h]);
             let expected =
                 [frame.tr_mul(&force), frame.tr_mul(&torque)].map(|v| v.as_slice().to_vec()).concat();
-            let mut outputs = mechanism.outputs_buffer();
+            let mut outputs = mechanism.buffers().outputs;
             mechanism.outputs(0.0, &y, &mut outputs);
             let what = format!("{:?} state {state}", joint.kind);
             assert_close(&what, &outputs, &expected, 1.0, 1e-11);
@@ -124,7 +124,7 @@ fn a_joint_has_as_many_rows_as_it_takes_freedoms() {
         let mechanism = dense(&model);
         let phi_pi = crate::support::dense_phi_pi(&mechanism, 0.0, &mechanism.start());
         let kind = model.joints[0].kind;
-        assert_eq!(mechanism.rows().len(), 6 - freedoms(kind), "{kind:?}");
+        assert_eq!(mechanism.buffers().rows.len(), 6 - freedoms(kind), "{kind:?}");
         assert_eq!(phi_pi.rank(1e-9), 6 - freedoms(kind), "{kind:?}");
     }
 }
@@ -134,7 +134,7 @@ fn derivative(mechanism: &Dense<f64>, t: f64, y: &[f64], h: f64) -> Vec<f64> {
     let at = |h: f64| {
         let mut y = y.to_vec();
         Rk4::new(&y).step(mechanism, t, h, &mut y);
-        let mut outputs = mechanism.outputs_buffer();
+        let mut outputs = mechanism.buffers().outputs;
         mechanism.outputs(t + h, &y, &mut outputs);
         outputs
     };
@@ -166,7 +166,7 @@ fn check_kinematics(what: &str, model: &Model, mechanism: &Dense<f64>) {
     let (t, h, tolerance) = (0.2, 1e-5, 1e-6);
     let mut y = mechanism.start();
     Rk4::new(&y).step(mechanism, t, 1e-3, &mut y);
-    let mut now = mechanism.outputs_buffer();
+    let mut now = mechanism.buffers().outputs;
     mechanism.outputs(t, &y, &mut now);
     let rates = derivative(mechanism, t, &y, h);
     let (v, w) = (&now[7..10], &now[10..13]);
@@ -191,7 +191,7 @@ fn both_forms_have_the_same_outputs() {
         let mut random = Random(seed);
         for _ in 0..STATES {
             let y = state_near(&dense, 0.3, &mut random);
-            let (mut a, mut b) = (dense.outputs_buffer(), careful.outputs_buffer());
+            let (mut a, mut b) = (dense.buffers().outputs, careful.buffers().outputs);
             dense.outputs(0.3, &y, &mut a);
             careful.outputs(0.3, &y, &mut b);
             assert_close(&model.name, &a, &b, 1.0, 1e-10);

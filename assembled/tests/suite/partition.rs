@@ -5,7 +5,7 @@ use crate::support::{
 };
 use gyro_assembled::{Careful, Dense};
 use gyro_model::{Attachment, JointKind, Tree};
-use gyro_sim::{Mechanism, Ode, Partition, Partitioned};
+use gyro_sim::{Mechanism, Partition, Partitioned};
 use nalgebra::Vector3;
 
 /// Sixteen roundings, as the solver asks, with room for lengths that are divided by the mechanism's size.
@@ -24,12 +24,16 @@ fn check_restored<M: Partition<Scalar = f64, State = Vec<f64>>>(what: &str, mech
             "{what}: {:e}",
             max_norm(&phi(mechanism, 0.0, &y))
         );
-        let scale = max_norm(&y[7 * mechanism.n_bodies()..]).max(1.0);
+        let scale = max_norm(&y[7 * mechanism.description().bodies.len()..]).max(1.0);
         let residual = max_norm(&velocity_residual(mechanism, 0.0, &y));
         assert!(residual <= RESTORED * scale, "{what}: {residual:e}");
         // A correction is of the order of what it corrects.
-        let moved: Vec<f64> =
-            y.iter().zip(&drifted).take(7 * mechanism.n_bodies()).map(|(y, d)| y - d).collect();
+        let moved: Vec<f64> = y
+            .iter()
+            .zip(&drifted)
+            .take(7 * mechanism.description().bodies.len())
+            .map(|(y, d)| y - d)
+            .collect();
         assert!(max_norm(&moved) < 0.5, "{what}: {:e}", max_norm(&moved));
     }
 }
@@ -51,8 +55,8 @@ fn the_dense_partition_keeps_independent_positions_and_rates() {
         let drifted = state_near(&mechanism, 0.02, &mut Random(7));
         let (mut y, mut solver) = (drifted.clone(), Partitioned::new(&mechanism, &drifted));
         solver.correct(&mechanism, 0.0, &mut y).expect("it can be corrected");
-        let n_q = 7 * mechanism.n_bodies();
-        assert_eq!(solver.independent().len(), n_q - mechanism.constraints().len(), "{}", model.name);
+        let n_q = 7 * mechanism.description().bodies.len();
+        assert_eq!(solver.independent().len(), n_q - mechanism.buffers().constraints.len(), "{}", model.name);
         let rates = |y: &Vec<f64>| {
             let mut rates = y.clone();
             mechanism.derivative(0.0, y, &mut rates);
@@ -76,7 +80,7 @@ fn the_careful_partition_holds_what_the_joint_leaves_free_of_the_angular_velocit
         let drifted = state_near(&mechanism, 0.02, &mut Random(seed));
         let mut y = drifted.clone();
         Partitioned::new(&mechanism, &y).correct(&mechanism, 0.0, &mut y).expect("it can be corrected");
-        let (slots, n_q) = (model.coordinate_bodies(), 7 * mechanism.n_bodies());
+        let (slots, n_q) = (model.coordinate_bodies(), 7 * mechanism.description().bodies.len());
         for link in Tree::of(&model).links {
             let slot = slots.iter().position(|&body| body == link.body).expect("it has coordinates");
             let w = |y: &Vec<f64>| Vector3::from_column_slice(&y[n_q + 6 * slot + 3..n_q + 6 * slot + 6]);

@@ -2,7 +2,7 @@
 
 use crate::support::{assert_close, models};
 use gyro_assembled::Dense;
-use gyro_sim::{JointCoordinate, Mechanism, Ode, Turns};
+use gyro_sim::{JointCoordinate, Mechanism, Turns};
 
 /// Rounding of a few products, at rates of up to 100 rad/s.
 const ROUNDING: f64 = 1e-13;
@@ -23,7 +23,7 @@ fn joints_start_where_the_page_puts_them() {
         let turns = Turns::new(&mechanism, 0.0, &mechanism.start(), &nearest);
         for (joint, expected) in start.joints.iter().enumerate() {
             let (mut position, mut rate) = (vec![], vec![]);
-            for index in 0..mechanism.joint(joint).coordinates.len() {
+            for index in 0..mechanism.description().joints[joint].coordinates.len() {
                 match turns.coordinate(&mechanism, joint, index).expect("it is there") {
                     JointCoordinate::Angle { position: x, rate: r }
                     | JointCoordinate::Length { position: x, rate: r } => {
@@ -36,7 +36,7 @@ fn joints_start_where_the_page_puts_them() {
                     }
                 }
             }
-            let what = format!("{} {}", model.name, mechanism.joint(joint).name);
+            let what = format!("{} {}", model.name, mechanism.description().joints[joint].name);
             assert_close(&what, &position, &expected.position, 1.0, ROUNDING);
             assert_close(&what, &rate, &expected.rate, 1.0, ROUNDING);
         }

@@ -95,7 +95,7 @@ pub fn state_near<M: Partition<Scalar = f64, State = Vec<f64>>>(
     spread: f64,
     random: &mut Random,
 ) -> Vec<f64> {
-    let (mut y, n) = (mechanism.start(), mechanism.n_bodies());
+    let (mut y, n) = (mechanism.start(), mechanism.description().bodies.len());
     let (q, v) = y[..13 * n].split_at_mut(7 * n);
     for q in q.as_chunks_mut::<7>().0 {
         q[..3].iter_mut().for_each(|r| *r += spread * mechanism.size() * random.signed());
@@ -119,18 +119,18 @@ pub fn normalise(q: &mut [f64]) {
 
 /// (Φ_r, Φ_π') as a dense matrix.
 pub fn dense_phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> DMatrix<f64> {
-    let mut values = mechanism.phi_pi_values();
+    let mut values = mechanism.terms().phi_pi;
     mechanism.phi_pi(t, y, &mut values);
-    let n_rows = mechanism.rows().as_ref().len();
-    scatter(n_rows, 6 * mechanism.n_bodies(), mechanism.phi_pi_pattern(), values.as_ref())
+    let n_rows = mechanism.buffers().rows.as_ref().len();
+    scatter(n_rows, 6 * mechanism.description().bodies.len(), mechanism.phi_pi_pattern(), values.as_ref())
 }
 
 /// Φ_q as a dense matrix.
 pub fn dense_phi_q<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> DMatrix<f64> {
-    let mut values = mechanism.phi_q_values();
+    let mut values = mechanism.terms().phi_q;
     mechanism.phi_q(t, y, &mut values);
-    let n_rows = mechanism.constraints().as_ref().len();
-    scatter(n_rows, 7 * mechanism.n_bodies(), mechanism.phi_q_pattern(), values.as_ref())
+    let n_rows = mechanism.buffers().constraints.as_ref().len();
+    scatter(n_rows, 7 * mechanism.description().bodies.len(), mechanism.phi_q_pattern(), values.as_ref())
 }
 
 fn scatter(n_rows: usize, n_columns: usize, pattern: &[(u16, u16)], values: &[f64]) -> DMatrix<f64> {
@@ -144,14 +144,14 @@ fn scatter(n_rows: usize, n_columns: usize, pattern: &[(u16, u16)], values: &[f6
 
 /// Φ at a state.
 pub fn phi<M: Mechanism<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Vec<f64> {
-    let mut out = mechanism.constraints();
+    let mut out = mechanism.buffers().constraints;
     mechanism.phi(t, y, &mut out);
     out.as_ref().to_vec()
 }
 
 /// The velocity residual at a state.
 pub fn velocity_residual<M: Mechanism<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> Vec<f64> {
-    let mut out = mechanism.rows();
+    let mut out = mechanism.buffers().rows;
     mechanism.velocity_residual(t, y, &mut out);
     out.as_ref().to_vec()
 }

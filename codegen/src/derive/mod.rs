@@ -10,3 +10,63 @@ pub mod outputs;
 pub mod prescribed_motion;
 pub mod readings;
 pub mod system;
+
+use crate::expr::graph::ExprId;
+use dynamics::Dynamics;
+use kinematics::Kinematics;
+use system::System;
+
+/// What follows from Φ, and the rest of eq. (17).
+#[derive(Debug)]
+pub struct Textbook {
+    pub kinematics: Kinematics,
+    pub dynamics: Dynamics,
+}
+
+impl Textbook {
+    pub fn derive(system: &mut System) -> Self {
+        let kinematics = Kinematics::derive(system);
+        Self { kinematics, dynamics: Dynamics::derive(system) }
+    }
+}
+
+/// What is read off a state, its accelerations and multipliers being known.
+#[derive(Debug)]
+pub struct Observed {
+    /// The numbers of the outputs.
+    pub outputs: Vec<ExprId>,
+    /// Power of non-conservative forces and drivers.
+    pub power: ExprId,
+    /// The same without the forces that act along joint coordinates.
+    pub power_but_along_coordinates: ExprId,
+    /// Rates of the turn references.
+    pub turn_rates: Vec<ExprId>,
+    pub readings: Vec<ExprId>,
+    /// (ṙ, ṗ) of each slot by eqs. (16) and (14).
+    pub position_rates: Vec<ExprId>,
+}
+
+impl Observed {
+    pub fn derive(system: &mut System, textbook: &Textbook, lambda: &[ExprId]) -> Self {
+        let Textbook { kinematics, dynamics } = textbook;
+        let sources = outputs::Sources { kinematics, dynamics, lambda };
+        let outputs = outputs::derive(system, &sources);
+        let drivers_power = outputs::drivers_power(system, &sources);
+        let power = system.graph.add(dynamics.power, drivers_power);
+        let turns = system.model.turn_references();
+        let turn_rates = turns.into_iter().map(|turn| joint_coordinate::rate(system, turn)).collect();
+        let readings = readings::readings(system);
+        let position_rates = position_rates(system);
+        let power_but_along_coordinates = system.graph.add(dynamics.power_at_points, drivers_power);
+        Self { outputs, power, power_but_along_coordinates, turn_rates, readings, position_rates }
+    }
+}
+
+fn position_rates(system: &mut System) -> Vec<ExprId> {
+    let poses: Vec<_> = system.slots.iter().map(|&body| system.poses[body]).collect();
+    let rates = poses.iter().flat_map(|pose| {
+        let p_rate = system.graph.euler_rate(&pose.p, &pose.w);
+        pose.s.into_iter().chain(p_rate)
+    });
+    rates.collect()
+}

@@ -2,10 +2,10 @@
 //! which shows of it what the verifier can see for itself.
 
 use crate::equations::Equations;
-use crate::expr::graph::{ExprId, Graph};
+use crate::expr::graph::Graph;
 use crate::expr::schedule::{Operations, Passes};
-use crate::kernels::Functions;
-use crate::simplify::cheapest::Form;
+use crate::kernels::{Kernel, Kernels};
+use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
 use gyro_model::{Model, RowOwner, Support};
 use std::fmt::Write;
@@ -34,10 +34,8 @@ pub struct Sheet {
 /// One function of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Function {
-    /// Its name.
-    pub name: &'static str,
-    /// What it computes.
-    pub computes: &'static str,
+    /// Which one, with its name and what it computes.
+    pub kernel: Kernel,
     /// What is emitted.
     pub operations: Operations,
     /// What is left after each pass.
@@ -53,10 +51,9 @@ pub struct Function {
 }
 
 impl Sheet {
-    pub(crate) fn of(equations: &Equations, functions: &Functions) -> Self {
+    pub(crate) fn of(equations: &Equations, kernels: &Kernels) -> Self {
         let model = equations.model;
         let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.clone());
-        let functions = functions.list();
         Self {
             mechanism: model.name.clone(),
             bodies: bodies.collect(),
@@ -65,7 +62,7 @@ impl Sheet {
             phi_pi: equations.phi_pi.len(),
             left_out: left_out(equations),
             spared: spared(equations),
-            functions: functions.iter().map(|function| Function::of(equations, function)).collect(),
+            functions: kernels.iter().map(|kernel| Function::of(&equations.graph, kernel)).collect(),
         }
     }
 
@@ -89,9 +86,9 @@ impl Sheet {
         6 * self.bodies.len() + self.rows
     }
 
-    /// The function of this name, if the module has it.
-    pub fn function(&self, name: &str) -> Option<&Function> {
-        self.functions.iter().find(|function| function.name == name)
+    /// What is known of a kernel, if the module has it.
+    pub fn function(&self, kernel: Kernel) -> Option<&Function> {
+        self.functions.iter().find(|function| function.kernel == kernel)
     }
 
     /// The first lines of the module's file.
@@ -137,22 +134,16 @@ impl Sheet {
 }
 
 impl Function {
-    fn of(equations: &Equations, &(name, computes, roots): &(&'static str, &'static str, &[ExprId])) -> Self {
-        let (forms, reductions) = match (name, &equations.joint_space) {
-            ("accelerations", _) => (equations.forms.clone(), Vec::new()),
-            ("project", _) => (equations.forms_of_projection.clone(), Vec::new()),
-            (_, Some(space)) => space.choice(name),
-            (_, None) => Default::default(),
-        };
+    fn of(graph: &Graph, (kernel, chosen): (Kernel, &Chosen)) -> Self {
+        let Chosen { roots, forms, reductions } = chosen;
         Self {
-            name,
-            computes,
-            operations: Operations::count(&equations.graph, roots),
-            passes: Passes::count(&equations.graph, roots),
+            kernel,
+            operations: Operations::count(graph, roots),
+            passes: Passes::count(graph, roots),
             results: roots.len(),
             zeros: roots.iter().filter(|&&root| root == Graph::ZERO).count(),
-            forms,
-            reductions,
+            forms: forms.clone(),
+            reductions: reductions.clone(),
         }
     }
 
@@ -160,8 +151,8 @@ impl Function {
         let Operations { additions, multiplications, divisions, .. } = self.operations;
         format!(
             "| {} | {} | {additions} | {multiplications} | {divisions} | {} | {} of {} |",
-            self.name,
-            self.computes,
+            self.kernel.name(),
+            self.kernel.computes(),
             self.operations.total(),
             self.zeros,
             self.results,

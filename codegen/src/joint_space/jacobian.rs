@@ -9,15 +9,16 @@
 //! which differentiates no elimination and shares that of the accelerations. For small mechanisms what is solved may be shorter. Both are
 //! written out, from within and from without, and the cheapest is taken.
 
+use super::coordinates::Coordinates;
 use super::dynamics::{MAX_FACTORED, NORMAL_FORM, Reduced};
-use super::layout::Layout;
+
 use crate::derive::system::System;
-use crate::expr::definitions::{Definitions, Expansion, Values};
+use crate::expr::definitions::{Definitions, Expansion};
 use crate::expr::differentiate::Direction;
 use crate::expr::differentiate::{Derivative, gradient};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
-use crate::simplify::cheapest::{Finish, Form};
+use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::normal_form;
 
 /// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 16500 operations for six rates and 29300 for eight, and as many lines:
@@ -27,30 +28,23 @@ pub const MAX_RATES: usize = 8;
 /// The derivatives of f, row by row.
 #[derive(Debug)]
 pub struct Jacobian {
-    /// By the joint state.
-    pub by_state: Vec<ExprId>,
-    /// By time.
-    pub by_time: Vec<ExprId>,
-    /// By the inputs.
-    pub by_inputs: Vec<ExprId>,
-    /// What was compared for the first two, and for the third.
-    pub forms: [Vec<Form>; 2],
+    /// By the joint state, then by time.
+    pub by_state_and_time: Chosen,
+    pub by_inputs: Chosen,
 }
 
 /// The joint form, in terms of joint coordinates and rates.
 pub struct JointForm<'a> {
-    pub layout: &'a Layout,
-    pub in_joints: &'a Values,
+    pub coordinates: &'a Coordinates,
     /// ẋ.
-    pub coordinates: &'a [ExprId],
+    pub rates: &'a [ExprId],
     /// u̇ as it is emitted.
     pub accelerations: &'a [ExprId],
     /// In terms of [`Symbol::RateOfRate`].
     pub power: Option<ExprId>,
     /// What u̇ is the solution of.
-    pub reduced: &'a Reduced,
-    pub unit: &'a [Vec<ExprId>],
-    pub finish: Finish,
+    pub balance: &'a Reduced,
+    pub passes: FinalPasses,
 }
 
 /// The columns of a matrix.
@@ -59,7 +53,7 @@ type Columns = Vec<Vec<ExprId>>;
 impl Jacobian {
     /// `None` if there are too many rates, or if the third derivative of a table's curve would be needed.
     pub fn derive(system: &mut System, form: &JointForm<'_>) -> Option<Self> {
-        let layout = form.layout;
+        let layout = &form.coordinates.layout;
         if layout.n_rates > MAX_RATES {
             return None;
         }
@@ -83,31 +77,32 @@ impl Jacobian {
             let by_inputs = rows.iter().flat_map(|row| &row[n + 1..]);
             of_inputs.push((name, by_inputs.copied().collect::<Vec<_>>()));
         }
-        let factored = |graph: &mut Graph, candidates: Vec<(String, Vec<ExprId>)>| {
-            let (taken, _) = form.finish.cheapest(graph, candidates.clone());
-            let mut candidates = candidates;
-            if layout.n_rates <= MAX_FACTORED {
-                let unit = form.unit;
-                candidates.push((format!("{NORMAL_FORM} of that"), normal_form(graph, unit, &taken)));
-            }
-            form.finish.cheapest(graph, candidates)
+        let jacobian = Self {
+            by_state_and_time: form.choose(graph, of_state),
+            by_inputs: form.choose(graph, of_inputs),
         };
-        let (mut by_state, forms) = factored(graph, of_state);
-        let (by_inputs, forms_of_inputs) = factored(graph, of_inputs);
-        let by_time = by_state.split_off(by_state.len() - (n + usize::from(form.power.is_some())));
-        let jacobian = Self { by_state, by_time, by_inputs, forms: [forms, forms_of_inputs] };
         jacobian.exists(graph).then_some(jacobian)
     }
 
     /// Tables have two derivatives.
     fn exists(&self, graph: &Graph) -> bool {
-        let roots = [&self.by_state[..], &self.by_time, &self.by_inputs].concat();
+        let roots = [&self.by_state_and_time.roots[..], &self.by_inputs.roots].concat();
         let is_third = |id| matches!(graph.node(id), Node::Symbol(Symbol::Table { order, .. }) if *order > 2);
         !graph.reachable(&roots).into_iter().any(is_third)
     }
 }
 
 impl JointForm<'_> {
+    /// The cheapest candidate, which may also be the normal form of the cheapest.
+    fn choose(&self, graph: &mut Graph, mut candidates: Vec<(String, Vec<ExprId>)>) -> Chosen {
+        let cheapest = self.passes.cheapest(graph, candidates.clone()).roots;
+        if self.coordinates.layout.n_rates <= MAX_FACTORED {
+            let factored = normal_form(graph, &self.coordinates.unit, &cheapest);
+            candidates.push((format!("{NORMAL_FORM} of that"), factored));
+        }
+        self.passes.cheapest(graph, candidates)
+    }
+
     /// ∂u̇ by each variable, in several ways.
     fn candidates(&self, system: &mut System, variables: &[Symbol]) -> Vec<(String, Columns)> {
         let graph = &mut system.graph;
@@ -116,21 +111,23 @@ impl JointForm<'_> {
         let names = ["derivatives of u̇, from its leaves", "derivatives of u̇, from its roots"];
         let mut candidates: Vec<_> = names.map(str::to_owned).into_iter().zip(solved).collect();
         // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form which is emitted.
-        if self.layout.links.iter().any(|link| link.orientation.is_some()) {
+        if self.coordinates.layout.links.iter().any(|link| link.orientation.is_some()) {
             return candidates;
         }
-        let rates_of_rates: Vec<_> =
-            (0..self.layout.n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
-        let left = self.reduced.left_over(system, &rates_of_rates);
-        let left = system.expanded(self.in_joints, &left);
-        let unit =
-            |k: usize| (0..self.layout.n_rates).map(move |l| if k == l { Graph::ONE } else { Graph::ZERO });
-        let units: Vec<_> = (0..self.layout.n_rates).map(|k| unit(k).collect()).collect();
-        let inverse = self.reduced.accelerations_of(system, &units);
+        let rates_of_rates: Vec<_> = (0..self.coordinates.layout.n_rates)
+            .map(|rate| system.graph.symbol(Symbol::RateOfRate(rate)))
+            .collect();
+        let left = self.balance.left_over(system, &rates_of_rates);
+        let left = system.expanded(&self.coordinates.in_joints, &left);
+        let unit = |k: usize| {
+            (0..self.coordinates.layout.n_rates).map(move |l| if k == l { Graph::ONE } else { Graph::ZERO })
+        };
+        let units: Vec<_> = (0..self.coordinates.layout.n_rates).map(|k| unit(k).collect()).collect();
+        let inverse = self.balance.accelerations_of(system, &units);
         let graph = &mut system.graph;
         let unbalanced = [forward(graph, &left, variables), backward(graph, &left, variables)];
         for (way, columns) in ["leaves", "roots"].into_iter().zip(unbalanced) {
-            let solved = self.reduced.accelerations_of(system, &columns);
+            let solved = self.balance.accelerations_of(system, &columns);
             let solved = self.finished(system, &solved);
             candidates.push((format!("derivatives of the balance, from its {way}, recursion"), solved));
             let inverse = self.finished(system, &inverse);
@@ -138,9 +135,12 @@ impl JointForm<'_> {
             let graph = &mut system.graph;
             let solved = columns.iter().map(|column| weighted(graph, &inverse, column)).collect();
             candidates.push((format!("derivatives of the balance, from its {way}, by M⁻¹"), solved));
-            if self.layout.n_rates <= MAX_FACTORED {
-                let solved =
-                    self.reduced.factored_accelerations_of(system, (self.in_joints, self.unit), &columns);
+            if self.coordinates.layout.n_rates <= MAX_FACTORED {
+                let solved = self.balance.factored_accelerations_of(
+                    system,
+                    (&self.coordinates.in_joints, &self.coordinates.unit),
+                    &columns,
+                );
                 let solved = self.finished(system, &solved);
                 candidates
                     .push((format!("derivatives of the balance, from its {way}, {NORMAL_FORM}"), solved));
@@ -160,7 +160,7 @@ impl JointForm<'_> {
     /// The same of columns in which the elimination is yet to be expanded.
     fn finished(&self, system: &mut System, columns: &Columns) -> Columns {
         let expand = |column: &Vec<ExprId>| {
-            let column = system.expanded(self.in_joints, column);
+            let column = system.expanded(&self.coordinates.in_joints, column);
             self.at_accelerations(&mut system.graph, &column)
         };
         columns.iter().map(expand).collect()
@@ -169,9 +169,8 @@ impl JointForm<'_> {
     /// The rows of ∂f, from the columns of ∂u̇.
     fn rows(&self, graph: &mut Graph, variables: &[Symbol], of_rates: &Columns) -> Vec<Vec<ExprId>> {
         let row_of_rate = |rate: usize| of_rates.iter().map(|column| column[rate]).collect::<Vec<_>>();
-        let mut rows: Vec<_> =
-            self.coordinates.iter().map(|&root| gradient(graph, root, variables)).collect();
-        rows.extend((0..self.layout.n_rates).map(row_of_rate));
+        let mut rows: Vec<_> = self.rates.iter().map(|&root| gradient(graph, root, variables)).collect();
+        rows.extend((0..self.coordinates.layout.n_rates).map(row_of_rate));
         if let Some(power) = self.power {
             rows.push(self.row_of_power(graph, power, variables, of_rates));
         }
@@ -186,7 +185,7 @@ impl JointForm<'_> {
         variables: &[Symbol],
         of_rates: &Columns,
     ) -> Vec<ExprId> {
-        let rates_of_rates: Vec<_> = (0..self.layout.n_rates).map(Symbol::RateOfRate).collect();
+        let rates_of_rates: Vec<_> = (0..self.coordinates.layout.n_rates).map(Symbol::RateOfRate).collect();
         let mut row = gradient(graph, power, variables);
         let by_rates = gradient(graph, power, &rates_of_rates);
         for (entry, column) in row.iter_mut().zip(of_rates) {

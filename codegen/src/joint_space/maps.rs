@@ -12,7 +12,7 @@ use crate::expr::evaluate::evaluate;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
-use gyro_model::{Attachment, CoordinateKind};
+use gyro_model::{Attachment, CoordinateKind, JointCoordinate, Start};
 use std::array::from_fn;
 
 /// Maximal positions and velocities in terms of joint coordinates and rates.
@@ -281,4 +281,92 @@ pub fn reduced(system: &mut System, layout: &Layout) -> Vec<ExprId> {
     }
     all.extend((0..layout.n_rates).map(|u| values[&Symbol::Rate(u)]));
     all
+}
+
+/// Everything in terms of joint coordinates and rates.
+pub fn in_joints(system: &mut System, layout: &Layout, maximal: &Values) -> Values {
+    let mut values = Values::default();
+    for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
+        let place = scalar.place.x;
+        let x = system.graph.symbol(Symbol::Coordinate(place));
+        if scalar.kind.is_angle() {
+            values.insert(Symbol::Sine(place), system.graph.sin(x));
+            values.insert(Symbol::Cosine(place), system.graph.cos(x));
+        }
+        let turns = system.model.turn_references();
+        if let Some(turn) = turns.iter().position(|&turn| turn == scalar.coordinate) {
+            values.insert(Symbol::Angle(turn), x);
+        }
+    }
+    let maximal = expanded(system, values.clone(), maximal.clone());
+    values.extend(maximal);
+    values
+}
+
+/// ẋ: the rates of scalars, `½ Gᵀ w'` of Euler parameters.
+pub fn coordinate_rates(system: &mut System, layout: &Layout) -> Vec<ExprId> {
+    let graph = &mut system.graph;
+    let mut rates = vec![Graph::ZERO; layout.n_coordinates];
+    for link in &layout.links {
+        for scalar in &link.scalars {
+            rates[scalar.place.x] = graph.symbol(Symbol::Rate(scalar.place.u));
+        }
+        if let Some(place) = link.position {
+            for k in 0..3 {
+                rates[place.x + k] = graph.symbol(Symbol::Rate(place.u + k));
+            }
+        }
+        if let Some(place) = link.orientation {
+            let p = from_fn(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
+            let w = from_fn(|k| graph.symbol(Symbol::Rate(place.u + k)));
+            let p_rate = graph.euler_rate(&p, &w);
+            rates[place.x..place.x + 4].copy_from_slice(&p_rate);
+        }
+    }
+    rates
+}
+
+/// Positions (r, p) of each slot, then velocities (s, w'), then turn references.
+pub fn state(system: &mut System, layout: &Layout, values: &Values) -> Vec<ExprId> {
+    let slots = 0..system.slots.len();
+    let position =
+        |slot, k| if k < 3 { Symbol::Position { slot, k } } else { Symbol::Euler { slot, k: k - 3 } };
+    let velocity =
+        |slot, k| if k < 3 { Symbol::Velocity { slot, k } } else { Symbol::Spin { slot, k: k - 3 } };
+    let positions = slots.clone().flat_map(|slot| (0..7).map(move |k| position(slot, k)));
+    let velocities = slots.flat_map(|slot| (0..6).map(move |k| velocity(slot, k)));
+    let state = positions.chain(velocities).map(|symbol| values[&symbol]);
+    let turns = system.model.turn_references();
+    let turns = turns.into_iter().map(|turn| {
+        let scalar = layout.scalar(turn).expect("joints of a tree have their coordinates");
+        system.graph.symbol(Symbol::Coordinate(scalar.place.x))
+    });
+    state.chain(turns).collect()
+}
+
+/// The joint state of the assembled start, continuous angles as the assembly has them.
+pub fn joint_start(system: &System, layout: &Layout, reduced: &[ExprId], start: &Start) -> Vec<f64> {
+    let scalar_at = |x: usize| {
+        let mut scalars = layout.links.iter().flat_map(|link| &link.scalars);
+        scalars.find(|scalar| scalar.place.x == x).map(|scalar| scalar.coordinate)
+    };
+    let assembled = |on: JointCoordinate| start.joints[on.joint].position[on.coordinate];
+    let turns = system.model.turn_references();
+    let value = |symbol: Symbol| match symbol {
+        Symbol::Position { slot, k } => start.q[7 * slot + k],
+        Symbol::Euler { slot, k } => start.q[7 * slot + 3 + k],
+        Symbol::Velocity { slot, k } => start.v[6 * slot + k],
+        Symbol::Spin { slot, k } => start.v[6 * slot + 3 + k],
+        Symbol::Turn(turn) => assembled(turns[turn]),
+        Symbol::Coordinate(x) => scalar_at(x).map_or(0.0, assembled),
+        Symbol::Parameter(index) => gyro_model::to_f64(&system.model.parameters[index].value),
+        Symbol::Input(index) => gyro_model::to_f64(&system.model.inputs[index].value),
+        Symbol::Table { table, order } => system.tables[table].value(0.0).get(order).copied().unwrap_or(0.0),
+        _ => 0.0,
+    };
+    let mut values = evaluate(&system.graph, reduced, value);
+    for (x, value) in values.iter_mut().enumerate().take(layout.n_coordinates) {
+        *value = scalar_at(x).map_or(*value, assembled);
+    }
+    values
 }

@@ -1,16 +1,23 @@
 //! Trees in joint coordinates: the state-space form, and the short way to the maximal accelerations of a state that
 //! satisfies the constraints.
 //!
-//! `layout` orders the coordinates, `carriage` says how a body moves on its carrier, `dynamics` solves for the rates' rates, `maps` leads to
-//! maximal coordinates and back. Where a recursion and a factored mass matrix in polynomial normal form both exist, the one with
-//! fewer operations is taken.
+//! `layout` orders the coordinates, `link_kinematics` says how a body moves on its carrier and `maps` leads to maximal coordinates and back:
+//! `coordinates` has all that is derived of them. `dynamics` solves for the rates' rates in several ways, which are the `candidates`, and
+//! `choose` takes the cheapest of those that are accurate, with what follows from it: `motions` of the bodies, `multipliers` and the
+//! `jacobian` of the joint form.
 
 mod candidates;
+mod choose;
+mod coordinates;
 mod dynamics;
 mod jacobian;
 mod layout;
 mod link_kinematics;
 mod maps;
+mod motions;
 mod multipliers;
 
-pub use candidates::JointSpace;
+pub use candidates::Candidates;
+pub use choose::JointSpace;
+pub use coordinates::Coordinates;
+pub use jacobian::Jacobian;

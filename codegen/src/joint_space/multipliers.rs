@@ -1,10 +1,9 @@
 //! λ at a state that satisfies the constraints: the balance of forces of `multipliers`, with what each row forces upon its body
 //! in polynomial normal form. There the gradients of a joint's rows are perpendicular unit vectors, and divisions vanish.
 
-use super::layout::Layout;
+use super::coordinates::Coordinates;
 use super::link_kinematics::Carriage;
-use crate::derive::dynamics::Dynamics;
-use crate::derive::kinematics::Kinematics;
+use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
@@ -21,10 +20,8 @@ use std::array::from_fn;
 /// The multiplier of each row, in terms of [`Symbol::Acceleration`], the maximal state and joint coordinates.
 pub fn of(
     system: &mut System,
-    kinematics: &Kinematics,
-    dynamics: &Dynamics,
-    (layout, carriages): (&Layout, &[Carriage]),
-    unit: &[Vec<ExprId>],
+    Textbook { kinematics, dynamics }: &Textbook,
+    Coordinates { layout, carriages, unit, .. }: &Coordinates,
 ) -> Vec<ExprId> {
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
     let mut lacking: Vec<_> = (0..system.slots.len()).map(|slot| imbalance(system, dynamics, slot)).collect();

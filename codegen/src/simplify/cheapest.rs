@@ -2,6 +2,7 @@
 
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
+use crate::simplify::normal_form::Reduction;
 use crate::simplify::reassociate::reassociated;
 use crate::simplify::scales::scaled;
 
@@ -19,30 +20,42 @@ pub struct Form {
     pub is_taken: bool,
 }
 
-/// What is done at the end.
+/// The form of a function that was chosen.
+#[derive(Clone, Debug, Default)]
+pub struct Chosen {
+    pub roots: Vec<ExprId>,
+    /// The forms that were compared; none if there was a single one.
+    pub forms: Vec<Form>,
+    /// What the polynomial normal form made of the parts of the form of this name.
+    pub reductions: Vec<Reduction>,
+}
+
+impl From<Vec<ExprId>> for Chosen {
+    fn from(roots: Vec<ExprId>) -> Self {
+        Self { roots, ..Self::default() }
+    }
+}
+
+/// The passes over a function whose form is chosen. Forms are compared by what they cost after them.
 #[derive(Clone, Copy, Debug)]
-pub struct Finish {
+pub struct FinalPasses {
     chooses_scales: bool,
 }
 
-impl Finish {
+impl FinalPasses {
     /// Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
     pub fn of(has_loops: bool) -> Self {
         Self { chooses_scales: !has_loops }
     }
 
-    /// The same expressions, finished.
-    pub fn finished(self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+    /// The same expressions, after these passes.
+    pub fn applied(self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
         let roots = if self.chooses_scales { scaled(graph, roots) } else { roots.to_vec() };
         reassociated(graph, &roots)
     }
 
-    /// The set of roots that takes the fewest operations when it is finished, and what each would have taken.
-    pub fn cheapest(
-        self,
-        graph: &mut Graph,
-        candidates: Vec<(String, Vec<ExprId>)>,
-    ) -> (Vec<ExprId>, Vec<Form>) {
+    /// The candidate that takes the fewest operations after these passes, and what each would have taken.
+    pub fn cheapest(self, graph: &mut Graph, candidates: Vec<(String, Vec<ExprId>)>) -> Chosen {
         let costs: Vec<_> = candidates.iter().map(|(_, roots)| self.cost(graph, roots)).collect();
         let cost = |&k: &usize| (costs[k].functions, costs[k].total());
         let taken = (0..candidates.len()).min_by_key(cost).expect("there is a candidate");
@@ -52,7 +65,8 @@ impl Finish {
             is_taken: k == taken,
         };
         let forms = candidates.iter().enumerate().map(form).collect();
-        (candidates.into_iter().nth(taken).expect("it is one of them").1, forms)
+        let (_, roots) = candidates.into_iter().nth(taken).expect("it is one of them");
+        Chosen { roots, forms, reductions: Vec::new() }
     }
 
     fn cost(self, graph: &mut Graph, roots: &[ExprId]) -> Operations {
@@ -60,7 +74,7 @@ impl Finish {
         if now.total() > MAX_OPERATIONS {
             return now;
         }
-        let roots = self.finished(graph, roots);
+        let roots = self.applied(graph, roots);
         Operations::recurring(graph, &roots)
     }
 }

@@ -1,5 +1,6 @@
 //! The solve of eq. (17) for the trees of a mechanism, through the null space of the joints, in the way that suits them.
 
+use crate::derive::Textbook;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
@@ -8,6 +9,7 @@ use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
+use crate::solve::Solution;
 use crate::solve::articulated_body::{Basis, EliminatedTree, Excitation};
 use crate::solve::cancellation::{self, Trials};
 use crate::solve::gram_schmidt::{self, OrthogonalTree};
@@ -17,23 +19,12 @@ use crate::solve::multipliers;
 use crate::solve::reduced_mass_matrix::ReducedTree;
 use std::collections::BTreeSet;
 
-/// Accelerations and what follows from them.
-#[derive(Debug)]
-pub struct Solution {
-    /// (s̈, ẇ') of each slot.
-    pub accelerations: Vec<ExprId>,
-    /// Multipliers of the rows that close loops or couple joints, those that no joint of the tree owns.
-    pub closing: Vec<ExprId>,
-    /// The multiplier of each row, in terms of [`Symbol::Acceleration`] and [`Symbol::Closing`].
-    pub lambda: Vec<ExprId>,
-}
-
 /// With more rates than this a reduced mass matrix is seldom shorter.
 const MAX_REDUCED: usize = 4;
 
 /// The trees of a mechanism, ready to be solved.
 #[derive(Debug)]
-pub struct Trees {
+pub struct ForwardDynamics {
     freedoms: Vec<Freedom>,
     /// In each basis that is tried.
     eliminated: Vec<EliminatedTree>,
@@ -45,7 +36,7 @@ pub struct Trees {
     closing: Vec<usize>,
 }
 
-impl Trees {
+impl ForwardDynamics {
     pub fn of(system: &mut System, kinematics: &Kinematics) -> Self {
         let links = system.tree.links.clone();
         let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
@@ -72,43 +63,36 @@ impl Trees {
         Self { freedoms, eliminated, reduced, orthogonal, closing }
     }
 
-    /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
-    pub fn solve(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
+    /// Solves eq. (17).
+    pub fn solve(&self, system: &mut System, textbook: &Textbook) -> Solution {
+        let Textbook { kinematics, dynamics } = textbook;
+        let candidates = self.candidates(system, kinematics, dynamics);
+        let admitted = candidates.admitted(system);
+        let solved = cheapest(&system.graph, admitted);
+        Solution { solved, lambda: multipliers::of(system, kinematics, dynamics, &self.freedoms) }
+    }
+
+    fn candidates(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Candidates {
         let of_eliminated = |tree: &EliminatedTree| {
             let freedoms = tree.joints.iter().map(|joint| &joint.freedom);
             let excitation = Excitation::by_forces(system, dynamics, freedoms);
             let free = tree.respond(&mut system.graph, &excitation).motions;
             let rows = (&self.closing[..], &kinematics.gamma[..]);
             let (motions, closing) = loop_closure::close(&mut system.graph, kinematics, tree, rows, free);
-            (listed(&motions), closing)
+            listed(&motions).into_iter().chain(closing).collect()
         };
-        let mut ways: Vec<Way> = self.eliminated.iter().map(of_eliminated).collect();
-        let reduced =
-            self.reduced.as_ref().map(|tree| (listed(&tree.accelerations(system, dynamics)), Vec::new()));
+        let eliminated = self.eliminated.iter().map(of_eliminated).collect();
+        let reduced = self.reduced.as_ref().map(|tree| listed(&tree.accelerations(system, dynamics)));
         let of_orthogonal = |tree: &OrthogonalTree| {
             let excitation = Excitation::by_forces(system, dynamics, &tree.freedoms);
-            (listed(&tree.respond(&mut system.graph, &excitation).motions), Vec::new())
+            listed(&tree.respond(&mut system.graph, &excitation).motions)
         };
-        let orthogonal: Vec<Way> = self.orthogonal.iter().map(of_orthogonal).collect();
-        if let Some((keeping, _)) = orthogonal.first() {
-            ways.extend(reduced);
-            ways = keeping_digits(system, ways, keeping);
-            ways.extend(orthogonal);
-        } else if let Some(reduced) = reduced {
-            // Elimination keeps more digits where a body spins fast: they are worth a quarter of the operations.
-            let cost = |way: &Way| cost(&system.graph, way);
-            if ways.iter().all(|eliminated| 4 * cost(&reduced) < 3 * cost(eliminated)) {
-                ways = vec![reduced];
-            }
-        }
-        let (accelerations, closing) = cheapest(&system.graph, ways);
-        let lambda = multipliers::of(system, kinematics, dynamics, &self.freedoms);
-        Solution { accelerations, closing, lambda }
+        Candidates { eliminated, reduced, orthogonal: self.orthogonal.iter().map(of_orthogonal).collect() }
     }
 
     /// The smallest (δr, δπ') of each slot, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
-    /// and with these changes for γ. In symbols that are yet to be expanded.
-    pub fn project(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
+    /// and with these changes for γ.
+    pub fn projection(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
         let changes: Vec<_> =
             (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
         let projected = self.eliminated.iter().map(|tree| {
@@ -116,12 +100,43 @@ impl Trees {
             let excitation = Excitation { forced, ..Excitation::none(tree.n_slots(), tree.joints.len()) };
             let free = tree.respond(graph, &excitation).motions;
             let (motions, _) = loop_closure::close(graph, kinematics, tree, (&self.closing, &changes), free);
-            (listed(&motions), Vec::new())
+            listed(&motions)
         });
         let mut projected: Vec<_> = projected.collect();
-        projected
-            .extend(self.reduced.as_ref().map(|tree| (listed(&tree.project(graph, &changes)), Vec::new())));
-        cheapest(graph, projected).0
+        projected.extend(self.reduced.as_ref().map(|tree| listed(&tree.project(graph, &changes))));
+        cheapest(graph, projected)
+    }
+}
+
+/// The forms of the accelerations that are compared.
+struct Candidates {
+    /// By elimination from body to body, in each basis.
+    eliminated: Vec<Vec<ExprId>>,
+    /// Through the reduced mass matrix.
+    reduced: Option<Vec<ExprId>>,
+    /// By Gram–Schmidt, in each basis; none unless cancellation may matter.
+    orthogonal: Vec<Vec<ExprId>>,
+}
+
+impl Candidates {
+    /// Those that are accurate enough to be taken if they are the cheapest.
+    fn admitted(self, system: &mut System) -> Vec<Vec<ExprId>> {
+        let Self { eliminated, reduced, orthogonal } = self;
+        if let Some(keeping) = orthogonal.first() {
+            let others = eliminated.into_iter().chain(reduced).collect();
+            let mut admitted = keeping_digits(system, others, keeping);
+            admitted.extend(orthogonal);
+            return admitted;
+        }
+        // Elimination keeps more digits where a body spins fast: they are worth a quarter of the operations.
+        let saves_a_quarter = |reduced: &Vec<ExprId>| {
+            let cost = |form: &Vec<ExprId>| cost(&system.graph, form);
+            eliminated.iter().all(|eliminated| 4 * cost(reduced) < 3 * cost(eliminated))
+        };
+        match reduced.filter(saves_a_quarter) {
+            Some(reduced) => vec![reduced],
+            None => eliminated,
+        }
     }
 }
 
@@ -140,26 +155,26 @@ impl Excitation {
     }
 }
 
-/// Accelerations, and the multipliers of what closes loops.
-type Way = (Vec<ExprId>, Vec<ExprId>);
-
-fn cost(graph: &Graph, (accelerations, closing): &Way) -> usize {
-    Operations::recurring(graph, &[&accelerations[..], closing].concat()).total()
+fn cost(graph: &Graph, form: &[ExprId]) -> usize {
+    Operations::recurring(graph, form).total()
 }
 
-fn cheapest(graph: &Graph, ways: Vec<Way>) -> Way {
-    ways.into_iter().min_by_key(|way| cost(graph, way)).expect("at least one")
+fn cheapest(graph: &Graph, forms: Vec<Vec<ExprId>>) -> Vec<ExprId> {
+    forms.into_iter().min_by_key(|form| cost(graph, form)).expect("at least one")
 }
 
-/// Those ways of writing the accelerations of an open tree that keep the digits that `keeping` is known to keep.
-fn keeping_digits(system: &mut System, ways: Vec<Way>, keeping: &[ExprId]) -> Vec<Way> {
+/// Those forms of the accelerations of an open tree that keep the digits that `keeping` is known to keep.
+fn keeping_digits(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprId]) -> Vec<Vec<ExprId>> {
     let mut expansion = Expansion::new(&system.definitions);
     let keeping = expansion.all(&mut system.graph, keeping);
-    let expanded: Vec<_> = ways.iter().map(|(way, _)| expansion.all(&mut system.graph, way)).collect();
+    let expanded: Vec<_> = forms.iter().map(|form| expansion.all(&mut system.graph, form)).collect();
     let all: Vec<_> = expanded.iter().flatten().chain(&keeping).copied().collect();
     let trials = Trials::draw(system, &all, &BTreeSet::new());
-    let ways = ways.into_iter().zip(expanded);
-    ways.filter(|(_, way)| trials.keep_digits(&system.graph, way, &keeping)).map(|(way, _)| way).collect()
+    let forms = forms.into_iter().zip(expanded);
+    forms
+        .filter(|(_, form)| trials.keep_digits(&system.graph, form, &keeping))
+        .map(|(form, _)| form)
+        .collect()
 }
 
 /// The components of the motions of all slots.
@@ -197,7 +212,7 @@ mod tests {
         let mut system = System::new(&model);
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
-        let trees = Trees::of(&mut system, &kinematics);
+        let trees = ForwardDynamics::of(&mut system, &kinematics);
         let mut forms = Vec::new();
         for tree in &trees.eliminated {
             let freedoms = tree.joints.iter().map(|joint| &joint.freedom);

@@ -12,3 +12,33 @@ pub mod multipliers;
 pub mod partition;
 pub mod reduced_mass_matrix;
 pub mod saddle;
+
+use crate::Elimination;
+use crate::derive::Textbook;
+use crate::derive::system::System;
+use crate::expr::graph::ExprId;
+use forward_dynamics::ForwardDynamics;
+
+/// The solution of eq. (17), in symbols that are yet to be expanded.
+#[derive(Debug)]
+pub struct Solution {
+    /// (s̈, ẇ') of each slot, then the multipliers of the rows that close loops or couple joints, those that no joint of the tree owns.
+    pub solved: Vec<ExprId>,
+    /// The multiplier of each row, in terms of known accelerations and closing multipliers.
+    pub lambda: Vec<ExprId>,
+}
+
+impl Solution {
+    pub fn of(
+        system: &mut System,
+        textbook: &Textbook,
+        forward_dynamics: &ForwardDynamics,
+        elimination: Elimination,
+    ) -> Self {
+        if elimination == Elimination::Saddle && system.closing_rows().is_empty() {
+            saddle::solve(system, textbook)
+        } else {
+            forward_dynamics.solve(system, textbook)
+        }
+    }
+}

@@ -29,8 +29,13 @@ pub struct Partition {
 }
 
 impl Partition {
+    /// None where charts do not cover the mechanism.
+    pub fn of(system: &mut System, kinematics: &Kinematics) -> Option<Self> {
+        Self::covers(system).then(|| Self::derive(system, kinematics))
+    }
+
     /// Whether charts cover the mechanism: trees of revolute, spherical and fixed joints, and nothing that closes a loop.
-    pub fn covers(system: &System) -> bool {
+    fn covers(system: &System) -> bool {
         let covered = |attachment: Attachment| match attachment {
             Attachment::Free | Attachment::Constrained => true,
             Attachment::Joint { joint, .. } => {
@@ -43,7 +48,7 @@ impl Partition {
         system.tree.links.iter().all(|link| covered(link.attachment)) && system.closing_rows().is_empty()
     }
 
-    pub fn derive(system: &mut System, kinematics: &Kinematics) -> Self {
+    fn derive(system: &mut System, kinematics: &Kinematics) -> Self {
         let links = system.tree.links.clone();
         let mut blocks = Vec::new();
         for link in links {

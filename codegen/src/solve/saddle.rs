@@ -5,13 +5,13 @@
 //! body*. Then every pivot is a composite inertia or minus a joint's effective inverse mass, never a mathematical zero.
 //! Within that rule several orders are tried and the one with the fewest operations wins.
 
-use crate::derive::dynamics::Dynamics;
-use crate::derive::kinematics::{Kinematics, Matrix};
+use crate::derive::Textbook;
+use crate::derive::kinematics::Matrix;
 use crate::derive::system::System;
 use crate::expr::definitions::Expansion;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
-use crate::solve::forward_dynamics::Solution;
+use crate::solve::Solution;
 use crate::solve::ldl::Elimination;
 use gyro_model::{Attachment, RowOwner};
 use std::collections::BTreeMap;
@@ -45,7 +45,8 @@ const PREFERENCES: [Preference; 4] = [
 ];
 
 /// Solves eq. (17) of a mechanism whose rows are all those of its trees' joints.
-pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
+pub fn solve(system: &mut System, textbook: &Textbook) -> Solution {
+    let Textbook { kinematics, dynamics } = textbook;
     let definitions = std::mem::take(&mut system.definitions);
     let mut expansion = Expansion::new(&definitions);
     let graph = &mut system.graph;
@@ -56,7 +57,7 @@ pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) 
     let saddle = Saddle::new(&dynamics.mass_matrix, &phi_pi, &force, &gamma);
     let mut accelerations = saddle.solve(system);
     let lambda = accelerations.split_off(force.len());
-    Solution { accelerations, closing: Vec::new(), lambda }
+    Solution { solved: accelerations, lambda }
 }
 
 impl Saddle {

@@ -6,7 +6,7 @@
 use core::mem::{align_of, size_of};
 use core::panic::PanicInfo;
 use embedded_scenes::mechanisms::gimbal::Gimbal as Mechanism;
-use gyro_sim::{Error, JointCoordinate, Ode, Partitioned, Ports, Turns};
+use gyro_sim::{Error, JointCoordinate, Mechanism, Partitioned, Turns};
 
 /// Never called: `cargo xtask embedded` shows that nothing in what is linked can panic.
 #[panic_handler]
@@ -95,7 +95,7 @@ struct Simulation {
     status: GimbalStatus,
     t: f64,
     mechanism: Mechanism<f64>,
-    state: <Mechanism<f64> as Ode>::State,
+    state: <Mechanism<f64> as Mechanism>::State,
     solver: Partitioned<Mechanism<f64>>,
     turns: Turns<Mechanism<f64>>,
 }

@@ -5,7 +5,7 @@ use crate::runs::{CHAIN, PAPER, STEPS, Settings, time};
 use crate::{Minimal, Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Direct, Error, JointForm, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
+use gyro_sim::{Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
 
 /// A piece of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,9 +6,7 @@ use crate::mechanisms::gimbal::{Gimbal, Parameters};
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{
-    Error, JointCoordinate, JointForm, JointSpace, Ode, Partition, Partitioned, Real, Scalar, Turns,
-};
+use gyro_sim::{Error, JointCoordinate, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Turns};
 
 /// A number whose bits can be looked at.
 pub trait Bits: Real {

@@ -2,7 +2,7 @@
 
 use crate::RateControl;
 use crate::mechanisms::gimbal::Gimbal;
-use gyro_sim::{Error, JointCoordinate, Mechanism, Ode, Partitioned, Real, Turns};
+use gyro_sim::{Error, JointCoordinate, Mechanism, Partitioned, Real, Turns};
 
 /// Length of a tick, s: two corrections of five steps each.
 pub const TICK: f64 = 1e-3;
@@ -29,7 +29,7 @@ pub struct Angles<T> {
 #[derive(Debug)]
 pub struct Simulator<T: Real> {
     gimbal: Gimbal<T>,
-    state: <Gimbal<T> as Ode>::State,
+    state: <Gimbal<T> as Mechanism>::State,
     solver: Partitioned<Gimbal<T>>,
     turns: Turns<Gimbal<T>>,
     control: RateControl<T>,

@@ -3,7 +3,7 @@
 use crate::scenario::Scenario;
 use gyro_sim::generated::gyroscope_misalignments::GyroscopeMisalignments;
 use gyro_sim::lanes::{Lanes, f64x8};
-use gyro_sim::{JointForm, Ode, Rk4, Scalar};
+use gyro_sim::{Joint, Mechanism, Rk4, Scalar};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 

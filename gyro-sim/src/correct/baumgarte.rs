@@ -1,39 +1,34 @@
 //! Baumgarte's stabilisation.
 
-use super::Maximal;
-use crate::{Mechanism, Ode, Projection, Scalar};
+use crate::{Equations, Ode, Scalar};
 
-/// A mechanism whose accelerations steer violations back, `Φ̈ + 2 ω Φ̇ + ω² Φ = 0`, critically damped, with Euler parameters drawn
+/// Equations of motion whose accelerations reduce violations, `Φ̈ + 2 ω Φ̇ + ω² Φ = 0`, critically damped, with Euler parameters drawn
 /// towards unit length at the rate ω (J. Baumgarte, *Stabilization of constraints and integrals of motion in dynamical systems*, Comput.
-/// Methods Appl. Mech. Eng. 1 (1972)). ω is a rate of the mechanism's own motion: much slower does nothing, much faster makes it stiff.
+/// Methods Appl. Mech. Eng. 1 (1972)). ω is a rate of the mechanism's own motion: a much slower one has no effect, a much faster one
+/// makes the equations stiff.
 #[derive(Clone, Copy, Debug)]
-pub struct Baumgarte<'a, M: Mechanism> {
-    /// The mechanism.
-    pub mechanism: &'a M,
+pub struct Baumgarte<T> {
     /// ω, rad/s.
-    pub rate: M::Scalar,
+    pub rate: T,
 }
 
-impl<M: Projection> Ode for Baumgarte<'_, M> {
+impl<M: Equations> Ode<M> for Baumgarte<M::Scalar> {
     type Scalar = M::Scalar;
     type State = M::State;
+    type Jacobian = ();
 
-    fn start(&self) -> Self::State {
-        self.mechanism.start()
-    }
-
-    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        let (mechanism, rate) = (self.mechanism, self.rate);
+    fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        let rate = self.rate;
         mechanism.derivative(t, y, dy);
-        let (mut phi, mut rows) = (mechanism.constraints(), mechanism.rows());
-        let mut change = mechanism.velocities();
+        let (mut phi, mut rows) = (mechanism.buffers().constraints, mechanism.buffers().rows);
+        let mut change = mechanism.terms().velocities;
         mechanism.phi(t, y, &mut phi);
         mechanism.velocity_residual(t, y, &mut rows);
         for (row, phi) in rows.as_mut().iter_mut().zip(phi.as_ref()) {
             *row = -rate * (*row + *row + rate * *phi);
         }
         mechanism.project(t, y, &rows, &mut change);
-        let n_bodies = mechanism.n_bodies();
+        let n_bodies = mechanism.description().bodies.len();
         for (slope, change) in dy.as_mut().iter_mut().skip(7 * n_bodies).zip(change.as_ref()) {
             *slope = *slope + *change;
         }
@@ -41,18 +36,9 @@ impl<M: Projection> Ode for Baumgarte<'_, M> {
             dy.as_mut().chunks_exact_mut(7).zip(y.as_ref().chunks_exact(7)).take(n_bodies)
         {
             let (slopes, p) = (&mut slopes[3..], &positions[3..]);
-            let excess =
-                p.iter().fold(Self::Scalar::constant(-1.0), |sum, e| Self::Scalar::fused(*e, *e, sum));
-            let pull = -rate * Self::Scalar::constant(0.5) * excess;
-            slopes.iter_mut().zip(p).for_each(|(slope, e)| *slope = Self::Scalar::fused(pull, *e, *slope));
+            let excess = p.iter().fold(M::Scalar::constant(-1.0), |sum, e| M::Scalar::fused(*e, *e, sum));
+            let pull = -rate * M::Scalar::constant(0.5) * excess;
+            slopes.iter_mut().zip(p).for_each(|(slope, e)| *slope = M::Scalar::fused(pull, *e, *slope));
         }
-    }
-}
-
-impl<M: Projection> Maximal for Baumgarte<'_, M> {
-    type Mechanism = M;
-
-    fn mechanism(&self) -> &M {
-        self.mechanism
     }
 }

@@ -1,8 +1,8 @@
 //! The correction of trees that needs no iteration: to joint coordinates and back.
 
-use super::{Correction, Maximal, check_finite};
+use super::{Correction, check_finite};
 use crate::violation::constraint_violation;
-use crate::{Error, JointSpace, Real, refer_turns};
+use crate::{Error, JointSpace, Ode, Real, refer_turns};
 
 /// Joint coordinates and their rates are kept, and all else follows from them.
 #[derive(Clone, Debug)]
@@ -15,7 +15,11 @@ pub struct ClosedForm<M: JointSpace> {
 impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
     /// Work space for a mechanism.
     pub fn new(mechanism: &M) -> Self {
-        Self { joints: mechanism.joint_start(), before: mechanism.start(), phi: mechanism.constraints() }
+        Self {
+            joints: mechanism.joint_start(),
+            before: mechanism.start(),
+            phi: mechanism.buffers().constraints,
+        }
     }
 
     /// Corrects positions and velocities. The work, which follows the velocities in the state, is left as it is.
@@ -26,7 +30,8 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
         self.before.as_mut().copy_from_slice(y.as_ref());
         mechanism.to_joints(t, y, &mut self.joints);
         mechanism.to_maximal(t, &self.joints, y);
-        let kept = y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * mechanism.n_bodies());
+        let kept =
+            y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * mechanism.description().bodies.len());
         kept.for_each(|(element, before)| *element = *before);
         refer_turns(mechanism, t, y);
         // Angles are continued from these: what is not finite must not stay among them.
@@ -34,16 +39,16 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
     }
 }
 
-impl<O: Maximal<Mechanism = M>, M> Correction<O> for ClosedForm<M>
+impl<D, M> Correction<D, M> for ClosedForm<M>
 where
-    M: JointSpace<Scalar = O::Scalar, State = O::State>,
-    O::Scalar: Real,
+    M: JointSpace<Scalar: Real>,
+    D: Ode<M, Scalar = M::Scalar, State = M::State>,
 {
-    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
-        self.correct(system.mechanism(), t, y)
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.correct(mechanism, t, y)
     }
-    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
-        system.mechanism().phi(t, y, &mut self.phi);
-        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        mechanism.phi(t, y, &mut self.phi);
+        constraint_violation(mechanism, self.phi.as_ref(), |x| x).value
     }
 }

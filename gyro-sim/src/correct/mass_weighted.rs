@@ -1,10 +1,9 @@
 //! Projection onto the constraints in the metric of the masses.
 
-use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, reach};
-use crate::pivoting;
-use crate::rounding::{is_met, silence};
+use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, reach};
+use crate::pivoting::{self, is_met, silence};
 use crate::violation::{Violation, constraint_violation, violation};
-use crate::{Clearance, Error, Owner, Partition, Projection, Real, Scalar, refer_turns};
+use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, Real, Scalar, refer_turns};
 
 /// The nearest state that satisfies the constraints: of all changes that do, the smallest as the masses weigh it, δᵀ M δ, first of the
 /// positions, then of the velocities. What is integrated well, because it moves much mass, is changed least.
@@ -12,7 +11,7 @@ use crate::{Clearance, Error, Owner, Partition, Projection, Real, Scalar, refer_
 /// A change of the positions keeps the rates ṙ and ṗ of the coordinates, and so turns w' by `−½ δπ' × w'`. Integrate
 /// the mechanism itself, exact off the constraints, rather than [`Corrected`](crate::Corrected): only then are errors as small as this correction can make them.
 #[derive(Clone, Debug)]
-pub struct MassWeighted<M: Projection> {
+pub struct MassWeighted<M: Equations> {
     /// Where singular poses divide by small numbers what the iteration leaves, it takes a step more.
     has_poses: bool,
     phi: M::Constraints,
@@ -23,15 +22,15 @@ pub struct MassWeighted<M: Projection> {
 /// Farther than so many radians, or lengths of the mechanism's size, is no correction but another pose.
 const FARTHEST: f64 = 0.5;
 
-impl<M: Partition + Projection> MassWeighted<M> {
+impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
     /// Work space for a mechanism.
     pub fn new(mechanism: &M) -> Self {
         let has_poses = mechanism.clearance(M::Scalar::constant(0.0), &mechanism.start()).is_some();
         Self {
             has_poses,
-            phi: mechanism.constraints(),
-            rows: mechanism.rows(),
-            change: mechanism.velocities(),
+            phi: mechanism.buffers().constraints,
+            rows: mechanism.buffers().rows,
+            change: mechanism.terms().velocities,
         }
     }
 
@@ -48,7 +47,7 @@ impl<M: Partition + Projection> MassWeighted<M> {
         }
         negate(self.rows.as_mut());
         mechanism.project(t, y, &self.rows, &mut self.change);
-        let velocities = y.as_mut().iter_mut().skip(7 * mechanism.n_bodies());
+        let velocities = y.as_mut().iter_mut().skip(7 * mechanism.description().bodies.len());
         for (velocity, change) in velocities.zip(self.change.as_ref()) {
             *velocity = *velocity + *change;
         }
@@ -69,7 +68,7 @@ impl<M: Partition + Projection> MassWeighted<M> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
         let mut worst = Violation { value: tolerance, owner: None };
         for iteration in 0..=MAX_ITERATIONS {
-            normalise(&mut y.as_mut()[..7 * mechanism.n_bodies()]);
+            normalise(&mut y.as_mut()[..7 * mechanism.description().bodies.len()]);
             mechanism.phi(t, y, &mut self.phi);
             worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
             let is_small = worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y);
@@ -83,7 +82,7 @@ impl<M: Partition + Projection> MassWeighted<M> {
             self.rows.as_mut().iter_mut().zip(self.phi.as_ref()).for_each(|(row, phi)| *row = -*phi);
             mechanism.project(t, y, &self.rows, &mut self.change);
             self.refuse_jump(mechanism, t, worst.owner)?;
-            let (positions, velocities) = y.as_mut().split_at_mut(7 * mechanism.n_bodies());
+            let (positions, velocities) = y.as_mut().split_at_mut(7 * mechanism.description().bodies.len());
             let bodies = positions.chunks_exact_mut(7).zip(velocities.chunks_exact_mut(6));
             for ((position, velocity), change) in bodies.zip(self.change.as_ref().chunks_exact(6)) {
                 displace(position, change);
@@ -108,20 +107,36 @@ impl<M: Partition + Projection> MassWeighted<M> {
     }
 }
 
-impl<O: Maximal<Mechanism = M>, M> Correction<O> for MassWeighted<M>
+impl<M> Correction<Exact, M> for MassWeighted<M>
 where
-    M: Partition + Projection<Scalar = O::Scalar, State = O::State>,
-    O::Scalar: Real,
+    M: Partition<Scalar: Real> + Equations,
 {
-    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
-        self.correct(system.mechanism(), t, y)
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.correct(mechanism, t, y)
     }
-    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
-        system.mechanism().phi(t, y, &mut self.phi);
-        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        mechanism.phi(t, y, &mut self.phi);
+        constraint_violation(mechanism, self.phi.as_ref(), |x| x).value
     }
-    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
-        system.mechanism().clearance(t, y)
+    fn clearance(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> Option<Clearance<M::Scalar>> {
+        mechanism.clearance(t, y)
+    }
+}
+
+/// Exact equations are exact with a Jacobian too.
+impl<M, Dualled, S, J, const N: usize> Correction<ByDuals<Exact, Dualled, S, J, N>, M> for MassWeighted<M>
+where
+    M: Partition<Scalar: Real> + Equations,
+    ByDuals<Exact, Dualled, S, J, N>: Ode<M, Scalar = M::Scalar, State = M::State>,
+{
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.correct(mechanism, t, y)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        Correction::<Exact, M>::violation(self, mechanism, t, y)
+    }
+    fn clearance(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> Option<Clearance<M::Scalar>> {
+        mechanism.clearance(t, y)
     }
 }
 

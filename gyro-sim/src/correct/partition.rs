@@ -1,41 +1,45 @@
 //! The paper's two algorithms: direct integration and coordinate partitioning.
 
-use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, check_time, reach};
+use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, check_time, reach};
+use crate::contract::Storage;
 use crate::violation::{Violation, constraint_violation};
-use crate::{Clearance, Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage, refer_turns};
+use crate::{Clearance, Corrected, Error, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
 
-/// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
+/// *Direct integration* of the equations `D`, [`Exact`] or [`Joint`](crate::Joint) of a mechanism or those of a system of one's own. No
+/// constraint is corrected: violations grow, as the paper says.
 #[derive(Clone, Debug)]
-pub struct Direct<S> {
+pub struct Direct<D, S> {
+    dynamics: D,
     rk4: Rk4<S>,
 }
 
-impl<S: Clone> Direct<S> {
+impl<D, S: Clone> Direct<D, S> {
     /// A solver for states like this one.
-    pub fn new(state: &S) -> Self {
-        Self { rk4: Rk4::new(state) }
+    pub fn new(dynamics: D, state: &S) -> Self {
+        Self { dynamics, rk4: Rk4::new(state) }
     }
 
     /// Advances `y` from `t` by `n_steps` steps of length `h`.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the state is not finite afterwards, [`Error::NoEnd`] if time or step are not finite.
-    pub fn advance<O>(
+    /// [`Error::NotFinite`] if the state is not finite afterwards, [`Error::InvalidEndTime`] if time or step are not finite.
+    pub fn advance<M>(
         &mut self,
-        system: &O,
-        t: O::Scalar,
-        h: O::Scalar,
+        model: &M,
+        t: D::Scalar,
+        h: D::Scalar,
         n_steps: u32,
         y: &mut S,
     ) -> Result<(), Error>
     where
-        O: Ode<State = S, Scalar: Real>,
-        S: Storage<O::Scalar>,
+        D: Ode<M, State = S, Scalar: Real>,
+        S: Storage<D::Scalar>,
     {
-        let end = t + h * O::Scalar::constant(f64::from(n_steps));
+        let end = t + h * D::Scalar::constant(f64::from(n_steps));
         check_time(t, end)?;
         for step in 0..n_steps {
-            self.rk4.step(system, t + h * O::Scalar::constant(f64::from(step)), h, y);
+            let t = t + h * D::Scalar::constant(f64::from(step));
+            self.rk4.step(&self.dynamics, model, t, h, y);
         }
         check_finite(end, y.as_ref())
     }
@@ -50,23 +54,7 @@ pub struct Partitioning<M: Partition> {
     switches: u64,
 }
 
-/// A mechanism whose state is corrected every few steps: the system of [`Mechanism::corrected_derivative`].
-#[derive(Clone, Copy, Debug)]
-pub struct Corrected<'a, M>(pub &'a M);
-
-impl<M: Mechanism> Ode for Corrected<'_, M> {
-    type Scalar = M::Scalar;
-    type State = M::State;
-
-    fn start(&self) -> Self::State {
-        self.0.start()
-    }
-    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        self.0.corrected_derivative(t, y, dy);
-    }
-}
-
-impl<M: Partition> Partitioning<M> {
+impl<M: Partition<Scalar: Real>> Partitioning<M> {
     /// Begins with the best choice of independent coordinates at a state.
     pub fn new(mechanism: &M, t: M::Scalar, y: &M::State) -> Self {
         Self::with_independent(mechanism, mechanism.independent(t, y))
@@ -74,7 +62,7 @@ impl<M: Partition> Partitioning<M> {
 
     /// Begins with the given choice of independent coordinates.
     pub fn with_independent(mechanism: &M, independent: M::Independent) -> Self {
-        Self { independent, phi: mechanism.constraints(), switches: 0 }
+        Self { independent, phi: mechanism.buffers().constraints, switches: 0 }
     }
 
     /// Chooses the independent coordinates and corrects the dependent ones.
@@ -132,32 +120,34 @@ impl<M: Partition> Partitioning<M> {
     }
 }
 
-impl<O: Maximal<Mechanism = M>, M: Partition<Scalar = O::Scalar, State = O::State>> Correction<O>
-    for Partitioning<M>
+impl<D, M> Correction<D, M> for Partitioning<M>
+where
+    M: Partition<Scalar: Real>,
+    D: Ode<M, Scalar = M::Scalar, State = M::State>,
 {
-    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
-        self.correct(system.mechanism(), t, y)
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.correct(mechanism, t, y)
     }
-    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
-        system.mechanism().phi(t, y, &mut self.phi);
-        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        mechanism.phi(t, y, &mut self.phi);
+        constraint_violation(mechanism, self.phi.as_ref(), |x| x).value
     }
     fn switches(&self) -> u64 {
         self.switches
     }
-    fn clearance(&self, system: &O, t: O::Scalar, y: &O::State) -> Option<Clearance<O::Scalar>> {
-        system.mechanism().clearance(t, y)
+    fn clearance(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> Option<Clearance<M::Scalar>> {
+        mechanism.clearance(t, y)
     }
 }
 
 /// The paper's algorithm: RK4 and, after a number of steps, [`Partitioning`].
 #[derive(Clone, Debug)]
 pub struct Partitioned<M: Partition> {
-    direct: Direct<M::State>,
+    direct: Direct<Corrected, M::State>,
     partitioning: Partitioning<M>,
 }
 
-impl<M: Partition> Partitioned<M> {
+impl<M: Partition<Scalar: Real>> Partitioned<M> {
     /// A solver that starts with the best choice of independent coordinates at `state` and time zero.
     pub fn new(mechanism: &M, state: &M::State) -> Self {
         Self::with_independent(mechanism, state, mechanism.independent(M::Scalar::constant(0.0), state))
@@ -166,7 +156,7 @@ impl<M: Partition> Partitioned<M> {
     /// A solver that starts with the given choice of independent coordinates.
     pub fn with_independent(mechanism: &M, state: &M::State, independent: M::Independent) -> Self {
         Self {
-            direct: Direct::new(state),
+            direct: Direct::new(Corrected, state),
             partitioning: Partitioning::with_independent(mechanism, independent),
         }
     }
@@ -183,7 +173,7 @@ impl<M: Partition> Partitioned<M> {
         n_steps: u32,
         y: &mut M::State,
     ) -> Result<(), Error> {
-        self.direct.advance(&Corrected(mechanism), t, h, n_steps, y)?;
+        self.direct.advance(mechanism, t, h, n_steps, y)?;
         self.correct(mechanism, t + h * M::Scalar::constant(f64::from(n_steps)), y)
     }
 

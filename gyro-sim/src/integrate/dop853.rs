@@ -1,8 +1,8 @@
 //! The method of order 8 of Dormand and Prince with error estimates of orders 5 and 3 and dense output of order 7, by Hairer, Nørsett and
 //! Wanner, *Solving Ordinary Differential Equations I* (2nd ed. 1993), section II.5 and appendix; coefficients as in their code DOP853.
 
-use super::{Embedded, Method, Work, combine, rate, sum_at};
-use crate::{Ode, Real, Scalar};
+use super::{Method, Work, combine, rate, sum_at};
+use crate::{Ode, Real, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -34,13 +34,14 @@ impl<S: Clone, T: Scalar> Dop853<S, T> {
     }
 }
 
-impl<O: Ode> Method<O> for Dop853<O::State, O::Scalar> {
+impl<D: Ode<M>, M> Method<D, M> for Dop853<D::State, D::Scalar> {
     const ORDER: u32 = 8;
     const STABILITY: f64 = 6.1;
+    const ERROR_ORDER: u32 = 8;
 
     #[rustfmt::skip]
-    fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
-        let at = |c: f64| t + O::Scalar::constant(c) * h;
+    fn attempt(&mut self, system: System<'_, D, M>, t: D::Scalar, h: D::Scalar, y: &D::State, resumes: bool, work: &mut Work) {
+        let at = |c: f64| t + D::Scalar::constant(c) * h;
         let (k, stage) = (&mut self.k, &mut self.stage);
         if !resumes {
             system.derivative(t, y, &mut k[0]);
@@ -120,7 +121,7 @@ impl<O: Ode> Method<O> for Dop853<O::State, O::Scalar> {
         ]);
     }
 
-    fn end(&self) -> &O::State {
+    fn end(&self) -> &D::State {
         &self.end
     }
 
@@ -130,8 +131,8 @@ impl<O: Ode> Method<O> for Dop853<O::State, O::Scalar> {
     }
 
     #[rustfmt::skip]
-    fn prepare(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, work: &mut Work) {
-        let at = |c: f64| t + O::Scalar::constant(c) * h;
+    fn prepare(&mut self, system: System<'_, D, M>, t: D::Scalar, h: D::Scalar, y: &D::State, work: &mut Work) {
+        let at = |c: f64| t + D::Scalar::constant(c) * h;
         let [start, difference, left, right, fourth, fifth, sixth, seventh] = &mut self.dense;
         let (k, stage) = (&mut self.k, &mut *start);
         work.evaluations += 4;
@@ -200,30 +201,29 @@ impl<O: Ode> Method<O> for Dop853<O::State, O::Scalar> {
     }
 
     /// Nested alternately in θ and 1 − θ.
-    fn between(&self, theta: O::Scalar, out: &mut O::State) {
+    fn between(&self, theta: D::Scalar, out: &mut D::State) {
         let parts = self.dense.each_ref().map(|part| part.as_ref());
-        let rest = O::Scalar::constant(1.0) - theta;
+        let rest = D::Scalar::constant(1.0) - theta;
         for (i, out) in out.as_mut().iter_mut().enumerate() {
             let factors = [theta, rest, theta, rest, theta, rest, theta];
             let mut sum = parts[7][i];
             for (part, factor) in parts[..7].iter().zip(factors).rev() {
-                sum = O::Scalar::fused(factor, sum, part[i]);
+                sum = D::Scalar::fused(factor, sum, part[i]);
             }
             *out = sum;
         }
     }
 
-    fn rate(&self) -> [O::Scalar; 2] {
+    fn rate(&self) -> [D::Scalar; 2] {
         self.rate
     }
-}
-
-impl<O: Ode<Scalar: Real>> Embedded<O> for Dop853<O::State, O::Scalar> {
-    const ERROR_ORDER: u32 = 8;
 
     /// The estimates of orders 5 and 3 together, `h e₅² / √(e₅² + e₃²/100)`: asymptotically of order 8.
     #[rustfmt::skip]
-    fn error(&self, h: O::Scalar, weights: &O::State) -> (O::Scalar, usize) {
+    fn error(&self, h: D::Scalar, weights: &D::State) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real,
+    {
         let k = &self.k;
         let fifth = |i| sum_at([
             (0.013_120_044_994_194_88, &k[0]), (-1.225_156_446_376_204_4, &k[5]),
@@ -237,20 +237,20 @@ impl<O: Ode<Scalar: Real>> Embedded<O> for Dop853<O::State, O::Scalar> {
             (-0.422_682_321_323_791_97, &k[8]), (-0.152_160_949_662_516_1, &k[9]),
             (0.201_365_400_804_030_34, &k[10]), (0.022_651_792_198_360_825, &k[11]),
         ], i);
-        let zero = O::Scalar::constant(0.0);
+        let zero = D::Scalar::constant(0.0);
         let (mut five, mut three, mut n, mut worst) = (zero, zero, 0.0, (zero, 0));
         for (i, weight) in weights.as_ref().iter().enumerate() {
             let (e5, e3) = (fifth(i) / *weight, third(i) / *weight);
             if !(e5.is_finite() && e3.is_finite()) {
-                return (O::Scalar::constant(f64::INFINITY), i);
+                return (D::Scalar::constant(f64::INFINITY), i);
             }
-            (five, three) = (O::Scalar::fused(e5, e5, five), O::Scalar::fused(e3, e3, three));
+            (five, three) = (D::Scalar::fused(e5, e5, five), D::Scalar::fused(e3, e3, three));
             n += 1.0;
             if e5.abs() > worst.0 {
                 worst = (e5.abs(), i);
             }
         }
-        let both = (five + three * O::Scalar::constant(0.01)) * O::Scalar::constant(n);
+        let both = (five + three * D::Scalar::constant(0.01)) * D::Scalar::constant(n);
         let size = if both > zero { h * (five / both.sqrt()) } else { zero };
         (size, worst.1)
     }

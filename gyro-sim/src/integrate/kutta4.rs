@@ -2,7 +2,7 @@
 //! Hermite's cubic.
 
 use super::{Method, Work, combine, rate};
-use crate::{Ode, Scalar};
+use crate::{Ode, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -28,13 +28,13 @@ impl<S: Clone> Kutta4<S> {
     }
 }
 
-impl<O: Ode> Method<O> for Kutta4<O::State> {
+impl<D: Ode<M>, M> Method<D, M> for Kutta4<D::State> {
     const ORDER: u32 = 4;
     const STABILITY: f64 = 2.785;
 
     #[rustfmt::skip]
-    fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
-        let half = t + h * O::Scalar::constant(0.5);
+    fn attempt(&mut self, system: System<'_, D, M>, t: D::Scalar, h: D::Scalar, y: &D::State, resumes: bool, work: &mut Work) {
+        let half = t + h * D::Scalar::constant(0.5);
         let (k, [second, third]) = (&mut self.k, &mut self.stages);
         if !resumes {
             system.derivative(t, y, &mut k[0]);
@@ -51,7 +51,7 @@ impl<O: Ode> Method<O> for Kutta4<O::State> {
         ]);
     }
 
-    fn end(&self) -> &O::State {
+    fn end(&self) -> &D::State {
         &self.end
     }
 
@@ -59,7 +59,14 @@ impl<O: Ode> Method<O> for Kutta4<O::State> {
         false
     }
 
-    fn prepare(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, work: &mut Work) {
+    fn prepare(
+        &mut self,
+        system: System<'_, D, M>,
+        t: D::Scalar,
+        h: D::Scalar,
+        y: &D::State,
+        work: &mut Work,
+    ) {
         let [constant, linear, square, cube] = &mut self.dense;
         // The cube's place is free until the slope at the end has been used.
         system.derivative(t + h, &self.end, cube);
@@ -75,15 +82,15 @@ impl<O: Ode> Method<O> for Kutta4<O::State> {
         }
     }
 
-    fn between(&self, theta: O::Scalar, out: &mut O::State) {
+    fn between(&self, theta: D::Scalar, out: &mut D::State) {
         let [constant, linear, square, cube] = self.dense.each_ref().map(|part| part.as_ref());
         for (i, out) in out.as_mut().iter_mut().enumerate() {
-            let inner = O::Scalar::fused(theta, cube[i], square[i]);
-            *out = O::Scalar::fused(theta, O::Scalar::fused(theta, inner, linear[i]), constant[i]);
+            let inner = D::Scalar::fused(theta, cube[i], square[i]);
+            *out = D::Scalar::fused(theta, D::Scalar::fused(theta, inner, linear[i]), constant[i]);
         }
     }
 
-    fn rate(&self) -> [O::Scalar; 2] {
+    fn rate(&self) -> [D::Scalar; 2] {
         rate([&self.k[2], &self.k[1]], [&self.stages[1], &self.stages[0]])
     }
 }

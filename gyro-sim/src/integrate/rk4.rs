@@ -1,6 +1,7 @@
 //! The classical fourth-order Runge–Kutta method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table II.1.2).
 
-use crate::{Ode, Scalar, Storage};
+use crate::contract::Storage;
+use crate::{Ode, Scalar, System};
 
 /// Work space of the method for states of type `S`.
 #[derive(Clone, Debug)]
@@ -17,13 +18,14 @@ impl<S: Clone> Rk4<S> {
     }
 
     /// Advances `y` from `t` to `t + h`.
-    pub fn step<O>(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &mut S)
+    pub fn step<D, M>(&mut self, dynamics: &D, model: &M, t: D::Scalar, h: D::Scalar, y: &mut S)
     where
-        O: Ode<State = S>,
-        S: Storage<O::Scalar>,
+        D: Ode<M, State = S>,
+        S: Storage<D::Scalar>,
     {
-        let half = h * O::Scalar::constant(0.5);
-        let (sixth, third) = (h / O::Scalar::constant(6.0), h / O::Scalar::constant(3.0));
+        let system = System { dynamics, model };
+        let half = h * D::Scalar::constant(0.5);
+        let (sixth, third) = (h / D::Scalar::constant(6.0), h / D::Scalar::constant(3.0));
         system.derivative(t, y, &mut self.slope);
         self.begin(y, sixth, half);
         system.derivative(t + half, &self.stage, &mut self.slope);
@@ -32,7 +34,7 @@ impl<S: Clone> Rk4<S> {
         self.go_on(y, third, h);
         system.derivative(t + h, &self.stage, &mut self.slope);
         for ((y, sum), slope) in y.as_mut().iter_mut().zip(self.sum.as_ref()).zip(self.slope.as_ref()) {
-            *y = O::Scalar::fused(sixth, *slope, *sum);
+            *y = D::Scalar::fused(sixth, *slope, *sum);
         }
     }
 
@@ -73,20 +75,18 @@ mod tests {
     impl Ode for Oscillator {
         type Scalar = f64;
         type State = [f64; 2];
-        fn start(&self) -> [f64; 2] {
-            [1.0, 0.0]
-        }
-        fn derivative(&self, _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
+        type Jacobian = ();
+        fn derivative(&self, _: &(), _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
             *dy = [y[1], -y[0]];
         }
     }
 
     fn error_at_one(steps: u32) -> f64 {
-        let mut y = Oscillator.start();
+        let mut y = [1.0, 0.0];
         let mut rk4 = Rk4::new(&y);
         let h = 1.0 / f64::from(steps);
         for step in 0..steps {
-            rk4.step(&Oscillator, f64::from(step) * h, h, &mut y);
+            rk4.step(&Oscillator, &(), f64::from(step) * h, h, &mut y);
         }
         (y[0] - libm::cos(1.0)).abs().max((y[1] + libm::sin(1.0)).abs())
     }

@@ -3,8 +3,9 @@
 //!
 //! Each step takes one Jacobian, one factorisation of `I/(γh) − ∂f/∂y` and six solves, and iterates nothing.
 
-use super::{Embedded, Method, Work, combine, lu, size, sum_at};
-use crate::{Differentiable, Real, Scalar, Storage};
+use super::{Method, Work, combine, lu, size, sum_at};
+use crate::contract::Storage;
+use crate::{Ode, Real, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -29,17 +30,15 @@ pub struct Rodas4<S, J> {
 const GAMMA: f64 = 0.25;
 
 impl<S: Clone, J> Rodas4<S, J> {
-    /// Work space for states like this one of such a system.
-    pub fn new<O>(system: &O, y: &S) -> Self
+    /// Work space for states like this one, and for a Jacobian like this one: n × n numbers for a state of n.
+    pub fn new(y: &S, jacobian: J) -> Self
     where
-        O: Differentiable<State = S, Jacobian = J>,
-        S: Storage<O::Scalar>,
-        J: Storage<O::Scalar>,
+        J: Clone,
     {
         let copies = |_| y.clone();
         Self {
-            jacobian: system.jacobian_buffer(),
-            factors: system.jacobian_buffer(),
+            factors: jacobian.clone(),
+            jacobian,
             pivots: y.clone(),
             time_slope: y.clone(),
             first: y.clone(),
@@ -70,12 +69,17 @@ impl<S: Clone, J> Rodas4<S, J> {
     }
 }
 
-impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O::State, O::Jacobian> {
+impl<D: Ode<M>, M> Method<D, M> for Rodas4<D::State, D::Jacobian>
+where
+    D::Scalar: Real,
+    D::Jacobian: Storage<D::Scalar>,
+{
     const ORDER: u32 = 4;
     const STABILITY: f64 = f64::INFINITY;
+    const ERROR_ORDER: u32 = 4;
 
     #[rustfmt::skip]
-    fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
+    fn attempt(&mut self, system: System<'_, D, M>, t: D::Scalar, h: D::Scalar, y: &D::State, resumes: bool, work: &mut Work) {
         if !resumes {
             system.jacobian(t, y, &mut self.jacobian, &mut self.time_slope);
             system.derivative(t, y, &mut self.first);
@@ -84,13 +88,13 @@ impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O::State, O::Jacobian
         work.evaluations += 5 + u64::from(!resumes);
         self.factorise(h);
         let (factors, pivots, time_slope) = (self.factors.as_ref(), self.pivots.as_ref(), self.time_slope.as_ref());
-        let (one, per_h) = (O::Scalar::constant(1.0), O::Scalar::constant(1.0) / h);
-        let at = |c: f64| t + O::Scalar::constant(c) * h;
-        let solve = |u: &mut O::State, d: f64| {
+        let (one, per_h) = (D::Scalar::constant(1.0), D::Scalar::constant(1.0) / h);
+        let at = |c: f64| t + D::Scalar::constant(c) * h;
+        let solve = |u: &mut D::State, d: f64| {
             if d != 0.0 {
-                let weight = O::Scalar::constant(d) * h;
+                let weight = D::Scalar::constant(d) * h;
                 for (u, slope) in u.as_mut().iter_mut().zip(time_slope) {
-                    *u = O::Scalar::fused(weight, *slope, *u);
+                    *u = D::Scalar::fused(weight, *slope, *u);
                 }
             }
             lu::solve(factors, pivots, u.as_mut());
@@ -138,7 +142,7 @@ impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O::State, O::Jacobian
         combine(&mut self.end, stage, one, [(1.0, u6)]);
     }
 
-    fn end(&self) -> &O::State {
+    fn end(&self) -> &D::State {
         &self.end
     }
 
@@ -147,7 +151,7 @@ impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O::State, O::Jacobian
     }
 
     #[rustfmt::skip]
-    fn prepare(&mut self, _: &O, _: O::Scalar, _: O::Scalar, y: &O::State, _: &mut Work) {
+    fn prepare(&mut self, _: System<'_, D, M>, _: D::Scalar, _: D::Scalar, y: &D::State, _: &mut Work) {
         let [u1, u2, u3, u4, u5, _] = &self.u;
         let [start, third, fourth] = &mut self.dense;
         start.as_mut().copy_from_slice(y.as_ref());
@@ -163,25 +167,24 @@ impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O::State, O::Jacobian
         }
     }
 
-    fn between(&self, theta: O::Scalar, out: &mut O::State) {
+    fn between(&self, theta: D::Scalar, out: &mut D::State) {
         let [start, third, fourth] = self.dense.each_ref().map(|part| part.as_ref());
-        let (end, rest) = (self.end.as_ref(), O::Scalar::constant(1.0) - theta);
+        let (end, rest) = (self.end.as_ref(), D::Scalar::constant(1.0) - theta);
         for (i, out) in out.as_mut().iter_mut().enumerate() {
-            let bend = O::Scalar::fused(theta, fourth[i], third[i]);
-            *out = rest * start[i] + theta * O::Scalar::fused(rest, bend, end[i]);
+            let bend = D::Scalar::fused(theta, fourth[i], third[i]);
+            *out = rest * start[i] + theta * D::Scalar::fused(rest, bend, end[i]);
         }
     }
 
     /// Nothing is limited by a fast rate, and none is looked for.
-    fn rate(&self) -> [O::Scalar; 2] {
-        [O::Scalar::constant(0.0); 2]
+    fn rate(&self) -> [D::Scalar; 2] {
+        [D::Scalar::constant(0.0); 2]
     }
-}
 
-impl<O: Differentiable<Scalar: Real>> Embedded<O> for Rodas4<O::State, O::Jacobian> {
-    const ERROR_ORDER: u32 = 4;
-
-    fn error(&self, _: O::Scalar, weights: &O::State) -> (O::Scalar, usize) {
+    fn error(&self, _: D::Scalar, weights: &D::State) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real,
+    {
         let error = self.u[5].as_ref();
         size(weights, |i| error[i])
     }

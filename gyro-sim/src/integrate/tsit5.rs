@@ -1,8 +1,8 @@
 //! The pair of orders 5 and 4 of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying
 //! assumption*, Computers & Mathematics with Applications 62 (2011), 770–775, with its interpolant of order 4.
 
-use super::{Embedded, Method, Work, combine, rate, size, sum_at};
-use crate::{Ode, Real, Scalar};
+use super::{Method, Work, combine, rate, size, sum_at};
+use crate::{Ode, Real, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -28,13 +28,14 @@ impl<S: Clone> Tsit5<S> {
     }
 }
 
-impl<O: Ode> Method<O> for Tsit5<O::State> {
+impl<D: Ode<M>, M> Method<D, M> for Tsit5<D::State> {
     const ORDER: u32 = 5;
     const STABILITY: f64 = 3.5;
+    const ERROR_ORDER: u32 = 5;
 
     #[rustfmt::skip]
-    fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
-        let at = |c: f64| t + O::Scalar::constant(c) * h;
+    fn attempt(&mut self, system: System<'_, D, M>, t: D::Scalar, h: D::Scalar, y: &D::State, resumes: bool, work: &mut Work) {
+        let at = |c: f64| t + D::Scalar::constant(c) * h;
         let (k, stage) = (&mut self.k, &mut self.stage);
         if !resumes {
             system.derivative(t, y, &mut k[0]);
@@ -65,7 +66,7 @@ impl<O: Ode> Method<O> for Tsit5<O::State> {
         system.derivative(at(1.0), &self.end, &mut k[6]);
     }
 
-    fn end(&self) -> &O::State {
+    fn end(&self) -> &D::State {
         &self.end
     }
 
@@ -75,7 +76,7 @@ impl<O: Ode> Method<O> for Tsit5<O::State> {
     }
 
     #[rustfmt::skip]
-    fn prepare(&mut self, _: &O, _: O::Scalar, h: O::Scalar, y: &O::State, _: &mut Work) {
+    fn prepare(&mut self, _: System<'_, D, M>, _: D::Scalar, h: D::Scalar, y: &D::State, _: &mut Work) {
         let k = &self.k;
         let [start, first, second, third, fourth] = &mut self.dense;
         start.as_mut().copy_from_slice(y.as_ref());
@@ -99,26 +100,25 @@ impl<O: Ode> Method<O> for Tsit5<O::State> {
         }
     }
 
-    fn between(&self, theta: O::Scalar, out: &mut O::State) {
+    fn between(&self, theta: D::Scalar, out: &mut D::State) {
         let [start, first, second, third, fourth] = self.dense.each_ref().map(|part| part.as_ref());
         for (i, out) in out.as_mut().iter_mut().enumerate() {
-            let inner = O::Scalar::fused(theta, fourth[i], third[i]);
-            let inner = O::Scalar::fused(theta, inner, second[i]);
-            *out = O::Scalar::fused(theta, O::Scalar::fused(theta, inner, first[i]), start[i]);
+            let inner = D::Scalar::fused(theta, fourth[i], third[i]);
+            let inner = D::Scalar::fused(theta, inner, second[i]);
+            *out = D::Scalar::fused(theta, D::Scalar::fused(theta, inner, first[i]), start[i]);
         }
     }
 
-    fn rate(&self) -> [O::Scalar; 2] {
+    fn rate(&self) -> [D::Scalar; 2] {
         rate([&self.k[6], &self.k[5]], [&self.end, &self.stage])
     }
-}
-
-impl<O: Ode<Scalar: Real>> Embedded<O> for Tsit5<O::State> {
-    const ERROR_ORDER: u32 = 5;
 
     #[rustfmt::skip]
     #[inline(always)]
-    fn error(&self, h: O::Scalar, weights: &O::State) -> (O::Scalar, usize) {
+    fn error(&self, h: D::Scalar, weights: &D::State) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real,
+    {
         let k = &self.k;
         size(weights, |i| h * sum_at([
             (-0.001_780_011_052_225_771_4, &k[0]), (-0.000_816_434_459_656_746_9, &k[1]), (0.007_880_878_010_261_995, &k[2]),

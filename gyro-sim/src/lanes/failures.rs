@@ -35,11 +35,18 @@ impl Failures {
         failed.for_each(|(lane, entry)| *entry = Some(error(lane)));
     }
 
+    /// Notes an error that is that of all running lanes.
+    pub(super) fn note_all<T: Lanes>(&mut self, outcome: Result<(), Error>) {
+        if let Err(error) = outcome {
+            self.note(self.running::<T>(), |_| error);
+        }
+    }
+
     /// Notes the running lanes whose time does not stay finite: a system that time does not enter would not notice.
-    pub(super) fn note_no_end<T: Lanes>(&mut self, t: T, t_end: T) {
+    pub(super) fn note_invalid_end_time<T: Lanes>(&mut self, t: T, t_end: T) {
         let failed = self.running::<T>() & !T::bits(are_finite(&[t, t_end]));
         let to_f64 = |time: T, lane: usize| time.lane(lane).to_f64();
-        self.note(failed, |lane| Error::NoEnd { t: to_f64(t, lane), t_end: to_f64(t_end, lane) });
+        self.note(failed, |lane| Error::InvalidEndTime { t: to_f64(t, lane), t_end: to_f64(t_end, lane) });
     }
 
     /// Notes the running lanes whose state is no longer finite.

@@ -1,8 +1,8 @@
 //! The packs of `wide` as scalars.
 
-use super::{Lanes, sine};
-use crate::Scalar;
+use super::{chart, sine};
 use crate::fused::IS_FUSED;
+use crate::{Lanes, Scalar};
 use wide::{f32x8, f64x4, f64x8};
 
 /// A function that is left to libm, lane after lane.
@@ -48,6 +48,7 @@ macro_rules! pack {
         impl Lanes for $pack {
             type Lane = $lane;
             type Mask = Self;
+            type Chart = [Self; 4];
             const COUNT: usize = $count;
 
             #[inline]
@@ -59,7 +60,7 @@ macro_rules! pack {
                 self.as_array()[index]
             }
             #[inline]
-            fn abs(self) -> Self {
+            fn absolute(self) -> Self {
                 Self::abs(self)
             }
             #[inline]
@@ -71,7 +72,7 @@ macro_rules! pack {
                 self.simd_le(other)
             }
             #[inline]
-            fn is_finite(self) -> Self {
+            fn finite(self) -> Self {
                 Self::is_finite(self)
             }
             #[inline]
@@ -81,6 +82,16 @@ macro_rules! pack {
             #[inline]
             fn bits(mask: Self) -> u32 {
                 mask.to_bitmask()
+            }
+            fn best_chart(vector: &[Self; 4]) -> [Self; 4] {
+                chart::largest(vector).1
+            }
+            fn follow_chart(vector: &[Self; 4], chart: &mut [Self; 4]) -> u32 {
+                chart::follow(vector, chart)
+            }
+            #[inline]
+            fn one_hot(chart: [Self; 4]) -> [Self; 4] {
+                chart
             }
         }
     };

@@ -1,40 +1,41 @@
 //! Direct integration and coordinate partitioning of all lanes at once: what [`crate::Direct`] and [`crate::Partitioned`] do, lane by lane.
 
-use super::{Failures, Lanes, are_finite, keep};
+use super::{Failures, are_finite, keep};
+use crate::contract::Storage;
 use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS};
 use crate::violation::constraint_violation;
-use crate::{
-    Charted, Corrected, Error, Mechanism, Ode, Owner, Real, Rk4, Scalar, Storage, charts, refer_turns,
-};
+use crate::{Corrected, Error, Lanes, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
 
-/// *Direct integration*, of maximal coordinates or, as [`JointForm`](crate::JointForm), of joint coordinates.
+/// *Direct integration* of the equations `D`: of maximal coordinates or, with [`Joint`](crate::Joint), of joint coordinates.
 #[derive(Clone, Debug)]
-pub struct Direct<S> {
+pub struct Direct<D, S> {
+    dynamics: D,
     rk4: Rk4<S>,
     before: S,
     failures: Failures,
 }
 
-impl<S: Clone> Direct<S> {
+impl<D, S: Clone> Direct<D, S> {
     /// A solver for states like this one.
-    pub fn new(state: &S) -> Self {
-        Self { rk4: Rk4::new(state), before: state.clone(), failures: Failures::default() }
+    pub fn new(dynamics: D, state: &S) -> Self {
+        Self { dynamics, rk4: Rk4::new(state), before: state.clone(), failures: Failures::default() }
     }
 
     /// Advances the lanes of `y` that have not failed from `t` by `n_steps` steps of length `h`. Time and step may differ from lane to
     /// lane.
-    pub fn advance<O>(&mut self, system: &O, t: O::Scalar, h: O::Scalar, n_steps: u32, y: &mut S)
+    pub fn advance<M>(&mut self, model: &M, t: D::Scalar, h: D::Scalar, n_steps: u32, y: &mut S)
     where
-        O: Ode<State = S, Scalar: Lanes>,
-        S: Storage<O::Scalar>,
+        D: Ode<M, State = S, Scalar: Lanes>,
+        S: Storage<D::Scalar>,
     {
         self.before.as_mut().copy_from_slice(y.as_ref());
         for step in 0..n_steps {
-            self.rk4.step(system, t + h * O::Scalar::constant(f64::from(step)), h, y);
+            let t = t + h * D::Scalar::constant(f64::from(step));
+            self.rk4.step(&self.dynamics, model, t, h, y);
         }
-        keep(self.failures.running::<O::Scalar>(), y.as_mut(), self.before.as_ref());
-        let end = t + h * O::Scalar::constant(f64::from(n_steps));
-        self.failures.note_no_end(t, end);
+        keep(self.failures.running::<D::Scalar>(), y.as_mut(), self.before.as_ref());
+        let end = t + h * D::Scalar::constant(f64::from(n_steps));
+        self.failures.note_invalid_end_time(t, end);
         self.failures.note_not_finite(end, y.as_ref());
     }
 
@@ -47,40 +48,35 @@ impl<S: Clone> Direct<S> {
 /// *Coordinate partitioning* of a tree of revolute, spherical and fixed joints: after a number of steps dependent positions and
 /// velocities are corrected, in each lane on charts of its own.
 #[derive(Clone, Debug)]
-pub struct Partitioned<M: Charted> {
-    direct: Direct<M::State>,
-    /// Each joint's chart as a unit vector.
-    charts: M::Vectors,
+pub struct Partitioned<M: Partition> {
+    direct: Direct<Corrected, M::State>,
+    independent: M::Independent,
     phi: M::Constraints,
 }
 
-impl<M: Charted<Scalar: Lanes>> Partitioned<M> {
+impl<M: Partition> Partitioned<M> {
     /// A solver that starts on the best charts at `state`.
     pub fn new(mechanism: &M, state: &M::State) -> Self {
-        let (direct, phi) = (Direct::new(state), mechanism.constraints());
-        let mut charts = mechanism.chart_vectors(state);
-        charts.as_mut().iter_mut().for_each(|vector| *vector = largest(vector).1);
-        Self { direct, charts, phi }
+        let independent = mechanism.independent(M::Scalar::constant(0.0), state);
+        Self { direct: Direct::new(Corrected, state), independent, phi: mechanism.buffers().constraints }
     }
 
     /// Advances the lanes of `y` that have not failed from `t` by `n_steps` steps of length `h` and corrects them. Time and step may
     /// differ from lane to lane.
     pub fn advance(&mut self, mechanism: &M, t: M::Scalar, h: M::Scalar, n_steps: u32, y: &mut M::State) {
-        self.direct.advance(&Corrected(mechanism), t, h, n_steps, y);
+        self.direct.advance(mechanism, t, h, n_steps, y);
         self.correct(mechanism, t + h * M::Scalar::constant(f64::from(n_steps)), y);
     }
 
     /// Chooses the charts and corrects the lanes that have not failed.
     pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) {
-        let vectors = mechanism.chart_vectors(y);
-        for (vector, chart) in vectors.as_ref().iter().zip(self.charts.as_mut()) {
-            follow(vector, chart);
-        }
+        mechanism.follow(t, y, &mut self.independent);
         self.correct_positions(mechanism, t, y);
         self.direct.before.as_mut().copy_from_slice(y.as_ref());
-        mechanism.solve_velocities_on(t, &self.charts, y);
+        let solved = mechanism.solve_velocities(t, &self.independent, y);
         refer_turns(mechanism, t, y);
         let failures = &mut self.direct.failures;
+        failures.note_all::<M::Scalar>(solved);
         keep(failures.running::<M::Scalar>(), y.as_mut(), self.direct.before.as_ref());
         failures.note_not_finite(t, y.as_ref());
     }
@@ -100,7 +96,8 @@ impl<M: Charted<Scalar: Lanes>> Partitioned<M> {
                 return;
             }
             self.direct.before.as_mut().copy_from_slice(y.as_ref());
-            mechanism.newton_step_on(t, &self.charts, y);
+            let solved = mechanism.newton_step(t, &self.independent, y);
+            self.direct.failures.note_all::<M::Scalar>(solved);
             keep(active, y.as_mut(), self.direct.before.as_ref());
             mechanism.phi(t, y, &mut self.phi);
             let (worst, is_finite) = violation(mechanism, self.phi.as_ref());
@@ -119,39 +116,16 @@ impl<M: Charted<Scalar: Lanes>> Partitioned<M> {
     }
 }
 
-/// The largest component and, as a unit vector, which one it is.
-fn largest<T: Lanes>(vector: &[T; 4]) -> (T, [T; 4]) {
-    let [zero, one] = [0.0, 1.0].map(T::constant);
-    let mut size = vector[0].abs();
-    let mut unit = [one, zero, zero, zero];
-    for k in 1..4 {
-        let is_larger = vector[k].abs().greater(size);
-        size = T::select(is_larger, vector[k].abs(), size);
-        unit = unit.map(|x| T::select(is_larger, zero, x));
-        unit[k] = T::select(is_larger, one, unit[k]);
-    }
-    (size, unit)
-}
-
-/// Leaves a chart that has become poor.
-fn follow<T: Lanes>(vector: &[T; 4], chart: &mut [T; 4]) {
-    let (size, best) = largest(vector);
-    let [a, b, c, d] = core::array::from_fn(|k| vector[k].abs() * chart[k]);
-    let is_poor = size.greater((a + b + c + d) * T::constant(charts::HYSTERESIS));
-    *chart = core::array::from_fn(|k| T::select(is_poor, best[k], chart[k]));
-}
-
 /// The largest violation of a constraint, lengths in units of the mechanism's size, and where all are finite.
 fn violation<M: Mechanism<Scalar: Lanes>>(
     mechanism: &M,
     phi: &[M::Scalar],
 ) -> (M::Scalar, <M::Scalar as Lanes>::Mask) {
-    let n_rows = phi.len().saturating_sub(mechanism.n_bodies());
     let mut worst = [M::Scalar::constant(0.0); 2];
     for (index, value) in phi.iter().enumerate() {
-        let is_length = index < n_rows && mechanism.row(index).is_length;
+        let is_length = mechanism.description().is_length(index);
         let worst = &mut worst[usize::from(is_length)];
-        *worst = larger(*worst, value.abs());
+        *worst = larger(*worst, value.absolute());
     }
     // The largest of quotients by one number is the quotient of the largest.
     let [number, length] = worst;
@@ -160,9 +134,9 @@ fn violation<M: Mechanism<Scalar: Lanes>>(
 
 /// The largest coordinate of a mass centre in units of the mechanism's size.
 fn reach<M: Mechanism<Scalar: Lanes>>(mechanism: &M, y: &M::State) -> M::Scalar {
-    let bodies = y.as_ref().chunks_exact(7).take(mechanism.n_bodies());
+    let bodies = y.as_ref().chunks_exact(7).take(mechanism.description().bodies.len());
     let coordinates = bodies.flat_map(|body| body.iter().take(3));
-    coordinates.fold(M::Scalar::constant(0.0), |largest, r| larger(largest, r.abs())) / mechanism.size()
+    coordinates.fold(M::Scalar::constant(0.0), |largest, r| larger(largest, r.absolute())) / mechanism.size()
 }
 
 fn larger<T: Lanes>(one: T, other: T) -> T {

@@ -38,7 +38,7 @@ impl<V: Lanes> Reduced<V> {
     /// The one for odd n, the other for even n.
     #[inline(always)]
     fn by_parity(&self, odd: V, even: V) -> V {
-        let size = self.quadrant.abs();
+        let size = self.quadrant.absolute();
         V::select(size.greater(V::constant(0.5)) & V::constant(1.5).greater(size), odd, even)
     }
 
@@ -86,10 +86,10 @@ const TINY: f64 = 1.490_116_119_384_765_6e-8;
 #[inline(always)]
 pub(super) fn sin<V: Lanes<Lane = f64>>(x: V) -> V {
     if is_small(x) {
-        return V::select(V::constant(TINY).greater(x.abs()), x, sine_of_double(x));
+        return V::select(V::constant(TINY).greater(x.absolute()), x, sine_of_double(x));
     }
     let (reduced, sine, cosine) = doubles(x);
-    let found = V::select(V::constant(TINY).greater(x.abs()), x, reduced.sine(sine, cosine));
+    let found = V::select(V::constant(TINY).greater(x.absolute()), x, reduced.sine(sine, cosine));
     unless_hard(V::bits(reduced.is_hard), x, found, libm::sin)
 }
 
@@ -106,7 +106,7 @@ pub(super) fn cos<V: Lanes<Lane = f64>>(x: V) -> V {
 /// Whether nothing need be subtracted in any lane: so it is with the angles of a gimbal near its rest, for instance.
 #[inline(always)]
 fn is_small<V: Lanes<Lane = f64>>(x: V) -> bool {
-    V::bits(x.abs().greater(V::constant(EDGE))) == 0
+    V::bits(x.absolute().greater(V::constant(EDGE))) == 0
 }
 
 /// Two parts of π/2, the first one of 33 bits, so that its product with n is exact.
@@ -126,11 +126,11 @@ fn doubles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
     let second = n * V::constant(PART[1]);
     let y = left - second;
     let rest = (left - y) - second;
-    let (size, of_y) = (x.abs(), y.abs());
+    let (size, of_y) = (x.absolute(), y.absolute());
     let is_hard = size.greater(V::constant(LARGE))
         | size.greater(of_y * V::constant(CANCELLED))
         | of_y.greater(V::constant(EDGE));
-    let is_whole = V::constant(0.5).greater(n.abs());
+    let is_whole = V::constant(0.5).greater(n.absolute());
     let sine = V::select(is_whole, sine_of_double(y), corrected_sine(y, rest));
     (Reduced { quadrant, is_hard }, sine, cosine_of_double(y, rest))
 }
@@ -194,7 +194,7 @@ const TINY_SINGLE: f64 = 0.000_244_140_625;
 #[inline(always)]
 pub(super) fn sin_of_singles(x: f32x8) -> f32x8 {
     let wide = widened(x);
-    let is_tiny = f64x8::splat(TINY_SINGLE).greater(Lanes::abs(wide));
+    let is_tiny = f64x8::splat(TINY_SINGLE).greater(Lanes::absolute(wide));
     if is_small(wide) {
         return narrowed(Lanes::select(is_tiny, wide, sine_of_single(wide)));
     }
@@ -241,9 +241,9 @@ fn singles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
     let in_one = x - n * V::constant(FRAC_PI_2);
     let [first, second] = PART_OF_SINGLES.map(V::constant);
     let in_two = x - n * first - n * second;
-    let size = x.abs();
+    let size = x.absolute();
     let y = V::select(size.greater(V::constant(NEAR)), in_two, in_one);
-    let is_hard = size.greater(V::constant(LARGE_SINGLE)) | y.abs().greater(V::constant(EDGE));
+    let is_hard = size.greater(V::constant(LARGE_SINGLE)) | y.absolute().greater(V::constant(EDGE));
     (Reduced { quadrant, is_hard }, sine_of_single(y), cosine_of_single(y))
 }
 

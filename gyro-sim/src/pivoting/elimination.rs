@@ -24,19 +24,19 @@ impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
         M: Equations<Scalar = T>,
     {
         const { assert!(NC <= NQ, "a mechanism has at least as many coordinates as constraints") };
-        let mut values = mechanism.phi_q_values();
+        let mut values = mechanism.terms().phi_q;
         mechanism.phi_q(t, y, &mut values);
         let (zero, size) = (T::constant(0.0), mechanism.size());
         let mut jacobian = [[zero; NQ]; NC];
         for (&(row, column), &value) in mechanism.phi_q_pattern().iter().zip(values.as_ref()) {
             let (row, column) = (usize::from(row), usize::from(column));
             let value = if column % 7 < 3 { value * size } else { value };
-            let place = (row + mechanism.n_bodies()) % NC;
+            let place = (row + mechanism.description().bodies.len()) % NC;
             if let Some(entry) = jacobian.get_mut(place).and_then(|row| row.get_mut(column)) {
                 *entry = scaled(mechanism, row, value);
             }
         }
-        let n_normalisations = mechanism.n_bodies();
+        let n_normalisations = mechanism.description().bodies.len();
         let rows = core::array::from_fn(|place| ((place + NC - n_normalisations % NC) % NC) as u16);
         Self { jacobian, right: [zero; NC], rows, n_normalisations, columns }
     }
@@ -157,6 +157,6 @@ impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
 
 /// A value of a constraint row, lengths in units of the mechanism's size.
 fn scaled<M: Mechanism>(mechanism: &M, row: usize, value: M::Scalar) -> M::Scalar {
-    let is_length = row < mechanism.rows().as_ref().len() && mechanism.row(row).is_length;
+    let is_length = mechanism.description().is_length(row);
     if is_length { value / mechanism.size() } else { value }
 }

@@ -6,10 +6,12 @@
 
 use super::Solver;
 use super::poses::{FLOOR, Watch};
-use crate::{Clearance, Correction, Ode, Owner, Real, Storage};
+use crate::contract::Storage;
+use crate::{Clearance, Correction, Ode, Owner, Real};
 
 /// A singular pose that steps of fixed length have passed so near that the way they have gone on in may be another than the motion's.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Passage {
     /// The time of the state nearest to the pose, s.
     pub t: f64,
@@ -57,12 +59,12 @@ impl<T: Real> Nearness<T> {
     }
 }
 
-impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
+impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// Before the first step of fixed length: whether there are poses to look out for.
-    pub(super) fn look_out<O>(&mut self, system: &O)
+    pub(super) fn look_out<M>(&mut self, system: &M)
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         if self.watch == Watch::Needless || self.nearness.is_some() {
             return;
@@ -73,10 +75,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     }
 
     /// After a step of fixed length: notes a pose that it has come too near to.
-    pub(super) fn look_back<O>(&mut self, system: &O)
+    pub(super) fn look_back<M>(&mut self, system: &M)
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         let Some(mut nearness) = self.nearness else { return };
         let Some(clearance) = self.correction.clearance(system, self.t, &self.y) else { return };
@@ -101,10 +103,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     }
 
     /// Whether near a pose the joints are apart by more than tells the ways on from each other: drifted apart, a linkage turns before the pose, or elsewhere.
-    fn is_blurred<O>(&mut self, system: &O, (nearness, now): (Nearness<T>, T)) -> bool
+    fn is_blurred<M>(&mut self, system: &M, (nearness, now): (Nearness<T>, T)) -> bool
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         now < nearness.widest * T::constant(SMALL) && {
             let drift = self.correction.violation(system, self.t, &self.y) + T::EPSILON;

@@ -1,6 +1,7 @@
 //! The states that the last steps have led to, and the polynomial through them.
 
-use crate::{Real, Storage};
+use crate::Real;
+use crate::contract::Storage;
 
 /// So many states are kept. Steps that shrink towards a pose leave them at distances that grow geometrically, where polynomials through many
 /// of them neither swing nor enlarge rounding.

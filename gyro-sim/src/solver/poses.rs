@@ -5,7 +5,8 @@
 //! velocities. So the pose is not stepped through but over: see [`Solver::leap`].
 
 use super::Solver;
-use crate::{Clearance, Correction, Error, Ode, Owner, Real, Storage};
+use crate::contract::Storage;
+use crate::{Clearance, Correction, Error, Ode, Owner, Real};
 
 /// The way to a singular pose.
 #[derive(Clone, Copy, Debug)]
@@ -49,12 +50,12 @@ const NOISE: f64 = 4.0;
 /// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through a pose are apart.
 pub(super) const FLOOR: f64 = 100.0;
 
-impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
+impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// In a singular pose there are many ways to fail, for this one reason.
-    pub(super) fn blame<O>(&self, system: &O, error: Error) -> Error
+    pub(super) fn blame<M>(&self, system: &M, error: Error) -> Error
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         let is_symptom = matches!(
             error,
@@ -77,10 +78,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     }
 
     /// Begins to remember states where there are singular poses.
-    pub(super) fn watch<O>(&mut self, system: &O)
+    pub(super) fn watch<M>(&mut self, system: &M)
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         if self.watch == Watch::Needless || self.past.len() > 0 {
             return;
@@ -99,10 +100,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     /// There it must not be changed by much more than the weights allow: else it was not near the motion, whatever its error estimate says, but
     /// perhaps near another one. And the pose must be farther away than what the constraints are off: else nothing tells the ways
     /// on from each other.
-    pub(super) fn settle<O>(&mut self, system: &O, t: T) -> Result<(bool, Option<T>), Error>
+    pub(super) fn settle<M>(&mut self, system: &M, t: T) -> Result<(bool, Option<T>), Error>
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         if self.watch != Watch::Needed {
             return Ok((self.correct_trial(system, t)?, None));
@@ -150,10 +151,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
 
     /// Where a singular pose lies within the next step, or ahead of one that has failed: steps over it, and returns so, or shortens the next
     /// step to a part of the way there.
-    pub(super) fn approach<O>(&mut self, system: &O, t_end: T) -> Result<bool, Error>
+    pub(super) fn approach<M>(&mut self, system: &M, t_end: T) -> Result<bool, Error>
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         let Some((length, pivot)) = self.beyond_pose() else {
             self.approach = None;
@@ -186,10 +187,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
     /// fewer digits they have, and off the constraints they are of any size. So the last states are extrapolated to about as far behind the
     /// pose as the motion is before it, and what two polynomials differ by must be within the tolerance, as must be what the
     /// correction changes: the constraints have not been asked so far, and have to agree.
-    fn leap<O>(&mut self, system: &O, t_end: T) -> bool
+    fn leap<M>(&mut self, system: &M, t_end: T) -> bool
     where
-        O: Ode<Scalar = T, State = S>,
-        C: Correction<O>,
+        D: Ode<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
         let Some((length, pivot)) = self.beyond_pose() else { return false };
         let left = t_end - self.t;

@@ -204,8 +204,8 @@ fn states_of(model: &Model, all: &[State], q: &[f64], v: &[f64]) -> Vec<State> {
     let mut states = all.to_vec();
     for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
         let [x, y, z, a, b, c, d] = std::array::from_fn(|k| q[7 * slot + k]);
-        let [s, w] = [0, 3].map(|at| Vector(std::array::from_fn(|k| v[6 * slot + at + k])));
-        states[body] = State { r: Vector([x, y, z]), p: Quaternion([a, b, c, d]), s, w };
+        let [s, w] = [0, 3].map(|at| Vector::from(std::array::from_fn(|k| v[6 * slot + at + k])));
+        states[body] = State { r: Vector::from([x, y, z]), p: Quaternion([a, b, c, d]), s, w };
     }
     states
 }
@@ -219,7 +219,7 @@ fn joint_starts(kinematics: &Kinematics, states: &[State], at: &Configuration, v
         }
         let turn = relative(states, joint);
         let [first, second] = [&joint.first, &joint.second].map(|end| states[end.body].w);
-        JointStart { position: turn.0.to_vec(), rate: (second - turn.rotate_back(first)).0.to_vec() }
+        JointStart { position: turn.0.to_vec(), rate: (second - turn.rotate_back(first)).as_slice().to_vec() }
     };
     starts.map(start).collect()
 }
@@ -263,5 +263,5 @@ fn moves(
 }
 
 fn angle_between(a: Quaternion, b: Quaternion) -> f64 {
-    Vector(rotation_vector(a.conjugate() * b)).norm()
+    Vector::from(rotation_vector(a.conjugate() * b)).norm()
 }

@@ -28,7 +28,7 @@ impl Model {
         let meet = now.iter().zip(&then).find(|((_, now), (_, then))| {
             let [from, to] = [now, then].map(|[a, b]| *b - *a);
             let way = to - from;
-            let part = (-from.dot(way) / way.dot(way)).clamp(0.0, 1.0);
+            let part = (-from.dot(&way) / way.dot(&way)).clamp(0.0, 1.0);
             coincide(self, now) || (from + way * part).norm() <= STRAIGHT * way.norm()
         });
         meet.map(|((force, _), _)| self.forces[*force].name.as_str())
@@ -42,14 +42,15 @@ fn ends(model: &Model, t: f64, q: &[f64]) -> Vec<(usize, [Vector; 2])> {
         ForceKind::Link { first, second, .. } => Some((index, [first, second])),
         _ => None,
     });
-    let place =
-        |(body, point): &(usize, [crate::Number; 3])| Vector(poses[*body].point(Vector(model.values(point))));
+    let place = |(body, point): &(usize, [crate::Number; 3])| {
+        Vector::from(poses[*body].point(Vector::from(model.values(point))))
+    };
     links.map(|(index, ends)| (index, ends.map(place))).collect()
 }
 
 fn coincide(model: &Model, [from, to]: &[Vector; 2]) -> bool {
-    let reach = from.0.iter().chain(&to.0).fold(model.size(), |m: f64, x| m.max(x.abs()));
-    from.0.iter().zip(&to.0).all(|(a, b)| (a - b).abs() <= COINCIDENT * reach)
+    let reach = from.iter().chain(to).fold(model.size(), |m: f64, x| m.max(x.abs()));
+    from.iter().zip(to).all(|(a, b)| (a - b).abs() <= COINCIDENT * reach)
 }
 
 /// The positions after a time with these velocities.

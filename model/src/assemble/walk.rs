@@ -56,12 +56,12 @@ pub(super) fn roots(model: &Model, tree: &Tree) -> Vec<State> {
             return State { r: now.r, p: now.p, s: now.s, w: now.w };
         }
         let floats = body.support == Support::Free || tree.floating.contains(&index);
-        let of = |numbers: &[Number; 3]| if floats { vector(model, numbers) } else { Vector::ZERO };
+        let of = |numbers: &[Number; 3]| if floats { vector(model, numbers) } else { Vector::zeros() };
         State {
             r: vector(model, &body.position),
             p: body.unit_orientation(model),
             s: of(&body.velocity),
-            w: body.angular_velocity.as_ref().map_or(Vector::ZERO, of),
+            w: body.angular_velocity.as_ref().map_or(Vector::zeros(), of),
         }
     };
     model.bodies.iter().enumerate().map(state).collect()
@@ -104,8 +104,8 @@ impl<'m> Walk<'m> {
         // Paper, eq. (7) with the displacement, and its derivative.
         let r = parent.r + (parent.p.rotate(near) - p.rotate(far)) + first.rotate(d) * back;
         let s = parent.s
-            + (parent.p.rotate(parent.w.cross(near)) - p.rotate(w.cross(far)))
-            + first.rotate(w_first.cross(d) + rate) * back;
+            + (parent.p.rotate(parent.w.cross(&near)) - p.rotate(w.cross(&far)))
+            + first.rotate(w_first.cross(&d) + rate) * back;
         self.states[hanging.body] = State { r, p, s, w };
         self.joints[hanging.joint].position = self.position(hanging.joint);
     }
@@ -133,7 +133,7 @@ impl<'m> Walk<'m> {
     /// From the first body's joint point to the second's in the first body's frame, and its rate there.
     fn displacement(&self, joint: usize) -> (Vector, Vector) {
         let (geometry, guess, rate) = (&self.geometry[joint], &self.guesses[joint], &self.joints[joint].rate);
-        let mut sum = (Vector::ZERO, Vector::ZERO);
+        let mut sum = (Vector::zeros(), Vector::zeros());
         for (k, kind) in geometry.kind.coordinates().iter().enumerate() {
             let direction = match kind {
                 CoordinateKind::Displacement => geometry.first.h,
@@ -179,19 +179,19 @@ impl<'m> Walk<'m> {
         match joint.kind {
             JointKind::Spherical => {
                 let given: Option<Vec<f64>> = given.iter().copied().collect();
-                let given = given.and_then(|g| <[f64; 3]>::try_from(g).ok()).map(Vector);
+                let given = given.and_then(|g| <[f64; 3]>::try_from(g).ok()).map(Vector::from);
                 let of_second = |w: Vector| if hanging.reversed { -step.rotate(w) } else { w };
-                let rate = given.or(sought.map(of_second)).unwrap_or(Vector::ZERO);
-                (rate.0.to_vec(), if hanging.reversed { -step.rotate_back(rate) } else { rate })
+                let rate = given.or(sought.map(of_second)).unwrap_or(Vector::zeros());
+                (rate.as_slice().to_vec(), if hanging.reversed { -step.rotate_back(rate) } else { rate })
             }
             // Its orientation is free and has no coordinate.
-            JointKind::PointOnLine => (vec![given[0].unwrap_or(0.0)], sought.unwrap_or(Vector::ZERO)),
+            JointKind::PointOnLine => (vec![given[0].unwrap_or(0.0)], sought.unwrap_or(Vector::zeros())),
             _ => {
                 let mut rates = Vec::with_capacity(given.len());
-                let mut own = Vector::ZERO;
+                let mut own = Vector::zeros();
                 for (k, &kind) in joint.kind.coordinates().iter().enumerate() {
                     let axis = turning_axis(joint, kind, hanging.reversed, step);
-                    let found = || sought.zip(axis).map(|(w, axis)| w.dot(axis));
+                    let found = || sought.zip(axis).map(|(w, axis)| w.dot(&axis));
                     let rate = given[k].or_else(found).unwrap_or(0.0);
                     own = axis.map_or(own, |axis| own + axis * rate);
                     rates.push(rate);
@@ -210,8 +210,8 @@ impl<'m> Walk<'m> {
             body: hanging.body,
             name: self.model.bodies[hanging.body].name.clone(),
             joint: self.model.joints[hanging.joint].name.clone(),
-            wanted: wanted.0,
-            nearest: nearest.0,
+            wanted: wanted.into(),
+            nearest: nearest.into(),
         });
     }
 
@@ -220,8 +220,8 @@ impl<'m> Walk<'m> {
         let (mut q, mut v) = (Vec::new(), Vec::new());
         for body in self.model.coordinate_bodies() {
             let State { r, p, s, w } = self.states[body];
-            q.extend(r.0.iter().chain(&p.0));
-            v.extend(s.0.iter().chain(&w.0));
+            q.extend(r.iter().chain(&p.0));
+            v.extend(s.iter().chain(&w));
         }
         (q, v)
     }
@@ -276,5 +276,5 @@ fn turning_axis(
 }
 
 pub(super) fn vector(model: &Model, numbers: &[Number; 3]) -> Vector {
-    Vector(model.values(numbers))
+    Vector::from(model.values(numbers))
 }

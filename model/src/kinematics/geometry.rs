@@ -65,7 +65,7 @@ impl<D: Scalar> Pose<D> {
 
     /// A direction that is constant in the body, in the global frame.
     pub(crate) fn direction(&self, v: Vector) -> [D; 3] {
-        let [x, y, z] = v.0;
+        let [x, y, z] = v.into();
         self.a.map(|row| row[0] * x + row[1] * y + row[2] * z)
     }
 

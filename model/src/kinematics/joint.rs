@@ -2,7 +2,7 @@
 
 use super::exact::{cross, exact};
 use super::geometry::{Pose, Scalar, angle, dot};
-use crate::{CoordinateKind, Joint, JointEnd, JointKind, Model, Quaternion, Vector};
+use crate::{CoordinateKind, Joint, JointEnd, JointKind, Model, Quaternion, Vector, unit_vector};
 
 /// A joint in `f64`.
 #[derive(Clone, Debug)]
@@ -35,12 +35,12 @@ impl EndGeometry {
     fn of(model: &Model, end: &JointEnd) -> Self {
         let (axis, zero) = (exact(model, &end.axis), exact(model, &end.zero));
         let side = cross(&axis, &zero);
-        let frame = [Vector::unit(&cross(&side, &axis)), Vector::unit(&side), Vector::unit(&axis)];
+        let frame = [unit_vector(&cross(&side, &axis)), unit_vector(&side), unit_vector(&axis)];
         let [f, g, h] = match frame {
             [Some(f), Some(g), Some(h)] => [f, g, h],
-            _ => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector),
+            _ => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector::from),
         };
-        Self { body: end.body, point: Vector(model.values(&end.point)), f, g, h }
+        Self { body: end.body, point: Vector::from(model.values(&end.point)), f, g, h }
     }
 
     /// Orientation of the joint frame in the body's frame.

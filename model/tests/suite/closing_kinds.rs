@@ -83,23 +83,23 @@ fn model(page: &str) -> Model {
 /// A joint of a kind between the ground and the last body where the chain has it.
 fn closing(kind: &str, start: &Start, rng: &mut ChaCha8Rng) -> String {
     let q = &start.q[start.q.len() - 7..];
-    let (r, p) = (Vector([q[0], q[1], q[2]]), Quaternion([q[3], q[4], q[5], q[6]]));
-    let (point, axis) = (Vector(vector(rng)), Vector(vector(rng)).normalised());
-    let g = axis.cross(Vector(vector(rng))).normalised();
-    let f = g.cross(axis);
+    let (r, p) = (Vector::from([q[0], q[1], q[2]]), Quaternion([q[3], q[4], q[5], q[6]]));
+    let (point, axis) = (Vector::from(vector(rng)), Vector::from(vector(rng)).normalize());
+    let g = axis.cross(&Vector::from(vector(rng))).normalize();
+    let f = g.cross(&axis);
     // Coordinates of the planted joint, as far as its kind has them.
     let angle: f64 = rng.random_range(-1.0..1.0);
     let [x, y, z] = [0.3, -0.2, 0.1];
     let lead = 0.05;
     let (turn, d) = match kind {
-        "revolute" | "universal" => (angle, Vector::ZERO),
+        "revolute" | "universal" => (angle, Vector::zeros()),
         "cylindrical" => (angle, axis * z),
         "prismatic" => (0.0, axis * z),
         "planar" => (angle, f * x + g * y),
         "screw" => (angle, axis * (lead * angle)),
         "point_on_line" => (0.0, axis * z),
         "rod" => (0.0, f * x + g * y + axis * z),
-        _ => (0.0, Vector::ZERO),
+        _ => (0.0, Vector::zeros()),
     };
     let (sin, cos) = turn.sin_cos();
     // A universal joint's second axis is across the first's.
@@ -107,19 +107,21 @@ fn closing(kind: &str, start: &Start, rng: &mut ChaCha8Rng) -> String {
         "universal" => (f * cos + g * sin, axis),
         _ => (axis, f * cos + g * sin),
     };
-    let far = |v: Vector| p.rotate_back(v).0;
-    let far_point = p.rotate_back(point + d - r).0;
+    let far = |v: Vector| <[f64; 3]>::from(p.rotate_back(v));
+    let far_point = <[f64; 3]>::from(p.rotate_back(point + d - r));
     let mut text = format!("[[joint]]\nname = \"closing\"\nkind = \"{kind}\"\n");
     let frames = match kind {
         "spherical" | "rod" => [String::new(), String::new()],
-        "point_on_line" => [format!(", axis = {:?}, zero = {:?}", axis.0, f.0), String::new()],
+        "point_on_line" => {
+            [format!(", axis = {:?}, zero = {:?}", axis.as_slice(), f.as_slice()), String::new()]
+        }
         _ => [
-            format!(", axis = {:?}, zero = {:?}", axis.0, f.0),
+            format!(", axis = {:?}, zero = {:?}", axis.as_slice(), f.as_slice()),
             format!(", axis = {:?}, zero = {:?}", far(far_axis), far(far_zero)),
         ],
     };
     let [first, second] = frames;
-    let _ = writeln!(text, "first = {{ body = \"b0\", point = {:?}{first} }}", point.0);
+    let _ = writeln!(text, "first = {{ body = \"b0\", point = {:?}{first} }}", point.as_slice());
     let _ = writeln!(text, "second = {{ body = \"b4\", point = {far_point:?}{second} }}");
     match kind {
         "screw" => text + &format!("lead = {lead}\n"),

@@ -187,14 +187,14 @@ fn a_driven_body_moves_as_its_derivatives_say() {
             (of(&after)[k] - of(&before)[k]) / (2.0 * STEP)
         };
         for k in 0..3 {
-            assert!((difference(k, |x| x.r.0) - at.s.0[k]).abs() <= 100.0 * TOLERANCE, "s at {t}");
-            assert!((difference(k, |x| x.s.0) - at.ds.0[k]).abs() <= 100.0 * TOLERANCE, "ds at {t}");
-            assert!((difference(k, |x| x.w.0) - at.dw.0[k]).abs() <= 100.0 * TOLERANCE, "dw at {t}");
+            assert!((difference(k, |x| x.r.into()) - at.s[k]).abs() <= 100.0 * TOLERANCE, "s at {t}");
+            assert!((difference(k, |x| x.s.into()) - at.ds[k]).abs() <= 100.0 * TOLERANCE, "ds at {t}");
+            assert!((difference(k, |x| x.w.into()) - at.dw[k]).abs() <= 100.0 * TOLERANCE, "dw at {t}");
         }
         // The columns of A turn with A w'.
-        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(gyro_model::Vector) {
+        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(gyro_model::Vector::from) {
             let turned = (after.p.rotate(axis) - before.p.rotate(axis)) * (0.5 / STEP);
-            let error = (turned - at.p.rotate(at.w.cross(axis))).norm();
+            let error = (turned - at.p.rotate(at.w.cross(&axis))).norm();
             assert!(error <= 100.0 * TOLERANCE, "w' at {t}: {error}");
         }
         assert!((at.p.dot(at.p) - 1.0).abs() <= 1e-15);
@@ -215,10 +215,10 @@ fn rotations_follow_one_another_in_the_turned_frame() {
     };
     model.bodies[0].position = ["10", "0", "0"].map(number);
     let at = motion.state(&model, &model.bodies[0], 0.0);
-    assert_eq!(at.r.0, [11.0, 2.0, 3.0]);
+    assert_eq!(at.r, gyro_model::Vector::new(11.0, 2.0, 3.0));
     // About z: x → y. Then about the new x, which is global y: the body's y, at −x, goes to z.
     for (axis, expected) in [([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0])] {
-        let error = (at.p.rotate(gyro_model::Vector(axis)) - gyro_model::Vector(expected)).norm();
+        let error = (at.p.rotate(gyro_model::Vector::from(axis)) - gyro_model::Vector::from(expected)).norm();
         assert!(error <= 1e-15, "{axis:?}");
     }
 }

@@ -15,9 +15,10 @@ const CRATES: [&str; 9] = [
     "assembled",
     "verifier",
     "runner",
+    "cli",
     "xtask",
     "benches",
-    "benches/yardstick",
+    "yardstick",
 ];
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.

@@ -15,7 +15,7 @@ use std::hash::Hash;
 pub struct Drawn<'p, const L: usize> {
     prime: &'p Prime<L>,
     random: RefCell<ChaCha8Rng>,
-    /// Cosine and sine of each argument that was met, its double and its halves.
+    /// Cosine and sine of each argument that was met, and of its halves.
     circle: Table<[u64; L], (Modular<'p, L>, Modular<'p, L>)>,
     tanh: Table<[u64; L], Modular<'p, L>>,
     atan2: Table<([u64; L], [u64; L]), Modular<'p, L>>,
@@ -25,8 +25,9 @@ pub struct Drawn<'p, const L: usize> {
     missed: Cell<bool>,
 }
 
-/// How often an argument is halved when it is new: what is met later may be a half, a quarter of it.
-const HALVINGS: u32 = 4;
+/// How often an argument is halved when it is new, until one is met that is known: what is met later may be a half, a quarter of it. A point of the
+/// circle is drawn for the last one, and doubled.
+pub(crate) const HALVINGS: u32 = 8;
 
 type Table<K, V> = RefCell<HashMap<K, V>>;
 
@@ -71,23 +72,19 @@ impl<'p, const L: usize> Drawn<'p, L> {
             return known;
         }
         let one_half = Modular::integer(self.prime, 2).inv().unwrap_or(undefined);
-        let half = x.mul(&one_half);
-        let known = half.key().and_then(|key| self.circle.borrow().get(&key).copied());
-        if let Some(known) = known {
-            self.learn(x, twice(known));
-            return twice(known);
-        }
-        let (mut angle, Some(mut point)) = (*x, self.circle_point()) else { return (undefined, undefined) };
-        for _ in 0..HALVINGS {
+        let (mut angle, mut known, mut doublings) = (*x, None, 0);
+        while known.is_none() && doublings < HALVINGS {
             angle = angle.mul(&one_half);
+            known = angle.key().and_then(|key| self.circle.borrow().get(&key).copied());
+            doublings += 1;
         }
-        // The values of the argument, its halves and its double agree with each other.
-        for _ in 0..=HALVINGS {
-            self.learn(&angle, point);
-            (angle, point) = (angle.add(&angle), twice(point));
-        }
+        let Some(mut point) = known.or_else(|| self.circle_point()) else { return (undefined, undefined) };
         self.learn(&angle, point);
-        self.circle.borrow().get(&key).copied().unwrap_or((undefined, undefined))
+        for _ in 0..doublings {
+            (angle, point) = (angle.add(&angle), twice(point));
+            self.learn(&angle, point);
+        }
+        point
     }
 
     fn learn(&self, angle: &Modular<'p, L>, (cosine, sine): (Modular<'p, L>, Modular<'p, L>)) {
@@ -185,6 +182,10 @@ mod tests {
             assert_eq!(twice(twice((atoms.cos(&quarter), atoms.sin(&quarter)))), (cos, sin));
             let fourfold = x.add(&x).add(&x).add(&x);
             assert_eq!((atoms.cos(&fourfold), atoms.sin(&fourfold)), four);
+            // What is met later, far from it, changes none of it.
+            let sixteenfold = fourfold.add(&fourfold).add(&fourfold).add(&fourfold);
+            assert_eq!((atoms.cos(&sixteenfold), atoms.sin(&sixteenfold)), twice(twice(four)));
+            assert_eq!((atoms.cos(&x), atoms.sin(&x)), (cos, sin));
             for (angle, (cos, sin)) in
                 [(x.add(&x), twice((cos, sin))), (x, twice((atoms.cos(&half), atoms.sin(&half))))]
             {

@@ -6,18 +6,26 @@ use gyro_model::Spline;
 
 /// Atoms over [`Degree`]: each is a new variable or a point of a curve.
 #[derive(Clone, Copy, Debug)]
-pub struct Formal;
+pub struct Formal {
+    /// How often a rationally parametrised point of the unit circle is doubled at most on the way to an angle's.
+    pub doublings: u32,
+}
 
-/// A point of the unit circle is `u¹⁶` of a rationally parametrised `u`; multiples that are met before it count up to 32.
-const CIRCLE: f64 = 1024.0;
+impl Formal {
+    /// Each doubling doubles the degree.
+    fn circle(self) -> Degree {
+        let degree = 2.0 * f64::from(self.doublings).exp2();
+        Degree::quotient(degree, degree)
+    }
+}
 
 impl Atoms<Degree> for Formal {
     fn sin(&self, _: &Degree) -> Degree {
-        Degree::quotient(CIRCLE, CIRCLE)
+        self.circle()
     }
 
     fn cos(&self, _: &Degree) -> Degree {
-        Degree::quotient(CIRCLE, CIRCLE)
+        self.circle()
     }
 
     fn tanh(&self, _: &Degree) -> Degree {

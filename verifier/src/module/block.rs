@@ -68,7 +68,6 @@ pub enum Form {
 #[derive(Clone, Copy, Debug)]
 pub struct Before {
     pub buffer: &'static str,
-    pub made_by: &'static str,
     pub call: &'static str,
 }
 
@@ -156,7 +155,8 @@ impl<'a> Reader<'a> {
         let mut statements = block.stmts.as_slice();
         while let [Stmt::Local(local), rest @ ..] = statements {
             statements = rest;
-            if let Some(before) = self.before.filter(|before| before.starts(local)) {
+            if let Some(before) = self.before.filter(|before| before.starts(local, self.sizes.accelerations))
+            {
                 let [call, rest @ ..] = statements else { return Err(refused(local)) };
                 self.compute_first(before, call)?;
                 statements = rest;
@@ -445,7 +445,8 @@ impl Before {
         self.call.split([' ', '(']).filter(|word| ["t", "y", "x"].contains(word))
     }
 
-    fn starts(&self, local: &Local) -> bool {
-        text(local) == format!("let mut {} = {} ;", self.buffer, self.made_by)
+    /// Whether this is its buffer, of so many numbers.
+    fn starts(&self, local: &Local, count: usize) -> bool {
+        text(local) == format!("let mut {} = [T :: constant (0.0) ; {count}] ;", self.buffer)
     }
 }

@@ -137,6 +137,14 @@ fn write_expression(expression: &Expr, text: &mut String) -> Result<(), Refusal>
             write!(text, ". {} ", field.member.to_token_stream()).expect("a string takes all text");
         }
         Expr::Array(array) => write_list(("[ ", "] "), array.elems.iter(), text)?,
+        // Of a buffer that is zeroed.
+        Expr::Repeat(repeat) => {
+            *text += "[ ";
+            write(&repeat.expr, text)?;
+            *text += "; ";
+            write(&repeat.len, text)?;
+            *text += "] ";
+        }
         Expr::Tuple(tuple) => write_list(("( ", ") "), tuple.elems.iter(), text)?,
         Expr::Reference(reference) => {
             *text += if reference.mutability.is_some() { "& mut " } else { "& " };

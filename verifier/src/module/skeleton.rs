@@ -40,17 +40,10 @@ pub fn text(
     [
         constants(tables),
         definition(model, type_name, has.set_up),
-        ode(model, type_name),
         mechanism(model, type_name, joints.is_some()),
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
-        projection(type_name),
-        joints.map(|joints| joint_space(model, type_name, joints)).unwrap_or_default(),
-        joints
-            .filter(|_| has.jacobian)
-            .map(|joints| joint_jacobian(model, type_name, joints))
-            .unwrap_or_default(),
-        ports(model, type_name),
+        joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
     ]
     .concat()
 }
@@ -212,23 +205,11 @@ pub fn n_state(model: &Model) -> usize {
     13 * n + usize::from(model.has_work()) + model.turn_references().len()
 }
 
-fn ode(model: &Model, name: &str) -> String {
-    format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::Ode for {name}<T> {{
-            type Scalar = T;
-            type State = [T; {}];
-            fn start(&self) -> Self::State {{ HOLE_start }}
-            fn derivative(&self, ANY_t: T, ANY_y: &Self::State, dy: &mut Self::State) {{ HOLE_derivative }}
-        }}",
-        n_state(model)
-    )
-}
-
-/// A function that gives a buffer of zeros, one for each pair.
-fn buffers(pairs: &[(&str, &str, &str)]) -> String {
-    lines(pairs.iter().map(|(function, ty, count)| {
-        format!("fn {function}(&self) -> Self::{ty} {{ [T::constant(0.0); {count}] }}")
-    }))
+/// A function that gives buffers of zeros, a field for each pair.
+fn buffers(function: &str, of: &str, fields: &[(&str, &str)]) -> String {
+    let zeros = |(field, count): &(&str, &str)| format!("{field}: [T::constant(0.0); {count}]");
+    let fields = list(fields.iter().map(zeros));
+    format!("fn {function}(&self) -> gyro_sim::{of}<Self> {{ gyro_sim::{of} {{ {fields} }} }}")
 }
 
 /// A function that fills `out`, for each pair of name and type.
@@ -238,26 +219,6 @@ fn fillings(pairs: &[(&str, &str)]) -> String {
             "fn {function}(&self, ANY_t: T, ANY_y: &Self::State, ANY_out: &mut Self::{ty}) {{ HOLE_{function} }}"
         )
     }))
-}
-
-/// A function that gives an entry of a table by its index, or something else beyond its end.
-fn lookup(signature: &str, argument: &str, entry: &str, entries: &[String], otherwise: &str) -> String {
-    let table = signature.rsplit(' ').next().unwrap_or_default().to_owned();
-    let function = signature.trim_end_matches(&table);
-    format!(
-        "{function} {{
-            const {table}: [{entry}; {}] = [{}];
-            {table}.get({argument}).copied().{otherwise}
-        }}",
-        entries.len(),
-        list(entries),
-    )
-}
-
-fn name_lookup(function: &str, argument: &str, table: &str, entries: &[&String]) -> String {
-    let entries: Vec<_> = entries.iter().map(|name| format!("{name:?}")).collect();
-    let signature = format!("fn {function}(&self, {argument}: usize) -> &str {table}");
-    lookup(&signature, argument, "&str", &entries, "unwrap_or_default()")
 }
 
 fn coordinates(kind: JointKind) -> String {
@@ -305,10 +266,7 @@ fn turn_references(model: &Model) -> String {
         let own = &model.joints[turn.joint].kind.coordinates()[..turn.coordinate];
         (before + n_readings_of_all(own)).to_string()
     });
-    if turns.is_empty() {
-        return String::new();
-    }
-    format!("fn turn_references(&self) -> &[u16] {{ &[{}] }}", list(places))
+    list(places)
 }
 
 fn mechanism(model: &Model, name: &str, is_tree: bool) -> String {
@@ -316,119 +274,116 @@ fn mechanism(model: &Model, name: &str, is_tree: bool) -> String {
         HOLE_corrected_derivative
     }";
     let corrected = if is_tree { corrected } else { "" };
-    let (n, n_rows) = (model.coordinate_bodies().len(), model.rows().len());
-    let [rows, constraints, readings] = [n_rows, n_rows + n, n_readings(model)].map(|n| n.to_string());
+    let (n, n_rows, n_outputs) = (model.coordinate_bodies().len(), model.rows().len(), columns(model).len());
+    let sizes = [n_rows, n_rows + n, n_readings(model), n_outputs].map(|n| n.to_string());
+    let [rows, constraints, readings, outputs] = &sizes;
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for {name}<T> {{
+            type Scalar = T;
+            type State = [T; {}];
             type Rows = [T; {rows}];
             type Constraints = [T; {constraints}];
             type Readings = [T; {readings}];
+            type Outputs = [T; {outputs}];
+            fn description(&self) -> &gyro_sim::Description<'_> {{
+                const DESCRIPTION: gyro_sim::Description<'static> = {};
+                &DESCRIPTION
+            }}
             {}
+            fn start(&self) -> Self::State {{ HOLE_start }}
+            fn derivative(&self, ANY_t: T, ANY_y: &Self::State, dy: &mut Self::State) {{ HOLE_derivative }}
             {corrected}
             {}
             fn energy(&self, ANY_t: T, ANY_y: &Self::State) -> gyro_sim::Energy<T> {{ HOLE_energy }}
             {}
             {}
         }}",
-        buffers(&[
-            ("rows", "Rows", &rows),
-            ("constraints", "Constraints", &constraints),
-            ("readings", "Readings", &readings)
-        ]),
+        n_state(model),
+        description(model),
+        buffers(
+            "buffers",
+            "Buffers",
+            &[("rows", rows), ("constraints", constraints), ("readings", readings), ("outputs", outputs)],
+        ),
         fillings(&[("phi", "Constraints"), ("velocity_residual", "Rows")]),
-        fillings(&[("read_joints", "Readings")]),
-        descriptions(model),
+        fillings(&[("read_joints", "Readings"), ("outputs", "Outputs")]),
+        setter("fn set_input", &model.inputs, ("self", "", "")),
     )
 }
 
 /// Names, rows and sizes.
-fn descriptions(model: &Model) -> String {
-    let slots = model.coordinate_bodies();
-    let bodies: Vec<_> = slots.iter().map(|&b| &model.bodies[b].name).collect();
-    let couplers: Vec<_> = model.couplers.iter().map(|c| &c.name).collect();
-    let drivers: Vec<_> = model.drivers.iter().map(|d| &d.name).collect();
-    let joint = |name: &str, coordinates: &str| {
+fn description(model: &Model) -> String {
+    let bodies = names(model.coordinate_bodies().iter().map(|&body| &model.bodies[body].name));
+    let couplers = names(model.couplers.iter().map(|coupler| &coupler.name));
+    let drivers = names(model.drivers.iter().map(|driver| &driver.name));
+    let inputs = names(model.inputs.iter().map(|input| &input.name));
+    let joints = list(model.joints.iter().map(|joint| {
+        let (name, coordinates) = (&joint.name, coordinates(joint.kind));
         format!("gyro_sim::JointInfo {{ name: {name:?}, coordinates: &[{coordinates}] }}")
-    };
-    let joints: Vec<_> = model.joints.iter().map(|j| joint(&j.name, &coordinates(j.kind))).collect();
-    let row = |owner: &str, is_length: bool| {
+    }));
+    let rows = list(model.rows().iter().map(|row| {
+        let (owner, is_length) = (owner(model, row.owner), row.unit == RowUnit::Length);
         format!("gyro_sim::RowInfo {{ owner: {owner}, is_length: {is_length} }}")
-    };
-    let rows = model.rows();
-    let rows: Vec<_> = rows.iter().map(|r| row(&owner(model, r.owner), r.unit == RowUnit::Length)).collect();
-    let work = if model.has_work() {
-        format!("fn work(&self, y: &Self::State) -> T {{ y[{}] }}", 13 * slots.len())
-    } else {
-        "fn work(&self, _y: &Self::State) -> T { T::constant(0.0) }".to_owned()
-    };
+    }));
+    let outputs = list(columns(model).into_iter().map(|(name, suffix, unit)| {
+        format!("gyro_sim::OutputInfo {{ name: {name:?}, suffix: {suffix:?}, unit: {unit:?} }}")
+    }));
+    let (size, has_work, turns) = (model.size(), model.has_work(), turn_references(model));
     format!(
-        "{}
-        fn n_bodies(&self) -> usize {{ {} }}
-        fn n_joints(&self) -> usize {{ {} }}
-        {} {} {} {} {}
-        fn size(&self) -> T {{ T::constant({:?}) }}
-        {work}",
-        turn_references(model),
-        slots.len(),
-        model.joints.len(),
-        name_lookup("body_name", "body", "BODIES", &bodies),
-        lookup(
-            "fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> JOINTS",
-            "joint",
-            "gyro_sim::JointInfo<'static>",
-            &joints,
-            &format!("unwrap_or({})", joint("", "")),
-        ),
-        name_lookup("coupler_name", "coupler", "COUPLERS", &couplers),
-        name_lookup("driver_name", "driver", "DRIVERS", &drivers),
-        lookup(
-            "fn row(&self, row: usize) -> gyro_sim::RowInfo ROWS",
-            "row",
-            "gyro_sim::RowInfo",
-            &rows,
-            &format!("unwrap_or({})", row("gyro_sim::Owner::Body(0)", false)),
-        ),
-        model.size(),
+        "gyro_sim::Description {{
+            size: {size:?},
+            bodies: &[{bodies}],
+            joints: &[{joints}],
+            couplers: &[{couplers}],
+            drivers: &[{drivers}],
+            rows: &[{rows}],
+            has_work: {has_work},
+            turn_references: &[{turns}],
+            inputs: &[{inputs}],
+            outputs: &[{outputs}],
+        }}"
     )
 }
 
 fn partition(model: &Model, name: &str, choice: Choice, joints: Option<&JointLayout>) -> String {
     match choice {
-        Choice::Charts => by_charts(name),
+        Choice::Charts => by_charts(model, name),
         Choice::Pivoting => by_pivoting(model, name, joints),
     }
 }
 
 const SOLVED: &str = "::core::result::Result<(), gyro_sim::Error>";
 
-fn by_charts(name: &str) -> String {
+fn by_charts(model: &Model, name: &str) -> String {
+    let state = n_state(model);
     let solves = ["newton_step", "solve_velocities"];
     let unrolled = lines(solves.map(|solve| {
         format!(
-            "fn {solve}_on(&self, ANY_t: T, ANY_charts: &Self::Vectors, ANY_y: &mut Self::State) {{ HOLE_{solve} }}"
+            "fn {solve}_on(
+                &self, ANY_t: T, ANY_charts: &[[T; 4]; INT_charts], ANY_y: &mut [T; {state}],
+            ) {{ HOLE_{solve} }}"
         )
     }));
     let chosen = lines(solves.map(|solve| {
         format!(
             "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
-                gyro_sim::Charted::{solve}_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                self.{solve}_on(t, &gyro_sim::charts::one_hot(choice), y);
                 Ok(())
             }}"
         )
     }));
     format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::Charted for {name}<T> {{
-            type Vectors = [[T; 4]; INT_charts];
-            fn chart_vectors(&self, ANY_y: &Self::State) -> Self::Vectors {{ HOLE_chart_vectors }}
+        "impl<T: gyro_sim::Scalar> {name}<T> {{
+            fn chart_vectors(&self, ANY_y: &[T; {state}]) -> [[T; 4]; INT_charts] {{ HOLE_chart_vectors }}
             {unrolled}
         }}
-        impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
-            type Independent = gyro_sim::charts::Charts<INT_charts>;
+        impl<T: gyro_sim::Lanes> gyro_sim::Partition for {name}<T> {{
+            type Independent = gyro_sim::charts::Charts<T, INT_charts>;
             fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {{
-                gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+                gyro_sim::charts::best(&self.chart_vectors(y))
             }}
             fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
-                gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+                gyro_sim::charts::follow(&self.chart_vectors(y), choice)
             }}
             {chosen}
         }}"
@@ -488,13 +443,20 @@ fn equations(model: &Model, name: &str) -> String {
             type PhiPi = [T; INT_phi_pi];
             type Accelerations = [T; INT_accelerations];
             {} {patterns} {} {}
+            fn project(
+                &self, ANY_t: T, ANY_y: &Self::State, ANY_rows: &Self::Rows, ANY_out: &mut Self::Velocities,
+            ) {{ HOLE_project }}
         }}",
-        buffers(&[
-            ("velocities", "Velocities", &velocities),
-            ("phi_q_values", "PhiQ", "INT_phi_q"),
-            ("phi_pi_values", "PhiPi", "INT_phi_pi"),
-            ("accelerations_buffer", "Accelerations", "INT_accelerations"),
-        ]),
+        buffers(
+            "terms",
+            "Terms",
+            &[
+                ("velocities", &velocities),
+                ("phi_q", "INT_phi_q"),
+                ("phi_pi", "INT_phi_pi"),
+                ("accelerations", "INT_accelerations"),
+            ],
+        ),
         fillings(&[
             ("phi_q", "PhiQ"),
             ("phi_pi", "PhiPi"),
@@ -515,26 +477,40 @@ fn multipliers(name: &str, accelerations: &str) -> String {
     )
 }
 
-fn projection(name: &str) -> String {
-    format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::Projection for {name}<T> {{
-            fn project(
-                &self, ANY_t: T, ANY_y: &Self::State, ANY_rows: &Self::Rows, ANY_out: &mut Self::Velocities,
-            ) {{ HOLE_project }}
-        }}"
-    )
-}
-
-fn joint_space(model: &Model, name: &str, joints: &JointLayout) -> String {
+fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bool) -> String {
     let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
     let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
+    let sizes = [n_state * n_state, n_state * model.inputs.len()];
+    let [(jacobian, no_slopes), (input_jacobian, no_input_slopes)] = if has_jacobian {
+        sizes.map(|n| (format!("[T; {n}]"), format!("[T::constant(0.0); {n}]")))
+    } else {
+        sizes.map(|_| ("()".to_owned(), "()".to_owned()))
+    };
+    let jacobians = "fn joint_jacobian(
+            &self, ANY_t: T, ANY_x: &Self::Joints, dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints,
+        ) {
+            HOLE_joint_jacobian
+        }
+        fn joint_input_jacobian(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::InputJacobian) {
+            HOLE_joint_input_jacobian
+        }";
+    let jacobians = if has_jacobian { jacobians } else { "" };
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
             type Joints = [T; {n_state}];
             type Rates = [T; {n_rates}];
             type Solution = [T; {n_solution}];
+            type Jacobian = {jacobian};
+            type InputJacobian = {input_jacobian};
+            fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {{
+                gyro_sim::JointBuffers {{
+                    rates: [T::constant(0.0); {n_rates}],
+                    solution: [T::constant(0.0); {n_solution}],
+                    jacobian: {no_slopes},
+                    input_jacobian: {no_input_slopes},
+                }}
+            }}
             fn joint_start(&self) -> Self::Joints {{ HOLE_joint_start }}
-            {}
             fn joint_accelerations(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Rates) {{
                 HOLE_joint_accelerations
             }}
@@ -544,37 +520,11 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout) -> String {
             {}
             {}
             {}
+            {jacobians}
         }}",
-        buffers(&[
-            ("rates", "Rates", &n_rates.to_string()),
-            ("solution", "Solution", &n_solution.to_string()),
-        ]),
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
         multipliers("corrected_multipliers", "Velocities"),
         fillings(&[("corrected_solution", "Solution")]),
-    )
-}
-
-fn joint_jacobian(model: &Model, name: &str, joints: &JointLayout) -> String {
-    let (n_state, n_inputs) = (joints.n_state().pow(2), joints.n_state() * model.inputs.len());
-    format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for {name}<T> {{
-            type Jacobian = [T; {n_state}];
-            type InputJacobian = [T; {n_inputs}];
-            {}
-            fn joint_jacobian(
-                &self, ANY_t: T, ANY_x: &Self::Joints, dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints,
-            ) {{
-                HOLE_joint_jacobian
-            }}
-            fn joint_input_jacobian(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::InputJacobian) {{
-                HOLE_joint_input_jacobian
-            }}
-        }}",
-        buffers(&[
-            ("joint_jacobian_buffer", "Jacobian", &n_state.to_string()),
-            ("input_jacobian_buffer", "InputJacobian", &n_inputs.to_string()),
-        ]),
     )
 }
 
@@ -583,35 +533,4 @@ fn columns(model: &Model) -> Vec<(&str, &'static str, &'static str)> {
     let of = |output: &'_ gyro_model::Output| output.kind.columns().to_vec();
     let outputs = model.outputs.iter();
     outputs.flat_map(|o| of(o).into_iter().map(|(suffix, unit)| (o.name.as_str(), suffix, unit))).collect()
-}
-
-fn ports(model: &Model, name: &str) -> String {
-    let info = |(name, suffix, unit): (&str, &str, &str)| {
-        format!("gyro_sim::OutputInfo {{ name: {name:?}, suffix: {suffix:?}, unit: {unit:?} }}")
-    };
-    let infos: Vec<_> = columns(model).into_iter().map(info).collect();
-    let inputs: Vec<_> = model.inputs.iter().map(|input| &input.name).collect();
-    let count = infos.len().to_string();
-    format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::Ports for {name}<T> {{
-            type Outputs = [T; {count}];
-            {} {}
-            fn n_outputs(&self) -> usize {{ {count} }}
-            {}
-            fn n_inputs(&self) -> usize {{ {} }}
-            {} {}
-        }}",
-        buffers(&[("outputs_buffer", "Outputs", &count)]),
-        fillings(&[("outputs", "Outputs")]),
-        lookup(
-            "fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> OUTPUTS",
-            "index",
-            "gyro_sim::OutputInfo<'static>",
-            &infos,
-            &format!("unwrap_or({})", info(("", "", ""))),
-        ),
-        inputs.len(),
-        name_lookup("input_name", "index", "INPUTS", &inputs),
-        setter("fn set_input", &model.inputs, ("self", "", "")),
-    )
 }

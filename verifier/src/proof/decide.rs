@@ -11,7 +11,7 @@
 use super::case::Case;
 use super::claim::Claim;
 use super::point::{self, Draw};
-use crate::atoms::{Drawn, Elementary, Formal};
+use crate::atoms::{Drawn, Elementary, Formal, HALVINGS};
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
 use crate::interpreter::DivisionByZero;
 use crate::module::Module;
@@ -23,9 +23,9 @@ use gyro_model::{Model, Rational};
 use num_bigint::BigUint;
 use num_integer::Integer;
 use num_traits::ToPrimitive;
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::f64::consts::LOG10_2;
 
 /// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.
@@ -254,12 +254,41 @@ impl<'a> Statements<'a> {
     /// as it exists at half of the points or is drawn, there are twice as many ways for an accident. `None` if the formulas
     /// divide by what is zero everywhere.
     pub fn degrees_log2(&self) -> Vec<Option<f64>> {
+        let Some(doublings) = self.doublings() else { return vec![None; self.claims.len()] };
         let all = vec![true; self.formulas.program.nodes.len()];
-        let degrees = self
-            .formulas
-            .evaluate(&all, (), &Formal, &|source| point::degree(self.model, self.module, source));
+        let degrees =
+            self.formulas.evaluate(&all, (), &Formal { doublings: HALVINGS + doublings }, &|source| {
+                point::degree(self.model, self.module, source)
+            });
         let of_claim = |residuals: &Option<Vec<Id>>| self.degree_log2(residuals.as_ref()?, &degrees);
         self.claims.iter().map(of_claim).collect()
+    }
+
+    /// How often an angle must be doubled at most to be another one, as 384-bit floats have it at a point: angles of which that is so only there
+    /// count too, which makes degrees larger than they are. `None` if an angle exists at no point.
+    fn doublings(&self) -> Option<u32> {
+        let angles = self.formulas.program.nodes.iter().filter_map(|node| match *node {
+            Node::Call(Function::Sin | Function::Cos, angle) => Some(angle),
+            _ => None,
+        });
+        let angles: BTreeSet<Id> = angles.collect();
+        let needed = self.formulas.reach(angles.iter().copied());
+        let precision = Precision::new();
+        let sizes = (0..DRAWS).find_map(|number| {
+            let mut random = Seed::FIXED.numbers(number);
+            let mut draw = point::real(self.model, self.module, &precision, &mut random)?;
+            for parameter in draw.point.parameters.iter_mut().filter(|parameter| parameter.is_zero()) {
+                *parameter = Real::new(&precision, random.random_range(0.75..1.25));
+            }
+            let values =
+                self.formulas.evaluate(&needed, &precision, &Elementary, &|source| draw.read(source));
+            let size = |angle: &Id| Some(values[*angle].as_ref()?.to_f64().abs().log2());
+            let sizes: Vec<f64> = angles.iter().map(size).collect::<Option<_>>()?;
+            sizes.iter().all(|size| !size.is_nan()).then_some(sizes)
+        })?;
+        let ratios = sizes.iter().flat_map(|large| sizes.iter().map(move |small| large - small));
+        let is_whole = |ratio: &f64| ratio.is_finite() && (ratio - ratio.round()).abs() < NEARLY_WHOLE;
+        Some(ratios.filter(is_whole).fold(0.0, f64::max).round() as u32)
     }
 
     fn degree_log2(&self, residuals: &[Id], degrees: &[Option<Degree>]) -> Option<f64> {
@@ -273,7 +302,7 @@ impl<'a> Statements<'a> {
         });
         let arguments: Vec<Id> = atoms.flat_map(|(node, _)| node.operands()).collect();
         let all = arguments.iter().filter_map(whole).fold(f64::NEG_INFINITY, sum_log2);
-        let collisions = all + (arguments.len() as f64).log2();
+        let collisions = all + (arguments.len() as f64).log2() + f64::from(WAYS_TO_MEET).log2();
         let n_roots = self.roots(&reach).len() as f64;
         Some(sum_log2(largest, collisions) + 2.0 * (n_roots + 1.0) + ROUNDING_LOG2)
     }
@@ -529,6 +558,12 @@ impl<'a, const L: usize> Decider<'a, L> {
 
 /// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding makes 1e-115 of it.
 pub(super) const FAR_FROM_ZERO: f64 = 1e-60;
+
+/// In how many ways two arguments may be one family by accident: by sign, and by any of the halves of either.
+const WAYS_TO_MEET: u32 = 2 * (2 * HALVINGS + 1);
+
+/// Angles whose ratio's logarithm to base two is this near to a whole number are doubles of each other: more than `f64` makes of it.
+const NEARLY_WHOLE: f64 = 1e-9;
 
 /// More than all roundings of the logarithms of degrees can make.
 const ROUNDING_LOG2: f64 = 1e-3;

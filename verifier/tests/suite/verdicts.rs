@@ -6,7 +6,7 @@ use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
 use gyro_verifier::program::{Node, Program};
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
-use gyro_verifier::{Depth, verify};
+use gyro_verifier::{Depth, Finding, Report, verify};
 use std::fmt::Write;
 
 /// A chain of revolute joints, each between two end stops.
@@ -159,22 +159,44 @@ fn crosses_of_parameters_store_no_zeros() {
     assert!(report.is_proved(), "{report}");
 }
 
-/// An angle and its double drive a body: their halves, and they, are of one family.
+/// A body that is turned by two angles, polynomials of time, and an arm on it.
+fn turned_twice([first, second]: [&str; 2]) -> Report {
+    let page = format!(
+        "format = 1\nname = \"turned\"\n[[body]]\nname = \"base\"\n\
+         driven = {{ translation = [0, 0, 0], rotations = [{{ axis = [0, 0, 1], angle = {{ polynomial = {first} }} }}, \
+         {{ axis = [0, 1, 0], angle = {{ polynomial = {second} }} }}] }}\n\
+         [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+         [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [1, 1, 1]\nzero = [1, 2, 2]\n\
+         first = {{ body = \"base\" }}\nsecond = {{ body = \"arm\", point = [0, 0.2, 0] }}\n"
+    );
+    let page = generate_text("turned.toml", &page);
+    verify(&page.model, &page.code, &page.constants, Depth::Quick)
+}
+
+/// An angle and its double drive a body: their halves, and they, are of one family. So are angles that are farther from each other.
 #[test]
 fn angles_and_their_doubles_are_of_one_family() {
-    for [first, second] in [["[0.1, 2]", "[0.05, 1]"], ["[0.05, 1]", "[0.1, 2]"], ["[0.2, 4]", "[0.05, 1]"]] {
-        let page = format!(
-            "format = 1\nname = \"turned\"\n[[body]]\nname = \"base\"\n\
-             driven = {{ translation = [0, 0, 0], rotations = [{{ axis = [0, 0, 1], angle = {{ polynomial = {first} }} }}, \
-             {{ axis = [0, 1, 0], angle = {{ polynomial = {second} }} }}] }}\n\
-             [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
-             [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [1, 1, 1]\nzero = [1, 2, 2]\n\
-             first = {{ body = \"base\" }}\nsecond = {{ body = \"arm\", point = [0, 0.2, 0] }}\n"
-        );
-        let page = generate_text("turned.toml", &page);
-        let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
-        assert!(report.is_proved(), "{first}, {second}: {report}");
+    let once = "[0.05, 1]";
+    for other in ["[0.1, 2]", "[0.8, 16]", "[3.2, 64]"] {
+        for angles in [[once, other], [other, once]] {
+            let report = turned_twice(angles);
+            assert!(report.is_proved(), "{angles:?}: {report}");
+        }
     }
+}
+
+/// Sine and cosine of 64 times an angle are polynomials of 64 times the degree in those of the angle.
+#[test]
+fn degrees_count_multiples_of_angles() {
+    let largest_degree = |second| {
+        let degree = |finding: &Finding| match finding.verdict {
+            Verdict::Proved { degree_log2, .. } => degree_log2,
+            _ => f64::INFINITY,
+        };
+        turned_twice(["[0.05, 1]", second]).findings.iter().map(degree).fold(0.0, f64::max)
+    };
+    let (apart, of_one_family) = (largest_degree("[0.07, 65]"), largest_degree("[3.2, 64]"));
+    assert!((of_one_family - apart - 6.0).abs() < 0.1, "2^{of_one_family} and 2^{apart}");
 }
 
 /// The depth of a stop is a small difference: its square, written out as a polynomial, has no digits left.

@@ -4,7 +4,7 @@ use super::firmware::Chip;
 use super::output::Count;
 use super::tools::Tools;
 use super::{Board, proof};
-use crate::failure::Failure;
+use gyro_cli::failure::Failure;
 use gyro_reference::{Sample, tabulated};
 use std::fmt::Write as _;
 

@@ -3,9 +3,9 @@
 use super::process::within;
 use super::target;
 use super::tools::Tools;
-use crate::failure::Failure;
-use crate::programs::said;
-use crate::progress::Spinner;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::said;
+use gyro_cli::progress::Spinner;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;

@@ -6,16 +6,16 @@ use super::output::Output;
 use super::process::within;
 use super::tools::Tools;
 use super::{folder, proof, say, target};
-use crate::failure::Failure;
-use crate::programs::{output, said};
-use crate::progress::Spinner;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::{output, said};
+use gyro_cli::progress::Spinner;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What is linked takes, bytes.
 pub(crate) struct Sizes {
-    pub(crate) c: usize,
+    pub(crate) c: u64,
     pub(crate) wasm: u64,
 }
 
@@ -68,7 +68,7 @@ pub(crate) fn header_path() -> PathBuf {
 /// Fails if the header is not what its source says.
 pub(crate) fn check_header(text: &str) -> Result<(), Failure> {
     let path = header_path();
-    if crate::write::holds(&path, text) {
+    if gyro_cli::write::holds(&path, text) {
         return Ok(());
     }
     Err(Failure::Run(format!("{} is stale, run: cargo xtask embedded", path.display())))

@@ -2,9 +2,9 @@
 
 use super::output::{Output, Run};
 use super::{folder, target};
-use crate::failure::Failure;
-use crate::programs::{self, output};
-use crate::progress::Spinner;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::{self, output};
+use gyro_cli::progress::Spinner;
 use std::path::Path;
 use std::process::Command;
 

@@ -14,11 +14,11 @@ mod tables;
 mod tools;
 
 use crate::args::EmbeddedArgs;
-use crate::failure::Failure;
-use crate::files;
 use crate::performance::replaced;
-use crate::progress::Spinner;
 use firmware::{Chip, Program};
+use gyro_cli::failure::Failure;
+use gyro_cli::files;
+use gyro_cli::progress::Spinner;
 use output::Output;
 use std::io::Write as _;
 use std::path::PathBuf;

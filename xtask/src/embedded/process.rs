@@ -1,6 +1,6 @@
 //! Running a command under a time limit.
 
-use crate::failure::Failure;
+use gyro_cli::failure::Failure;
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::{self, JoinHandle};

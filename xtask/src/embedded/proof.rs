@@ -6,8 +6,8 @@ use super::process::within;
 use super::stack;
 use super::tools::Tools;
 use super::{Board, failed, say, target};
-use crate::failure::Failure;
-use crate::progress::Spinner;
+use gyro_cli::failure::Failure;
+use gyro_cli::progress::Spinner;
 
 /// Parts of names, as the compiler mangles them, that nothing may have: panics, formatting, an allocator.
 const FORBIDDEN: [&str; 7] =
@@ -38,17 +38,18 @@ pub(crate) fn no_panic(board: &Board) -> Result<(), Failure> {
 
 /// The symbols of a program that it must not have.
 pub(crate) fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
-    let symbols = Elf::read(&program.path)?.symbols();
+    let elf = Elf::read(&program.path)?;
+    let symbols = elf.symbols();
     if symbols.is_empty() {
         return Err(Failure::Run(format!("{} has no symbols to look at", program.name)));
     }
     let is_forbidden = |name: &String| FORBIDDEN.iter().any(|part| name.contains(part));
-    Ok(symbols.into_iter().map(|(_, name)| name).filter(is_forbidden).collect())
+    Ok(symbols.iter().map(|(_, name)| name.clone()).filter(is_forbidden).collect())
 }
 
-/// Whether the accelerations that [`gyro_sim::Partitioned`] integrates are one straight line: no call, to libm or elsewhere.
+/// Whether the accelerations that `gyro_sim::Partitioned` integrates are one straight line: no call, to libm or elsewhere.
 pub(crate) fn is_straight(tools: &Tools, program: &Program) -> Result<bool, Failure> {
-    let is_derivative = |name: &str| name.contains("partition::Corrected<") && name.ends_with("::derivative");
+    let is_derivative = |name: &str| name.contains("::Corrected as ") && name.ends_with("::derivative");
     match stack::calls(tools, program, is_derivative)? {
         Some(calls) => Ok(!calls),
         None => Err(Failure::Run(format!("{} has no derivative of its own", program.name))),

@@ -4,8 +4,8 @@
 use super::elf::Elf;
 use super::firmware::Program;
 use super::tools::Tools;
-use crate::failure::Failure;
-use crate::programs::output;
+use gyro_cli::failure::Failure;
+use gyro_cli::programs::output;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the code of a program says of its stack.
@@ -32,7 +32,7 @@ pub(crate) fn bound(tools: &Tools, program: &Program) -> Result<Bound, Failure> 
     let elf = Elf::read(&program.path)?;
     let text =
         output(tools.command("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(&program.path))?;
-    let graph = Graph::new(&text, &elf.stack_sizes());
+    let graph = Graph::new(&text, elf.stack_sizes());
     let path =
         |from: &str| graph.longest(from).map_err(|words| Failure::Run(format!("{}: {words}", program.name)));
     let bytes = path("Reset")? + INTERRUPT + path(HANDLER)?;
@@ -55,7 +55,7 @@ pub(crate) fn calls(
 /// Who calls whom.
 struct Graph {
     /// By their addresses.
-    functions: BTreeMap<usize, Function>,
+    functions: BTreeMap<u64, Function>,
 }
 
 #[derive(Debug, Default)]
@@ -63,15 +63,15 @@ struct Function {
     name: String,
     stack: Option<u64>,
     /// Of `bl`.
-    callees: BTreeSet<usize>,
+    callees: BTreeSet<u64>,
     /// Of all other branches; those that leave the function are calls at its end.
-    branches: BTreeSet<usize>,
+    branches: BTreeSet<u64>,
     is_indirect: bool,
 }
 
 impl Graph {
     /// From a disassembly and the stack that the functions take.
-    fn new(disassembly: &str, stack: &BTreeMap<usize, u64>) -> Self {
+    fn new(disassembly: &str, stack: &BTreeMap<u64, u64>) -> Self {
         let mut functions = BTreeMap::new();
         let mut current = None;
         for line in disassembly.lines() {
@@ -91,8 +91,8 @@ impl Graph {
 
     /// A branch within a function is no call; one into another is.
     fn follow_branches(&mut self) {
-        let heads: Vec<usize> = self.functions.keys().copied().collect();
-        let owner = |address: &usize| heads[..heads.partition_point(|head| head <= address)].last().copied();
+        let heads: Vec<u64> = self.functions.keys().copied().collect();
+        let owner = |address: &u64| heads[..heads.partition_point(|head| head <= address)].last().copied();
         for (own, function) in &mut self.functions {
             let outside = function.branches.iter().filter_map(owner).filter(|target| target != own);
             let calls = function.callees.iter().filter_map(owner);
@@ -109,9 +109,9 @@ impl Graph {
 
     fn depth(
         &self,
-        address: usize,
-        path: &mut Vec<usize>,
-        known: &mut BTreeMap<usize, u64>,
+        address: u64,
+        path: &mut Vec<u64>,
+        known: &mut BTreeMap<u64, u64>,
     ) -> Result<u64, String> {
         if let Some(depth) = known.get(&address) {
             return Ok(*depth);
@@ -157,9 +157,9 @@ impl Function {
 }
 
 /// `00000400 <Reset>:`
-fn head(line: &str) -> Option<(usize, &str)> {
+fn head(line: &str) -> Option<(u64, &str)> {
     let (address, name) = line.strip_suffix(">:")?.split_once(" <")?;
-    Some((usize::from_str_radix(address, 16).ok()?, name))
+    Some((u64::from_str_radix(address, 16).ok()?, name))
 }
 
 /// `blx r3`, or a branch through a register other than that of the return. (`mov pc, r6` jumps within a table of branches, which
@@ -175,15 +175,15 @@ fn is_call_by_pointer(instruction: &str) -> bool {
 
 trait LastAddress {
     /// The address in `3fc <name+0x12>` at the end of an instruction.
-    fn last_address(self) -> Option<usize>;
+    fn last_address(self) -> Option<u64>;
 }
 
 impl<'a, I: Iterator<Item = &'a str>> LastAddress for I {
-    fn last_address(self) -> Option<usize> {
+    fn last_address(self) -> Option<u64> {
         let mut last = None;
         for word in self {
             if word.starts_with('<') {
-                return last.and_then(|word: &str| usize::from_str_radix(word, 16).ok());
+                return last.and_then(|word: &str| u64::from_str_radix(word, 16).ok());
             }
             last = Some(word);
         }
@@ -215,7 +215,7 @@ mod tests {
      434:\tbx\tlr
 ";
 
-    fn sizes(deep: u64) -> BTreeMap<usize, u64> {
+    fn sizes(deep: u64) -> BTreeMap<u64, u64> {
         BTreeMap::from([(0x410, 16), (0x420, deep), (0x430, 40)])
     }
 

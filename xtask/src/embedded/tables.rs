@@ -2,7 +2,7 @@
 
 use super::foreign::Sizes;
 use super::{Board, Ran, budget};
-use crate::failure::Failure;
+use gyro_cli::failure::Failure;
 use std::fmt::Write as _;
 
 /// Instructions, least, mean and most over a run.
@@ -89,7 +89,7 @@ impl Ran {
     }
 
     /// Bytes of code and constants.
-    pub(crate) fn text(&self) -> Result<usize, Failure> {
+    pub(crate) fn text(&self) -> Result<u64, Failure> {
         let elf = self.elf()?;
         Ok(elf.size(".text") + elf.size(".rodata"))
     }

@@ -1,9 +1,9 @@
 //! The tools that `embedded/setup.sh` fetches. Nothing is fetched here.
 
 use super::target;
-use crate::failure::Failure;
-use crate::files;
-use crate::programs::output;
+use gyro_cli::failure::Failure;
+use gyro_cli::files;
+use gyro_cli::programs::output;
 use std::path::PathBuf;
 use std::process::Command;
 

@@ -3,6 +3,7 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{ident, index};
+use crate::kernels::Kernel;
 use gyro_model::{Model, Number, Parameter, ParameterRule};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -17,7 +18,8 @@ impl ModuleWriter<'_> {
         let input_docs =
             inputs.iter().map(|p| format!(" Input, set at every step; until then {:?}.", default(p)));
         let inputs_at_first: Vec<_> = inputs.iter().map(|p| float(default(p))).collect();
-        let n_derived = (!self.functions.set_up.is_empty()).then(|| index(self.functions.set_up.len()));
+        let n_derived = (!self.kernels.roots(Kernel::ParameterSetup).is_empty())
+            .then(|| index(self.kernels.roots(Kernel::ParameterSetup).len()));
         let (fields, at_first) = if parameters.is_empty() && inputs.is_empty() {
             let doc = " The model has neither parameters nor inputs.";
             (
@@ -122,7 +124,7 @@ impl ModuleWriter<'_> {
         let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
         let strings = parameters.iter().map(|p| &p.name);
         let (count, places) = (index(parameters.len()), (0..parameters.len()).map(index));
-        let set_up = (!self.functions.set_up.is_empty()).then(|| {
+        let set_up = (!self.kernels.roots(Kernel::ParameterSetup).is_empty()).then(|| {
             quote! {
                 let mut derived = self.derived;
                 self.set_up(&mut derived);
@@ -166,7 +168,7 @@ impl ModuleWriter<'_> {
 
     /// Nothing if nothing depends on parameters alone.
     fn set_up(&self) -> Option<TokenStream> {
-        let roots = &self.functions.set_up;
+        let roots = self.kernels.roots(Kernel::ParameterSetup);
         let n = index(roots.len());
         (!roots.is_empty()).then(|| {
             self.function("What depends on parameters alone", roots, |body, _, _| {

@@ -3,8 +3,8 @@
 use super::writer::ModuleWriter;
 use crate::emit::tokens::{ident, index};
 use crate::equations::Sparse;
-use crate::expr::graph::ExprId;
 use crate::expr::symbol::Symbol;
+use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -13,25 +13,24 @@ impl ModuleWriter<'_> {
         let name = ident(self.type_name);
         let e = self.equations;
         let [n_velocities, n_closing, n_phi_q, n_phi_pi] =
-            [e.accelerations.len(), e.closing.len(), e.phi_q.len(), e.phi_pi.len()].map(index);
-        let n_solved = index(e.accelerations.len() + e.closing.len());
-        let rest = if e.closing.is_empty() {
+            [e.n_velocities(), e.n_closing(), e.phi_q.len(), e.phi_pi.len()].map(index);
+        let n_solved = index(e.solved.roots.len());
+        let rest = if e.n_closing() == 0 {
             " (s̈, ẇ') of each body.".to_owned()
         } else {
             format!(" (s̈, ẇ') of each body, then {n_closing} multipliers of the rows that close loops.")
         };
         let (phi_q_pattern, phi_pi_pattern) = (pattern(&e.phi_q), pattern(&e.phi_pi));
-        let f = &self.functions;
         let filling = [
-            self.filling("phi_q", "Writes the non-zeros of Φ_q", "PhiQ", &f.phi_q),
-            self.filling("phi_pi", "Writes the non-zeros of (Φ_r, Φ_π')", "PhiPi", &f.phi_pi),
-            self.filling("nu", "Writes ν", "Rows", &f.nu),
-            self.filling("gamma", "Writes γ", "Rows", &f.gamma),
-            self.filling("applied_force", "Writes (f, n' − w̃'J'w')", "Velocities", &f.applied_force),
+            self.filling(Kernel::PhiQ, "Writes the non-zeros of Φ_q", "PhiQ"),
+            self.filling(Kernel::PhiPi, "Writes the non-zeros of (Φ_r, Φ_π')", "PhiPi"),
+            self.filling(Kernel::Nu, "Writes ν", "Rows"),
+            self.filling(Kernel::Gamma, "Writes γ", "Rows"),
+            self.filling(Kernel::AppliedForce, "Writes (f, n' − w̃'J'w')", "Velocities"),
         ];
-        let accelerations =
-            self.filling("accelerations", "Solves eq. (17)", "Accelerations", &f.accelerations);
-        let multipliers = self.multipliers("multipliers", "Accelerations", &f.multipliers);
+        let accelerations = self.filling(Kernel::Accelerations, "Solves eq. (17)", "Accelerations");
+        let multipliers = self.multipliers(Kernel::Multipliers, "Accelerations");
+        let project = self.projection();
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Equations for #name<T> {
                 type Velocities = [T; #n_velocities];
@@ -40,17 +39,13 @@ impl ModuleWriter<'_> {
                 #[doc = #rest]
                 type Accelerations = [T; #n_solved];
 
-                fn velocities(&self) -> Self::Velocities {
-                    [T::constant(0.0); #n_velocities]
-                }
-                fn phi_q_values(&self) -> Self::PhiQ {
-                    [T::constant(0.0); #n_phi_q]
-                }
-                fn phi_pi_values(&self) -> Self::PhiPi {
-                    [T::constant(0.0); #n_phi_pi]
-                }
-                fn accelerations_buffer(&self) -> Self::Accelerations {
-                    [T::constant(0.0); #n_solved]
+                fn terms(&self) -> gyro_sim::Terms<Self> {
+                    gyro_sim::Terms {
+                        velocities: [T::constant(0.0); #n_velocities],
+                        phi_q: [T::constant(0.0); #n_phi_q],
+                        phi_pi: [T::constant(0.0); #n_phi_pi],
+                        accelerations: [T::constant(0.0); #n_solved],
+                    }
                 }
                 fn phi_q_pattern(&self) -> &[(u16, u16)] {
                     &[#(#phi_q_pattern),*]
@@ -62,14 +57,14 @@ impl ModuleWriter<'_> {
                 #(#filling)*
                 #accelerations
                 #multipliers
+                #project
             }
         }
     }
 
-    pub fn projection(&self) -> TokenStream {
-        let name = ident(self.type_name);
+    fn projection(&self) -> TokenStream {
         let what = "Solves eq. (17) without forces, the changes of the rows for γ";
-        let project = self.function(what, &self.functions.project, |body, t, y| {
+        self.function(what, self.kernels.roots(Kernel::Project), |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
             let reads_rows = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Change(_)));
             let rows = ident(if reads_rows { "rows" } else { "_rows" });
@@ -79,18 +74,13 @@ impl ModuleWriter<'_> {
                     *out = [#(#values),*];
                 }
             }
-        });
-        quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::Projection for #name<T> {
-                #project
-            }
-        }
+        })
     }
 
     /// λ, the accelerations being known.
-    pub fn multipliers(&self, name: &str, accelerations: &str, roots: &[ExprId]) -> TokenStream {
-        let (name, accelerations) = (ident(name), ident(accelerations));
-        self.function("Writes λ", roots, |body, t, y| {
+    pub fn multipliers(&self, kernel: Kernel, accelerations: &str) -> TokenStream {
+        let (name, accelerations) = (ident(kernel.name()), ident(accelerations));
+        self.function("Writes λ", self.kernels.roots(kernel), |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
             let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
             let argument =
@@ -108,7 +98,7 @@ impl ModuleWriter<'_> {
 }
 
 fn pattern(sparse: &Sparse) -> impl Iterator<Item = TokenStream> + '_ {
-    sparse.iter().map(|&(row, column, _)| {
+    sparse.0.iter().map(|&(row, column, _)| {
         let (row, column) = (index(row), index(column));
         quote! { (#row, #column) }
     })

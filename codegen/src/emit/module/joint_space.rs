@@ -3,7 +3,8 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{Body, ident, index};
-use crate::expr::graph::ExprId;
+use crate::joint_space::JointSpace;
+use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -11,57 +12,63 @@ impl ModuleWriter<'_> {
     /// Nothing for mechanisms that are no trees.
     pub fn joint_space(&self) -> Option<TokenStream> {
         let space = self.equations.joint_space.as_ref()?;
-        let (name, f) = (ident(self.type_name), &self.functions);
+        let name = ident(self.type_name);
         let (n_x, n_u) = (space.layout.n_coordinates, space.layout.n_rates);
         let n_work = usize::from(self.equations.power.is_some());
         let start: Vec<_> = space.start.iter().copied().chain((0..n_work).map(|_| 0.0)).collect();
         let start = start.iter().map(|&x| if x == 0.0 { float(0.0) } else { float(x) });
         let (n_joints, n_rates) = (index(n_x + n_u + n_work), index(n_u));
         let accelerations = self.of_joints(
-            "joint_accelerations",
+            Kernel::JointAccelerations,
             "Writes u̇",
             &quote! { out: &mut Self::Rates },
-            &f.joint_accelerations,
             |values| quote! { *out = [#(#values),*]; },
         );
         let derivative = self.joint_derivative(n_x, n_u);
         let to_maximal = self.to_maximal(n_x + n_u);
         let to_joints = self.to_joints(n_x + n_u);
         let at = self.filling(
-            "joint_accelerations_at",
+            Kernel::JointAccelerationsAt,
             "Writes u̇ at a state that satisfies the constraints",
             "Rates",
-            &f.joint_accelerations_at,
         );
         let corrected = self.filling(
-            "corrected_accelerations",
+            Kernel::CorrectedAccelerations,
             "Writes (s̈, ẇ') at a state that satisfies the constraints",
             "Velocities",
-            &f.corrected_accelerations,
         );
-        let multipliers = self.multipliers("corrected_multipliers", "Velocities", &f.corrected_multipliers);
+        let multipliers = self.multipliers(Kernel::CorrectedMultipliers, "Velocities");
         let solution = self.filling(
-            "corrected_solution",
+            Kernel::CorrectedSolution,
             "Writes (s̈, ẇ') and λ at a state that satisfies the constraints",
             "Solution",
-            &f.corrected_solution,
         );
         let n_solution = index(space.solution.len());
+        let sizes = space.jacobian.as_ref().map(|j| [self.n_by_state(space), j.by_inputs.roots.len()].map(index));
+        let [(jacobian_type, zero_jacobian), (input_jacobian_type, zero_input_jacobian)] = match sizes {
+            Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
+            None => [(); 2].map(|()| (quote! { () }, quote! { () })),
+        };
+        let jacobian = self.joint_jacobian();
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
                 type Solution = [T; #n_solution];
+                type Jacobian = #jacobian_type;
+                type InputJacobian = #input_jacobian_type;
 
+                fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+                    gyro_sim::JointBuffers {
+                        rates: [T::constant(0.0); #n_rates],
+                        solution: [T::constant(0.0); #n_solution],
+                        jacobian: #zero_jacobian,
+                        input_jacobian: #zero_input_jacobian,
+                    }
+                }
                 fn joint_start(&self) -> Self::Joints {
                     let k = T::constant;
                     [#(k(#start)),*]
-                }
-                fn rates(&self) -> Self::Rates {
-                    [T::constant(0.0); #n_rates]
-                }
-                fn solution(&self) -> Self::Solution {
-                    [T::constant(0.0); #n_solution]
                 }
 
                 #accelerations
@@ -72,73 +79,67 @@ impl ModuleWriter<'_> {
                 #corrected
                 #multipliers
                 #solution
+                #jacobian
             }
         })
     }
 
+    /// Elements of ∂f/∂x.
+    fn n_by_state(&self, space: &JointSpace) -> usize {
+        let n_joints = space.start.len() + usize::from(self.equations.power.is_some());
+        n_joints * n_joints
+    }
+
     /// Nothing for mechanisms that are no trees, or too large.
-    pub fn joint_jacobian(&self) -> Option<TokenStream> {
-        let jacobian = self.equations.joint_space.as_ref()?.jacobian.as_ref()?;
-        let (name, f) = (ident(self.type_name), &self.functions);
-        let (n_state, n_inputs) = (index(jacobian.by_state.len()), index(jacobian.by_inputs.len()));
+    fn joint_jacobian(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        space.jacobian.as_ref()?;
+        let n_by_state = self.n_by_state(space);
         let out = quote! { dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints };
         let what = "Writes ∂f/∂x and ∂f/∂t";
-        let by_state = self.of_joints("joint_jacobian", what, &out, &f.joint_jacobian, |values| {
-            let (by_state, by_time) = values.split_at(jacobian.by_state.len());
+        let by_state = self.of_joints(Kernel::JointJacobian, what, &out, |values| {
+            let (by_state, by_time) = values.split_at(n_by_state);
             quote! {
                 *dfdx = [#(#by_state),*];
                 *dfdt = [#(#by_time),*];
             }
         });
-        let by_inputs = if f.joint_input_jacobian.is_empty() {
+        let by_inputs = if self.kernels.roots(Kernel::JointInputJacobian).is_empty() {
             quote! {
                 fn joint_input_jacobian(&self, _t: T, _x: &Self::Joints, _out: &mut Self::InputJacobian) {}
             }
         } else {
-            let (out, roots) = (quote! { out: &mut Self::InputJacobian }, &f.joint_input_jacobian);
+            let out = quote! { out: &mut Self::InputJacobian };
             let write = |values: &[TokenStream]| quote! { *out = [#(#values),*]; };
-            self.of_joints("joint_input_jacobian", "Writes ∂f/∂(inputs)", &out, roots, write)
+            self.of_joints(Kernel::JointInputJacobian, "Writes ∂f/∂(inputs)", &out, write)
         };
         Some(quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for #name<T> {
-                type Jacobian = [T; #n_state];
-                type InputJacobian = [T; #n_inputs];
-
-                fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-                    [T::constant(0.0); #n_state]
-                }
-                fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-                    [T::constant(0.0); #n_inputs]
-                }
-
-                #by_state
-                #by_inputs
-            }
+            #by_state
+            #by_inputs
         })
     }
 
     /// A function of time and joint state.
     fn of_joints(
         &self,
-        name: &str,
+        kernel: Kernel,
         what: &str,
         out: &TokenStream,
-        roots: &[ExprId],
         write: impl Fn(&[TokenStream]) -> TokenStream,
     ) -> TokenStream {
-        self.function(what, roots, |body, t, x| {
-            of_joints(name, [t, &quote! { #x }, out], body, write(&body.values))
+        self.function(what, self.kernels.roots(kernel), |body, t, x| {
+            of_joints(kernel, [t, &quote! { #x }, out], body, write(&body.values))
         })
     }
 
     fn joint_derivative(&self, n_x: usize, n_u: usize) -> TokenStream {
         let what = "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes";
-        self.function(what, &self.functions.joint_derivative, |body, _, _| {
+        self.function(what, self.kernels.roots(Kernel::JointDerivative), |body, _, _| {
             let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
-            let places = (0..n_u).map(index);
+            let (places, n_rates) = ((0..n_u).map(index), index(n_u));
             quote! {
                 fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
-                    let mut rates = gyro_sim::JointSpace::rates(self);
+                    let mut rates = [T::constant(0.0); #n_rates];
                     gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
                     #statements
                     *dx = [#(#coordinates,)* #(rates[#places],)* #(#rest),*];
@@ -153,14 +154,19 @@ impl ModuleWriter<'_> {
         let work = work.map(|at| quote! { x[#at], });
         let out = quote! { y: &mut Self::State };
         let what = "Writes the maximal state of a joint state";
-        self.function(what, &self.functions.to_maximal, |body, t, x| {
+        self.function(what, self.kernels.roots(Kernel::ToMaximal), |body, t, x| {
             let (state, turns) = body.values.split_at(n_state);
             let x = if work.is_some() {
                 quote! { x }
             } else {
                 quote! { #x }
             };
-            of_joints("to_maximal", [t, &x, &out], body, quote! { *y = [#(#state,)* #work #(#turns),*]; })
+            of_joints(
+                Kernel::ToMaximal,
+                [t, &x, &out],
+                body,
+                quote! { *y = [#(#state,)* #work #(#turns),*]; },
+            )
         })
     }
 
@@ -170,7 +176,7 @@ impl ModuleWriter<'_> {
         let at = index(n);
         let work = work.map(|work| quote! { x[#at] = y[#work]; });
         let what = "Writes the joint state of a maximal state";
-        self.function(what, &self.functions.to_joints, |body, t, y| {
+        self.function(what, self.kernels.roots(Kernel::ToJoints), |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
             let y = if work.is_some() {
                 quote! { y }
@@ -189,8 +195,13 @@ impl ModuleWriter<'_> {
 }
 
 /// A function of time and joint state, with its arguments t and x as they are called where nothing reads them.
-fn of_joints(name: &str, [t, x, out]: [&TokenStream; 3], body: &Body, written: TokenStream) -> TokenStream {
-    let (name, statements) = (ident(name), &body.statements);
+fn of_joints(
+    kernel: Kernel,
+    [t, x, out]: [&TokenStream; 3],
+    body: &Body,
+    written: TokenStream,
+) -> TokenStream {
+    let (name, statements) = (ident(kernel.name()), &body.statements);
     quote! {
         fn #name(&self, #t: T, #x: &Self::Joints, #out) {
             #statements

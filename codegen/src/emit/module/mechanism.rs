@@ -3,62 +3,69 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{self, ident, index};
-use gyro_model::{JointKind, RowOwner, RowUnit};
+use crate::kernels::Kernel;
+use gyro_model::{JointKind, RowOwner, RowUnit, Start};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    pub fn mechanism(&self) -> TokenStream {
+    pub fn mechanism(&self, start: &Start) -> TokenStream {
         let name = ident(self.type_name);
         let e = self.equations;
-        let [n_rows, n_all, n_readings] = [e.n_rows(), e.phi.len(), e.readings.len()].map(index);
-        let phi = self.filling("phi", "Writes Φ", "Constraints", &self.functions.phi);
-        let residual = self.filling(
-            "velocity_residual",
-            "Writes Φ_r s + Φ_π' w' − ν",
-            "Rows",
-            &self.functions.velocity_residual,
-        );
-        let energy = self.function("Kinetic and potential energy", &self.functions.energy, |body, t, y| {
-            let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
-            quote! {
-                fn energy(&self, #t: T, #y: &Self::State) -> gyro_sim::Energy<T> {
-                    #statements
-                    gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
+        let [n_rows, n_all, n_readings, n_outputs, n_state] =
+            [e.n_rows(), e.phi.len(), e.readings.len(), e.outputs.len(), e.n_state()].map(index);
+        let phi = self.filling(Kernel::Phi, "Writes Φ", "Constraints");
+        let residual = self.filling(Kernel::VelocityResidual, "Writes Φ_r s + Φ_π' w' − ν", "Rows");
+        let energy = self.function(
+            "Kinetic and potential energy",
+            self.kernels.roots(Kernel::Energy),
+            |body, t, y| {
+                let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
+                quote! {
+                    fn energy(&self, #t: T, #y: &Self::State) -> gyro_sim::Energy<T> {
+                        #statements
+                        gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
+                    }
                 }
-            }
-        });
-        let readings =
-            self.filling("read_joints", "Writes the joint readings", "Readings", &self.functions.read_joints);
-        let (corrected, tables) = (self.corrected_derivative(), self.tables());
+            },
+        );
+        let readings = self.filling(Kernel::ReadJoints, "Writes the joint readings", "Readings");
+        let (start, derivative, corrected) =
+            (self.start(start), self.derivative(), self.corrected_derivative());
+        let (description, outputs, set_input) = (self.description(), self.outputs(), self.set_input());
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {
+                type Scalar = T;
+                type State = [T; #n_state];
                 type Rows = [T; #n_rows];
                 type Constraints = [T; #n_all];
                 type Readings = [T; #n_readings];
+                type Outputs = [T; #n_outputs];
 
-                fn rows(&self) -> Self::Rows {
-                    [T::constant(0.0); #n_rows]
+                #description
+                fn buffers(&self) -> gyro_sim::Buffers<Self> {
+                    gyro_sim::Buffers {
+                        rows: [T::constant(0.0); #n_rows],
+                        constraints: [T::constant(0.0); #n_all],
+                        readings: [T::constant(0.0); #n_readings],
+                        outputs: [T::constant(0.0); #n_outputs],
+                    }
                 }
-                fn constraints(&self) -> Self::Constraints {
-                    [T::constant(0.0); #n_all]
-                }
-                fn readings(&self) -> Self::Readings {
-                    [T::constant(0.0); #n_readings]
-                }
-
+                #start
+                #derivative
                 #corrected
                 #phi
                 #residual
                 #energy
                 #readings
-                #tables
+                #outputs
+                #set_input
             }
         }
     }
 
     /// Names, rows and sizes.
-    fn tables(&self) -> TokenStream {
+    fn description(&self) -> TokenStream {
         let e = self.equations;
         let bodies = self.slots().into_iter().map(|body| &e.model.bodies[body].name);
         let joints = e.model.joints.iter().map(|joint| {
@@ -81,55 +88,36 @@ impl ModuleWriter<'_> {
         });
         let (couplers, drivers) =
             (e.model.couplers.iter().map(|c| &c.name), e.model.drivers.iter().map(|d| &d.name));
-        let [n_couplers, n_drivers] = [e.model.couplers.len(), e.model.drivers.len()].map(index);
-        let [n_bodies, n_joints, n_rows] = [e.n_slots(), e.model.joints.len(), e.n_rows()].map(index);
-        let size = float(e.model.size());
-        let references = self.turn_references();
-        let (y, work) = if e.model.has_work() {
-            let at = index(13 * e.n_slots());
-            (quote! { y }, quote! { y[#at] })
-        } else {
-            (quote! { _y }, quote! { T::constant(0.0) })
-        };
+        let (size, has_work, references) =
+            (float(e.model.size()), e.model.has_work(), self.turn_references());
+        let inputs = e.model.inputs.iter().map(|input| &input.name);
+        let outputs = e.model.outputs.iter().flat_map(|output| {
+            output.kind.columns().iter().map(|(suffix, unit)| {
+                let name = &output.name;
+                quote! { gyro_sim::OutputInfo { name: #name, suffix: #suffix, unit: #unit } }
+            })
+        });
         quote! {
-            #references
-            fn n_bodies(&self) -> usize {
-                #n_bodies
-            }
-            fn n_joints(&self) -> usize {
-                #n_joints
-            }
-            fn body_name(&self, body: usize) -> &str {
-                const BODIES: [&str; #n_bodies] = [#(#bodies),*];
-                BODIES.get(body).copied().unwrap_or_default()
-            }
-            fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
-                const JOINTS: [gyro_sim::JointInfo<'static>; #n_joints] = [#(#joints),*];
-                JOINTS.get(joint).copied().unwrap_or(gyro_sim::JointInfo { name: "", coordinates: &[] })
-            }
-            fn coupler_name(&self, coupler: usize) -> &str {
-                const COUPLERS: [&str; #n_couplers] = [#(#couplers),*];
-                COUPLERS.get(coupler).copied().unwrap_or_default()
-            }
-            fn driver_name(&self, driver: usize) -> &str {
-                const DRIVERS: [&str; #n_drivers] = [#(#drivers),*];
-                DRIVERS.get(driver).copied().unwrap_or_default()
-            }
-            fn row(&self, row: usize) -> gyro_sim::RowInfo {
-                const ROWS: [gyro_sim::RowInfo; #n_rows] = [#(#rows),*];
-                ROWS.get(row).copied().unwrap_or(gyro_sim::RowInfo { owner: gyro_sim::Owner::Body(0), is_length: false })
-            }
-            fn size(&self) -> T {
-                T::constant(#size)
-            }
-            fn work(&self, #y: &Self::State) -> T {
-                #work
+            fn description(&self) -> &gyro_sim::Description<'_> {
+                const DESCRIPTION: gyro_sim::Description<'static> = gyro_sim::Description {
+                    size: #size,
+                    bodies: &[#(#bodies),*],
+                    joints: &[#(#joints),*],
+                    couplers: &[#(#couplers),*],
+                    drivers: &[#(#drivers),*],
+                    rows: &[#(#rows),*],
+                    has_work: #has_work,
+                    turn_references: &[#(#references),*],
+                    inputs: &[#(#inputs),*],
+                    outputs: &[#(#outputs),*],
+                };
+                &DESCRIPTION
             }
         }
     }
 
-    /// Where the angles of the turn references are among the readings; nothing if there are none.
-    fn turn_references(&self) -> TokenStream {
+    /// Where the angles of the turn references are among the readings.
+    fn turn_references(&self) -> Vec<TokenStream> {
         let model = self.equations.model;
         let len = |c: &Ident| {
             if c == "Angle" {
@@ -143,17 +131,10 @@ impl ModuleWriter<'_> {
         let places = model.turn_references().into_iter().map(|turn| {
             let before = model.joints[..turn.joint].iter().flat_map(|joint| coordinates(joint.kind));
             let own = coordinates(model.joints[turn.joint].kind).into_iter().take(turn.coordinate);
-            index(before.chain(own).map(|c| len(&c)).sum())
+            let place = index(before.chain(own).map(|c| len(&c)).sum());
+            quote! { #place }
         });
-        let places: Vec<_> = places.collect();
-        if places.is_empty() {
-            return TokenStream::new();
-        }
-        quote! {
-            fn turn_references(&self) -> &[u16] {
-                &[#(#places),*]
-            }
-        }
+        places.collect()
     }
 }
 

@@ -15,7 +15,7 @@ use self::writer::ModuleWriter;
 use crate::emit::data_sheet::Sheet;
 use crate::emit::literals::Literals;
 use crate::equations::Equations;
-use crate::kernels::Functions;
+use crate::kernels::Kernels;
 use gyro_model::Start;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -44,13 +44,13 @@ pub struct Text {
 pub fn write(
     file_name: &str,
     type_name: &str,
-    (equations, functions): (&Equations, Functions),
+    (equations, kernels): (&Equations, Kernels),
     start: &Start,
 ) -> Text {
     let literals = Literals::default();
-    let module = ModuleWriter { equations, type_name, functions, literals };
+    let module = ModuleWriter { equations, type_name, kernels, literals };
     let tokens = module.tokens(start);
-    let sheet = Sheet::of(equations, &module.functions);
+    let sheet = Sheet::of(equations, &module.kernels);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);
@@ -60,22 +60,16 @@ pub fn write(
 
 impl ModuleWriter<'_> {
     fn tokens(&self, start: &Start) -> TokenStream {
-        let (tables, definition, ode) = (self.tables_of_motions(), self.definition(), self.ode(start));
-        let (mechanism, partition) = (self.mechanism(), self.partition());
-        let (equations, projection) = (self.equations(), self.projection());
-        let (joint_space, joint_jacobian) = (self.joint_space(), self.joint_jacobian());
-        let ports = self.ports();
+        let (tables, definition, mechanism) =
+            (self.tables_of_motions(), self.definition(), self.mechanism(start));
+        let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
         quote! {
             #tables
             #definition
-            #ode
             #mechanism
             #partition
             #equations
-            #projection
             #joint_space
-            #joint_jacobian
-            #ports
         }
     }
 }

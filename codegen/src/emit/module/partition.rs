@@ -4,6 +4,7 @@ use super::writer::ModuleWriter;
 use crate::emit::tokens::{Variables, ident, index};
 use crate::expr::graph::{ExprId, Node};
 use crate::expr::symbol::Symbol;
+use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -58,15 +59,16 @@ impl ModuleWriter<'_> {
     /// The unrolled solves with their charts.
     fn by_charts(&self) -> TokenStream {
         let name = ident(self.type_name);
-        let n_charts = index(self.functions.chart_vectors.len() / 4);
+        let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
+        let n_state = index(self.equations.n_state());
         let vectors = self.function(
             "The four-vectors whose largest components are the special Euler parameters",
-            &self.functions.chart_vectors,
+            self.kernels.roots(Kernel::ChartVectors),
             |body, _, y| {
                 let statements = &body.statements;
                 let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
                 quote! {
-                    fn chart_vectors(&self, #y: &Self::State) -> Self::Vectors {
+                    fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
                         #statements
                         [#(#vectors),*]
                     }
@@ -76,43 +78,42 @@ impl ModuleWriter<'_> {
         let newton = self.solve(
             "newton_step_on",
             "One Newton step of the dependent positions",
-            &self.functions.newton_step,
+            self.kernels.roots(Kernel::NewtonStep),
             0,
         );
         let velocities = self.solve(
             "solve_velocities_on",
             "Solves eq. (19) for the dependent velocities",
-            &self.functions.solve_velocities,
+            self.kernels.roots(Kernel::SolveVelocities),
             7 * self.equations.n_slots(),
         );
         quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::Charted for #name<T> {
-                type Vectors = [[T; 4]; #n_charts];
-
+            /// The solves of the partition, for the charts that are given as unit vectors.
+            impl<T: gyro_sim::Scalar> #name<T> {
                 #vectors
                 #newton
                 #velocities
             }
 
-            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
-                type Independent = gyro_sim::charts::Charts<#n_charts>;
+            impl<T: gyro_sim::Lanes> gyro_sim::Partition for #name<T> {
+                type Independent = gyro_sim::charts::Charts<T, #n_charts>;
 
                 fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-                    gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+                    gyro_sim::charts::best(&self.chart_vectors(y))
                 }
                 fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-                    gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+                    gyro_sim::charts::follow(&self.chart_vectors(y), choice)
                 }
                 fn newton_step(
                     &self, t: T, choice: &Self::Independent, y: &mut Self::State,
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
-                    gyro_sim::Charted::newton_step_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    self.newton_step_on(t, &gyro_sim::charts::one_hot(choice), y);
                     Ok(())
                 }
                 fn solve_velocities(
                     &self, t: T, choice: &Self::Independent, y: &mut Self::State,
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
-                    gyro_sim::Charted::solve_velocities_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    self.solve_velocities_on(t, &gyro_sim::charts::one_hot(choice), y);
                     Ok(())
                 }
             }
@@ -125,12 +126,14 @@ impl ModuleWriter<'_> {
         let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element(root, place));
         let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
         let y = ident(if places.is_empty() { "_y" } else { "y" });
+        let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
+        let n_state = index(self.equations.n_state());
         self.function(what, &roots, |body, t, _| {
             let (statements, values) = (&body.statements, &body.values);
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let charts = ident(if charted { "charts" } else { "_charts" });
             quote! {
-                fn #name(&self, #t: T, #charts: &Self::Vectors, #y: &mut Self::State) {
+                fn #name(&self, #t: T, #charts: &[[T; 4]; #n_charts], #y: &mut [T; #n_state]) {
                     #statements
                     #(y[#places] = #values;)*
                 }

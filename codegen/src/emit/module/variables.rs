@@ -56,7 +56,7 @@ impl Variables for ModuleWriter<'_> {
                 bound(format!("{}_{kind}{}", body(slot), AXES[k % 3]), "accelerations", 6 * slot + k)
             }
             Symbol::Closing(row) => {
-                bound(format!("closing{row}"), "accelerations", self.equations.accelerations.len() + row)
+                bound(format!("closing{row}"), "accelerations", self.equations.n_velocities() + row)
             }
             Symbol::Change(row) => bound(format!("row{row}"), "rows", row),
             Symbol::Coordinate(place) => bound(format!("x{place}"), "x", place),

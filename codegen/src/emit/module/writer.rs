@@ -8,7 +8,7 @@ use crate::equations::Equations;
 use crate::expr::graph::ExprId;
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
-use crate::kernels::Functions;
+use crate::kernels::{Kernel, Kernels};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
@@ -31,7 +31,7 @@ fn evaluated_table(table: usize) -> TokenStream {
 pub struct ModuleWriter<'a> {
     pub equations: &'a Equations<'a>,
     pub type_name: &'a str,
-    pub functions: Functions,
+    pub kernels: Kernels,
     /// Exact constants of all functions.
     pub literals: Literals,
 }
@@ -69,10 +69,10 @@ impl ModuleWriter<'_> {
         tables.collect()
     }
 
-    /// A function of time and state that fills `out`.
-    pub fn filling(&self, name: &str, what: &str, ty: &str, roots: &[ExprId]) -> TokenStream {
-        let (name, ty) = (ident(name), ident(ty));
-        self.function(what, roots, |body, t, y| {
+    /// A kernel that fills `out`, a function of time and state.
+    pub fn filling(&self, kernel: Kernel, what: &str, ty: &str) -> TokenStream {
+        let (name, ty) = (ident(kernel.name()), ident(ty));
+        self.function(what, self.kernels.roots(kernel), |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
             quote! {
                 fn #name(&self, #t: T, #y: &Self::State, out: &mut Self::#ty) {

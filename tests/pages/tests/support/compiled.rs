@@ -6,7 +6,7 @@ mod runs;
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_codegen::Module;
 use gyro_model::Model;
-use gyro_sim::{Ode, Partition, Projection};
+use gyro_sim::{Equations, Mechanism, Partition};
 use runs::{Ends, maximal};
 use std::fmt::Write as _;
 use std::fs;
@@ -124,8 +124,8 @@ fn of_page(seed: u64, model: &Model, lines: &[Vec<&str>]) -> Found {
 }
 
 /// A form's ends, what moving the start by a rounding does to each, and how far apart its corrections lead: as far as the method is off.
-fn twin<M: Partition<Scalar = f64, State = Vec<f64>> + Projection>(form: M) -> (Ends, Vec<f64>, f64) {
-    let start = Ode::start(&form);
+fn twin<M: Partition<Scalar = f64, State = Vec<f64>> + Equations>(form: M) -> (Ends, Vec<f64>, f64) {
+    let start = Mechanism::start(&form);
     let ends = maximal(&form, &start);
     let mut noise = vec![0.0_f64; ends.len()];
     for series in 0..DITHERS {

@@ -3,7 +3,7 @@
 
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_model::{Model, to_f64};
-use gyro_sim::{Equations, Mechanism, Ode};
+use gyro_sim::{Equations, Mechanism};
 use gyro_verifier::atoms::{Atoms, Elementary};
 use gyro_verifier::field::{Field, Precision, Real};
 use gyro_verifier::interpreter::{self, Given};
@@ -88,16 +88,16 @@ impl Forms {
 
 fn accelerations<M: Equations<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
     Box::new(|t, y| {
-        let mut out = form.accelerations_buffer();
+        let mut out = form.terms().accelerations;
         form.accelerations(t, y, &mut out);
-        out.as_ref()[..6 * form.n_bodies()].to_vec()
+        out.as_ref()[..6 * form.description().bodies.len()].to_vec()
     })
 }
 
 fn derivative<M: Mechanism<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
     Box::new(|t, y| {
         let mut dy = form.start();
-        Ode::derivative(form, t, y, &mut dy);
+        Mechanism::derivative(form, t, y, &mut dy);
         dy
     })
 }

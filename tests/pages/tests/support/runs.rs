@@ -2,8 +2,8 @@
 //! that it writes, so that both run the same.
 
 use gyro_sim::{
-    Baumgarte, ClosedForm, Corrected, Correction, Error, JointForm, JointSpace, Kutta4, MassWeighted,
-    Mechanism, Ode, Partition, Partitioning, Projection, Solver, Storage, Uncorrected,
+    Baumgarte, ClosedForm, Corrected, Correction, Equations, Error, Joint, JointSpace, Kutta4, MassWeighted,
+    Mechanism, Partition, Partitioning, Solver, Storage, Uncorrected,
 };
 
 /// Length of a run, s, and its steps.
@@ -16,7 +16,7 @@ const RATE: f64 = 100.0;
 /// What was run, and the state to which it led.
 pub type Ends = Vec<(&'static str, Result<Vec<f64>, Error>)>;
 
-fn end<O: Ode<Scalar = f64>>(
+fn end<O: Mechanism<Scalar = f64>>(
     system: &O,
     correction: impl Correction<O>,
     start: &O::State,
@@ -27,7 +27,7 @@ fn end<O: Ode<Scalar = f64>>(
 }
 
 /// In maximal coordinates, from a start that may be moved.
-pub fn maximal<M: Partition<Scalar = f64> + Projection>(mechanism: &M, start: &M::State) -> Ends {
+pub fn maximal<M: Partition<Scalar = f64> + Equations>(mechanism: &M, start: &M::State) -> Ends {
     let partition = || Partitioning::new(mechanism, 0.0, start);
     let steered = Baumgarte { mechanism, rate: RATE };
     let runs = [

@@ -6,7 +6,7 @@ extern crate alloc;
 
 use core::panic::PanicInfo;
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{JointCoordinate, Ode, Partitioned, Turns};
+use gyro_sim::{JointCoordinate, Mechanism, Partitioned, Turns};
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {

@@ -1,0 +1,58 @@
+//! The command line of the project, as a library: `gyro` is a binary of it, and `cargo xtask` adds the commands of those who
+//! develop the project. What is public besides [`Cli`] and [`Command`] is for these.
+
+mod args;
+pub mod chain;
+mod columns;
+mod compare;
+pub mod failure;
+pub mod files;
+mod fit;
+mod folder;
+mod generate;
+mod inputs;
+mod inspect;
+mod json;
+mod linear;
+mod linearization;
+pub mod machine;
+pub mod machine_code;
+mod nested;
+mod places;
+mod plot;
+pub mod programs;
+pub mod progress;
+mod remarks;
+mod report;
+mod rounding;
+mod scene;
+mod simulate;
+mod spectrum;
+mod stability;
+mod summary;
+mod urdf;
+mod variants;
+mod verdict;
+mod verify;
+mod words;
+pub mod write;
+
+pub use args::{Cli, Command, EXIT_CODES};
+use failure::Failure;
+
+impl Command {
+    /// Does what was asked for.
+    ///
+    /// # Errors
+    /// Why it was not done.
+    pub fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Generate(args) => generate::generate(args),
+            Self::Simulate(args) => simulate::simulate(args),
+            Self::Inspect(args) => inspect::inspect(args),
+            Self::Import(args) => urdf::import(args),
+            Self::Verify(args) => verify::verify_models(args),
+            Self::Report(args) => report::report(args),
+        }
+    }
+}

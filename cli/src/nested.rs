@@ -1,0 +1,425 @@
+//! Compiles a generated mechanism into a small program and runs it, or into a library to look at.
+//!
+//! Each module gets a package of its own, named by a hash of its text, under `target/simulate/programs` of the
+//! workspace; all of them share one build folder, so that only the first has to wait for `gyro-sim`. Whether anything
+//! has to be compiled is Cargo's to decide.
+
+use crate::args::Precision;
+use crate::failure::Failure;
+use crate::progress::{self, Spinner};
+use crate::scene::Scene;
+use crate::verify::verify_quickly;
+use crate::{files, machine_code, remarks};
+use gyro_codegen::{Kernel, Module};
+use gyro_model::Model;
+use gyro_runner::protocol::{self, Reply, Request};
+use gyro_runner::{Event, Summary, Timing};
+use std::collections::hash_map::DefaultHasher;
+use std::fs::{self, File, TryLockError};
+use std::hash::{Hash, Hasher};
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+/// Generates, compiles and runs; `tell` hears of samples and progress.
+pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
+    let spinner = progress::deriving(&scene.page);
+    let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
+        .map_err(|e| Failure::Usage(e.to_string()))?;
+    drop(spinner);
+    let program = program(&scene.page, &module, scene.precision)?;
+    let request = Request {
+        settings: scene.settings,
+        approach: scene.approach,
+        parameters: scene.parameters(),
+        start: scene.start.clone(),
+        measure_for: None,
+    };
+    Ok(Session::open(&program, &[])?.ask(&request, tell)?.0)
+}
+
+/// Compiles a module into a program that answers requests; returns where it is.
+pub(crate) fn program(page: &Model, module: &Module, precision: Precision) -> Result<PathBuf, Failure> {
+    let package = Package::program(module, precision);
+    if !package.is_there() {
+        verify_quickly(page, module)?;
+    }
+    build(&package)?;
+    Ok(package.program_file())
+}
+
+/// Compiles the twin, optimised, into a program that takes the path of a page, the name of a form and of a precision and answers
+/// requests; returns where it is.
+pub(crate) fn twin() -> Result<PathBuf, Failure> {
+    let package = Package::twin();
+    build(&package)?;
+    Ok(package.program_file())
+}
+
+/// Compiles these kernels for `f64`, optimised; the library, in which each has its symbol.
+pub(crate) fn library(module: &Module, kernels: &[Kernel]) -> Result<PathBuf, Failure> {
+    let root = machine_code::library(&module.type_name, kernels);
+    let package = Package::new(module, ("lib.rs", root), &["--", machine_code::SYMBOLS]);
+    build(&package)?;
+    Ok(package.built(&format!("lib{}.rlib", package.name.replace('-', "_"))))
+}
+
+/// The files of a package.
+struct Package {
+    name: String,
+    manifest: String,
+    /// Name and text of the file at its root.
+    root: (&'static str, String),
+    /// The generated module; none in a program of the twin.
+    mechanism: Option<String>,
+    /// What rustc is told besides.
+    options: &'static [&'static str],
+}
+
+impl Package {
+    fn program(module: &Module, precision: Precision) -> Self {
+        Self::new(module, ("main.rs", main(module, precision)), &[])
+    }
+
+    fn new(module: &Module, root: (&'static str, String), options: &'static [&'static str]) -> Self {
+        let mut hasher = DefaultHasher::new();
+        (&root.1, &module.code).hash(&mut hasher);
+        let name = format!("{}-{:016x}", module.name, hasher.finish());
+        let manifest = manifest(&name, &["gyro-sim", "runner"]);
+        Self { manifest, name, root, mechanism: Some(module.code.clone()), options }
+    }
+
+    fn twin() -> Self {
+        let name = "gyro-twin".to_owned();
+        let manifest = manifest(&name, &["assembled", "model"]);
+        Self { manifest, name, root: ("main.rs", TWIN.to_owned()), mechanism: None, options: &[] }
+    }
+
+    fn program_file(&self) -> PathBuf {
+        self.built(&format!("{}{}", self.name, std::env::consts::EXE_SUFFIX))
+    }
+
+    /// Where Cargo puts what it builds.
+    fn built(&self, file: &str) -> PathBuf {
+        target().join("release").join(file)
+    }
+
+    fn folder(&self) -> PathBuf {
+        cache().join("programs").join(&self.name)
+    }
+
+    /// Whether this very module was written, and so verified, before.
+    fn is_there(&self) -> bool {
+        let file = self.folder().join("src").join("mechanism.rs");
+        self.mechanism.as_ref().is_some_and(|mechanism| crate::write::holds(&file, mechanism))
+    }
+}
+
+/// The program's own lines. What the module implements decides with what motions can be begun. Nothing is imported: a mechanism may have
+/// the name of anything.
+fn main(module: &Module, precision: Precision) -> String {
+    let (type_name, precision) = (&module.type_name, precision.name());
+    let has = |text: String| module.code.contains(&text);
+    let is_tree = has(format!("gyro_sim::JointSpace for {type_name}"));
+    let kit = match (is_tree, has("fn joint_jacobian(".to_owned())) {
+        (true, true) => "TreeWithJacobian",
+        (true, false) => "Tree",
+        (false, _) => "WithDuals",
+    };
+    format!(
+        "#[allow(warnings, clippy::all)]
+mod mechanism;
+
+fn build<T: ::gyro_sim::Scalar>(parameters: &[f64]) -> mechanism::{type_name}<T> {{
+    let mut built = mechanism::{type_name}::<T>::default();
+    for (index, value) in parameters.iter().enumerate() {{
+        built.set_parameter(index, <T as ::gyro_sim::Scalar>::constant(*value));
+    }}
+    built
+}}
+
+type Dual = ::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>;
+
+fn main() -> ::std::process::ExitCode {{
+    ::gyro_runner::child::main(|parameters| {{
+        (build::<{precision}>(parameters), ::gyro_runner::motion::{kit}(build::<Dual>(parameters)))
+    }})
+}}
+"
+    )
+}
+
+/// The program of the twin.
+const TWIN: &str = r#"use gyro_assembled::{Form, Precision, child};
+use std::{env, fs, path::Path};
+
+fn main() -> std::process::ExitCode {
+    let arguments: Vec<String> = env::args().collect();
+    let [_, page, form, precision] = &arguments[..] else { panic!("a page, a form and a precision were expected") };
+    let folder = Path::new(page).parent().unwrap_or(Path::new(""));
+    let text = fs::read_to_string(page).expect("the page can be read");
+    let mut load = |table: &str| fs::read_to_string(folder.join(table)).map_err(|e| e.to_string());
+    let mut model = gyro_model::read_with(page, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
+    model.counts_work = true;
+    let form = match form.as_str() {
+        "recursive" => Form::Recursive,
+        "careful" => Form::Careful,
+        _ => Form::Dense,
+    };
+    let precision = if precision == "f32" { Precision::Single } else { Precision::Double };
+    child::main(&model, form, precision)
+}
+"#;
+
+/// A manifest with these folders of the workspace as dependencies.
+fn manifest(name: &str, folders: &[&str]) -> String {
+    let dependency = |folder: &&str| {
+        let path = files::root().join(folder).to_string_lossy().into_owned();
+        match *folder {
+            "gyro-sim" => format!("gyro-sim = {{ path = {path:?}, default-features = false }}\n"),
+            folder => format!("gyro-{folder} = {{ path = {path:?} }}\n"),
+        }
+    };
+    let dependencies: String = folders.iter().map(dependency).collect();
+    format!(
+        "[package]
+name = \"{name}\"
+version = \"0.0.0\"
+edition = \"2024\"
+publish = false
+
+[workspace]
+
+[dependencies]
+{dependencies}
+[profile.release]
+debug = false
+"
+    )
+}
+
+fn cache() -> PathBuf {
+    files::root().join("target").join("simulate")
+}
+
+fn target() -> PathBuf {
+    cache().join("build")
+}
+
+/// Brings a package up to date.
+fn build(package: &Package) -> Result<(), Failure> {
+    let (cache, folder) = (cache(), package.folder());
+    let said = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
+    fs::create_dir_all(folder.join("src")).map_err(said)?;
+    let lock = File::create(cache.join("lock")).map_err(said)?;
+    // Released when the file is closed at the end of this function. Two runs at once take turns at building.
+    wait_for(&lock, remarks::note).map_err(said)?;
+    files::write(&folder.join("Cargo.toml"), &package.manifest)?;
+    let (file, root) = &package.root;
+    files::write(&folder.join("src").join(file), root)?;
+    if let Some(mechanism) = &package.mechanism {
+        files::write(&folder.join("src").join("mechanism.rs"), mechanism)?;
+    }
+    copy_lock_file(&folder)?;
+    let _spinner = Spinner::new(format!("compiling {}", package.name));
+    compile(package, &target())
+}
+
+/// Waits until a file can be locked, and says so if that is not at once.
+fn wait_for(lock: &File, tell: impl Fn(&str)) -> std::io::Result<()> {
+    match lock.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => {
+            tell("another run is compiling; this one waits for it to finish");
+            lock.lock()
+        }
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
+/// The workspace's versions hold here too. Cargo drops from its copy what the package does not need.
+fn copy_lock_file(folder: &Path) -> Result<(), Failure> {
+    let copy = folder.join("Cargo.lock");
+    if copy.is_file() {
+        return Ok(());
+    }
+    match fs::read_to_string(files::root().join("Cargo.lock")) {
+        Ok(text) => files::write(&copy, &text).map(|_| ()),
+        Err(_) => Ok(()),
+    }
+}
+
+fn compile(package: &Package, target: &Path) -> Result<(), Failure> {
+    let folder = package.folder();
+    let mut output = cargo(package, target, &["--offline"])?;
+    // Cargo says so if something has to be downloaded first.
+    if output.as_ref().is_some_and(|words| words.contains("offline")) {
+        output = cargo(package, target, &[])?;
+    }
+    match output {
+        None => Ok(()),
+        Some(words) => Err(Failure::Run(format!(
+            "the generated program does not compile; it is in {}\n{words}",
+            folder.display()
+        ))),
+    }
+}
+
+/// What Cargo said if it failed.
+fn cargo(package: &Package, target: &Path, options: &[&str]) -> Result<Option<String>, Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["rustc", "--quiet", "--release", "--target-dir"])
+        .arg(target)
+        .args(options)
+        .args(package.options)
+        .current_dir(package.folder())
+        .env_remove("CARGO_BUILD_TARGET")
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|e| Failure::Run(format!("cargo cannot be started: {e}")))?;
+    let words = || String::from_utf8_lossy(&output.stderr).into_owned();
+    Ok((!output.status.success()).then(words))
+}
+
+/// A program under way that answers requests.
+#[derive(Debug)]
+pub(crate) struct Session {
+    program: PathBuf,
+    child: Child,
+    input: Option<ChildStdin>,
+    replies: BufReader<ChildStdout>,
+}
+
+impl Session {
+    /// Starts the program.
+    pub(crate) fn open(program: &Path, arguments: &[&str]) -> Result<Self, Failure> {
+        let mut command = Command::new(program);
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.spawn().map_err(|e| Failure::Run(format!("{}: {e}", program.display())))?;
+        let input = child.stdin.take();
+        let replies = BufReader::new(child.stdout.take().expect("standard output is piped"));
+        Ok(Self { program: program.to_path_buf(), child, input, replies })
+    }
+
+    /// Hands a request to the program and listens to its replies.
+    pub(crate) fn ask(
+        &mut self,
+        request: &Request,
+        mut tell: impl FnMut(Event<'_>),
+    ) -> Result<(Summary, Option<Timing>), Failure> {
+        let input = self.input.as_mut().expect("standard input is piped");
+        protocol::write(input, request)
+            .map_err(|e| Failure::Run(format!("{}: {e}", self.program.display())))?;
+        match listen(&mut self.replies, &mut tell)? {
+            Some(answer) => Ok(answer),
+            None => {
+                let ended = self.child.wait().map_or_else(|e| e.to_string(), |status| status.to_string());
+                Err(Failure::Run(format!("{} ended without an answer: {ended}", self.program.display())))
+            }
+        }
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        // Without input a program ends by itself; one in the middle of a run does not hear of that.
+        drop(self.input.take());
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// What the replies come to, if they do.
+fn listen(
+    output: &mut impl BufRead,
+    tell: &mut impl FnMut(Event<'_>),
+) -> Result<Option<(Summary, Option<Timing>)>, Failure> {
+    let mut timing = None;
+    while let Some(reply) = protocol::read(output).map_err(|e| Failure::Run(format!("the program: {e}")))? {
+        match reply {
+            Reply::Sample(sample) => tell(Event::Sample(&sample)),
+            Reply::Linear(linear) => tell(Event::Linear(&linear)),
+            Reply::Stopped(t, state) => tell(Event::Stopped(t, &state)),
+            Reply::Progress(t) => tell(Event::Progress(t)),
+            Reply::Forecast(forecast) => tell(Event::Forecast(forecast)),
+            Reply::Timed(timed) => timing = Some(timed),
+            Reply::Done(summary) => return Ok(Some((summary, timing))),
+            Reply::Failed(words) => return Err(Failure::Run(words)),
+            Reply::Refused(words) => return Err(Failure::Usage(words)),
+        }
+    }
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyro_codegen::Sheet;
+    use gyro_runner::Sample;
+
+    type Heard = Result<Option<(Summary, Option<Timing>)>, Failure>;
+
+    fn heard(text: &[u8]) -> (Heard, usize) {
+        let mut n_samples = 0;
+        let outcome = listen(&mut &text[..], &mut |event: Event<'_>| {
+            n_samples += usize::from(matches!(event, Event::Sample(_)));
+        });
+        (outcome, n_samples)
+    }
+
+    fn text(replies: &[Reply]) -> Vec<u8> {
+        let mut text = Vec::new();
+        replies.iter().for_each(|reply| protocol::write(&mut text, reply).unwrap());
+        text
+    }
+
+    #[test]
+    fn replies_are_heard_to_their_end() {
+        let sample = Reply::Sample(Sample::default());
+        let done = Reply::Done(Summary { steps: 10, ..Summary::default() });
+        let (outcome, n_samples) =
+            heard(&text(&[sample.clone(), Reply::Progress(0.5), sample.clone(), done]));
+        assert_eq!((outcome.unwrap().unwrap().0.steps, n_samples), (10, 2));
+        let (outcome, n_samples) = heard(&text(&[sample.clone(), Reply::Failed("at t = 0.5 s".to_owned())]));
+        assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));
+        assert_eq!(n_samples, 1);
+        assert!(heard(&text(&[sample])).0.unwrap().is_none(), "a program that was killed says nothing");
+        assert!(matches!(heard(b"nonsense").0, Err(Failure::Run(_))));
+    }
+
+    #[test]
+    fn who_waits_for_another_build_says_so() {
+        let folder = files::tests::Folder::new();
+        let path = folder.0.join("lock");
+        let (first, second) = (File::create(&path).unwrap(), File::create(&path).unwrap());
+        let (sender, heard) = std::sync::mpsc::channel();
+        let tell = |words: &str| sender.send(words.to_owned()).unwrap();
+        wait_for(&first, tell).unwrap();
+        assert!(heard.try_recv().is_err(), "nothing is said where nobody waits");
+        std::thread::scope(|scope| {
+            scope.spawn(|| wait_for(&second, tell).unwrap());
+            assert!(heard.recv().unwrap().contains("another run is compiling"));
+            first.unlock().unwrap();
+        });
+    }
+
+    #[test]
+    fn a_package_is_named_by_its_contents() {
+        let module = |code: &str| Module {
+            name: "top".to_owned(),
+            type_name: "Top".to_owned(),
+            code: code.to_owned(),
+            constants: String::new(),
+            sheet: Sheet::default(),
+        };
+        let name = |code, precision| Package::program(&module(code), precision).name;
+        assert_eq!(name("a", Precision::F64), name("a", Precision::F64));
+        assert_ne!(name("a", Precision::F64), name("b", Precision::F64));
+        assert_ne!(name("a", Precision::F64), name("a", Precision::F32));
+        assert!(name("a", Precision::F64).starts_with("top-"));
+        // A mechanism may have the name of whatever could be imported.
+        let text = main(&module("a"), Precision::F64);
+        assert!(text.lines().all(|line| !line.starts_with("use ")), "{text}");
+    }
+}

@@ -1,0 +1,230 @@
+//! `cargo xtask verify --rounding`: what generated code and both forms of the twin lose by rounding, on the same states.
+
+use crate::failure::Failure;
+use gyro_assembled::{Careful, Dense};
+use gyro_model::Model;
+use gyro_sim::{Equations, Scalar};
+use gyro_verifier::field::{Precision, Real};
+use gyro_verifier::module::Module;
+use gyro_verifier::rounding::{DOUBLE_DIGITS, Kind, Reference, Rounding, Spread, error, measure, references};
+use std::fmt::Write;
+
+/// States of each kind.
+const STATES: usize = 50;
+
+const SEED: u64 = 1;
+
+/// A generated kernel this many times worse than the same of the pivoted twin is pointed out.
+const CONSPICUOUS: f64 = 10.0;
+
+/// How to read the tables.
+const HEAD: &str = "# Rounding of generated code
+
+Made by `cargo xtask verify --rounding > docs/rounding.md`. A proof says nothing about rounding; this is measured.
+
+Each function runs in `f64` and `f32`, and in `f64` as both forms of the assembled twin, at the same states, and is compared with 384-bit
+floats. A cell has the worst error and in parentheses the median, in units in the last place (of the precision in question) of the largest result, at
+states *near the start* / *random* / *extreme* (speeds and distances from 1e-6 to 1e6). None of these states satisfies the constraints exactly,
+but for functions in joint coordinates, and those of corrected states (`joint_accelerations_at` and all that begin with `corrected`), which
+run at the maximal states of joint states that are drawn in the same way.
+
+How to read it:
+
+* The state is rounded before anything is computed, and the reference is not told. Where the result is a small difference of large numbers (Φ near
+  the start, where it is 1e-7) that alone makes thousands of units, for every implementation alike: compare a row's columns, not rows.
+* The dense twin solves eq. (17) by LU with pivoting: what it loses is about what the state's conditioning costs. The generated solve
+  does not pivot; it may be better or worse. Where a kernel is more than ten times worse than the dense twin, it is listed here first.
+* The twin has no u̇: beside `joint_accelerations_at` stands what it loses in v̇, at the same states.
+* The worst rows of corrected states are those of bodies that are free along their joint. `planar` and `cylindrical` fall freely and spin about a joint
+  point beside the mass centre: their λ, and the s̈ of a fast spin, are small rests of large terms (weight less inertia, centripetal less tangential
+  acceleration) that `corrected_multipliers` and `corrected_accelerations` compute one by one. The dense twin solves for the mass centre's acceleration itself.
+* Empty cells: the twin has no such function (it chooses coordinates by pivoting and reads angles with another factor), or no careful
+  form for the mechanism; or all results are zero.
+
+";
+
+/// The whole report in Markdown.
+pub(crate) fn report(tables: &[Table]) -> String {
+    let conspicuous: Vec<&String> = tables.iter().flat_map(|table| &table.conspicuous).collect();
+    let mut text = HEAD.to_owned() + "## More than ten times worse than the dense twin\n\n";
+    let [compared, dense_worse] =
+        [|t: &Table| t.compared, |t: &Table| t.dense_worse].map(|of| tables.iter().map(of).sum::<usize>());
+    let _ = writeln!(
+        text,
+        "Of {compared} comparisons of worst errors (a function at one kind of states each) these {}; in {dense_worse} the dense twin is more than ten \
+         times worse than the generated code.\n",
+        conspicuous.len()
+    );
+    conspicuous.iter().for_each(|line| text += &format!("* {line}\n"));
+    tables.iter().for_each(|table| text += &table.text);
+    text
+}
+
+/// The errors of one module.
+pub(crate) struct Table {
+    text: String,
+    conspicuous: Vec<String>,
+    /// Functions at one kind of states that the dense twin has too.
+    compared: usize,
+    /// Of these, how many the dense twin computes much worse.
+    dense_worse: usize,
+}
+
+/// A table of one module in Markdown, and what is conspicuous in it.
+pub(crate) fn table(model: &Model, code: &str, constants: &str) -> Result<Table, Failure> {
+    let module = Module::read(model, code, constants).map_err(|refusal| Failure::Run(refusal.to_string()))?;
+    let precision = Precision::new();
+    let references = references(model, &module, &precision, STATES, SEED);
+    let careful = Careful::<f64>::supports(model).ok().and_then(|()| Careful::new(model).ok());
+    let dense = Dense::<f64>::new(model).map_err(|e| Failure::Usage(e.to_string()))?;
+    let measured = measure(model, &module, STATES, SEED);
+    let mut text = format!(
+        "\n## {}\n\n| function | f64 | f32 | careful twin | dense twin |\n|---|---|---|---|---|\n",
+        model.name
+    );
+    let (mut conspicuous, mut compared, mut dense_worse) = (Vec::new(), 0, 0);
+    for function in module.programs.keys() {
+        let of_function = measured.iter().filter(|row| row.function == *function);
+        let of_kind = |kind| of_function.clone().find(|row| row.kind == kind);
+        let mut cells = [(); 4].map(|()| Vec::new());
+        for row in Kind::ALL.map(of_kind) {
+            let careful =
+                careful.as_ref().zip(row).and_then(|(twin, row)| of_twin(&module, twin, &references, row));
+            let dense = row.and_then(|row| of_twin(&module, &dense, &references, row));
+            if let Some((row, dense)) =
+                row.zip(dense).filter(|(r, dense)| r.double.worst > CONSPICUOUS * dense.worst)
+            {
+                let ratio = row.double.worst / dense.worst;
+                let kind = row.kind;
+                conspicuous.push(format!(
+                    "{}, {function}, {kind} states: worst {ratio:.0} times that of the dense twin",
+                    model.name
+                ));
+            }
+            if let Some((row, dense)) = row.zip(dense) {
+                compared += 1;
+                dense_worse += usize::from(dense.worst > CONSPICUOUS * row.double.worst);
+            }
+            let row = [row.map(|row| row.double), row.map(|row| row.single), careful, dense];
+            cells.iter_mut().zip(row).for_each(|(cell, spread)| cell.push(spread.as_ref().map(words)));
+        }
+        if cells[0].iter().all(Option::is_none) {
+            continue;
+        }
+        let words = |cell: &Vec<Option<String>>| match cell.iter().all(Option::is_none) {
+            true => String::new(),
+            false => cell.iter().map(|words| words.as_deref().unwrap_or("0")).collect::<Vec<_>>().join(" / "),
+        };
+        let _ = writeln!(text, "| {function} | {} |", cells.each_ref().map(words).join(" | "));
+    }
+    Ok(Table { text, conspicuous, compared, dense_worse })
+}
+
+fn words(spread: &Spread) -> String {
+    format!("{} ({})", Short(spread.worst), Short(spread.median))
+}
+
+/// A number that is short whatever its size.
+struct Short(f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.0 < 1e4 { write!(f, "{:.1}", self.0) } else { write!(f, "{:.1e}", self.0) }
+    }
+}
+
+/// The errors of a twin in one function on the states of one kind; `None` if it has no such function.
+fn of_twin<M>(module: &Module, twin: &M, references: &[Reference<'_>], row: &Rounding) -> Option<Spread>
+where
+    M: Equations<Scalar = f64>,
+{
+    let of_kind = references.iter().filter(|reference| reference.sample.kind == row.kind);
+    let errors = of_kind.filter_map(|reference| {
+        let computed = computed(module, twin, &row.function, reference)?;
+        let exact: &[Real<'_>] = reference.of(counterpart(&row.function))?;
+        // What follows the accelerations is each implementation's own.
+        let of_both = exact.len().min(computed.len());
+        error(&exact[..of_both], &computed[..of_both], DOUBLE_DIGITS)
+    });
+    Spread::of(errors.collect())
+}
+
+/// The function whose results a twin's are compared with: it has no u̇, so its v̇ stands beside it.
+fn counterpart(function: &str) -> &str {
+    if function == "joint_accelerations_at" { "corrected_accelerations" } else { function }
+}
+
+/// What a twin gives for a function of the module; `None` if its results have no meaning of their own, or the twin has no such function.
+fn computed<M>(module: &Module, twin: &M, function: &str, reference: &Reference<'_>) -> Option<Vec<f64>>
+where
+    M: Equations<Scalar = f64>,
+{
+    let (t, mut y) = (reference.sample.t, twin.start());
+    y.as_mut().iter_mut().zip(reference.state(function)).for_each(|(y, x)| *y = Scalar::constant(*x));
+    let rows = |write: &dyn Fn(&mut M::Rows)| {
+        let mut out = twin.buffers().rows;
+        write(&mut out);
+        out.as_ref().to_vec()
+    };
+    let accelerations = || {
+        let mut out = twin.terms().accelerations;
+        twin.accelerations(t, &y, &mut out);
+        out
+    };
+    Some(match function {
+        "velocity_residual" => rows(&|out| twin.velocity_residual(t, &y, out)),
+        "gamma" => rows(&|out| twin.gamma(t, &y, out)),
+        "nu" => rows(&|out| twin.nu(t, &y, out)),
+        "multipliers" | "corrected_multipliers" => {
+            rows(&|out| twin.multipliers(t, &y, &accelerations(), out))
+        }
+        "accelerations" | "corrected_accelerations" | "joint_accelerations_at" => {
+            accelerations().as_ref()[..twin.terms().velocities.as_ref().len()].to_vec()
+        }
+        "phi" => {
+            let mut out = twin.buffers().constraints;
+            twin.phi(t, &y, &mut out);
+            out.as_ref().to_vec()
+        }
+        "phi_q" => {
+            let mut out = twin.terms().phi_q;
+            twin.phi_q(t, &y, &mut out);
+            at_places(&module.phi_q_pattern, twin.phi_q_pattern(), out.as_ref())
+        }
+        "phi_pi" => {
+            let mut out = twin.terms().phi_pi;
+            twin.phi_pi(t, &y, &mut out);
+            at_places(&module.phi_pi_pattern, twin.phi_pi_pattern(), out.as_ref())
+        }
+        "applied_force" => {
+            let mut out = twin.terms().velocities;
+            twin.applied_force(t, &y, &mut out);
+            out.as_ref().to_vec()
+        }
+        "project" => {
+            let (mut rows, mut out) = (twin.buffers().rows, twin.terms().velocities);
+            rows.as_mut().copy_from_slice(&reference.sample.changes);
+            twin.project(t, &y, &rows, &mut out);
+            out.as_ref().to_vec()
+        }
+        "derivative" | "corrected_derivative" => {
+            let mut out = twin.start();
+            twin.derivative(t, &y, &mut out);
+            out.as_ref().to_vec()
+        }
+        "energy" => {
+            let energy = twin.energy(t, &y);
+            vec![energy.kinetic, energy.potential]
+        }
+        _ => return None,
+    })
+}
+
+/// The values at some places of a matrix that is given by its own pattern.
+fn at_places(places: &[(usize, usize)], pattern: &[(u16, u16)], values: &[f64]) -> Vec<f64> {
+    let value = |place: &(usize, usize)| {
+        let known = pattern.iter().position(|&(row, column)| (row.into(), column.into()) == *place);
+        known.map_or(0.0, |known| values[known])
+    };
+    places.iter().map(value).collect()
+}

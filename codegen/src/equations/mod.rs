@@ -1,0 +1,206 @@
+//! Everything that a module computes, as final expressions of one graph: of each quantity the form that was chosen, all symbols expanded.
+
+mod rotations;
+
+pub use rotations::Rotations;
+
+use crate::derive::kinematics::{Matrix, non_zeros};
+use crate::derive::system::System;
+use crate::derive::{Observed, Textbook};
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::symbol::Symbol;
+use crate::joint_space::JointSpace;
+use crate::simplify::cheapest::{Chosen, FinalPasses};
+use crate::simplify::normal_form::vanishes;
+use crate::solve::Solution;
+use crate::solve::partition::Partition;
+use gyro_model::{Model, Spline};
+
+/// Non-zeros with their places.
+#[derive(Debug)]
+pub struct Sparse(pub Vec<(usize, usize, ExprId)>);
+
+impl Sparse {
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn values(&self) -> Vec<ExprId> {
+        self.0.iter().map(|entry| entry.2).collect()
+    }
+}
+
+/// What all generated functions compute.
+#[derive(Debug)]
+pub struct Equations<'m> {
+    pub model: &'m Model,
+    pub graph: Graph,
+    /// Tables of prescribed motions.
+    pub tables: Vec<&'m Spline>,
+    /// Joint rows, then normalisations.
+    pub phi: Vec<ExprId>,
+    pub phi_q: Sparse,
+    pub phi_pi: Sparse,
+    /// Entries of Φ_π' that are zero for unit Euler parameters and were left out.
+    pub n_vanishing: usize,
+    pub nu: Vec<ExprId>,
+    pub gamma: Vec<ExprId>,
+    pub velocity_residual: Vec<ExprId>,
+    pub applied_force: Vec<ExprId>,
+    /// (s̈, ẇ') of each slot, then the multipliers that are found with them.
+    pub solved: Chosen,
+    /// (δr, δπ') of each slot that change the rows as given.
+    pub projection: Chosen,
+    /// All multipliers, the accelerations being known.
+    pub lambda: Vec<ExprId>,
+    /// (ṙ, ṗ) of each slot.
+    pub position_rates: Vec<ExprId>,
+    /// Power of non-conservative forces and drivers, where the state carries their work; the accelerations being known.
+    pub power: Option<ExprId>,
+    /// Rates of the turn references.
+    pub turn_rates: Vec<ExprId>,
+    pub kinetic: ExprId,
+    pub potential: ExprId,
+    pub readings: Vec<ExprId>,
+    /// The numbers of the outputs, the accelerations being known.
+    pub outputs: Vec<ExprId>,
+    /// Joint coordinates, where the mechanism is a tree.
+    pub joint_space: Option<JointSpace>,
+    /// Charts, where the mechanism is a tree that they cover.
+    pub charts: Option<Charts>,
+    pub passes: FinalPasses,
+}
+
+/// The partition by charts.
+#[derive(Debug)]
+pub struct Charts {
+    pub vectors: Vec<ExprId>,
+    pub newton_positions: Vec<ExprId>,
+    pub solved_velocities: Vec<ExprId>,
+}
+
+/// What was derived and solved, in symbols that are yet to be expanded.
+#[derive(Debug)]
+pub struct Parts {
+    pub textbook: Textbook,
+    pub solution: Solution,
+    pub observed: Observed,
+    /// The smallest (δr, δπ') of each slot that change the rows as given.
+    pub projection: Vec<ExprId>,
+    /// Where charts cover the mechanism.
+    pub partition: Option<Partition>,
+}
+
+impl<'m> Equations<'m> {
+    /// Expands what was derived and solved, each function in the cheapest way. `solved` are the accelerations as they were chosen before:
+    /// the forms of joint coordinates are compared with them.
+    pub fn choose(
+        system: System<'m>,
+        mut rotations: Rotations<'_>,
+        parts: &Parts,
+        solved: Chosen,
+        joint_space: Option<JointSpace>,
+    ) -> Self {
+        let Parts { textbook: Textbook { kinematics, dynamics }, solution, observed, .. } = parts;
+        let System { model, tables, mut graph, slots, .. } = system;
+        let (phi_pi, n_vanishing) =
+            virtual_jacobian(&mut graph, &mut rotations, &kinematics.phi_pi, slots.len());
+        let projection = rotations.cheapest(&mut graph, &parts.projection);
+        let mut expanded = |roots: &[ExprId]| rotations.expanded(&mut graph, roots);
+        let energy = expanded(&[dynamics.kinetic, dynamics.potential]);
+        let phi = expanded(&[&kinematics.phi[..], &kinematics.normalisations].concat());
+        let phi_q = expanded_matrix(&kinematics.phi_q, &mut expanded);
+        let mut equations = Self {
+            model,
+            phi,
+            phi_q: Sparse(non_zeros(&phi_q)),
+            n_vanishing,
+            phi_pi,
+            nu: expanded(&kinematics.nu),
+            gamma: expanded(&kinematics.gamma),
+            velocity_residual: expanded(&kinematics.velocity_residual),
+            applied_force: expanded(&dynamics.applied_force),
+            solved,
+            projection,
+            lambda: expanded(&solution.lambda),
+            position_rates: observed.position_rates.clone(),
+            power: model.has_work().then(|| expanded(&[observed.power])[0]),
+            turn_rates: expanded(&observed.turn_rates),
+            kinetic: energy[0],
+            potential: energy[1],
+            readings: expanded(&observed.readings),
+            outputs: expanded(&observed.outputs),
+            joint_space,
+            charts: parts.partition.as_ref().map(|partition| Charts::expand(partition, &mut expanded)),
+            passes: rotations.passes,
+            tables,
+            graph,
+        };
+        // Of parameters' frames an entry may be zero that is not written as one.
+        let Self { phi_q, graph, .. } = &mut equations;
+        phi_q.0.retain(|&(.., entry)| !vanishes(graph, &[], entry));
+        equations
+    }
+
+    pub fn n_slots(&self) -> usize {
+        self.phi.len() - self.n_rows()
+    }
+
+    pub fn n_rows(&self) -> usize {
+        self.lambda.len()
+    }
+
+    /// Length of (s̈, ẇ') of all slots.
+    pub fn n_velocities(&self) -> usize {
+        6 * self.n_slots()
+    }
+
+    /// Number of multipliers that are found with the accelerations.
+    pub fn n_closing(&self) -> usize {
+        self.solved.roots.len() - self.n_velocities()
+    }
+
+    pub fn n_state(&self) -> usize {
+        13 * self.n_slots() + usize::from(self.power.is_some()) + self.turn_rates.len()
+    }
+
+    /// ẏ without the accelerations.
+    pub fn rates_but_accelerations(&self) -> Vec<ExprId> {
+        self.position_rates.iter().chain(&self.power).chain(&self.turn_rates).copied().collect()
+    }
+}
+
+/// The non-zeros of (Φ_r, Φ_π'), and how many are left out as they vanish: a product of two vectors of one body does not change as the body
+/// turns.
+fn virtual_jacobian(
+    graph: &mut Graph,
+    rotations: &mut Rotations<'_>,
+    phi_pi: &Matrix,
+    n_slots: usize,
+) -> (Sparse, usize) {
+    let euler: Vec<Vec<_>> =
+        (0..n_slots).map(|slot| (0..4).map(|k| graph.symbol(Symbol::Euler { slot, k })).collect()).collect();
+    let derived = non_zeros(&expanded_matrix(phi_pi, &mut |roots| rotations.expanded(graph, roots)));
+    let n_derived = derived.len();
+    let kept = derived.into_iter().filter(|&(.., entry)| !vanishes(graph, &euler, entry));
+    let kept: Vec<_> = kept.collect();
+    let n_vanishing = n_derived - kept.len();
+    (Sparse(kept), n_vanishing)
+}
+
+fn expanded_matrix(matrix: &Matrix, expanded: &mut impl FnMut(&[ExprId]) -> Vec<ExprId>) -> Matrix {
+    let entries = expanded(&matrix.concat());
+    let mut rest = &entries[..];
+    let row = |row: &Vec<ExprId>| rest.split_off(..row.len()).unwrap_or_default().to_vec();
+    matrix.iter().map(row).collect()
+}
+
+impl Charts {
+    fn expand(partition: &Partition, expanded: &mut impl FnMut(&[ExprId]) -> Vec<ExprId>) -> Self {
+        Self {
+            vectors: expanded(&partition.chart_vectors.concat()),
+            newton_positions: expanded(&partition.positions),
+            solved_velocities: expanded(&partition.velocities),
+        }
+    }
+}

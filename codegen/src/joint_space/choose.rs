@@ -1,0 +1,153 @@
+//! What is taken of all that joint coordinates give.
+
+use super::candidates::Candidates;
+use super::coordinates::Coordinates;
+use super::jacobian::{Jacobian, JointForm};
+use super::layout::Layout;
+use super::{dynamics, maps, motions, multipliers};
+use crate::derive::system::System;
+use crate::derive::{Observed, Textbook};
+use crate::expr::definitions::{Expansion, Values};
+use crate::expr::graph::ExprId;
+use crate::expr::symbol::Symbol;
+use crate::simplify::cheapest::{Chosen, FinalPasses};
+use gyro_model::Start;
+
+/// What `gyro_sim::JointSpace` asks of a generated tree, as final expressions.
+#[derive(Debug)]
+pub struct JointSpace {
+    pub layout: Layout,
+    /// u̇ in terms of joint coordinates and rates.
+    pub accelerations: Chosen,
+    /// ẋ, then the power of non-conservative forces and drivers if the state carries their work.
+    pub derivative: Vec<ExprId>,
+    /// u̇ in terms of a maximal state that satisfies the constraints.
+    pub accelerations_at: Chosen,
+    /// (s̈, ẇ') of each slot at such a state.
+    pub corrected: Chosen,
+    /// λ at such a state, in terms of [`Symbol::Acceleration`].
+    pub multipliers: Vec<ExprId>,
+    /// (s̈, ẇ') of each slot at such a state, then λ.
+    pub solution: Vec<ExprId>,
+    /// Maximal positions, velocities and turn references in terms of joint coordinates and rates.
+    pub maximal: Vec<ExprId>,
+    /// x and u in terms of a maximal state.
+    pub reduced: Vec<ExprId>,
+    /// The joint state at the start.
+    pub start: Vec<f64>,
+    /// The derivatives of the joint form, unless the mechanism is too large.
+    pub jacobian: Option<Jacobian>,
+    /// Bodies that are described in a frame that does not turn with them.
+    pub invariant: Vec<usize>,
+}
+
+impl JointSpace {
+    /// `exact` are the accelerations at any state.
+    pub fn choose(
+        system: &mut System,
+        (textbook, observed): (&Textbook, &Observed),
+        coordinates: Coordinates,
+        mut candidates: Candidates,
+        exact: &[ExprId],
+        start: &Start,
+    ) -> Self {
+        let passes = FinalPasses::of(false);
+        let in_joints = &coordinates.in_joints;
+        candidates.retain_accurate(system, &coordinates);
+        let on_rates = candidates.on_rates(system, in_joints);
+        let accelerations = Chosen {
+            reductions: candidates.reductions.clone(),
+            ..passes.cheapest(&mut system.graph, on_rates)
+        };
+        let at = candidates.all(system, &coordinates.of_joints);
+        let accelerations_at = passes.cheapest(&mut system.graph, at.clone());
+        let corrected = corrected(system, &coordinates, &at, exact);
+        let corrected = passes.cheapest(&mut system.graph, corrected);
+        let multipliers = multipliers::of(system, textbook, &coordinates);
+        let multipliers = system.expanded(&coordinates.of_joints, &multipliers);
+        let known = motions::accelerations_by_symbol(&corrected.roots);
+        let solved = system.expanded(&known, &multipliers);
+        let solution = corrected.roots.iter().copied().chain(solved).collect();
+        let rates = maps::coordinate_rates(system, &coordinates.layout);
+        let along = dynamics::power_along(system, &coordinates.layout);
+        let power = Power { along, others: observed.power_but_along_coordinates };
+        let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
+        let derivative = rates.iter().copied().chain(of_accelerations).collect();
+        let reduced = maps::reduced(system, &coordinates.layout);
+        let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
+        let rates_of_rates: Vec<_> = (0..coordinates.layout.n_rates)
+            .map(|rate| system.graph.symbol(Symbol::RateOfRate(rate)))
+            .collect();
+        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form which is emitted.
+        let differentiated =
+            if coordinates.have_orientations() { &accelerations.roots } else { &candidates.shortest };
+        let form = JointForm {
+            coordinates: &coordinates,
+            rates: &rates,
+            accelerations: differentiated,
+            power: power.at(system, &coordinates, &rates_of_rates),
+            balance: &candidates.balance,
+            passes,
+        };
+        let jacobian = Jacobian::derive(system, &form);
+        Self {
+            invariant: coordinates.invariant_bodies(),
+            accelerations,
+            multipliers,
+            solution,
+            derivative,
+            accelerations_at,
+            corrected,
+            jacobian,
+            maximal: maps::state(system, &coordinates.layout, &coordinates.maximal),
+            start: maps::joint_start(system, &coordinates.layout, &reduced, start),
+            reduced,
+            layout: coordinates.layout,
+        }
+    }
+}
+
+/// The forms of the bodies' accelerations at a corrected state: by each form of the rates' rates, or by `exact`, which hold at any state.
+fn corrected(
+    system: &mut System,
+    coordinates: &Coordinates,
+    forms_of_rates: &[(String, Vec<ExprId>)],
+    exact: &[ExprId],
+) -> Vec<(String, Vec<ExprId>)> {
+    let mut forms = Vec::new();
+    for (name, rates) in forms_of_rates {
+        let [own, global] = motions::outward(system, coordinates, rates);
+        forms.push((format!("{name} in the bodies' frames"), own));
+        forms.push((format!("{name} in the global frame"), global));
+    }
+    let exact = system.expanded(&Values::default(), exact);
+    forms.push(("elimination in maximal coordinates".to_owned(), exact));
+    forms
+}
+
+/// Power of non-conservative forces and drivers.
+struct Power {
+    /// Of forces along joint coordinates.
+    along: ExprId,
+    /// Of all others, in maximal coordinates.
+    others: ExprId,
+}
+
+impl Power {
+    /// In joint coordinates, these rates' rates being known; none unless the state carries the work.
+    fn at(
+        &self,
+        system: &mut System,
+        coordinates: &Coordinates,
+        rates_of_rates: &[ExprId],
+    ) -> Option<ExprId> {
+        system.model.has_work().then(|| {
+            let motions = motions::motions(system, &coordinates.carriages, rates_of_rates, true);
+            let motions = system.expanded(&coordinates.in_joints, &motions);
+            let mut values = coordinates.in_joints.clone();
+            values.extend(motions::accelerations_by_symbol(&motions));
+            let others = system.expanded(&values, &[self.others])[0];
+            system.graph.add(self.along, others)
+        })
+    }
+}

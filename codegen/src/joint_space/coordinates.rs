@@ -1,0 +1,126 @@
+//! A tree in joint coordinates: what is derived before anything is solved.
+
+use super::layout::Layout;
+use super::link_kinematics::{self, Carriage};
+use super::{dynamics, maps};
+use crate::derive::Textbook;
+use crate::derive::dynamics::Dynamics;
+use crate::derive::system::System;
+use crate::expr::definitions::Values;
+use crate::expr::graph::ExprId;
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::ZERO3;
+
+/// Joint coordinates and how they go with the maximal ones.
+#[derive(Debug)]
+pub struct Coordinates {
+    pub layout: Layout,
+    /// How each body moves on its carrier.
+    pub carriages: Vec<Carriage>,
+    /// The same, but that a body which looks the same all around its axis is described in a frame that does not turn with it.
+    pub carriages_of_dynamics: Vec<Carriage>,
+    /// The angles that turn such bodies, by their places in x.
+    pub invariant: Vec<usize>,
+    /// Maximal positions and velocities in terms of joint coordinates and rates.
+    pub maximal: Values,
+    /// Everything in these terms.
+    pub in_joints: Values,
+    /// Joint coordinates and rates in terms of a maximal state that satisfies the constraints.
+    pub of_joints: Values,
+    /// The force along each rate.
+    pub along: Vec<ExprId>,
+    /// Sets of atoms of which the squares sum to one.
+    pub unit: Vec<Vec<ExprId>>,
+}
+
+impl Coordinates {
+    /// Whether joint coordinates describe the mechanism.
+    pub fn cover(system: &System) -> bool {
+        system.tree.is_open() && system.closing_rows().is_empty()
+    }
+
+    pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
+        let layout = Layout::of(system);
+        let carriages = carriages_of(system, &layout, &|_| true);
+        let maximal = maps::of_bodies(system, &layout, &carriages);
+        let in_joints = maps::in_joints(system, &layout, &maximal);
+        let of_joints = maps::of_joints(system, &layout);
+        let invariant = invariant_angles(system, &layout, &carriages, &textbook.dynamics);
+        let carriages_of_dynamics = carriages_of(system, &layout, &|x| !invariant.contains(&x));
+        let along = dynamics::forces_along(system, &layout);
+        let unit = unit_atoms(system, &layout);
+        Self {
+            layout,
+            carriages,
+            carriages_of_dynamics,
+            invariant,
+            maximal,
+            in_joints,
+            of_joints,
+            along,
+            unit,
+        }
+    }
+
+    /// Bodies that are described in a frame that does not turn with them.
+    pub fn invariant_bodies(&self) -> Vec<usize> {
+        let links = self.layout.links.iter();
+        let invariant =
+            links.filter(|link| link.scalars.iter().any(|scalar| self.invariant.contains(&scalar.place.x)));
+        invariant.map(|link| link.link.body).collect()
+    }
+
+    /// Whether a joint, or a body that nothing holds, has Euler parameters of its own.
+    pub fn have_orientations(&self) -> bool {
+        self.layout.links.iter().any(|link| link.orientation.is_some())
+    }
+}
+
+fn carriages_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turned) -> Vec<Carriage> {
+    layout.links.iter().map(|link| Carriage::of(system, link, turned)).collect()
+}
+
+/// Angles that turn nothing but a body that looks the same whatever the angle is: a leaf with a single axis, its mass centre on
+/// the axis and its inertia symmetric about it, that no load acts on. The body is then described in a frame that does
+/// not turn with it.
+fn invariant_angles(
+    system: &mut System,
+    layout: &Layout,
+    carriages: &[Carriage],
+    dynamics: &Dynamics,
+) -> Vec<usize> {
+    let is_leaf = |body: usize| carriages.iter().all(|carriage| carriage.parent != Some(body));
+    let links = layout.links.iter().zip(carriages);
+    let invariant = links.filter_map(|(link, carriage)| {
+        let angles: Vec<_> = link.scalars.iter().filter(|scalar| scalar.kind.is_angle()).collect();
+        let [angle] = angles[..] else { return None };
+        let turning = carriage.free.iter().find(|free| free.rate == angle.place.u)?;
+        let axis = turning.twist.rho;
+        let load = dynamics.other_loads[link.link.body];
+        let unloaded = load.force == ZERO3 && load.torque == ZERO3;
+        let inertia = system.inertia(carriage.slot);
+        let graph = &mut system.graph;
+        let tilde = graph.tilde(&axis);
+        let (left, right) = (graph.mat_mul(&tilde, &inertia), graph.mat_mul(&inertia, &tilde));
+        let on_axis = graph.cross(&axis, &carriage.on_body) == ZERO3;
+        let symmetric = graph.sub_mat(&left, &right) == [ZERO3; 3];
+        (is_leaf(link.link.body) && unloaded && on_axis && symmetric).then_some(angle.place.x)
+    });
+    invariant.collect()
+}
+
+/// Sets of atoms of which the squares sum to one.
+fn unit_atoms(system: &mut System, layout: &Layout) -> Vec<Vec<ExprId>> {
+    let graph = &mut system.graph;
+    let mut unit = Vec::new();
+    for link in &layout.links {
+        for scalar in link.scalars.iter().filter(|scalar| scalar.kind.is_angle()) {
+            let x = scalar.place.x;
+            unit.push([Symbol::Cosine(x), Symbol::Sine(x)].map(|symbol| graph.symbol(symbol)).to_vec());
+        }
+        if let Some(place) = link.orientation {
+            unit.push((0..4).map(|k| graph.symbol(Symbol::Coordinate(place.x + k))).collect());
+        }
+    }
+    unit
+}

@@ -1,0 +1,26 @@
+//! What a mechanism offers to the solvers, and what the solvers ask of it.
+//!
+//! The mechanism is constant during a call. Every buffer belongs to the caller, and its size is part of its type: generated mechanisms
+//! use arrays, runtime-assembled ones heap-backed vectors.
+
+mod description;
+mod equations;
+mod joint_space;
+mod mechanism;
+mod ode;
+mod partition;
+
+pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
+pub use equations::{Equations, Terms};
+pub use joint_space::{JointBuffers, JointSpace};
+pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
+pub use ode::{Corrected, Exact, Joint, Ode, System};
+pub use partition::{Clearance, Partition};
+
+use core::fmt::Debug;
+
+/// A buffer of a fixed number of scalars: an array, a vector or a boxed slice.
+///
+/// An abbreviation of its bounds; nothing else implements or names it.
+pub trait Storage<T>: Clone + Debug + AsRef<[T]> + AsMut<[T]> {}
+impl<T, B: Clone + Debug + AsRef<[T]> + AsMut<[T]>> Storage<T> for B {}

@@ -1,0 +1,74 @@
+//! What a solver is told, and what it reports.
+
+use super::Passage;
+use crate::When;
+use crate::integrate::Work;
+
+/// What a solver is to keep to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Control {
+    /// Error tolerated in each step, relative to each element's size.
+    pub relative: f64,
+    /// Error tolerated in each step besides, in the element's own unit.
+    pub absolute: f64,
+    /// Length of the first step that is tried, s; zero to have it guessed.
+    pub first_step: f64,
+    /// Steps are not made shorter than this, s; rounding of the time sets a limit of its own.
+    pub smallest_step: f64,
+    /// Steps are not made longer than this, s.
+    pub largest_step: f64,
+    /// Number of steps, rejected ones included, after which the solver gives up.
+    pub budget: u64,
+    /// When to correct.
+    pub when: When,
+}
+
+impl Default for Control {
+    fn default() -> Self {
+        Self {
+            relative: 1e-8,
+            absolute: 1e-8,
+            first_step: 0.0,
+            smallest_step: 0.0,
+            largest_step: f64::INFINITY,
+            budget: 10_000_000,
+            when: When::Steps(1),
+        }
+    }
+}
+
+impl Control {
+    /// Both tolerances set to one number.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { relative: tolerance, absolute: tolerance, ..self }
+    }
+}
+
+/// What a run has cost and met.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Statistics {
+    /// Steps that were kept.
+    pub accepted: u64,
+    /// Steps that were tried again with a shorter one.
+    pub rejected: u64,
+    /// Corrections made.
+    pub corrections: u64,
+    /// Evaluations of the system.
+    pub work: Work,
+    /// Accepted steps of explicit methods whose length was at the limit of stability rather than set by accuracy.
+    pub limited_by_stability: u64,
+    /// The fastest rate |λ| of the system that a step has seen, 1/s; explicit methods only.
+    pub fastest_rate: f64,
+    /// The shortest accepted step, s, those left aside that were cut to end where they were told to.
+    pub shortest_step: f64,
+    /// The longest accepted step, s.
+    pub longest_step: f64,
+    /// Accepted steps that were extrapolated over a singular pose.
+    pub leaps: u64,
+    /// Singular poses that steps of fixed length have passed so near that they may have gone on in another way than the motion does.
+    pub passages: u64,
+    /// The first of them.
+    pub first_passage: Option<Passage>,
+}
