@@ -4,7 +4,10 @@
 //! coupler, coupler and rocker, ground and rocker at `(ground, 0)`. Directions are `(e0² − e3², 2 e0 e3)`, whatever e1 and e2.
 //! Pin 0 shows the crank's angle, pin 1 the coupler's x coordinate and its angle against the crank.
 
-use crate::{Coordinate, Energy, Equations, Error, JointInfo, Mechanism, Ode, Owner, Partition, RowInfo};
+use crate::{
+    Buffers, Coordinate, Description, Energy, Equations, Error, JointInfo, Mechanism, Owner, Partition,
+    RowInfo, Terms,
+};
 use crate::{pivoting, pivoting::Pivots};
 
 pub(super) const NC: usize = 20;
@@ -180,9 +183,54 @@ fn gauss(mut m: [[f64; 18]; 17]) -> [f64; 17] {
     x
 }
 
-impl Ode for FourBar {
+impl Mechanism for FourBar {
     type Scalar = f64;
     type State = State;
+    type Rows = [f64; JOINT_ROWS];
+    type Constraints = [f64; NC];
+    type Readings = [f64; 8];
+    type Outputs = [f64; 0];
+
+    fn description(&self) -> &Description<'_> {
+        const NONE: &[Coordinate] = &[];
+        const JOINTS: [JointInfo<'static>; 4] = [
+            JointInfo { name: "a", coordinates: &[Coordinate::Angle] },
+            JointInfo { name: "b", coordinates: &[Coordinate::Length, Coordinate::Angle] },
+            JointInfo { name: "c", coordinates: NONE },
+            JointInfo { name: "d", coordinates: NONE },
+        ];
+        const ROWS: [RowInfo; JOINT_ROWS] = {
+            let mut rows = [RowInfo { owner: Owner::Joint(0), is_length: true }; JOINT_ROWS];
+            let mut row = 0;
+            while row < JOINT_ROWS {
+                rows[row].owner =
+                    if row < 8 { Owner::Joint(row as u16 / 2) } else { Owner::Body((row as u16 - 8) / 3) };
+                rows[row].is_length = row < 8 || (row - 8) % 3 == 0;
+                row += 1;
+            }
+            rows
+        };
+        const DESCRIPTION: Description<'static> = Description {
+            size: 0.0,
+            bodies: &["crank", "coupler", "rocker"],
+            joints: &JOINTS,
+            couplers: &[],
+            drivers: &[],
+            rows: &ROWS,
+            has_work: false,
+            turn_references: &[],
+            inputs: &[],
+            outputs: &[],
+        };
+        &DESCRIPTION
+    }
+    fn buffers(&self) -> Buffers<Self> {
+        Buffers { rows: [0.0; JOINT_ROWS], constraints: [0.0; NC], readings: [0.0; 8], outputs: [] }
+    }
+    /// Of these rods: the description is that of all.
+    fn size(&self) -> f64 {
+        0.5 * self.rods.into_iter().fold(0.0, f64::max)
+    }
 
     fn start(&self) -> State {
         self.state(1.0, 1.0, 0.0)
@@ -190,25 +238,9 @@ impl Ode for FourBar {
 
     fn derivative(&self, t: f64, y: &State, dy: &mut State) {
         dy[..NQ].copy_from_slice(&Self::q_dot(y));
-        let mut accelerations = self.accelerations_buffer();
+        let mut accelerations = self.terms().accelerations;
         self.accelerations(t, y, &mut accelerations);
         dy[NQ..].copy_from_slice(&accelerations);
-    }
-}
-
-impl Mechanism for FourBar {
-    type Rows = [f64; JOINT_ROWS];
-    type Constraints = [f64; NC];
-    type Readings = [f64; 8];
-
-    fn rows(&self) -> Self::Rows {
-        [0.0; JOINT_ROWS]
-    }
-    fn constraints(&self) -> Self::Constraints {
-        [0.0; NC]
-    }
-    fn readings(&self) -> [f64; 8] {
-        [0.0; 8]
     }
     fn phi(&self, _: f64, y: &State, out: &mut Self::Constraints) {
         *out = [0.0; NC];
@@ -253,40 +285,9 @@ impl Mechanism for FourBar {
         let ([[c1, s1], [c2, s2]], [v1, v2]) = ([0, 1].map(|body| Self::direction(y, body)), [y[26], y[32]]);
         *out = [s1, c1, v1, y[7], y[27], s2 * c1 - c2 * s1, c2 * c1 + s2 * s1, v2 - v1];
     }
-    fn n_bodies(&self) -> usize {
-        3
-    }
-    fn n_joints(&self) -> usize {
-        4
-    }
-    fn body_name(&self, body: usize) -> &str {
-        ["crank", "coupler", "rocker"][body]
-    }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        let coordinates: &[Coordinate] = match joint {
-            0 => &[Coordinate::Angle],
-            1 => &[Coordinate::Length, Coordinate::Angle],
-            _ => &[],
-        };
-        JointInfo { name: ["a", "b", "c", "d"][joint], coordinates }
-    }
-    fn coupler_name(&self, _: usize) -> &str {
-        ""
-    }
-    fn driver_name(&self, _: usize) -> &str {
-        ""
-    }
-    fn row(&self, row: usize) -> RowInfo {
-        match row {
-            0..8 => RowInfo { owner: Owner::Joint(row as u16 / 2), is_length: true },
-            _ => RowInfo { owner: Owner::Body((row as u16 - 8) / 3), is_length: (row - 8).is_multiple_of(3) },
-        }
-    }
-    fn size(&self) -> f64 {
-        0.5 * self.rods.into_iter().fold(0.0, f64::max)
-    }
-    fn work(&self, _: &State) -> f64 {
-        0.0
+    fn outputs(&self, _: f64, _: &State, _: &mut [f64; 0]) {}
+    fn set_input(&mut self, _: usize, _: f64) -> bool {
+        false
     }
 }
 
@@ -296,17 +297,8 @@ impl Equations for FourBar {
     type PhiPi = [f64; 0];
     type Accelerations = [f64; 18];
 
-    fn velocities(&self) -> [f64; 18] {
-        [0.0; 18]
-    }
-    fn phi_q_values(&self) -> [f64; NON_ZEROS] {
-        [0.0; NON_ZEROS]
-    }
-    fn phi_pi_values(&self) -> [f64; 0] {
-        []
-    }
-    fn accelerations_buffer(&self) -> [f64; 18] {
-        [0.0; 18]
+    fn terms(&self) -> Terms<Self> {
+        Terms { velocities: [0.0; 18], phi_q: [0.0; NON_ZEROS], phi_pi: [], accelerations: [0.0; 18] }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &self.pattern
@@ -334,6 +326,7 @@ impl Equations for FourBar {
     fn multipliers(&self, _: f64, y: &State, _: &[f64; 18], lambda: &mut Self::Rows) {
         lambda[..8].copy_from_slice(&self.solve(y)[9..]);
     }
+    fn project(&self, _: f64, _: &State, _: &Self::Rows, _: &mut [f64; 18]) {}
 }
 
 impl Partition for FourBar {

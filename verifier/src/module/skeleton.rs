@@ -340,7 +340,7 @@ fn description(model: &Model) -> String {
             has_work: {has_work},
             turn_references: &[{turns}],
             inputs: &[{inputs}],
-            outputs: &[{outputs}],
+            outputs: &[{outputs}]
         }}"
     )
 }
@@ -360,7 +360,7 @@ fn by_charts(model: &Model, name: &str) -> String {
     let unrolled = lines(solves.map(|solve| {
         format!(
             "fn {solve}_on(
-                &self, ANY_t: T, ANY_charts: &[[T; 4]; INT_charts], ANY_y: &mut [T; {state}],
+                &self, ANY_t: T, ANY_charts: &[[T; 4]; INT_charts], ANY_y: &mut [T; {state}]
             ) {{ HOLE_{solve} }}"
         )
     }));
@@ -507,7 +507,7 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
                     rates: [T::constant(0.0); {n_rates}],
                     solution: [T::constant(0.0); {n_solution}],
                     jacobian: {no_slopes},
-                    input_jacobian: {no_input_slopes},
+                    input_jacobian: {no_input_slopes}
                 }}
             }}
             fn joint_start(&self) -> Self::Joints {{ HOLE_joint_start }}
