@@ -190,7 +190,7 @@ impl Choice {
 }
 
 /// A buffer of numbers.
-trait Numbers<T>: Clone + AsRef<[T]> + AsMut<[T]> {}
+pub trait Numbers<T>: Clone + AsRef<[T]> + AsMut<[T]> {}
 impl<T, B: Clone + AsRef<[T]> + AsMut<[T]>> Numbers<T> for B {}
 
 fn filled<T: Copy, B: Numbers<T>>(mut buffer: B, values: &[T]) -> B {
