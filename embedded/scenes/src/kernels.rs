@@ -69,7 +69,7 @@ pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 8] {
         ("chain maximal", |clock| maximal(&Chain::<T>::default(), CHAIN, clock)),
         ("chain joint", |clock| joint(&Chain::<T>::default(), CHAIN, clock)),
         ("paper by-hand", |clock| {
-            first_order((&Minimal::<T>::new(), &()), Minimal::start(), PAPER, clock)
+            first_order((&Minimal::<T>::new(), &()), Minimal::<T>::start(), PAPER, clock)
         }),
         ("control maximal", control::<T, C>),
     ]
