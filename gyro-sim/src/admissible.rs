@@ -1,7 +1,8 @@
-//! Which numbers parameters may have: the rules of a model page that parameters can break, looked at again when they are set.
+//! Which numbers parameters may have: the rules of a model page that parameters can break, looked at again when they
+//! are set.
 //!
-//! `cargo xtask simulate --set` decides them exactly, in rationals; here they are decided in floating point, and what is on the boundary by
-//! no more than rounding is allowed. A generated module lists its rules in `Parameters::check`:
+//! `cargo xtask simulate --set` decides them exactly, in rationals; here they are decided in floating point, and what
+//! is on the boundary by no more than rounding is allowed. A generated module lists its rules in `Parameters::check`:
 //! ```
 //! # #[cfg(feature = "generated")]
 //! # {
@@ -133,8 +134,9 @@ impl Rule {
     }
 }
 
-/// Positive definite by its leading principal minors (Sylvester); the tensor of second moments of mass, ½ tr(J) I − J, positive
-/// semidefinite by all its principal minors, each but for rounding. Scaled by the trace, so that no product leaves the numbers.
+/// Positive definite by its leading principal minors (Sylvester); the tensor of second moments of mass, ½ tr(J) I − J,
+/// positive semidefinite by all its principal minors, each but for rounding. Scaled by the trace, so that no product
+/// leaves the numbers.
 fn is_inertia(elements: [f64; 6], slack: f64) -> bool {
     let trace = elements[0] + elements[1] + elements[2];
     if trace.is_nan() || trace <= 0.0 {

@@ -2,10 +2,10 @@
 //!
 //! A revolute joint moves its body's p along the tangent `½ p∘h'` (h' the axis in the body's frame): the independent
 //! coordinate is the Euler parameter with the largest tangent component, at least half the tangent's length by the
-//! pigeonhole of four components. A spherical joint or a free body moves p over the whole sphere, whose normal is p: there
-//! the *dependent* coordinate is the largest component of p, again at least a half. One rule serves both: the special
-//! parameter is the largest component of a four-vector that the mechanism supplies, and four charts a joint never
-//! become singular.
+//! pigeonhole of four components. A spherical joint or a free body moves p over the whole sphere, whose normal is p:
+//! there the *dependent* coordinate is the largest component of p, again at least a half. One rule serves both: the
+//! special parameter is the largest component of a four-vector that the mechanism supplies, and four charts a joint
+//! never become singular.
 
 use crate::{Lanes, Real};
 

@@ -5,7 +5,8 @@ use crate::{Ode, Scalar};
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with its derivatives in `N` directions. Any kernel that is generic over its scalar can be evaluated with it.
+/// A number with its derivatives in `N` directions. Any kernel that is generic over its scalar can be evaluated with
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<T, const N: usize> {
     /// The value.
@@ -95,15 +96,16 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
         let (dy, dx) = (x.value / square, -self.value / square);
         self.with(x, self.value.atan2(x.value), |a, b| dy * a + dx * b)
     }
-    /// The third derivative of a table's curve, a step function, counts as zero: tables are functions of time, and so the second
-    /// derivative's own slope is asked for only by methods that differentiate with respect to time.
+    /// The third derivative of a table's curve, a step function, counts as zero: tables are functions of time, and so
+    /// the second derivative's own slope is asked for only by methods that differentiate with respect to time.
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         let [value, first, second] = self.value.spline(knots, pieces);
         [self.chain(value, first), self.chain(first, second), self.chain(second, T::constant(0.0))]
     }
 }
 
-/// The equations `D` with their Jacobian by [`Dual`] numbers, `N` columns at a time: for equations that do not offer one.
+/// The equations `D` with their Jacobian by [`Dual`] numbers, `N` columns at a time: for equations that do not offer
+/// one.
 #[derive(Clone, Debug)]
 pub struct ByDuals<D, M, S, J, const N: usize> {
     dynamics: D,

@@ -6,7 +6,8 @@ use core::fmt;
 /// A failure of a run, with the time and the number that failed. The run has not gone on past it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
-    /// The state is no longer finite: the step is too large for the motion, the pose is singular, or the start was not finite.
+    /// The state is no longer finite: the step is too large for the motion, the pose is singular, or the start was not
+    /// finite.
     NotFinite {
         /// Time, s.
         t: f64,
@@ -31,8 +32,8 @@ pub enum Error {
         /// Whose constraint depends on others there, where that is known.
         owner: Option<Owner>,
     },
-    /// A correction would change the dependent positions by so much that the solution need not be the one nearby: it may be
-    /// another way to assemble the mechanism, in which the run must not go on.
+    /// A correction would change the dependent positions by so much that the solution need not be the one nearby: it
+    /// may be another way to assemble the mechanism, in which the run must not go on.
     Jump {
         /// Time, s.
         t: f64,
@@ -59,8 +60,8 @@ pub enum Error {
         /// Number of steps taken, rejected ones included.
         steps: u64,
     },
-    /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the scene is stiff for it. An
-    /// L-stable method such as [`Rodas4`](crate::Rodas4) is not limited so.
+    /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the scene is stiff
+    /// for it. An L-stable method such as [`Rodas4`](crate::Rodas4) is not limited so.
     Stiff {
         /// Time, s.
         t: f64,
@@ -69,7 +70,7 @@ pub enum Error {
         /// The step that stability allows, s.
         step: f64,
     },
-    /// A setting of the solver, or a step, that is no length of a step.
+    /// A setting of the solver, or a step, that is not a valid step length.
     Setting {
         /// Its name.
         setting: &'static str,
@@ -83,7 +84,7 @@ pub enum Error {
         /// The time to go to, s.
         t_end: f64,
     },
-    /// The tolerances are no positive numbers, or finer than the number type can resolve.
+    /// The tolerances are not positive numbers, or are finer than the number type can resolve.
     Tolerance {
         /// Relative tolerance.
         relative: f64,
@@ -117,8 +118,8 @@ impl fmt::Display for Error {
             Self::StepTooShort { t, step, index } => {
                 write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
             }
-            Self::Setting { setting, value } => write!(f, "{setting} = {value} s is no length of a step"),
-            Self::InvalidEndTime { t, t_end } => write!(f, "at t = {t} s there is no way to t = {t_end} s"),
+            Self::Setting { setting, value } => write!(f, "{setting} = {value} s is not a valid step length"),
+            Self::InvalidEndTime { t, t_end } => write!(f, "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"),
             Self::TooManySteps { t, steps } => {
                 write!(f, "at t = {t} s the budget of {steps} steps is used up")
             }

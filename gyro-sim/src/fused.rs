@@ -1,12 +1,13 @@
 //! Multiplication and addition as one operation.
 //!
-//! Generated kernels write `T::fused(a, b, c)` for `a b + c` where a product feeds one sum and nothing else. With an instruction for it, as
-//! x86-64-v3 has, that is faster and rounded once; without one, a fused operation would be a call many times as slow, so the same text is
-//! plain arithmetic, rounded twice. Whether there is one is the target's features at compile time: `-C target-cpu=native` or
-//! `-C target-feature=+fma`. Targets other than x86 are plain so far.
+//! Generated kernels write `T::fused(a, b, c)` for `a b + c` where a product feeds one sum and nothing else. With an
+//! instruction for it, as x86-64-v3 has, that is faster and rounded once; without one, a fused operation would be a
+//! call many times as slow, so the same text is plain arithmetic, rounded twice. Whether there is one is the target's
+//! features at compile time: `-C target-cpu=native` or `-C target-feature=+fma`. Targets other than x86 are plain so
+//! far.
 //!
-//! So results differ by roundings between targets with and without. The feature `deterministic` turns fusing off: the same bits
-//! everywhere.
+//! So results differ by roundings between targets with and without. The feature `deterministic` turns fusing off: the
+//! same bits everywhere.
 
 /// Whether this build fuses.
 pub const IS_FUSED: bool = cfg!(all(

@@ -39,8 +39,8 @@ pub trait Scalar:
     /// The angle of the point `(x, self)`, in `(−π, π]`.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
-    /// Value, first and second derivative of a table's smooth curve at this time: see [`spline`](mod@crate::spline). Lanes of a
-    /// pack may lie in different pieces.
+    /// Value, first and second derivative of a table's smooth curve at this time: see [`spline`](mod@crate::spline).
+    /// Lanes of a pack may lie in different pieces.
     #[must_use]
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3];
 }
@@ -61,8 +61,8 @@ pub trait Real: Scalar + PartialOrd {
     fn to_f64(self) -> f64;
 }
 
-/// A pack of lanes, on which a solver can decide lane by lane. A [`Real`] number is a pack of one lane; those of SIMD registers come with
-/// the feature `lanes`.
+/// A pack of lanes, on which a solver can decide lane by lane. A [`Real`] number is a pack of one lane; those of SIMD
+/// registers come with the feature `lanes`.
 pub trait Lanes: Scalar {
     /// The number in one lane.
     type Lane: Real;

@@ -1,8 +1,8 @@
 //! A table's smooth curve: a natural cubic spline that goes on as a straight line beyond its ends.
 //!
-//! The curve is given by its knots, ascending, and one cubic `c0 + c1 u + c2 u² + c3 u³` for each interval between them, with `u`
-//! from the interval's first knot. It is twice continuously differentiable, at the ends too, because a natural spline has no
-//! curvature there.
+//! The curve is given by its knots, ascending, and one cubic `c0 + c1 u + c2 u² + c3 u³` for each interval between
+//! them, with `u` from the interval's first knot. It is twice continuously differentiable, at the ends too, because a
+//! natural spline has no curvature there.
 //!
 //! ```
 //! use gyro_sim::Scalar;
@@ -13,7 +13,8 @@
 //! assert_eq!(4.0.spline(&knots, &pieces), [-3.0, -1.5, 0.0]);
 //! ```
 
-/// The cubic that holds at a time, and the knot from which it counts; a straight line beyond the ends, zero for no pieces.
+/// The cubic that holds at a time, and the knot from which it counts; a straight line beyond the ends, zero for no
+/// pieces.
 ///
 /// Number types with more than one lane or with derivatives evaluate their own spline from this.
 pub fn piece(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> (f64, [f64; 4]) {

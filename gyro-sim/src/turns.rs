@@ -2,8 +2,9 @@
 
 use crate::{Coordinate, Mechanism, Real, Scalar};
 
-/// Sets the turn references of a state to their angles, from which integration lets them stray: both are integrated, each with errors of
-/// its own, and once they are half a turn apart a turn would be lost. No function of the state changes by it but for rounding.
+/// Sets the turn references of a state to their angles, from which integration lets them stray: both are integrated,
+/// each with errors of its own, and once they are half a turn apart a turn would be lost. No function of the state
+/// changes by it but for rounding.
 pub fn refer_turns<M: Mechanism>(mechanism: &M, t: M::Scalar, y: &mut M::State) {
     if !mechanism.description().turn_references.is_empty() {
         mechanism.refer_turns(t, y);
@@ -37,11 +38,11 @@ pub enum JointCoordinate<T> {
     },
 }
 
-/// The joint coordinates when they were last read, angles continuous over turns. Held beside the state by the caller, in
-/// buffers of the readings' own type.
+/// The joint coordinates when they were last read, angles continuous over turns. Held beside the state by the caller,
+/// in buffers of the readings' own type.
 ///
-/// An angle is continued from the last reading by the mean of the two rates, so it may turn many times between readings as
-/// long as that mean predicts it to within half a turn.
+/// An angle is continued from the last reading by the mean of the two rates, so it may turn many times between readings
+/// as long as that mean predicts it to within half a turn.
 #[derive(Clone, Debug)]
 pub struct Turns<M: Mechanism> {
     readings: M::Readings,
@@ -50,8 +51,8 @@ pub struct Turns<M: Mechanism> {
 }
 
 impl<M: Mechanism<Scalar: Real>> Turns<M> {
-    /// Takes the angles of a state at time `t` to lie nearest to the given ones, one number for each coordinate, joint after
-    /// joint (those of lengths and orientations are not looked at); angles that `nearest` does not cover to zero.
+    /// Takes the angles of a state at time `t` to lie nearest to the given ones, one number for each coordinate, joint
+    /// after joint (those of lengths and orientations are not looked at); angles that `nearest` does not cover to zero.
     pub fn new(mechanism: &M, t: M::Scalar, y: &M::State, nearest: &[M::Scalar]) -> Self {
         let mut turns = Self { readings: mechanism.buffers().readings, last: mechanism.buffers().readings };
         mechanism.read_joints(t, y, &mut turns.readings);

@@ -18,7 +18,8 @@ pub fn violation<M: Mechanism<Scalar: Real>>(mechanism: &M, rows: &[M::Scalar]) 
     worst(joint_rows(mechanism, rows, |x| x))
 }
 
-/// The worst of all rows of Φ, normalisations included; `read` gives the number that counts, of a pack of lanes one of them.
+/// The worst of all rows of Φ, normalisations included; `read` gives the number that counts, of a pack of lanes one of
+/// them.
 pub(crate) fn constraint_violation<M: Mechanism, T: Real>(
     mechanism: &M,
     phi: &[M::Scalar],

@@ -5,7 +5,7 @@
 use gyro_reference::{DoubleDouble, Gyroscope as Reference, JointRow, Start as ReferenceStart, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim::{
-    Direct, Error, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Rk4, Turns,
+    Direct, Error, Exact, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Rk4, Turns,
     generated as shipped,
 };
 use gyro_sim_suite::generated as own;
@@ -119,14 +119,13 @@ fn check_compiled(extreme: &Extreme) {
     let mechanism = &generated(page);
     let n_steps = (t_end / step).round() as u32;
     let interval = n_steps / SAMPLES;
-    let form = JointForm(mechanism);
-    let (mut x, mut y) = (form.start(), mechanism.start());
+    let (mut x, mut y) = (mechanism.joint_start(), mechanism.start());
     let (mut rk4, mut solver) = (Rk4::new(&x), Partitioned::new(mechanism, &y));
     let mut in_joints = x.clone();
     let (mut by_form, mut by_partition) = (Vec::new(), Vec::new());
     for sample in 0..SAMPLES {
         for k in sample * interval..(sample + 1) * interval {
-            rk4.step(&form, f64::from(k) * step, step, &mut x);
+            rk4.step(&Joint, mechanism, f64::from(k) * step, step, &mut x);
             if k % STEPS_PER_CORRECTION == 0 {
                 let t = f64::from(k) * step;
                 solver.advance(mechanism, t, step, STEPS_PER_CORRECTION, &mut y).expect("it goes on");
@@ -256,7 +255,7 @@ fn a_wrong_start_is_corrected_by_the_partition_and_not_hidden_by_direct_integrat
     assert!(before > 0.1 * WRONG && before < 10.0 * WRONG, "{before:e}");
 
     // Φ̈ = 0 is all that direct integration keeps: what is wrong stays wrong.
-    let (mut y, mut direct) = (wrong.clone(), Direct::new(&wrong));
+    let (mut y, mut direct) = (wrong.clone(), Direct::new(Exact, &wrong));
     direct.advance(&mechanism, 0.0, STEP, 5 * INTERVALS, &mut y).expect("it goes on");
     let after = position_violation(&mechanism, &y);
     assert!(after > 0.5 * before, "direct integration hides what is wrong: {before:e}, then {after:e}");
@@ -291,7 +290,7 @@ fn assert_refused<M: Partition<Scalar = f64>>(what: &str, mechanism: &M) {
     let start = mechanism.start();
     let (mut y, mut z) = (start.clone(), start.clone());
     let by_partition = Partitioned::new(mechanism, &start).advance(mechanism, 0.0, 1e-4, 5, &mut y);
-    let directly = Direct::new(&start).advance(mechanism, 0.0, 1e-4, 5, &mut z);
+    let directly = Direct::new(Exact, &start).advance(mechanism, 0.0, 1e-4, 5, &mut z);
     for outcome in [by_partition, directly] {
         assert!(matches!(outcome, Err(Error::NotFinite { .. })), "{what}: {outcome:?}, {y:?}");
     }
@@ -326,7 +325,7 @@ fn states_that_are_no_numbers_are_an_error() {
             let mut y = start.clone();
             y[place] = value;
             let outcome = Partitioned::new(&mechanism, &y).advance(&mechanism, 0.0, 1e-7, 5, &mut y.clone());
-            let directly = Direct::new(&y).advance(&mechanism, 0.0, 1e-7, 5, &mut y);
+            let directly = Direct::new(Exact, &y).advance(&mechanism, 0.0, 1e-7, 5, &mut y);
             assert!(outcome.is_err() && directly.is_err(), "{page}: element {place} = {value} passes");
         }
     }

@@ -6,8 +6,8 @@ use gyro_reference::Gyroscope as Reference;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::integrate::Method;
 use gyro_sim::{
-    ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Joint, JointSpace, Kutta4,
-    MassWeighted, Ode, Partitioning, Real, Rodas4, Solver, Tsit5, Uncorrected, When,
+    ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Exact, Joint, JointSpace, Kutta4,
+    MassWeighted, Mechanism, Ode, Partitioning, Real, Rodas4, Solver, Tsit5, When,
 };
 use std::sync::LazyLock;
 
@@ -53,26 +53,26 @@ fn order(errors: &[(u32, f64)]) -> f64 {
     sum(0, 1) / sum(0, 0)
 }
 
-/// Orders of a method in maximal coordinates with each correction after every step.
-fn orders<O, M>(system: &O, method: impl Fn(&State) -> M, steps: &[u32]) -> [f64; 3]
+/// Orders of a method in maximal coordinates with each correction after every step: with the equations for states that are corrected,
+/// and with exact ones where the correction needs them.
+fn orders<D, E, A>((corrected, exact): (D, E), method: impl Fn(&State) -> A, steps: &[u32]) -> [f64; 3]
 where
-    O: Ode<Scalar = f64, State = State>,
-    M: Method<O>,
-    Partitioning<Gyroscope<f64>>: Correction<O>,
-    ClosedForm<Gyroscope<f64>>: Correction<O>,
-    MassWeighted<Gyroscope<f64>>: Correction<O>,
+    D: Ode<Gyroscope<f64>, Scalar = f64, State = State> + Clone,
+    E: Ode<Gyroscope<f64>, Scalar = f64, State = State> + Clone,
+    A: Method<D, Gyroscope<f64>> + Method<E, Gyroscope<f64>>,
+    MassWeighted<Gyroscope<f64>>: Correction<E, Gyroscope<f64>>,
 {
-    fn run<O, M, C>(system: &O, method: M, correction: C, n: u32) -> (u32, f64)
+    fn run<D, A, C>(dynamics: D, method: A, correction: C, n: u32) -> (u32, f64)
     where
-        O: Ode<Scalar = f64, State = State>,
-        M: Method<O>,
-        C: Correction<O>,
+        D: Ode<Gyroscope<f64>, Scalar = f64, State = State>,
+        A: Method<D, Gyroscope<f64>>,
+        C: Correction<D, Gyroscope<f64>>,
     {
         let gyroscope = Gyroscope::default();
-        let mut solver = Solver::new(method, correction, 0.0, &gyroscope.start());
+        let mut solver = Solver::with_correction(dynamics, method, correction, 0.0, &gyroscope.start());
         let mut worst: f64 = 0.0;
         for sample in 1..=SAMPLES {
-            solver.advance(system, 1.0 / f64::from(n), n / SAMPLES).unwrap();
+            solver.advance(&gyroscope, 1.0 / f64::from(n), n / SAMPLES).unwrap();
             worst = worst.max(error_at(sample, &gyroscope, solver.state()));
         }
         (n, worst)
@@ -80,9 +80,9 @@ where
     let (gyroscope, y) = (Gyroscope::<f64>::default(), Gyroscope::<f64>::default().start());
     let by = |run: &dyn Fn(u32) -> (u32, f64)| order(&steps.iter().map(|n| run(*n)).collect::<Vec<_>>());
     [
-        by(&|n| run(system, method(&y), Partitioning::new(&gyroscope, 0.0, &y), n)),
-        by(&|n| run(system, method(&y), ClosedForm::new(&gyroscope), n)),
-        by(&|n| run(system, method(&y), MassWeighted::new(&gyroscope), n)),
+        by(&|n| run(corrected.clone(), method(&y), Partitioning::new(&gyroscope, 0.0, &y), n)),
+        by(&|n| run(corrected.clone(), method(&y), ClosedForm::new(&gyroscope), n)),
+        by(&|n| run(exact.clone(), method(&y), MassWeighted::new(&gyroscope), n)),
     ]
 }
 
@@ -93,41 +93,18 @@ fn assert_orders(name: &str, expected: f64, orders: [f64; 3]) {
 
 #[test]
 fn integrators_keep_their_orders_through_corrections() {
-    let gyroscope = Gyroscope::<f64>::default();
-    let corrected = Corrected(&gyroscope);
-    assert_orders("rk4", 4.0, orders(&corrected, Kutta4::new, &[1500, 2000, 3000, 4000, 6000]));
+    let equations = (Corrected, Exact);
+    assert_orders("rk4", 4.0, orders(equations, Kutta4::new, &[1500, 2000, 3000, 4000, 6000]));
     assert_orders(
         "tsit5",
         5.0,
-        orders(&corrected, Tsit5::new, &[400, 600, 800, 1000, 1200, 1400, 1600, 1800]),
+        orders(equations, Tsit5::new, &[400, 600, 800, 1000, 1200, 1400, 1600, 1800]),
     );
-    assert_orders("dop853", 8.0, orders(&corrected, Dop853::new, &[110, 140, 180, 220, 260]));
-    let (duals, zeros) = (Gyroscope::<Dual<f64, 4>>::default(), vec![0.0; 39 * 39]);
-    let system = ByDuals::new(Exact(&gyroscope), Exact(&duals), &zeros);
-    assert_orders("rodas4", 4.0, orders(&system, |y| Rodas4::new(&system, y), &[1500, 2000, 3000, 4000]));
-}
-
-/// A mechanism as a system.
-struct Exact<'a, M>(&'a M);
-
-impl<M: gyro_sim::Mechanism> Ode for Exact<'_, M> {
-    type Scalar = M::Scalar;
-    type State = M::State;
-
-    fn start(&self) -> M::State {
-        self.0.start()
-    }
-    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
-        self.0.derivative(t, y, dy);
-    }
-}
-
-impl<M: gyro_sim::Mechanism> gyro_sim::Maximal for Exact<'_, M> {
-    type Mechanism = M;
-
-    fn mechanism(&self) -> &M {
-        self.0
-    }
+    assert_orders("dop853", 8.0, orders(equations, Dop853::new, &[110, 140, 180, 220, 260]));
+    let duals = Gyroscope::<Dual<f64, 4>>::default();
+    let by_duals = ByDuals::new(Exact, duals, duals.start());
+    let method = |y: &State| Rodas4::new(y, vec![0.0; 39 * 39]);
+    assert_orders("rodas4", 4.0, orders((by_duals.clone(), by_duals), method, &[1500, 2000, 3000, 4000]));
 }
 
 #[test]
@@ -137,13 +114,14 @@ fn single_precision_reaches_a_millionth() {
     let steps = [100_u32, 200, 400, 800, 1600];
     let (x, y) = (gyroscope.joint_start(), gyroscope.start());
     let joint = steps.map(|n| {
-        let mut solver = Solver::new(Dop853::new(&x), Uncorrected, 0.0, &x);
-        solver.advance(&JointForm(&gyroscope), 1.0 / n as f32, n).unwrap();
+        let mut solver = Solver::new(Joint, Dop853::new(&x), 0.0, &x);
+        solver.advance(&gyroscope, 1.0 / n as f32, n).unwrap();
         error(SAMPLES, solver.state())
     });
     let maximal = steps.map(|n| {
-        let mut solver = Solver::new(Dop853::new(&y), ClosedForm::new(&gyroscope), 0.0, &y);
-        solver.advance(&Corrected(&gyroscope), 1.0 / n as f32, n).unwrap();
+        let mut solver =
+            Solver::with_correction(Corrected, Dop853::new(&y), ClosedForm::new(&gyroscope), 0.0, &y);
+        solver.advance(&gyroscope, 1.0 / n as f32, n).unwrap();
         error_at(SAMPLES, &gyroscope, solver.state())
     });
     println!("f32, dop853: joint {joint:?}, maximal {maximal:?}");
@@ -157,8 +135,9 @@ fn corrections_wait_for_their_moment() {
     let run = |when| {
         let control = Control { when, ..Control::default() };
         let correction = MassWeighted::new(&gyroscope);
-        let mut solver = Solver::new(Kutta4::new(&y), correction, 0.0, &y).with_control(control);
-        solver.advance(&Corrected(&gyroscope), 1e-3, 1000).unwrap();
+        let method = Kutta4::new(&y);
+        let mut solver = Solver::with_correction(Exact, method, correction, 0.0, &y).with_control(control);
+        solver.advance(&gyroscope, 1e-3, 1000).unwrap();
         (solver.statistics().corrections, error_at(SAMPLES, &gyroscope, solver.state()))
     };
     let [every, fifth, violated] = [When::Steps(1), When::Steps(5), When::Violation(1e-8)].map(run);

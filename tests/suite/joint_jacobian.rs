@@ -81,7 +81,7 @@ impl<M: JointSpace<Scalar = f64>> Twin<'_, M> {
 
 fn check<M>(page: &str, mechanism: &M)
 where
-    M: JointSpace<Scalar = f64> + Clone,
+    M: JointSpace<Scalar = f64, Jacobian: AsRef<[f64]>, InputJacobian: AsRef<[f64]>> + Clone,
 {
     let (model, mut random) = (model(page), Random::new(5));
     let (n_rates, n) =

@@ -9,7 +9,7 @@ use gyro_sim::generated::{
     heavy_top::HeavyTop,
 };
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
-use gyro_sim::{Direct, Error, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Storage};
+use gyro_sim::{Direct, Error, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar};
 use gyro_sim_suite::Random;
 
 /// Long enough for a rotor at 100 rad/s to switch charts in every lane.
@@ -44,7 +44,7 @@ fn starts<S: JointSpace<Scalar: Real>>(scalar: &S, count: usize) -> Vec<S::Joint
 /// What a run comes to: its state, and its error if it failed.
 type Outcome<S> = (S, Option<Error>);
 
-fn packed<T: Lanes, P: Storage<T>, S: Storage<T::Lane>>(like: &P, states: &[S]) -> P {
+fn packed<T: Lanes, P: Clone + AsMut<[T]>, S: AsRef<[T::Lane]>>(like: &P, states: &[S]) -> P {
     let mut packed = like.clone();
     for (index, value) in packed.as_mut().iter_mut().enumerate() {
         *value = T::from_lanes(|lane| states[lane].as_ref()[index]);
@@ -52,7 +52,7 @@ fn packed<T: Lanes, P: Storage<T>, S: Storage<T::Lane>>(like: &P, states: &[S]) 
     packed
 }
 
-fn same<T: Lanes, S: Storage<T::Lane>>(name: &str, found: (&[T], &lanes::Failures), expected: &[Outcome<S>]) {
+fn same<T: Lanes, S: AsRef<[T::Lane]>>(name: &str, found: (&[T], &lanes::Failures), expected: &[Outcome<S>]) {
     let (state, failures) = found;
     for (lane, (expected, error)) in expected.iter().enumerate() {
         // Errors may carry numbers that are not equal to themselves.
@@ -82,14 +82,14 @@ where
 {
     let states = starts(scalar, P::Scalar::COUNT);
     let mut x = packed::<P::Scalar, _, _>(&packs.joint_start(), &states);
-    let mut solver = lanes::Direct::new(&x);
+    let mut solver = lanes::Direct::new(Joint, &x);
     for interval in 0..INTERVALS {
-        solver.advance(&JointForm(packs), time(interval), P::Scalar::constant(STEP), STEPS, &mut x);
+        solver.advance(packs, time(interval), P::Scalar::constant(STEP), STEPS, &mut x);
     }
     let alone = |mut x: S::Joints| {
-        let mut solver = Direct::new(&x);
-        let (h, form) = (S::Scalar::constant(STEP), JointForm(scalar));
-        let error = run(|interval| solver.advance(&form, time(interval), h, STEPS, &mut x));
+        let mut solver = Direct::new(Joint, &x);
+        let h = S::Scalar::constant(STEP);
+        let error = run(|interval| solver.advance(scalar, time(interval), h, STEPS, &mut x));
         (x, error)
     };
     let expected: Vec<_> = states.into_iter().map(alone).collect();
@@ -100,7 +100,7 @@ where
 fn corrected_runs_agree<S, P>(name: &str, scalar: &S, packs: &P) -> (usize, u64)
 where
     S: JointSpace + Partition<Scalar: Real>,
-    P: Charted<Scalar: Lanes<Lane = <S as Mechanism>::Scalar>>,
+    P: Partition<Scalar: Lanes<Lane = <S as Mechanism>::Scalar>>,
 {
     let to_maximal = |x: &S::Joints| {
         let mut y = scalar.start();

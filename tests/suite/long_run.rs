@@ -8,8 +8,8 @@ use gyro_runner::Settings;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::integrate::Method;
 use gyro_sim::{
-    Control, Direct, Error, Kutta4, MassWeighted, Mechanism, Partition, Partitioned, Solver, Tsit5, Turns,
-    When, violation,
+    Control, Direct, Error, Exact, Kutta4, MassWeighted, Mechanism, Partition, Partitioned, Solver, Tsit5,
+    Turns, When, violation,
 };
 use gyro_sim_suite::{PAPER, coordinate, generated, model, simulate};
 use std::sync::LazyLock;
@@ -70,11 +70,12 @@ fn the_projection_lasts_a_hundred_seconds_with_tsit5() {
 }
 
 /// At the paper's step and with its corrections.
-fn projected<M: Method<Gyroscope<f64>>>(method: impl Fn(&[f64; 39]) -> M, limit: f64) {
+fn projected<A: Method<Exact, Gyroscope<f64>>>(method: impl Fn(&[f64; 39]) -> A, limit: f64) {
     let mechanism = Gyroscope::<f64>::default();
     let y = mechanism.start();
     let control = Control { when: When::Steps(STEPS_PER_CORRECTION), ..Control::default() };
-    let mut solver = Solver::new(method(&y), MassWeighted::new(&mechanism), 0.0, &y).with_control(control);
+    let correction = MassWeighted::new(&mechanism);
+    let mut solver = Solver::with_correction(Exact, method(&y), correction, 0.0, &y).with_control(control);
     solver.advance(&mechanism, STEP, 1_000_000).unwrap();
     let error = (alpha(&mechanism, solver.state(), ALPHAS[1]) - ALPHAS[1]).abs();
     println!("mass-weighted projection: error of alpha {error:e} rad");
@@ -109,7 +110,7 @@ fn fixed_choice(mechanism: &Gyroscope<f64>) -> Result<[f64; 39], Error> {
     let mut corrected = y.to_vec();
     let charts = mechanism.independent(0.0, &y);
     let choice = (0..).zip(charts).map(|(body, special)| 7 * body + 3 + usize::from(special)).collect();
-    let mut direct = Direct::new(&y);
+    let mut direct = Direct::new(Exact, &y);
     let mut partitioned = Partitioned::with_independent(&paper, &corrected, choice);
     for interval in 0..CORRECTIONS {
         let step = interval * STEPS_OF_A_FIXED_CHOICE;

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
-use gyro_sim::{Direct, Equations, Error, Mechanism, Partitioned, Real, Turns, violation};
+use gyro_sim::{Direct, Equations, Error, Exact, Mechanism, Partitioned, Real, Turns, violation};
 use gyro_sim_suite::{Engine, Random, for_each_generated, in_single_precision, model, pages};
 use std::collections::BTreeSet;
 
@@ -147,7 +147,7 @@ fn check_long_steps<T: Real + 'static>(page: &str, mechanism: &Engine<T>) {
     for step in [1.0, 1e3, 1e30, f64::NAN] {
         let (mut y, mut ends) = (mechanism.start(), mechanism.start());
         let mut solver = Partitioned::new(mechanism, &y);
-        let mut direct = Direct::new(&ends);
+        let mut direct = Direct::new(Exact, &ends);
         let h = T::constant(step);
         for _ in 0..20 {
             // Neither may panic; either may survive a step of a second.

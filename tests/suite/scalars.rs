@@ -155,17 +155,17 @@ impl Scalar for Dual {
     }
 }
 
-type Mechanism<T> = GyroscopeCombinedOffsets<T>;
+type Gimbal<T> = GyroscopeCombinedOffsets<T>;
 
-fn derivative<T: Scalar>(y: &<Mechanism<T> as Mechanism>::State) -> <Mechanism<T> as Mechanism>::State {
-    let (mechanism, mut dy) = (Mechanism::<T>::default(), *y);
+fn derivative<T: Scalar>(y: &<Gimbal<T> as Mechanism>::State) -> <Gimbal<T> as Mechanism>::State {
+    let (mechanism, mut dy) = (Gimbal::<T>::default(), *y);
     mechanism.derivative(T::constant(0.0), y, &mut dy);
     dy
 }
 
 /// The start, with every element moved a little, differently for each `seed`.
-fn state(seed: f64) -> <Mechanism<f64> as Mechanism>::State {
-    let mut y = Mechanism::<f64>::default().start();
+fn state(seed: f64) -> <Gimbal<f64> as Mechanism>::State {
+    let mut y = Gimbal::<f64>::default().start();
     for (k, y) in (0u8..).zip(&mut y) {
         *y += 1e-3 * (seed + f64::from(k)).sin();
     }

@@ -1,10 +1,10 @@
 //! Any mechanism behind one type: a mechanism is compiled once for each precision, and what runs and compares mechanisms once
 //! for all of them.
 
-use gyro_runner::motion::{COLUMNS, Feed, Kit, TreeWithJacobian, WithDuals};
+use gyro_runner::motion::{COLUMNS, Kit, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Clearance, Dual, Energy, Equations, Error, JointInfo, JointJacobian, JointSpace, Mechanism, Ode,
-    OutputInfo, Partition, Ports, Projection, Real, RowInfo, Storage,
+    Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointSpace, Mechanism,
+    Partition, Real, Terms,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -31,7 +31,7 @@ impl<T: Real + 'static> Engine<T> {
     /// The same mechanism, its type forgotten.
     pub fn new<M>(mechanism: M) -> Self
     where
-        M: Partition<Scalar = T, Independent: 'static> + Projection + Ports + Clone + Debug + 'static,
+        M: Partition<Scalar = T, Independent: 'static> + Equations + Clone + Debug + 'static,
     {
         Self { mechanism: Box::new(mechanism), tree: |_| None }
     }
@@ -40,9 +40,7 @@ impl<T: Real + 'static> Engine<T> {
     pub fn of_tree<M>(mechanism: M) -> Self
     where
         M: Partition<Scalar = T, Independent: 'static>
-            + Projection
-            + Ports
-            + JointJacobian
+            + JointSpace<Jacobian: Numbers<T>, InputJacobian: Numbers<T>>
             + Clone
             + Debug
             + 'static,
@@ -73,7 +71,7 @@ impl<T: Real + 'static> Duals<T> {
     /// The same mechanism, its type forgotten.
     pub fn new<D>(mechanism: D) -> Self
     where
-        D: Ode<Scalar = Dual<T, COLUMNS>> + Feed + Clone + Debug + 'static,
+        D: Mechanism<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
     {
         Self(Some(Box::new(mechanism)))
     }
@@ -142,19 +140,7 @@ trait Erased<T>: Any + Debug {
     fn clearance(&self, t: T, y: &[T]) -> Option<Clearance<T>>;
     fn phi_q_pattern(&self) -> &[(u16, u16)];
     fn phi_pi_pattern(&self) -> &[(u16, u16)];
-    fn turn_references(&self) -> &[u16];
-    fn n_bodies(&self) -> usize;
-    fn n_joints(&self) -> usize;
-    fn body_name(&self, body: usize) -> &str;
-    fn joint(&self, joint: usize) -> JointInfo<'_>;
-    fn coupler_name(&self, coupler: usize) -> &str;
-    fn driver_name(&self, driver: usize) -> &str;
-    fn row(&self, row: usize) -> RowInfo;
-    fn size(&self) -> T;
-    fn n_outputs(&self) -> usize;
-    fn output(&self, index: usize) -> OutputInfo<'_>;
-    fn n_inputs(&self) -> usize;
-    fn input_name(&self, index: usize) -> &str;
+    fn description(&self) -> &Description<'_>;
     fn set_input(&mut self, index: usize, value: T) -> bool;
 }
 
@@ -176,7 +162,7 @@ trait ErasedDuals<T>: Debug {
     fn cloned(&self) -> Box<dyn ErasedDuals<T>>;
     fn start(&self) -> Vec<Dual<T, COLUMNS>>;
     fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]);
-    fn feed(&mut self, index: usize, value: Dual<T, COLUMNS>);
+    fn set_input(&mut self, index: usize, value: Dual<T, COLUMNS>) -> bool;
 }
 
 trait ErasedChoice: Any + Debug {
@@ -203,13 +189,17 @@ impl Choice {
     }
 }
 
-fn filled<T: Copy, B: Storage<T>>(mut buffer: B, values: &[T]) -> B {
+/// A buffer of numbers.
+pub trait Numbers<T>: Clone + AsRef<[T]> + AsMut<[T]> {}
+impl<T, B: Clone + AsRef<[T]> + AsMut<[T]>> Numbers<T> for B {}
+
+fn filled<T: Copy, B: Numbers<T>>(mut buffer: B, values: &[T]) -> B {
     buffer.as_mut().copy_from_slice(values);
     buffer
 }
 
 /// Has a buffer written to and copies it out.
-fn through<T: Copy, B: Storage<T>>(mut buffer: B, out: &mut [T], write: impl FnOnce(&mut B)) {
+fn through<T: Copy, B: Numbers<T>>(mut buffer: B, out: &mut [T], write: impl FnOnce(&mut B)) {
     write(&mut buffer);
     out.copy_from_slice(buffer.as_ref());
 }
@@ -220,7 +210,7 @@ fn listed<T: Copy>(buffer: impl AsRef<[T]>) -> Vec<T> {
 
 impl<T: Real + 'static, M> Erased<T> for M
 where
-    M: Partition<Scalar = T, Independent: 'static> + Projection + Ports + Clone + Debug + 'static,
+    M: Partition<Scalar = T, Independent: 'static> + Equations + Clone + Debug + 'static,
 {
     fn cloned(&self) -> Box<dyn Erased<T>> {
         Box::new(self.clone())
@@ -228,40 +218,48 @@ where
     fn buffer(&self, term: Term) -> Vec<T> {
         match term {
             Term::Derivative => listed(self.start()),
-            Term::Phi => listed(self.constraints()),
-            Term::VelocityResidual | Term::Nu | Term::Gamma => listed(self.rows()),
-            Term::Readings => listed(self.readings()),
-            Term::PhiQ => listed(self.phi_q_values()),
-            Term::PhiPi => listed(self.phi_pi_values()),
-            Term::AppliedForce => listed(self.velocities()),
-            Term::Accelerations => listed(self.accelerations_buffer()),
-            Term::Outputs => listed(self.outputs_buffer()),
+            Term::Phi => listed(self.buffers().constraints),
+            Term::VelocityResidual | Term::Nu | Term::Gamma => listed(self.buffers().rows),
+            Term::Readings => listed(self.buffers().readings),
+            Term::PhiQ => listed(self.terms().phi_q),
+            Term::PhiPi => listed(self.terms().phi_pi),
+            Term::AppliedForce => listed(self.terms().velocities),
+            Term::Accelerations => listed(self.terms().accelerations),
+            Term::Outputs => listed(self.buffers().outputs),
         }
     }
     fn write(&self, term: Term, t: T, y: &[T], out: &mut [T]) {
         let y = &filled(self.start(), y);
         match term {
             Term::Derivative => through(self.start(), out, |dy| self.derivative(t, y, dy)),
-            Term::Phi => through(self.constraints(), out, |phi| self.phi(t, y, phi)),
-            Term::VelocityResidual => through(self.rows(), out, |rows| self.velocity_residual(t, y, rows)),
-            Term::Readings => through(self.readings(), out, |readings| self.read_joints(t, y, readings)),
-            Term::PhiQ => through(self.phi_q_values(), out, |values| self.phi_q(t, y, values)),
-            Term::PhiPi => through(self.phi_pi_values(), out, |values| self.phi_pi(t, y, values)),
-            Term::Nu => through(self.rows(), out, |nu| self.nu(t, y, nu)),
-            Term::Gamma => through(self.rows(), out, |gamma| self.gamma(t, y, gamma)),
-            Term::AppliedForce => through(self.velocities(), out, |force| self.applied_force(t, y, force)),
-            Term::Accelerations => through(self.accelerations_buffer(), out, |a| self.accelerations(t, y, a)),
-            Term::Outputs => through(self.outputs_buffer(), out, |outputs| self.outputs(t, y, outputs)),
+            Term::Phi => through(self.buffers().constraints, out, |phi| self.phi(t, y, phi)),
+            Term::VelocityResidual => {
+                through(self.buffers().rows, out, |rows| self.velocity_residual(t, y, rows))
+            }
+            Term::Readings => {
+                through(self.buffers().readings, out, |readings| self.read_joints(t, y, readings))
+            }
+            Term::PhiQ => through(self.terms().phi_q, out, |values| self.phi_q(t, y, values)),
+            Term::PhiPi => through(self.terms().phi_pi, out, |values| self.phi_pi(t, y, values)),
+            Term::Nu => through(self.buffers().rows, out, |nu| self.nu(t, y, nu)),
+            Term::Gamma => through(self.buffers().rows, out, |gamma| self.gamma(t, y, gamma)),
+            Term::AppliedForce => {
+                through(self.terms().velocities, out, |force| self.applied_force(t, y, force))
+            }
+            Term::Accelerations => through(self.terms().accelerations, out, |a| self.accelerations(t, y, a)),
+            Term::Outputs => through(self.buffers().outputs, out, |outputs| self.outputs(t, y, outputs)),
         }
     }
     fn multipliers(&self, t: T, y: &[T], accelerations: &[T], lambda: &mut [T]) {
         let y = &filled(self.start(), y);
-        let accelerations = &filled(self.accelerations_buffer(), accelerations);
-        through(self.rows(), lambda, |lambda| Equations::multipliers(self, t, y, accelerations, lambda));
+        let accelerations = &filled(self.terms().accelerations, accelerations);
+        through(self.buffers().rows, lambda, |lambda| {
+            Equations::multipliers(self, t, y, accelerations, lambda)
+        });
     }
     fn project(&self, t: T, y: &[T], rows: &[T], motion: &mut [T]) {
-        let (y, rows) = (&filled(self.start(), y), &filled(self.rows(), rows));
-        through(self.velocities(), motion, |motion| Projection::project(self, t, y, rows, motion));
+        let (y, rows) = (&filled(self.start(), y), &filled(self.buffers().rows, rows));
+        through(self.terms().velocities, motion, |motion| Equations::project(self, t, y, rows, motion));
     }
     fn energy(&self, t: T, y: &[T]) -> Energy<T> {
         Mechanism::energy(self, t, &filled(self.start(), y))
@@ -282,7 +280,7 @@ where
         outcome
     }
     fn is_met(&self, t: T, y: &[T], phi: &[T]) -> bool {
-        Partition::is_met(self, t, &filled(self.start(), y), &filled(self.constraints(), phi))
+        Partition::is_met(self, t, &filled(self.start(), y), &filled(self.buffers().constraints, phi))
     }
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut [T]) -> Result<(), Error> {
         let mut solved = filled(self.start(), y);
@@ -299,62 +297,29 @@ where
     fn phi_pi_pattern(&self) -> &[(u16, u16)] {
         Equations::phi_pi_pattern(self)
     }
-    fn turn_references(&self) -> &[u16] {
-        Mechanism::turn_references(self)
-    }
-    fn n_bodies(&self) -> usize {
-        Mechanism::n_bodies(self)
-    }
-    fn n_joints(&self) -> usize {
-        Mechanism::n_joints(self)
-    }
-    fn body_name(&self, body: usize) -> &str {
-        Mechanism::body_name(self, body)
-    }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        Mechanism::joint(self, joint)
-    }
-    fn coupler_name(&self, coupler: usize) -> &str {
-        Mechanism::coupler_name(self, coupler)
-    }
-    fn driver_name(&self, driver: usize) -> &str {
-        Mechanism::driver_name(self, driver)
-    }
-    fn row(&self, row: usize) -> RowInfo {
-        Mechanism::row(self, row)
-    }
-    fn size(&self) -> T {
-        Mechanism::size(self)
-    }
-    fn n_outputs(&self) -> usize {
-        Ports::n_outputs(self)
-    }
-    fn output(&self, index: usize) -> OutputInfo<'_> {
-        Ports::output(self, index)
-    }
-    fn n_inputs(&self) -> usize {
-        Ports::n_inputs(self)
-    }
-    fn input_name(&self, index: usize) -> &str {
-        Ports::input_name(self, index)
+    fn description(&self) -> &Description<'_> {
+        Mechanism::description(self)
     }
     fn set_input(&mut self, index: usize, value: T) -> bool {
-        Ports::set_input(self, index, value)
+        Mechanism::set_input(self, index, value)
     }
 }
 
-impl<T: Real + 'static, M: JointJacobian<Scalar = T>> ErasedTree<T> for M {
+impl<T: Real + 'static, M> ErasedTree<T> for M
+where
+    M: JointSpace<Scalar = T, Jacobian: Numbers<T>, InputJacobian: Numbers<T>>,
+{
     fn joint_start(&self) -> Vec<T> {
         listed(JointSpace::joint_start(self))
     }
     fn rates(&self) -> Vec<T> {
-        listed(JointSpace::rates(self))
+        listed(self.joint_buffers().rates)
     }
     fn jacobian_buffer(&self) -> Vec<T> {
-        listed(self.joint_jacobian_buffer())
+        listed(self.joint_buffers().jacobian)
     }
     fn input_jacobian_buffer(&self) -> Vec<T> {
-        listed(JointJacobian::input_jacobian_buffer(self))
+        listed(self.joint_buffers().input_jacobian)
     }
     fn corrected_derivative(&self, t: T, y: &[T], dy: &mut [T]) {
         let y = &filled(self.start(), y);
@@ -366,15 +331,15 @@ impl<T: Real + 'static, M: JointJacobian<Scalar = T>> ErasedTree<T> for M {
         through(buffer, dx, |dx| JointSpace::joint_derivative(self, t, x, dx));
     }
     fn joint_jacobian(&self, t: T, x: &[T], dfdx: &mut [T], dfdt: &mut [T]) {
-        let (mut jacobian, buffer) = (self.joint_jacobian_buffer(), JointSpace::joint_start(self));
+        let (mut jacobian, buffer) = (self.joint_buffers().jacobian, JointSpace::joint_start(self));
         let x = &filled(buffer.clone(), x);
-        through(buffer, dfdt, |dfdt| JointJacobian::joint_jacobian(self, t, x, &mut jacobian, dfdt));
+        through(buffer, dfdt, |dfdt| JointSpace::joint_jacobian(self, t, x, &mut jacobian, dfdt));
         dfdx.copy_from_slice(jacobian.as_ref());
     }
     fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]) {
         let x = &filled(JointSpace::joint_start(self), x);
-        let buffer = JointJacobian::input_jacobian_buffer(self);
-        through(buffer, out, |out| JointJacobian::joint_input_jacobian(self, t, x, out));
+        let buffer = self.joint_buffers().input_jacobian;
+        through(buffer, out, |out| JointSpace::joint_input_jacobian(self, t, x, out));
     }
     fn to_maximal(&self, t: T, x: &[T], y: &mut [T]) {
         let x = &filled(JointSpace::joint_start(self), x);
@@ -388,67 +353,88 @@ impl<T: Real + 'static, M: JointJacobian<Scalar = T>> ErasedTree<T> for M {
 
 impl<T: Real + 'static, D> ErasedDuals<T> for D
 where
-    D: Ode<Scalar = Dual<T, COLUMNS>> + Feed + Clone + Debug + 'static,
+    D: Mechanism<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
 {
     fn cloned(&self) -> Box<dyn ErasedDuals<T>> {
         Box::new(self.clone())
     }
     fn start(&self) -> Vec<Dual<T, COLUMNS>> {
-        listed(Ode::start(self))
+        listed(Mechanism::start(self))
     }
     fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]) {
-        let y = &filled(Ode::start(self), y);
-        through(Ode::start(self), dy, |dy| Ode::derivative(self, t, y, dy));
+        let y = &filled(Mechanism::start(self), y);
+        through(Mechanism::start(self), dy, |dy| Mechanism::derivative(self, t, y, dy));
     }
-    fn feed(&mut self, index: usize, value: Dual<T, COLUMNS>) {
-        Feed::feed(self, index, value);
+    fn set_input(&mut self, index: usize, value: Dual<T, COLUMNS>) -> bool {
+        Mechanism::set_input(self, index, value)
     }
 }
 
-impl<T: Real + 'static> Ode for Duals<T> {
+/// Only what linearisation asks for.
+impl<T: Real + 'static> Mechanism for Duals<T> {
     type Scalar = Dual<T, COLUMNS>;
     type State = Vec<Dual<T, COLUMNS>>;
+    type Rows = Vec<Dual<T, COLUMNS>>;
+    type Constraints = Vec<Dual<T, COLUMNS>>;
+    type Readings = Vec<Dual<T, COLUMNS>>;
+    type Outputs = Vec<Dual<T, COLUMNS>>;
+    fn description(&self) -> &Description<'_> {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn buffers(&self) -> Buffers<Self> {
+        unreachable!("{NOT_FORWARDED}")
+    }
     fn start(&self) -> Self::State {
         self.0.as_ref().expect(NO_DUALS).start()
     }
     fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
         self.0.as_ref().expect(NO_DUALS).derivative(t, y, dy);
     }
-}
-
-impl<T: Real + 'static> Feed for Duals<T> {
-    fn feed(&mut self, index: usize, value: Self::Scalar) {
-        if let Some(duals) = &mut self.0 {
-            duals.feed(index, value);
-        }
+    fn phi(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn velocity_residual(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn energy(&self, _: Self::Scalar, _: &Self::State) -> Energy<Self::Scalar> {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn read_joints(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn outputs(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn set_input(&mut self, index: usize, value: Self::Scalar) -> bool {
+        self.0.as_mut().is_some_and(|duals| duals.set_input(index, value))
     }
 }
 
 const NO_DUALS: &str = "this page has no dual numbers here: add it to `duals`";
 
-impl<T: Real + 'static> Ode for Engine<T> {
+impl<T: Real + 'static> Mechanism for Engine<T> {
     type Scalar = T;
     type State = Vec<T>;
+    type Rows = Vec<T>;
+    type Constraints = Vec<T>;
+    type Readings = Vec<T>;
+    type Outputs = Vec<T>;
+    fn description(&self) -> &Description<'_> {
+        self.mechanism.description()
+    }
+    fn buffers(&self) -> Buffers<Self> {
+        Buffers {
+            rows: self.mechanism.buffer(Term::Nu),
+            constraints: self.mechanism.buffer(Term::Phi),
+            readings: self.mechanism.buffer(Term::Readings),
+            outputs: self.mechanism.buffer(Term::Outputs),
+        }
+    }
     fn start(&self) -> Vec<T> {
         self.mechanism.buffer(Term::Derivative)
     }
     fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
         self.mechanism.write(Term::Derivative, t, y, dy);
-    }
-}
-
-impl<T: Real + 'static> Mechanism for Engine<T> {
-    type Rows = Vec<T>;
-    type Constraints = Vec<T>;
-    type Readings = Vec<T>;
-    fn rows(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::Nu)
-    }
-    fn constraints(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::Phi)
-    }
-    fn readings(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::Readings)
     }
     fn corrected_derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
         match (self.tree)(&*self.mechanism) {
@@ -468,32 +454,11 @@ impl<T: Real + 'static> Mechanism for Engine<T> {
     fn read_joints(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::Readings, t, y, out);
     }
-    fn turn_references(&self) -> &[u16] {
-        self.mechanism.turn_references()
+    fn outputs(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        self.mechanism.write(Term::Outputs, t, y, out);
     }
-    fn n_bodies(&self) -> usize {
-        self.mechanism.n_bodies()
-    }
-    fn n_joints(&self) -> usize {
-        self.mechanism.n_joints()
-    }
-    fn body_name(&self, body: usize) -> &str {
-        self.mechanism.body_name(body)
-    }
-    fn joint(&self, joint: usize) -> JointInfo<'_> {
-        self.mechanism.joint(joint)
-    }
-    fn coupler_name(&self, coupler: usize) -> &str {
-        self.mechanism.coupler_name(coupler)
-    }
-    fn driver_name(&self, driver: usize) -> &str {
-        self.mechanism.driver_name(driver)
-    }
-    fn row(&self, row: usize) -> RowInfo {
-        self.mechanism.row(row)
-    }
-    fn size(&self) -> T {
-        self.mechanism.size()
+    fn set_input(&mut self, index: usize, value: T) -> bool {
+        self.mechanism.set_input(index, value)
     }
     fn work(&self, y: &Vec<T>) -> T {
         self.mechanism.work(y)
@@ -527,17 +492,13 @@ impl<T: Real + 'static> Equations for Engine<T> {
     type PhiQ = Vec<T>;
     type PhiPi = Vec<T>;
     type Accelerations = Vec<T>;
-    fn velocities(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::AppliedForce)
-    }
-    fn phi_q_values(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::PhiQ)
-    }
-    fn phi_pi_values(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::PhiPi)
-    }
-    fn accelerations_buffer(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::Accelerations)
+    fn terms(&self) -> Terms<Self> {
+        Terms {
+            velocities: self.mechanism.buffer(Term::AppliedForce),
+            phi_q: self.mechanism.buffer(Term::PhiQ),
+            phi_pi: self.mechanism.buffer(Term::PhiPi),
+            accelerations: self.mechanism.buffer(Term::Accelerations),
+        }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         self.mechanism.phi_q_pattern()
@@ -566,36 +527,8 @@ impl<T: Real + 'static> Equations for Engine<T> {
     fn multipliers(&self, t: T, y: &Vec<T>, accelerations: &Vec<T>, lambda: &mut Vec<T>) {
         self.mechanism.multipliers(t, y, accelerations, lambda);
     }
-}
-
-impl<T: Real + 'static> Projection for Engine<T> {
     fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, motion: &mut Vec<T>) {
         self.mechanism.project(t, y, rows, motion);
-    }
-}
-
-impl<T: Real + 'static> Ports for Engine<T> {
-    type Outputs = Vec<T>;
-    fn outputs_buffer(&self) -> Vec<T> {
-        self.mechanism.buffer(Term::Outputs)
-    }
-    fn outputs(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.mechanism.write(Term::Outputs, t, y, out);
-    }
-    fn n_outputs(&self) -> usize {
-        self.mechanism.n_outputs()
-    }
-    fn output(&self, index: usize) -> OutputInfo<'_> {
-        self.mechanism.output(index)
-    }
-    fn n_inputs(&self) -> usize {
-        self.mechanism.n_inputs()
-    }
-    fn input_name(&self, index: usize) -> &str {
-        self.mechanism.input_name(index)
-    }
-    fn set_input(&mut self, index: usize, value: T) -> bool {
-        self.mechanism.set_input(index, value)
     }
 }
 
@@ -604,14 +537,19 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     type Joints = Vec<T>;
     type Rates = Vec<T>;
     type Solution = Vec<T>;
+    type Jacobian = Vec<T>;
+    type InputJacobian = Vec<T>;
+    fn joint_buffers(&self) -> JointBuffers<Self> {
+        let tree = self.tree();
+        JointBuffers {
+            rates: tree.rates(),
+            solution: Vec::new(),
+            jacobian: tree.jacobian_buffer(),
+            input_jacobian: tree.input_jacobian_buffer(),
+        }
+    }
     fn joint_start(&self) -> Vec<T> {
         self.tree().joint_start()
-    }
-    fn rates(&self) -> Vec<T> {
-        self.tree().rates()
-    }
-    fn solution(&self) -> Vec<T> {
-        unreachable!("{NOT_FORWARDED}")
     }
     fn joint_accelerations(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
         unreachable!("{NOT_FORWARDED}")
@@ -637,20 +575,6 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     fn corrected_solution(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
         unreachable!("{NOT_FORWARDED}")
     }
-}
-
-/// Each kernel of each page costs its compilation.
-const NOT_FORWARDED: &str = "ask the mechanism itself: an engine does not have it";
-
-impl<T: Real + 'static> JointJacobian for Engine<T> {
-    type Jacobian = Vec<T>;
-    type InputJacobian = Vec<T>;
-    fn joint_jacobian_buffer(&self) -> Vec<T> {
-        self.tree().jacobian_buffer()
-    }
-    fn input_jacobian_buffer(&self) -> Vec<T> {
-        self.tree().input_jacobian_buffer()
-    }
     fn joint_jacobian(&self, t: T, x: &Vec<T>, dfdx: &mut Vec<T>, dfdt: &mut Vec<T>) {
         self.tree().joint_jacobian(t, x, dfdx, dfdt);
     }
@@ -658,3 +582,6 @@ impl<T: Real + 'static> JointJacobian for Engine<T> {
         self.tree().joint_input_jacobian(t, x, out);
     }
 }
+
+/// Each kernel of each page costs its compilation.
+const NOT_FORWARDED: &str = "ask the mechanism itself: an engine does not have it";

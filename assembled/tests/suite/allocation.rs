@@ -3,7 +3,7 @@
 
 use crate::support::careful_models;
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{Equations, Mechanism, Partition, Partitioned};
+use gyro_sim::{Equations, Partition, Partitioned};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 

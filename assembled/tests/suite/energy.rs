@@ -3,7 +3,7 @@
 use crate::support::{Random, assert_close, dense, models, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::Model;
-use gyro_sim::{Direct, Mechanism};
+use gyro_sim::{Direct, Exact, Mechanism};
 
 /// Step and length of the runs. The fourth power of the step times the rates of the test models, 30 rad/s, is 1e-10.
 const STEP: f64 = 1e-4;
@@ -18,7 +18,7 @@ fn check(what: &str, model: &Model, mechanism: &Dense<f64>) {
     let step = STEP.min(model.simulation.step);
     let mut y = mechanism.start();
     let start = mechanism.energy(0.0, &y);
-    let mut solver = Direct::new(&y);
+    let mut solver = Direct::new(Exact, &y);
     solver.advance(mechanism, 0.0, step, STEPS, &mut y).expect("it runs");
     let end = mechanism.energy(step * f64::from(STEPS), &y);
     let work = mechanism.work(&y);

@@ -3,7 +3,7 @@
 use crate::support::{Random, assert_close, careful_models, dense, read_text, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::{JointKind, Model, Number, OutputKind, Support};
-use gyro_sim::{Mechanism, Rk4};
+use gyro_sim::{Exact, Mechanism, Rk4};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 const STATES: usize = 50;
@@ -133,7 +133,7 @@ fn a_joint_has_as_many_rows_as_it_takes_freedoms() {
 fn derivative(mechanism: &Dense<f64>, t: f64, y: &[f64], h: f64) -> Vec<f64> {
     let at = |h: f64| {
         let mut y = y.to_vec();
-        Rk4::new(&y).step(mechanism, t, h, &mut y);
+        Rk4::new(&y).step(&Exact, mechanism, t, h, &mut y);
         let mut outputs = mechanism.buffers().outputs;
         mechanism.outputs(t + h, &y, &mut outputs);
         outputs
@@ -165,7 +165,7 @@ fn check_kinematics(what: &str, model: &Model, mechanism: &Dense<f64>) {
     // At these rates the third derivatives are of the order of 1e4: the quotient's error is of the order of 1e-7.
     let (t, h, tolerance) = (0.2, 1e-5, 1e-6);
     let mut y = mechanism.start();
-    Rk4::new(&y).step(mechanism, t, 1e-3, &mut y);
+    Rk4::new(&y).step(&Exact, mechanism, t, 1e-3, &mut y);
     let mut now = mechanism.buffers().outputs;
     mechanism.outputs(t, &y, &mut now);
     let rates = derivative(mechanism, t, &y, h);

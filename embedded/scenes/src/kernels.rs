@@ -5,7 +5,7 @@ use crate::runs::{CHAIN, PAPER, STEPS, Settings, time};
 use crate::{Minimal, Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
+use gyro_sim::{Corrected, Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
 
 /// A piece of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,42 +61,28 @@ pub type Measured<C> = (&'static str, fn(&mut C) -> Result<(), Error>);
 pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 8] {
     [
         ("paper maximal", |clock| maximal(&Gyroscope::<T>::default(), PAPER, clock)),
-        ("paper joint", |clock| first_order(&JointForm(&Gyroscope::<T>::default()), PAPER, clock)),
+        ("paper joint", |clock| joint(&Gyroscope::<T>::default(), PAPER, clock)),
         ("misaligned maximal", |clock| maximal(&GyroscopeCombinedOffsets::<T>::default(), PAPER, clock)),
         ("misaligned joint", |clock| {
-            first_order(&JointForm(&GyroscopeCombinedOffsets::<T>::default()), PAPER, clock)
+            joint(&GyroscopeCombinedOffsets::<T>::default(), PAPER, clock)
         }),
         ("chain maximal", |clock| maximal(&Chain::<T>::default(), CHAIN, clock)),
-        ("chain joint", |clock| first_order(&JointForm(&Chain::<T>::default()), CHAIN, clock)),
-        ("paper by-hand", |clock| first_order(&Minimal::<T>::new(), PAPER, clock)),
+        ("chain joint", |clock| joint(&Chain::<T>::default(), CHAIN, clock)),
+        ("paper by-hand", |clock| {
+            first_order((&Minimal::<T>::new(), &()), Minimal::<T>::start(), PAPER, clock)
+        }),
         ("control maximal", control::<T, C>),
     ]
 }
 
-/// A mechanism between two corrections, as [`Partitioned`] integrates it.
-struct Corrected<'a, M>(&'a M);
-
-impl<M: Partition> Ode for Corrected<'_, M> {
-    type Scalar = M::Scalar;
-    type State = M::State;
-
-    fn start(&self) -> M::State {
-        self.0.start()
-    }
-    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
-        self.0.corrected_derivative(t, y, dy);
-    }
-}
-
-fn maximal<M: Partition + JointSpace>(
+fn maximal<M: Partition<Scalar: Real> + JointSpace>(
     mechanism: &M,
     settings: Settings,
     clock: &mut impl Clock,
 ) -> Result<(), Error> {
-    let corrected = Corrected(mechanism);
     let mut y = mechanism.start();
     let mut dy = y.clone();
-    let (mut direct, mut rk4) = (Direct::new(&y), Rk4::new(&y));
+    let (mut direct, mut rk4) = (Direct::new(Corrected, &y), Rk4::new(&y));
     let mut solver = Partitioned::new(mechanism, &y);
     let h = M::Scalar::constant(settings.step);
     for interval in 0..settings.intervals {
@@ -104,29 +90,37 @@ fn maximal<M: Partition + JointSpace>(
         clock.time(Work::Derivative, || mechanism.derivative(t, &y, &mut dy));
         clock.time(Work::CorrectedDerivative, || mechanism.corrected_derivative(t, &y, &mut dy));
         let mut other = y.clone();
-        clock.time(Work::Step, || rk4.step(&corrected, t, h, &mut other));
-        clock.time(Work::FiveSteps, || direct.advance(&corrected, t, h, STEPS, &mut y))?;
+        clock.time(Work::Step, || rk4.step(&Corrected, mechanism, t, h, &mut other));
+        clock.time(Work::FiveSteps, || direct.advance(mechanism, t, h, STEPS, &mut y))?;
         let t = time(settings.step, interval + 1);
         clock.time(Work::Correction, || solver.correct(mechanism, t, &mut y))?;
     }
     Ok(())
 }
 
-fn first_order<O: Ode<Scalar: Real>>(
-    system: &O,
+fn joint<M: JointSpace<Scalar: Real>>(
+    mechanism: &M,
     settings: Settings,
     clock: &mut impl Clock,
 ) -> Result<(), Error> {
-    let mut x = system.start();
+    first_order((&Joint, mechanism), mechanism.joint_start(), settings, clock)
+}
+
+fn first_order<D: Ode<M, Scalar: Real> + Copy, M>(
+    (dynamics, model): (&D, &M),
+    mut x: D::State,
+    settings: Settings,
+    clock: &mut impl Clock,
+) -> Result<(), Error> {
     let mut dx = x.clone();
-    let (mut direct, mut rk4) = (Direct::new(&x), Rk4::new(&x));
-    let h = O::Scalar::constant(settings.step);
+    let (mut direct, mut rk4) = (Direct::new(*dynamics, &x), Rk4::new(&x));
+    let h = D::Scalar::constant(settings.step);
     for interval in 0..settings.intervals {
         let t = time(settings.step, interval);
-        clock.time(Work::Derivative, || system.derivative(t, &x, &mut dx));
+        clock.time(Work::Derivative, || dynamics.derivative(model, t, &x, &mut dx));
         let mut other = x.clone();
-        clock.time(Work::Step, || rk4.step(system, t, h, &mut other));
-        clock.time(Work::FiveSteps, || direct.advance(system, t, h, STEPS, &mut x))?;
+        clock.time(Work::Step, || rk4.step(dynamics, model, t, h, &mut other));
+        clock.time(Work::FiveSteps, || direct.advance(model, t, h, STEPS, &mut x))?;
     }
     Ok(())
 }

@@ -25,6 +25,13 @@ impl<T: Real> Minimal<T> {
     }
 }
 
+impl<T: Real> Minimal<T> {
+    /// The rings at rest, the rotor at 100 rad/s.
+    pub fn start() -> [T; 6] {
+        [0.0, 0.0, 0.0, 0.0, 0.0, 100.0].map(T::constant)
+    }
+}
+
 impl<T: Real> Default for Minimal<T> {
     fn default() -> Self {
         Self::new()
@@ -34,12 +41,9 @@ impl<T: Real> Default for Minimal<T> {
 impl<T: Real> Ode for Minimal<T> {
     type Scalar = T;
     type State = [T; 6];
+    type Jacobian = ();
 
-    fn start(&self) -> [T; 6] {
-        [0.0, 0.0, 0.0, 0.0, 0.0, 100.0].map(T::constant)
-    }
-
-    fn derivative(&self, _: T, y: &[T; 6], dy: &mut [T; 6]) {
+    fn derivative(&self, _: &(), _: T, y: &[T; 6], dy: &mut [T; 6]) {
         let [_, beta, _, alpha_rate, beta_rate, phi_rate] = *y;
         let (s, c) = (beta.sin(), beta.cos());
         let x = alpha_rate * s;

@@ -6,7 +6,7 @@ use crate::mechanisms::gimbal::{Gimbal, Parameters};
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Error, JointCoordinate, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Turns};
+use gyro_sim::{Direct, Error, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Turns};
 
 /// A number whose bits can be looked at.
 pub trait Bits: Real {
@@ -103,12 +103,11 @@ pub fn joint<M>(mechanism: &M, settings: Settings) -> Result<Outcome<M::Scalar>,
 where
     M: JointSpace<Scalar: Bits>,
 {
-    let form = JointForm(mechanism);
-    let mut x = form.start();
-    let mut solver = gyro_sim::Direct::new(&x);
+    let mut x = mechanism.joint_start();
+    let mut solver = Direct::new(Joint, &x);
     let (h, mut digest) = (M::Scalar::constant(settings.step), Digest::new());
     for interval in 0..settings.intervals {
-        solver.advance(&form, time(settings.step, interval), h, STEPS, &mut x)?;
+        solver.advance(mechanism, time(settings.step, interval), h, STEPS, &mut x)?;
         add(&mut digest, x.as_ref());
     }
     Ok(Outcome { digest: digest.0, joints: first_three(x.as_ref()) })

@@ -19,7 +19,8 @@ pub struct Description<'a> {
     pub rows: &'a [RowInfo],
     /// Whether the state contains the work done by non-conservative forces and drivers, after the velocities.
     pub has_work: bool,
-    /// For each turn reference, which are the last elements of the state, the index of its angle's raw sine among the readings.
+    /// For each turn reference, which are the last elements of the state, the index of its angle's raw sine among the
+    /// readings.
     pub turn_references: &'a [u16],
     /// Names of the inputs.
     pub inputs: &'a [&'a str],
@@ -58,13 +59,13 @@ impl JointInfo<'_> {
 /// What the readings of a joint's coordinate are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinate {
-    /// Three readings: two that are proportional to the sine and the cosine of the angle by the same positive factor, and the rate,
-    /// rad/s.
+    /// Three readings: two that are proportional to the sine and the cosine of the angle by the same positive factor,
+    /// and the rate, rad/s.
     Angle,
     /// Two readings: a length, m, and its rate, m/s.
     Length,
-    /// Seven readings: the Euler parameters of the second body's frame in the first's, and the angular velocity of the second body
-    /// relative to the first, in the second body's frame, rad/s.
+    /// Seven readings: the Euler parameters of the second body's frame in the first's, and the angular velocity of the
+    /// second body relative to the first, in the second body's frame, rad/s.
     Orientation,
 }
 

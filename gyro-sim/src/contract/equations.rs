@@ -10,7 +10,8 @@ pub trait Equations: Mechanism {
     type PhiQ: Storage<Self::Scalar>;
     /// The non-zeros of (Φ_r, Φ_π').
     type PhiPi: Storage<Self::Scalar>;
-    /// The accelerations `(s̈, ẇ')` body after body, followed by what [`Equations::multipliers`] needs besides; possibly nothing.
+    /// The accelerations `(s̈, ẇ')` body after body, followed by what [`Equations::multipliers`] needs besides;
+    /// possibly nothing.
     type Accelerations: Storage<Self::Scalar>;
 
     /// Buffers, zeroed.
@@ -32,8 +33,8 @@ pub trait Equations: Mechanism {
     fn applied_force(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
     /// Solves eq. (17) for the accelerations `(s̈, ẇ')`.
     fn accelerations(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Accelerations);
-    /// Solves eq. (17) for the multipliers λ of all joint rows, given the accelerations that [`Equations::accelerations`] has found
-    /// at the same time and state.
+    /// Solves eq. (17) for the multipliers λ of all joint rows, given the accelerations that
+    /// [`Equations::accelerations`] has found at the same time and state.
     fn multipliers(
         &self,
         t: Self::Scalar,
@@ -48,10 +49,11 @@ pub trait Equations: Mechanism {
     /// [ Φ_π'    0   ] [ μ ] = [ rows ]        Φ_π' short for (Φ_r, Φ_π')
     /// ```
     ///
-    /// at the given state, which need not satisfy the constraints. Of all motions that change the joint rows by `rows` to first order it
-    /// is the one with the least `δᵀ M δ`: with `rows = −Φ` a step of a correction of the positions (p follows by `δp = ½ G(p)ᵀ δπ'`),
-    /// with minus the [velocity residual](Mechanism::velocity_residual) the correction of the velocities (s, w'). In this metric no
-    /// coordinate is preferred, and heavy bodies are moved least.
+    /// at the given state, which need not satisfy the constraints. Of all motions that change the joint rows by `rows`
+    /// to first order it is the one with the least `δᵀ M δ`: with `rows = −Φ` a step of a correction of the positions
+    /// (p follows by `δp = ½ G(p)ᵀ δπ'`), with minus the [velocity residual](Mechanism::velocity_residual) the
+    /// correction of the velocities (s, w'). In this metric no coordinate is preferred, and heavy bodies are moved
+    /// least.
     fn project(&self, t: Self::Scalar, y: &Self::State, rows: &Self::Rows, out: &mut Self::Velocities);
 }
 

@@ -2,18 +2,20 @@
 
 use super::{Equations, Storage};
 
-/// A tree in joint coordinates: the state-space form, with the maps to and from maximal coordinates, and shorter formulas for the
-/// accelerations of a maximal state that satisfies the constraints.
+/// A tree in joint coordinates: the state-space form, with the maps to and from maximal coordinates, and shorter
+/// formulas for the accelerations of a maximal state that satisfies the constraints.
 ///
-/// The joint state is `(x, u [, work])`. x has, joint after joint in the order of the model file, each scalar coordinate (an angle,
-/// rad, continuous over turns; a displacement, m), and then, of spherical joints and points on a line, the Euler parameters of the
-/// second body in the first's frame; after the joints, of each free body `r` and `p`. u has their rates: of Euler parameters the
-/// angular velocity relative to the first body in the second's frame, rad/s, of free bodies `s` and `w'`.
+/// The joint state is `(x, u [, work])`. x has, joint after joint in the order of the model file, each scalar
+/// coordinate (an angle, rad, continuous over turns; a displacement, m), and then, of spherical joints and points on a
+/// line, the Euler parameters of the second body in the first's frame; after the joints, of each free body `r` and `p`.
+/// u has their rates: of Euler parameters the angular velocity relative to the first body in the second's frame, rad/s,
+/// of free bodies `s` and `w'`.
 ///
 /// # The Jacobian
-/// Generated trees of up to eight rates have the derivatives of the joint form `ẋ = f(t, x)`, unless a third derivative of a table
-/// would be needed; for the others both Jacobians are `()`. They are the derivatives of the emitted functions as they stand, in directions
-/// too in which the state cannot change (of Euler parameters, across their unit sphere).
+/// Generated trees of up to eight rates have the derivatives of the joint form `ẋ = f(t, x)`, unless a third derivative
+/// of a table would be needed; for the others both Jacobians are `()`. They are the derivatives of the emitted
+/// functions as they stand, in directions too in which the state cannot change (of Euler parameters, across their unit
+/// sphere).
 pub trait JointSpace: Equations {
     /// `(x, u [, work])`.
     type Joints: Storage<Self::Scalar>;
@@ -53,7 +55,8 @@ pub trait JointSpace: Equations {
     );
     /// Writes both, (s̈, ẇ') and then λ; what they have in common is computed once.
     fn corrected_solution(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Solution);
-    /// Writes ∂f/∂x, row by row, and ∂f/∂t of [`JointSpace::joint_derivative`]. Implemented where [`JointSpace::Jacobian`] is not `()`.
+    /// Writes ∂f/∂x, row by row, and ∂f/∂t of [`JointSpace::joint_derivative`]. Implemented where
+    /// [`JointSpace::Jacobian`] is not `()`.
     fn joint_jacobian(
         &self,
         _t: Self::Scalar,

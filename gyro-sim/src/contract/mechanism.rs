@@ -27,8 +27,8 @@ pub trait Mechanism {
 
     /// Writes `ẏ = f(t, y)`, eqs. (14), (16) and (17), at any state.
     fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State);
-    /// Writes the same for states that were corrected a few steps ago: violations of the constraints are then of the order of the
-    /// integrator's error, and so is the error of this. Trees need far fewer operations for it.
+    /// Writes the same for states that were corrected a few steps ago: violations of the constraints are then of the
+    /// order of the integrator's error, and so is the error of this. Trees need far fewer operations for it.
     fn corrected_derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
         self.derivative(t, y, dy);
     }
@@ -55,8 +55,8 @@ pub trait Mechanism {
     fn size(&self) -> Self::Scalar {
         Self::Scalar::constant(self.description().size)
     }
-    /// The work done so far by non-conservative forces and drivers, J; zero where the state does not contain it: there is none, or the
-    /// model file leaves it out (`count_work = false`).
+    /// The work done so far by non-conservative forces and drivers, J; zero where the state does not contain it: there
+    /// is none, or the model file leaves it out (`count_work = false`).
     fn work(&self, y: &Self::State) -> Self::Scalar {
         let work = self.description().work().and_then(|place| y.as_ref().get(place));
         work.copied().unwrap_or(Self::Scalar::constant(0.0))
@@ -92,7 +92,8 @@ impl<T: Scalar> Energy<T> {
     }
 }
 
-/// Sets the last elements of a state to the angles whose raw sines and cosines begin at these places among the readings.
+/// Sets the last elements of a state to the angles whose raw sines and cosines begin at these places among the
+/// readings.
 pub fn set_turn_references<T: Scalar>(places: &[u16], readings: &[T], state: &mut [T]) {
     for (reference, place) in state.iter_mut().rev().zip(places.iter().rev()) {
         let at = usize::from(*place);

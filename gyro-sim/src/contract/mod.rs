@@ -1,7 +1,7 @@
 //! What a mechanism offers to the solvers, and what the solvers ask of it.
 //!
-//! The mechanism is constant during a call. Every buffer belongs to the caller, and its size is part of its type: generated mechanisms
-//! use arrays, runtime-assembled ones heap-backed vectors.
+//! The mechanism is constant during a call. Every buffer belongs to the caller, and its size is part of its type:
+//! generated mechanisms use arrays, runtime-assembled ones heap-backed vectors.
 
 mod description;
 mod equations;

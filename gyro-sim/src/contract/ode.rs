@@ -5,8 +5,8 @@ use crate::Scalar;
 
 /// A first-order system `ẏ = f(t, y)` of a model `M`: all that an explicit integrator needs.
 ///
-/// The implementor says *which* equations are integrated, and the model is handed in at each call. Equations that need no model beside them
-/// leave out `M`, and their solver is given `&()`:
+/// The implementor says *which* equations are integrated, and the model is handed in at each call. Equations that need
+/// no model beside them leave out `M`, and their solver is given `&()`:
 /// ```
 /// use gyro_sim::{Ode, Solver, Tsit5};
 ///
@@ -36,7 +36,8 @@ pub trait Ode<M = ()> {
     type Scalar: Scalar;
     /// The state y.
     type State: Storage<Self::Scalar>;
-    /// ∂f/∂y, n × n for a state of n numbers, row by row: for implicit methods. `()` for a system that does not offer it.
+    /// ∂f/∂y, n × n for a state of n numbers, row by row: for implicit methods. `()` for a system that does not offer
+    /// it.
     type Jacobian;
 
     /// Writes `f(t, y)`.
@@ -53,7 +54,8 @@ pub trait Ode<M = ()> {
     }
 }
 
-/// A mechanism's equations of motion in maximal coordinates, exact on the constraints and off them: [`Mechanism::derivative`].
+/// A mechanism's equations of motion in maximal coordinates, exact on the constraints and off them:
+/// [`Mechanism::derivative`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exact;
 

@@ -26,14 +26,15 @@ pub trait Partition: Mechanism<Scalar: Lanes> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
-    /// Whether rounding prevents the rows of Φ from coming nearer to zero, although one exceeds the tolerance for poses near the
-    /// origin: Newton's iteration then ends. Angles of many turns are known less accurately than angles of a few, and a mechanism with
-    /// such rows compares each with the terms that it subtracts ([`pivoting::is_met`](crate::pivoting::is_met)).
+    /// Whether rounding prevents the rows of Φ from coming nearer to zero, although one exceeds the tolerance for poses
+    /// near the origin: Newton's iteration then ends. Angles of many turns are known less accurately than angles of a
+    /// few, and a mechanism with such rows compares each with the terms that it subtracts
+    /// ([`pivoting::is_met`](crate::pivoting::is_met)).
     fn is_met(&self, _t: Self::Scalar, _y: &Self::State, _phi: &Self::Constraints) -> bool {
         false
     }
-    /// Solves eq. (19) for the dependent velocities, at corrected positions; the independent ones (components of ṙ and ṗ, or
-    /// the rate about a joint's axis) keep the values that they have in `y`.
+    /// Solves eq. (19) for the dependent velocities, at corrected positions; the independent ones (components of ṙ and
+    /// ṗ, or the rate about a joint's axis) keep the values that they have in `y`.
     ///
     /// # Errors
     /// [`Error::Singular`] if the equations cannot be solved for the dependent velocities.
@@ -49,7 +50,8 @@ pub trait Partition: Mechanism<Scalar: Lanes> {
     }
 }
 
-/// How far a state is from singular poses, in which a mechanism has more degrees of freedom than elsewhere and several motions continue.
+/// How far a state is from singular poses, in which a mechanism has more degrees of freedom than elsewhere and several
+/// motions continue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance<T> {
     /// A pure number, of order one far from singular poses and zero in them.

@@ -2,10 +2,10 @@
 
 use crate::{Equations, Ode, Scalar};
 
-/// Equations of motion whose accelerations reduce violations, `Φ̈ + 2 ω Φ̇ + ω² Φ = 0`, critically damped, with Euler parameters drawn
-/// towards unit length at the rate ω (J. Baumgarte, *Stabilization of constraints and integrals of motion in dynamical systems*, Comput.
-/// Methods Appl. Mech. Eng. 1 (1972)). ω is a rate of the mechanism's own motion: a much slower one has no effect, a much faster one
-/// makes the equations stiff.
+/// Equations of motion whose accelerations reduce violations, `Φ̈ + 2 ω Φ̇ + ω² Φ = 0`, critically damped, with Euler
+/// parameters drawn towards unit length at the rate ω (J. Baumgarte, *Stabilization of constraints and integrals of
+/// motion in dynamical systems*, Comput. Methods Appl. Mech. Eng. 1 (1972)). ω is a rate of the mechanism's own motion:
+/// a much slower one has no effect, a much faster one makes the equations stiff.
 #[derive(Clone, Copy, Debug)]
 pub struct Baumgarte<T> {
     /// ω, rad/s.

@@ -5,11 +5,31 @@ use crate::pivoting::{self, is_met, silence};
 use crate::violation::{Violation, constraint_violation, violation};
 use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, Real, Scalar, refer_turns};
 
-/// The nearest state that satisfies the constraints: of all changes that do, the smallest as the masses weigh it, δᵀ M δ, first of the
-/// positions, then of the velocities. What is integrated well, because it moves much mass, is changed least.
+/// The nearest state that satisfies the constraints: of all changes that lead there the smallest in the metric of the
+/// masses, δᵀ M δ, first of the positions, then of the velocities. What is integrated accurately, because it moves much
+/// mass, is changed least.
 ///
-/// A change of the positions keeps the rates ṙ and ṗ of the coordinates, and so turns w' by `−½ δπ' × w'`. Integrate
-/// the mechanism itself, exact off the constraints, rather than [`Corrected`](crate::Corrected): only then are errors as small as this correction can make them.
+/// A change of the positions keeps the rates ṙ and ṗ of the coordinates, and so turns w' by `−½ δπ' × w'`.
+///
+/// # The equations that it admits
+/// Errors are as small as this correction can make them only where the accelerations are exact off the constraints too:
+/// it admits [`Exact`] equations, with a Jacobian by [`ByDuals`] or without. [`Corrected`](crate::Corrected) ones do not
+/// compile:
+/// ```compile_fail,E0277
+/// # use gyro_sim::{Corrected, Equations, Error, Kutta4, MassWeighted, Partition, Solver};
+/// fn step<M: Partition<Scalar = f64> + Equations>(mechanism: &M, y: &M::State) -> Result<(), Error> {
+///     let (method, correction) = (Kutta4::new(y), MassWeighted::new(mechanism));
+///     Solver::with_correction(Corrected, method, correction, 0.0, y).step(mechanism, 1e-4)
+/// }
+/// ```
+/// With `Exact` in the place of `Corrected` they do:
+/// ```
+/// # use gyro_sim::{Equations, Error, Exact, Kutta4, MassWeighted, Partition, Solver};
+/// fn step<M: Partition<Scalar = f64> + Equations>(mechanism: &M, y: &M::State) -> Result<(), Error> {
+///     let (method, correction) = (Kutta4::new(y), MassWeighted::new(mechanism));
+///     Solver::with_correction(Exact, method, correction, 0.0, y).step(mechanism, 1e-4)
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct MassWeighted<M: Equations> {
     /// Where singular poses divide by small numbers what the iteration leaves, it takes a step more.

@@ -22,7 +22,8 @@ pub use partition::{Direct, Partitioned, Partitioning};
 use crate::violation::constraint_violation;
 use crate::{Clearance, Error, Mechanism, Ode, Partition, Real, Scalar, refer_turns};
 
-/// A way back onto the constraints, for the equations `D` of a model `M`: a correction implements this for the equations that it admits.
+/// A way back onto the constraints, for the equations `D` of a model `M`: a correction implements this for the
+/// equations that it admits.
 pub trait Correction<D: Ode<M>, M = ()> {
     /// Corrects positions and velocities.
     ///
@@ -56,8 +57,8 @@ impl<D: Ode<M>, M> Correction<D, M> for Uncorrected {
     }
 }
 
-/// No correction of a mechanism, but its drift is measured, singular poses are detected, and turn references are kept. ([`Uncorrected`]
-/// does not know that its system is a mechanism.)
+/// No correction of a mechanism, but its drift is measured, singular poses are detected, and turn references are kept.
+/// ([`Uncorrected`] does not know that its system is a mechanism.)
 #[derive(Clone, Debug)]
 pub struct Watched<M: Mechanism> {
     phi: M::Constraints,
@@ -96,7 +97,8 @@ where
 pub enum When {
     /// After so many steps; 1 is after every step.
     Steps(u32),
-    /// After each step that leaves a violation of a position constraint larger than this, lengths in units of the mechanism's size.
+    /// After each step that leaves a violation of a position constraint larger than this, lengths in units of the
+    /// mechanism's size.
     Violation(f64),
 }
 
@@ -106,12 +108,13 @@ impl Default for When {
     }
 }
 
-/// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does not.
+/// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does
+/// not.
 pub(crate) const MAX_ITERATIONS: u32 = 10;
 
-/// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in units
-/// of the mechanism's size, because a point row is a difference of positions. Where that is not enough, each row is judged by what it
-/// subtracts: see [`Partition::is_met`](crate::Partition::is_met).
+/// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in
+/// units of the mechanism's size, because a point row is a difference of positions. Where that is not enough, each row
+/// is judged by what it subtracts: see [`Partition::is_met`](crate::Partition::is_met).
 pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
 /// The largest coordinate of a mass centre in units of the mechanism's size.

@@ -5,8 +5,8 @@ use crate::contract::Storage;
 use crate::violation::{Violation, constraint_violation};
 use crate::{Clearance, Corrected, Error, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
 
-/// *Direct integration* of the equations `D`, [`Exact`] or [`Joint`](crate::Joint) of a mechanism or those of a system of one's own. No
-/// constraint is corrected: violations grow, as the paper says.
+/// *Direct integration* of the equations `D`, [`Exact`] or [`Joint`](crate::Joint) of a mechanism or those of a system
+/// of one's own. No constraint is corrected: violations grow, as the paper says.
 #[derive(Clone, Debug)]
 pub struct Direct<D, S> {
     dynamics: D,
@@ -22,7 +22,8 @@ impl<D, S: Clone> Direct<D, S> {
     /// Advances `y` from `t` by `n_steps` steps of length `h`.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the state is not finite afterwards, [`Error::InvalidEndTime`] if time or step are not finite.
+    /// [`Error::NotFinite`] if the state is not finite afterwards, [`Error::InvalidEndTime`] if time or step are not
+    /// finite.
     pub fn advance<M>(
         &mut self,
         model: &M,
@@ -45,8 +46,8 @@ impl<D, S: Clone> Direct<D, S> {
     }
 }
 
-/// *Coordinate partitioning* as a correction: dependent positions by Newton–Raphson, dependent velocities by eq. (19). The choice of
-/// independent coordinates follows the motion.
+/// *Coordinate partitioning* as a correction: dependent positions by Newton–Raphson, dependent velocities by eq. (19).
+/// The choice of independent coordinates follows the motion.
 #[derive(Clone, Debug)]
 pub struct Partitioning<M: Partition> {
     independent: M::Independent,

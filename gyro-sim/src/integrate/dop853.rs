@@ -1,5 +1,6 @@
-//! The method of order 8 of Dormand and Prince with error estimates of orders 5 and 3 and dense output of order 7, by Hairer, Nørsett and
-//! Wanner, *Solving Ordinary Differential Equations I* (2nd ed. 1993), section II.5 and appendix; coefficients as in their code DOP853.
+//! The method of order 8 of Dormand and Prince with error estimates of orders 5 and 3 and dense output of order 7, by
+//! Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (2nd ed. 1993), section II.5 and appendix;
+//! coefficients as in their code DOP853.
 
 use super::{Method, Work, combine, rate, sum_at};
 use crate::{Ode, Real, Scalar, System};

@@ -1,5 +1,5 @@
-//! The classical fourth-order method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table II.1.2), with dense output of order 3 by
-//! Hermite's cubic.
+//! The classical fourth-order method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table II.1.2), with
+//! dense output of order 3 by Hermite's cubic.
 
 use super::{Method, Work, combine, rate};
 use crate::{Ode, Scalar, System};

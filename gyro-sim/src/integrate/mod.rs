@@ -7,8 +7,8 @@
 //! | [`Dop853`] | 8(5, 3) | fine tolerances; the cheapest on smooth motions from 1e-5 on |
 //! | [`Rodas4`] | 4(3), L-stable | stiff scenes; needs a system with a [Jacobian](crate::Ode::Jacobian) |
 //!
-//! A method holds its own work space, whose size is part of the type of the state: nothing is allocated. Methods do not depend on
-//! mechanisms or corrections; [`Solver`](crate::Solver) combines them.
+//! A method holds its own work space, whose size is part of the type of the state: nothing is allocated. Methods do not
+//! depend on mechanisms or corrections; [`Solver`](crate::Solver) combines them.
 
 mod dop853;
 mod kutta4;
@@ -28,19 +28,20 @@ use crate::{Ode, Real, Scalar, System};
 
 /// A one-step method: a step of a given length from a given state, and the states within it.
 ///
-/// A method that estimates its own error has an [`ERROR_ORDER`](Method::ERROR_ORDER) and implements [`Method::error`]; without them it is
-/// for steps of fixed length.
+/// A method that estimates its own error has an [`ERROR_ORDER`](Method::ERROR_ORDER) and implements [`Method::error`];
+/// without them it is for steps of fixed length.
 pub trait Method<D: Ode<M>, M = ()> {
     /// Order p: over a given time the error of fixed steps h shrinks like hᵖ.
     const ORDER: u32;
-    /// The largest |hλ| of a decaying motion (real λ) that the method follows without growing; infinite for L-stable methods.
+    /// The largest |hλ| of a decaying motion (real λ) that the method follows without growing; infinite for L-stable
+    /// methods.
     const STABILITY: f64;
     /// The error estimate shrinks like h to the power of this; zero for a method without an estimate.
     const ERROR_ORDER: u32 = 0;
 
-    /// Steps from `y` at `t` to [`Method::end`] at `t + h`, and counts what it evaluates. With `resumes`, `t` and `y` are those of the
-    /// last attempt, or its end exactly as it was after [`Method::carry`] has returned that its slope is known: what was found there is
-    /// used again.
+    /// Steps from `y` at `t` to [`Method::end`] at `t + h`, and counts what it evaluates. With `resumes`, `t` and `y`
+    /// are those of the last attempt, or its end exactly as it was after [`Method::carry`] has returned that its slope
+    /// is known: what was found there is used again.
     fn attempt(
         &mut self,
         system: System<'_, D, M>,
@@ -65,11 +66,12 @@ pub trait Method<D: Ode<M>, M = ()> {
     );
     /// Writes the state at `t + θ h` within the step that was prepared, 0 ≤ θ ≤ 1.
     fn between(&self, theta: D::Scalar, out: &mut D::State);
-    /// Numerator and denominator, squared, of an estimate of the fastest rate |λ| of the system that the last attempt has met; both
-    /// zero where there is no estimate.
+    /// Numerator and denominator, squared, of an estimate of the fastest rate |λ| of the system that the last attempt
+    /// has met; both zero where there is no estimate.
     fn rate(&self) -> [D::Scalar; 2];
-    /// The estimated error of the last attempt in units of the tolerance, the root mean square over the elements of the state, and the
-    /// index of the worst. The weights are the tolerated errors of each element. Infinite where the result of the attempt is not finite.
+    /// The estimated error of the last attempt in units of the tolerance, the root mean square over the elements of the
+    /// state, and the index of the worst. The weights are the tolerated errors of each element. Infinite where the
+    /// result of the attempt is not finite.
     fn error(&self, _h: D::Scalar, _weights: &D::State) -> (D::Scalar, usize)
     where
         D::Scalar: Real,

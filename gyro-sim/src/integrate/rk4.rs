@@ -1,4 +1,5 @@
-//! The classical fourth-order Runge–Kutta method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table II.1.2).
+//! The classical fourth-order Runge–Kutta method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table
+//! II.1.2).
 
 use crate::contract::Storage;
 use crate::{Ode, Scalar, System};
@@ -51,7 +52,8 @@ impl<S: Clone> Rk4<S> {
         }
     }
 
-    /// Adds the slope to the sum with its weight, and goes on from `y` along it to the next stage, in one pass over memory.
+    /// Adds the slope to the sum with its weight, and goes on from `y` along it to the next stage, in one pass over
+    /// memory.
     #[inline]
     fn go_on<T: Scalar>(&mut self, y: &S, weight: T, step: T)
     where

@@ -1,5 +1,6 @@
-//! Rodas4: the L-stable, stiffly accurate Rosenbrock method of order 4 with an estimate of order 3 and dense output of order 3, by Hairer
-//! and Wanner, *Solving Ordinary Differential Equations II* (2nd ed. 1996), section VI.4; coefficients as in their code RODAS (method 1).
+//! Rodas4: the L-stable, stiffly accurate Rosenbrock method of order 4 with an estimate of order 3 and dense output of
+//! order 3, by Hairer and Wanner, *Solving Ordinary Differential Equations II* (2nd ed. 1996), section VI.4;
+//! coefficients as in their code RODAS (method 1).
 //!
 //! Each step takes one Jacobian, one factorisation of `I/(γh) − ∂f/∂y` and six solves, and iterates nothing.
 

@@ -1,5 +1,6 @@
-//! The pair of orders 5 and 4 of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying
-//! assumption*, Computers & Mathematics with Applications 62 (2011), 770–775, with its interpolant of order 4.
+//! The pair of orders 5 and 4 of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column
+//! simplifying assumption*, Computers & Mathematics with Applications 62 (2011), 770–775, with its interpolant of order
+//! 4.
 
 use super::{Method, Work, combine, rate, size, sum_at};
 use crate::{Ode, Real, Scalar, System};

@@ -1,4 +1,5 @@
-//! Direct integration and coordinate partitioning of all lanes at once: what [`crate::Direct`] and [`crate::Partitioned`] do, lane by lane.
+//! Direct integration and coordinate partitioning of all lanes at once: what [`crate::Direct`] and
+//! [`crate::Partitioned`] do, lane by lane.
 
 use super::{Failures, are_finite, keep};
 use crate::contract::Storage;
@@ -6,7 +7,8 @@ use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS};
 use crate::violation::constraint_violation;
 use crate::{Corrected, Error, Lanes, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
 
-/// *Direct integration* of the equations `D`: of maximal coordinates or, with [`Joint`](crate::Joint), of joint coordinates.
+/// *Direct integration* of the equations `D`: of maximal coordinates or, with [`Joint`](crate::Joint), of joint
+/// coordinates.
 #[derive(Clone, Debug)]
 pub struct Direct<D, S> {
     dynamics: D,
@@ -21,8 +23,8 @@ impl<D, S: Clone> Direct<D, S> {
         Self { dynamics, rk4: Rk4::new(state), before: state.clone(), failures: Failures::default() }
     }
 
-    /// Advances the lanes of `y` that have not failed from `t` by `n_steps` steps of length `h`. Time and step may differ from lane to
-    /// lane.
+    /// Advances the lanes of `y` that have not failed from `t` by `n_steps` steps of length `h`. Time and step may
+    /// differ from lane to lane.
     pub fn advance<M>(&mut self, model: &M, t: D::Scalar, h: D::Scalar, n_steps: u32, y: &mut S)
     where
         D: Ode<M, State = S, Scalar: Lanes>,
@@ -45,8 +47,8 @@ impl<D, S: Clone> Direct<D, S> {
     }
 }
 
-/// *Coordinate partitioning* of a tree of revolute, spherical and fixed joints: after a number of steps dependent positions and
-/// velocities are corrected, in each lane on charts of its own.
+/// *Coordinate partitioning* of a tree of revolute, spherical and fixed joints: after a number of steps dependent
+/// positions and velocities are corrected, in each lane on charts of its own.
 #[derive(Clone, Debug)]
 pub struct Partitioned<M: Partition> {
     direct: Direct<Corrected, M::State>,
@@ -61,8 +63,8 @@ impl<M: Partition> Partitioned<M> {
         Self { direct: Direct::new(Corrected, state), independent, phi: mechanism.buffers().constraints }
     }
 
-    /// Advances the lanes of `y` that have not failed from `t` by `n_steps` steps of length `h` and corrects them. Time and step may
-    /// differ from lane to lane.
+    /// Advances the lanes of `y` that have not failed from `t` by `n_steps` steps of length `h` and corrects them. Time
+    /// and step may differ from lane to lane.
     pub fn advance(&mut self, mechanism: &M, t: M::Scalar, h: M::Scalar, n_steps: u32, y: &mut M::State) {
         self.direct.advance(mechanism, t, h, n_steps, y);
         self.correct(mechanism, t + h * M::Scalar::constant(f64::from(n_steps)), y);

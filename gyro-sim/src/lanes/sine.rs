@@ -1,10 +1,11 @@
 //! Sine and cosine of all lanes at once, bit for bit those of libm.
 //!
-//! The method is FDLIBM's (Sun Microsystems 1993: `k_sin.c`, `k_cos.c`, `e_rem_pio2.c`; for `f32` FreeBSD's `k_sinf.c`, `k_cosf.c`,
-//! `e_rem_pio2f.c`): from the argument a multiple of π/2 is subtracted, and a polynomial serves on [−π/4, π/4]. FDLIBM branches on the
-//! argument; here every lane goes the way of most arguments, with the same operations in the same order, and libm does again the few
-//! lanes whose argument is *hard*: large, close to a multiple of π/2 other than zero, where libm subtracts in more parts, or close to an odd
-//! multiple of π/4, where it tells the quadrant by other means. So errors are libm's: below one unit in the last place.
+//! The method is FDLIBM's (Sun Microsystems 1993: `k_sin.c`, `k_cos.c`, `e_rem_pio2.c`; for `f32` FreeBSD's `k_sinf.c`,
+//! `k_cosf.c`, `e_rem_pio2f.c`): from the argument a multiple of π/2 is subtracted, and a polynomial serves on [−π/4,
+//! π/4]. FDLIBM branches on the argument; here every lane goes the way of most arguments, with the same operations in
+//! the same order, and libm does again the few lanes whose argument is *hard*: large, close to a multiple of π/2 other
+//! than zero, where libm subtracts in more parts, or close to an odd multiple of π/4, where it tells the quadrant by
+//! other means. So errors are libm's: below one unit in the last place.
 //!
 //! All of it is inlined, so that the compiler reduces an argument once where a kernel takes its sine and its cosine.
 
@@ -65,7 +66,8 @@ fn unless_hard<V: Lanes>(is_hard: u32, x: V, found: V, function: impl Fn(V::Lane
     if is_hard == 0 {
         return found;
     }
-    // Through arrays: were the address of a pack taken here, it would live in memory on the way without hard lanes, too.
+    // Through arrays: were the address of a pack taken here, it would live in memory on the way without hard lanes,
+    // too.
     let again = again(is_hard, core::array::from_fn(|lane| x.lane(lane.min(V::COUNT - 1))), function);
     V::select(V::mask(is_hard), V::from_lanes(|lane| again[lane]), found)
 }

@@ -5,8 +5,8 @@ use crate::{Equations, Mechanism, Real};
 
 /// The scaled Jacobian with a right side, on its way to an upper triangle.
 ///
-/// Normalisations are its first rows and give the first pivots: they depend on nothing, so that the row that is left over in a
-/// singular pose belongs to a joint.
+/// Normalisations are its first rows and give the first pivots: they depend on nothing, so that the row that is left
+/// over in a singular pose belongs to a joint.
 pub(super) struct Elimination<T, const NC: usize, const NQ: usize> {
     pub(super) jacobian: [[T; NQ]; NC],
     right: [T; NC],
@@ -124,8 +124,8 @@ impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
         self.substitute(self.right)
     }
 
-    /// The places of a dependent and an independent coordinate where the former changes fastest with the latter, if faster than
-    /// `limit` times.
+    /// The places of a dependent and an independent coordinate where the former changes fastest with the latter, if
+    /// faster than `limit` times.
     pub(super) fn steepest(&self, limit: T) -> Option<(usize, usize)> {
         let (mut at, mut steepest) = (None, limit);
         for independent in NC..NQ {

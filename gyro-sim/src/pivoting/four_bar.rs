@@ -1,8 +1,9 @@
 //! A planar four-bar linkage of uniform rods of 1 kg, in the plane z = 0, as a hand-written mechanism for the tests.
 //!
-//! Bodies 0 (crank), 1 (coupler), 2 (rocker) have their x axes along the rods. Pins 0 to 3: ground and crank at the origin, crank and
-//! coupler, coupler and rocker, ground and rocker at `(ground, 0)`. Directions are `(e0² − e3², 2 e0 e3)`, whatever e1 and e2.
-//! Pin 0 shows the crank's angle, pin 1 the coupler's x coordinate and its angle against the crank.
+//! Bodies 0 (crank), 1 (coupler), 2 (rocker) have their x axes along the rods. Pins 0 to 3: ground and crank at the
+//! origin, crank and coupler, coupler and rocker, ground and rocker at `(ground, 0)`. Directions are `(e0² − e3², 2 e0
+//! e3)`, whatever e1 and e2. Pin 0 shows the crank's angle, pin 1 the coupler's x coordinate and its angle against the
+//! crank.
 
 use crate::{
     Buffers, Coordinate, Description, Energy, Equations, Error, JointInfo, Mechanism, Owner, Partition,
@@ -48,8 +49,8 @@ impl FourBar {
         bar
     }
 
-    /// Directions of the rods (cosine and sine) at a crank angle, with the pin of coupler and rocker on the left (+1) or the right
-    /// (−1) of the line from the crank's end to the rocker's ground pin.
+    /// Directions of the rods (cosine and sine) at a crank angle, with the pin of coupler and rocker on the left (+1)
+    /// or the right (−1) of the line from the crank's end to the rocker's ground pin.
     pub(super) fn directions(&self, crank: f64, side: f64) -> [[f64; 2]; 3] {
         let [a, b, c] = self.rods;
         let (cos, sin) = (libm::cos(crank), libm::sin(crank));

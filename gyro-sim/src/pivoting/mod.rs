@@ -1,22 +1,23 @@
 //! The coordinate partition of any mechanism, closed loops included, by full pivoting of its constraint Jacobian.
 //!
-//! Where charts do not reach, the whole of Φ_q (joint rows and normalisations, `NC` × `NQ`) is factorised at run time in arrays of
-//! fixed size: its pivots' columns are the *dependent* coordinates, the others the independent ones. A generated mechanism
-//! calls these functions from its [`Partition`](crate::Partition), one line each.
+//! Where charts do not reach, the whole of Φ_q (joint rows and normalisations, `NC` × `NQ`) is factorised at run time
+//! in arrays of fixed size: its pivots' columns are the *dependent* coordinates, the others the independent ones. A
+//! generated mechanism calls these functions from its [`Partition`](crate::Partition), one line each.
 //!
-//! Lengths are measured in units of the mechanism's [`size`](crate::Mechanism::size), in rows and columns alike, so that pivots
-//! are pure numbers and compare.
+//! Lengths are measured in units of the mechanism's [`size`](crate::Mechanism::size), in rows and columns alike, so
+//! that pivots are pure numbers and compare.
 //!
 //! # The choice of coordinates
-//! Full pivoting (Golub and Van Loan, *Matrix Computations*, section 3.4.8) makes the first choice. A small change of an
-//! independent coordinate k changes the dependent coordinate j by `W_jk = −(Φ_u⁻¹ Φ_v)_jk`, and exchanging the two multiplies
-//! `|det Φ_u|` by `|W_jk|`. [`follow`] exchanges the largest until none exceeds [`POOR`] (Goreinov et al. 2010, *How to find a
-//! good submatrix*), so that errors of the independent coordinates never reach the dependent ones enlarged by more.
+//! Full pivoting (Golub and Van Loan, *Matrix Computations*, section 3.4.8) makes the first choice. A small change of
+//! an independent coordinate k changes the dependent coordinate j by `W_jk = −(Φ_u⁻¹ Φ_v)_jk`, and exchanging the two
+//! multiplies `|det Φ_u|` by `|W_jk|`. [`follow`] exchanges the largest until none exceeds [`POOR`] (Goreinov et al.
+//! 2010, *How to find a good submatrix*), so that errors of the independent coordinates never reach the dependent ones
+//! enlarged by more.
 //!
 //! # Singular poses and branches
-//! Where a linkage can be put together in two ways and both ways meet (a parallelogram with all bars in line), the last pivot
-//! vanishes. Newton's iteration is safe only while its change is small beside that pivot; a larger one may lead to the
-//! other way and is refused: see [`newton_step`].
+//! Where a linkage can be put together in two ways and both ways meet (a parallelogram with all bars in line), the last
+//! pivot vanishes. Newton's iteration is safe only while its change is small beside that pivot; a larger one may lead
+//! to the other way and is refused: see [`newton_step`].
 //!
 //! # Example
 //! A planar four-bar linkage has one degree of freedom, so that one of its 21 coordinates is independent:
@@ -63,23 +64,23 @@ pub struct Pivots<const NC: usize, const NQ: usize> {
     columns: [u16; NQ],
 }
 
-/// An independent coordinate is exchanged once a dependent one changes this many times as fast. Every exchange multiplies
-/// `|det Φ_u|` by more than this, so that exchanges end and rounding cannot undo one; any number clearly above one would do. Two
-/// is also about what charts grant.
+/// An independent coordinate is exchanged once a dependent one changes this many times as fast. Every exchange
+/// multiplies `|det Φ_u|` by more than this, so that exchanges end and rounding cannot undo one; any number clearly
+/// above one would do. Two is also about what charts grant.
 pub const POOR: f64 = 2.0;
 
 /// A Newton step may change a dependent coordinate by this part of the smallest pivot.
 ///
-/// By the Newton–Kantorovich theorem (Ortega and Rheinboldt, *Iterative Solution of Nonlinear Equations*, 12.6.2) the iteration
-/// converges to the only solution nearby if `|Φ_u⁻¹| · K · |Δu| ≤ ½`, with K a Lipschitz constant of Φ_u. Rows are products of
-/// at most two rotation matrices and lengths of at most the size, so K is about 4, and the smallest pivot stands for
-/// `1 / |Φ_u⁻¹|`.
+/// By the Newton–Kantorovich theorem (Ortega and Rheinboldt, *Iterative Solution of Nonlinear Equations*, 12.6.2) the
+/// iteration converges to the only solution nearby if `|Φ_u⁻¹| · K · |Δu| ≤ ½`, with K a Lipschitz constant of Φ_u.
+/// Rows are products of at most two rotation matrices and lengths of at most the size, so K is about 4, and the
+/// smallest pivot stands for `1 / |Φ_u⁻¹|`.
 const TRUSTED: f64 = 0.125;
 
 /// Whether near a singular pose what is left of a row's rate is no more than rounding.
 ///
-/// Corrected positions are known to a rounding over the pivot, and the rows' rates at this speed no better. Divided by the pivot once more that
-/// would be a change of velocities by noise; what was integrated is better.
+/// Corrected positions are known to a rounding over the pivot, and the rows' rates at this speed no better. Divided by
+/// the pivot once more that would be a change of velocities by noise; what was integrated is better.
 pub(crate) fn is_noise<T: Real>(rate: T, pivot: T, speed: T) -> bool {
     let rounding = T::EPSILON * T::constant(ROUNDINGS);
     let is_slight = rounding < T::constant(SLIGHT) * pivot * pivot;
@@ -89,7 +90,8 @@ pub(crate) fn is_noise<T: Real>(rate: T, pivot: T, speed: T) -> bool {
 /// A pivot below this is small: singular poses are near. Elsewhere corrections are exact.
 const SMALL: f64 = 0.02;
 
-/// Noise is left alone only where it is this part of the motion at most; in single precision it is more wherever pivots are small.
+/// Noise is left alone only where it is this part of the motion at most; in single precision it is more wherever pivots
+/// are small.
 const SLIGHT: f64 = 1e-3;
 
 /// Rounding errors that add up in a row.
@@ -131,11 +133,11 @@ where
     Pivots::new(elimination.columns)
 }
 
-/// How clear a state is of singular poses: one over the norm of the Jacobian's pseudoinverse, which near a pose is the smallest singular
-/// value; and whose row is nearest to depending on the others.
+/// How clear a state is of singular poses: one over the norm of the Jacobian's pseudoinverse, which near a pose is the
+/// smallest singular value; and whose row is nearest to depending on the others.
 ///
-/// It follows the state smoothly, as the smallest pivot of an elimination does not; along a motion through a singular pose it falls to zero and
-/// rises again in proportion to the distance.
+/// It follows the state smoothly, as the smallest pivot of an elimination does not; along a motion through a singular
+/// pose it falls to zero and rises again in proportion to the distance.
 pub fn clearance<M, const NC: usize, const NQ: usize>(
     mechanism: &M,
     t: M::Scalar,
@@ -149,11 +151,11 @@ where
     Clearance { pivot: nearest.value, owner: Some(owner(mechanism, nearest.row)) }
 }
 
-/// Exchanges coordinates until no dependent one changes more than [`POOR`] times as fast as an independent one; returns the number
-/// of exchanges.
+/// Exchanges coordinates until no dependent one changes more than [`POOR`] times as fast as an independent one; returns
+/// the number of exchanges.
 ///
-/// A choice that cannot be solved for at all is replaced by that of [`independent`]. Of a state that is not finite nothing can be
-/// told: the choice is kept.
+/// A choice that cannot be solved for at all is replaced by that of [`independent`]. Of a state that is not finite
+/// nothing can be told: the choice is kept.
 pub fn follow<M, const NC: usize, const NQ: usize>(
     mechanism: &M,
     t: M::Scalar,
@@ -182,8 +184,8 @@ where
 /// One Newton step of the dependent positions: `Φ_u Δu = −Φ`.
 ///
 /// # Errors
-/// [`Error::Singular`] if a pivot vanishes, [`Error::Jump`] if the change is too large beside the smallest pivot for the
-/// solution to be the one nearby: the state is then as it was.
+/// [`Error::Singular`] if a pivot vanishes, [`Error::Jump`] if the change is too large beside the smallest pivot for
+/// the solution to be the one nearby: the state is then as it was.
 pub fn newton_step<M, const NC: usize, const NQ: usize>(
     mechanism: &M,
     t: M::Scalar,
@@ -215,8 +217,8 @@ where
     Ok(())
 }
 
-/// Solves eq. (19) for the change of the dependent velocities, components of ṙ and of `ṗ = ½ Gᵀ w'`: `Φ_u Δu̇ = ν − Φ_q q̇`. Then
-/// `Δw' = 2 G Δṗ`. Independent velocities keep their values.
+/// Solves eq. (19) for the change of the dependent velocities, components of ṙ and of `ṗ = ½ Gᵀ w'`: `Φ_u Δu̇ = ν − Φ_q
+/// q̇`. Then `Δw' = 2 G Δṗ`. Independent velocities keep their values.
 ///
 /// # Errors
 /// [`Error::Singular`] if a pivot vanishes.

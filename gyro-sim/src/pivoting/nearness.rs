@@ -5,12 +5,12 @@ use super::elimination::Elimination;
 use crate::Real;
 
 impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
-    /// One over the norm of the pseudoinverse, `1/√Σσ⁻²` with the singular values σ: no more than the smallest of them, and that itself near a
-    /// singular pose. With it the joint's row that is nearest to the span of all others.
+    /// One over the norm of the pseudoinverse, `1/√Σσ⁻²` with the singular values σ: no more than the smallest of them,
+    /// and that itself near a singular pose. With it the joint's row that is nearest to the span of all others.
     ///
-    /// Pivots of an elimination jump where another one is chosen; this is as smooth as the Jacobian. With `J = L Q` it takes the lengths of
-    /// the columns of L⁻¹, which are one over the distances of the rows from the span of the others (Golub and Van Loan, *Matrix Computations*, sections 5.2 and
-    /// 5.5.2).
+    /// Pivots of an elimination jump where another one is chosen; this is as smooth as the Jacobian. With `J = L Q` it
+    /// takes the lengths of the columns of L⁻¹, which are one over the distances of the rows from the span of the
+    /// others (Golub and Van Loan, *Matrix Computations*, sections 5.2 and 5.5.2).
     pub(super) fn nearness(mut self) -> Pivot<T> {
         let diagonal = self.triangulate();
         let (zero, one) = (T::constant(0.0), T::constant(1.0));

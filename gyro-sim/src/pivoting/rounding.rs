@@ -1,14 +1,15 @@
-//! How near to zero rounding lets a constraint row come: a row cannot be smaller than the rounding of what it subtracts.
+//! How near to zero rounding lets a constraint row come: a row cannot be smaller than the rounding of what it
+//! subtracts.
 //!
-//! A gear's row subtracts angles that grow with every turn, a rod's row positions that may be far from the origin, a row with a large
-//! ratio what it multiplies. Each row is judged by its own terms.
+//! A gear's row subtracts angles that grow with every turn, a rod's row positions that may be far from the origin, a
+//! row with a large ratio what it multiplies. Each row is judged by its own terms.
 
 use crate::correct::CONVERGED_EPSILONS;
 use crate::{Equations, Real, Scalar};
 use core::f64::consts::TAU;
 
-/// Whether no row of Φ exceeds the rounding of what it subtracts: of its unit (one, or the mechanism's size), of each coordinate times the row's
-/// derivative with respect to it, and of the whole turns of each angle that it has.
+/// Whether no row of Φ exceeds the rounding of what it subtracts: of its unit (one, or the mechanism's size), of each
+/// coordinate times the row's derivative with respect to it, and of the whole turns of each angle that it has.
 ///
 /// Rows that are not finite are not met.
 ///
@@ -29,8 +30,8 @@ where
 /// Roundings of what it subtracts that a row of angles may have and be left alone.
 const SILENT_EPSILONS: f64 = 2.0;
 
-/// Sets rows to zero that the rounding of whole turns hides: to chase it would turn bodies to and fro, by so much in single precision that rows
-/// which bend never come to rest.
+/// Sets rows to zero that the rounding of whole turns hides: to chase it would turn bodies to and fro, by so much in
+/// single precision that rows which bend never come to rest.
 pub(crate) fn silence<M>(mechanism: &M, t: M::Scalar, y: &M::State, phi: &mut M::Constraints)
 where
     M: Equations<Scalar: Real>,
@@ -69,8 +70,8 @@ fn add_coordinates<M: Equations<Scalar: Real>>(
     }
 }
 
-/// What the whole turns of each angle contribute, found by taking them off its turn reference; of an angle on its first turn, one
-/// turn. The work done, which is among the last elements too, is in no row.
+/// What the whole turns of each angle contribute, found by taking them off its turn reference; of an angle on its first
+/// turn, one turn. The work done, which is among the last elements too, is in no row.
 fn add_turns<M: Equations<Scalar: Real>>(
     mechanism: &M,
     t: M::Scalar,

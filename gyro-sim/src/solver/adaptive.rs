@@ -14,7 +14,21 @@ const GROWTH: f64 = 6.0;
 const SHRINKAGE: f64 = 0.2;
 
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
-    /// Steps until `t_end`, each as long as the tolerances allow.
+    /// Steps until `t_end`, each as long as the tolerances allow. The method must estimate its error; with another the program
+    /// does not compile:
+    /// ```compile_fail,E0080
+    /// # use gyro_sim::{Kutta4, Ode, Solver};
+    /// # struct Rest;
+    /// # impl Ode for Rest {
+    /// #     type Scalar = f64;
+    /// #     type State = [f64; 1];
+    /// #     type Jacobian = ();
+    /// #     fn derivative(&self, _: &(), _: f64, _: &[f64; 1], dy: &mut [f64; 1]) {
+    /// #         *dy = [0.0];
+    /// #     }
+    /// # }
+    /// Solver::new(Rest, Kutta4::new(&[0.0]), 0.0, &[0.0]).advance_to(&(), 1.0).unwrap();
+    /// ```
     ///
     /// # Errors
     /// [`Error`], with state and time as they were after the last step that was kept.
@@ -35,8 +49,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// One step, as long as the tolerances allow and not beyond `t_end`.
     ///
     /// # Errors
-    /// [`Error`], with state and time as they were before: tolerances that cannot be met, steps that would have to be too short or too
-    /// many, a correction that fails however short the step, and a scene that is stiff for the method.
+    /// [`Error`], with state and time as they were before: tolerances that cannot be met, steps that would have to be
+    /// too short or too many, a correction that fails however short the step, and a scene that is stiff for the method.
     pub fn step_towards<M>(&mut self, system: &M, t_end: T) -> Result<(), Error>
     where
         D: Ode<M, Scalar = T, State = S>,
@@ -194,8 +208,9 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         }
     }
 
-    /// By how much to change the step: proportional-integral control (Gustafsson; Hairer and Wanner, *Solving ODEs II*, IV.2), which
-    /// keeps step sizes from oscillating at the limit of stability. An error before of zero leaves the proportional part out.
+    /// By how much to change the step: proportional-integral control (Gustafsson; Hairer and Wanner, *Solving ODEs II*,
+    /// IV.2), which keeps step sizes from oscillating at the limit of stability. An error before of zero leaves the
+    /// proportional part out.
     fn factor<M>(&self, error: f64, before: f64) -> f64
     where
         D: Ode<M, Scalar = T, State = S>,
@@ -211,7 +226,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         factor.clamp(SHRINKAGE, GROWTH)
     }
 
-    /// A first step by the sizes of the state, of its slope and of the slope's change (Hairer, Nørsett and Wanner, II.4).
+    /// A first step by the sizes of the state, of its slope and of the slope's change (Hairer, Nørsett and Wanner,
+    /// II.4).
     fn guess_first_step<M>(&mut self, system: &M, t_end: T) -> T
     where
         D: Ode<M, Scalar = T, State = S>,

@@ -67,7 +67,8 @@ pub struct Statistics {
     pub longest_step: f64,
     /// Accepted steps that were extrapolated over a singular pose.
     pub leaps: u64,
-    /// Singular poses that steps of fixed length have passed so near that they may have gone on in another way than the motion does.
+    /// Singular poses that steps of fixed length have passed so near that they may have gone on in another way than the
+    /// motion does.
     pub passages: u64,
     /// The first of them.
     pub first_passage: Option<Passage>,

@@ -67,20 +67,22 @@ pub struct Solver<D, S, T, A, C> {
 
 /// A step this part of the limit of stability is limited by it.
 const NEAR_LIMIT: f64 = 0.8;
-/// After so many such steps, with no more than that many others among them, the scene is stiff for the method (as in DOPRI5 and
-/// DOP853).
+/// After so many such steps, with no more than that many others among them, the scene is stiff for the method (as in
+/// DOPRI5 and DOP853).
 const STIFF_STEPS: u32 = 15;
 const OTHER_STEPS: u32 = 6;
 
 impl<D, S: Storage<T>, T: Real, A> Solver<D, S, T, A, Uncorrected> {
-    /// A motion that starts at `y` at time `t`, without corrections. If these are not finite, the first step is an [`Error`].
+    /// A motion that starts at `y` at time `t`, without corrections. If these are not finite, the first step is an
+    /// [`Error`].
     pub fn new(dynamics: D, method: A, t: T, y: &S) -> Self {
         Self::with_correction(dynamics, method, Uncorrected, t, y)
     }
 }
 
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
-    /// A motion that starts at `y` at time `t` and is corrected. If these are not finite, the first step is an [`Error`].
+    /// A motion that starts at `y` at time `t` and is corrected. If these are not finite, the first step is an
+    /// [`Error`].
     pub fn with_correction(dynamics: D, method: A, correction: C, t: T, y: &S) -> Self {
         let zero = T::constant(0.0);
         Self {
@@ -142,7 +144,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         &self.dynamics
     }
 
-    /// The equations that are integrated, to be changed where they hold data of their own: see [`Solver::system_has_changed`].
+    /// The equations that are integrated, to be changed where they hold data of their own: see
+    /// [`Solver::system_has_changed`].
     pub fn dynamics_mut(&mut self) -> &mut D {
         &mut self.dynamics
     }
@@ -168,8 +171,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         self.leap = None;
     }
 
-    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again: singular poses that it passes
-    /// are counted ([`Statistics::passages`]).
+    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again: singular
+    /// poses that it passes are counted ([`Statistics::passages`]).
     ///
     /// # Errors
     /// [`Error`], with state and time as they were before.
@@ -233,11 +236,12 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         Ok(())
     }
 
-    /// Writes the state at a time within the last step, corrected like the states between steps are; at its end and beyond it the
-    /// state as it is.
+    /// Writes the state at a time within the last step, corrected like the states between steps are; at its end and
+    /// beyond it the state as it is.
     ///
     /// # Errors
-    /// [`Error::InvalidEndTime`] for a time before the last step, or once a later attempt has failed; [`Error`] if the correction fails.
+    /// [`Error::InvalidEndTime`] for a time before the last step, or once a later attempt has failed; [`Error`] if the
+    /// correction fails.
     pub fn interpolate<M>(&mut self, system: &M, t: T, out: &mut S) -> Result<(), Error>
     where
         D: Ode<M, Scalar = T, State = S>,

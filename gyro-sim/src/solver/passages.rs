@@ -1,15 +1,17 @@
 //! Singular poses under steps of fixed length: seen and told.
 //!
-//! Such steps end where they end: near a pose or in it, with accelerations that are quotients of small numbers, and nothing is tried again. Mostly
-//! they come through on the right way. But where a step covers what is left of the way to a pose, or the joints are apart by more
-//! than the ways on are, nothing in the state says so, and whoever reads the result must know.
+//! Such steps end where they end: near a pose or in it, with accelerations that are quotients of small numbers, and
+//! nothing is tried again. Mostly they come through on the right way. But where a step covers what is left of the way
+//! to a pose, or the joints are apart by more than the ways on are, nothing in the state says so, and whoever reads the
+//! result must know.
 
 use super::Solver;
 use super::poses::{FLOOR, Watch};
 use crate::contract::Storage;
 use crate::{Clearance, Correction, Ode, Owner, Real};
 
-/// A singular pose that steps of fixed length have passed so near that the way they have gone on in may be another than the motion's.
+/// A singular pose that steps of fixed length have passed so near that the way they have gone on in may be another than
+/// the motion's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Passage {
@@ -51,8 +53,8 @@ impl<T: Real> Nearness<T> {
         self.least.or_else(|| (self.last <= self.fall * T::constant(AHEAD)).then_some(self.last))
     }
 
-    /// Whether the step to here could have passed a pose, which is a matter of proportion: it has changed the clearance by as much as
-    /// was left.
+    /// Whether the step to here could have passed a pose, which is a matter of proportion: it has changed the clearance
+    /// by as much as was left.
     fn leaps(&self, now: T) -> bool {
         let less = if now < self.last { now } else { self.last };
         (now - self.last).abs() >= less
@@ -102,7 +104,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         self.nearness = Some(nearness);
     }
 
-    /// Whether near a pose the joints are apart by more than tells the ways on from each other: drifted apart, a linkage turns before the pose, or elsewhere.
+    /// Whether near a pose the joints are apart by more than tells the ways on from each other: drifted apart, a
+    /// linkage turns before the pose, or elsewhere.
     fn is_blurred<M>(&mut self, system: &M, (nearness, now): (Nearness<T>, T)) -> bool
     where
         D: Ode<M, Scalar = T, State = S>,

@@ -3,8 +3,8 @@
 use crate::Real;
 use crate::contract::Storage;
 
-/// So many states are kept. Steps that shrink towards a pose leave them at distances that grow geometrically, where polynomials through many
-/// of them neither swing nor enlarge rounding.
+/// So many states are kept. Steps that shrink towards a pose leave them at distances that grow geometrically, where
+/// polynomials through many of them neither swing nor enlarge rounding.
 const NODES: usize = 10;
 
 /// Fewer states say nothing about how well a polynomial fits.
@@ -60,8 +60,9 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
         &self.nodes[(self.newest + NODES - age % NODES) % NODES]
     }
 
-    /// The polynomial that fits best at a time, by its degree, and the size of its last term there, the root mean square over the elements in
-    /// units of the weights: how far the polynomial of one degree less is off. So much of each element is rounding and does not count.
+    /// The polynomial that fits best at a time, by its degree, and the size of its last term there, the root mean
+    /// square over the elements in units of the weights: how far the polynomial of one degree less is off. So much of
+    /// each element is rounding and does not count.
     pub(super) fn best_fit(&self, t: T, weights: &S, rounding: T) -> Option<(usize, f64)> {
         let (mut sums, mut n) = ([0.0; NODES], 0.0);
         for (i, weight) in weights.as_ref().iter().enumerate() {
@@ -91,7 +92,8 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
         }
     }
 
-    /// Newton's form of the polynomial through all nodes, of one element, term by term: divided differences times products of distances.
+    /// Newton's form of the polynomial through all nodes, of one element, term by term: divided differences times
+    /// products of distances.
     fn each_term(&self, i: usize, t: T, tell: &mut impl FnMut(usize, T)) {
         let mut differences: [T; NODES] = core::array::from_fn(|age| self.node(age).y.as_ref()[i]);
         let mut product = T::constant(1.0);

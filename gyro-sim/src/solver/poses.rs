@@ -1,8 +1,9 @@
 //! Singular poses under error control: foreseen, stepped over, or named.
 //!
-//! A motion through a pose where rows become dependent is as smooth as elsewhere. But accelerations are quotients of numbers that vanish there, so
-//! that stages, which lie off the constraints, see them of any size, and what corrections know is divided by a pivot once for positions and twice for
-//! velocities. So the pose is not stepped through but over: see [`Solver::leap`].
+//! A motion through a pose where rows become dependent is as smooth as elsewhere. But accelerations are quotients of
+//! numbers that vanish there, so that stages, which lie off the constraints, see them of any size, and what corrections
+//! know is divided by a pivot once for positions and twice for velocities. So the pose is not stepped through but over:
+//! see [`Solver::leap`].
 
 use super::Solver;
 use crate::contract::Storage;
@@ -30,7 +31,8 @@ pub(super) enum Watch {
     Needed,
 }
 
-/// The nearer a pose the less extrapolation is off, until rounding makes it worse again: then as much as this is tolerated of the last chance.
+/// The nearer a pose the less extrapolation is off, until rounding makes it worse again: then as much as this is
+/// tolerated of the last chance.
 const WORST: f64 = 100.0;
 /// Steps towards a pose go this part of the way, so that states lie close enough together to extrapolate them.
 const APPROACH: f64 = 0.35;
@@ -38,16 +40,20 @@ const APPROACH: f64 = 0.35;
 const LONGEST_APPROACH: u32 = 300;
 /// With a pivot below this whatever fails does so because of the pose.
 const IN_POSE: f64 = 1e-3;
-/// A leap ends as clear of the pose as it began, to within this factor: where a pivot vanishes linearly, on the other side.
+/// A leap ends as clear of the pose as it began, to within this factor: where a pivot vanishes linearly, on the other
+/// side.
 const BEYOND: f64 = 0.25;
-/// A correction may change a step's result by so many times what is tolerated: by more, and the step was not what its error estimate says.
+/// A correction may change a step's result by so many times what is tolerated: by more, and the step was not what its
+/// error estimate says.
 const AGREEMENT: f64 = 10.0;
 
-/// What rounding makes of velocities near a pose, see [`Solver::rounding`], is so many times larger after a correction: an allowance.
+/// What rounding makes of velocities near a pose, see [`Solver::rounding`], is so many times larger after a correction:
+/// an allowance.
 const ROUNDINGS: f64 = 64.0;
 /// And in states that are extrapolated.
 const NOISE: f64 = 4.0;
-/// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through a pose are apart.
+/// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through
+/// a pose are apart.
 pub(super) const FLOOR: f64 = 100.0;
 
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
@@ -95,11 +101,12 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         };
     }
 
-    /// Corrects the trial if that is due; returns whether it was, and how clear it is of singular poses where there are any.
+    /// Corrects the trial if that is due; returns whether it was, and how clear it is of singular poses where there are
+    /// any.
     ///
-    /// There it must not be changed by much more than the weights allow: else it was not near the motion, whatever its error estimate says, but
-    /// perhaps near another one. And the pose must be farther away than what the constraints are off: else nothing tells the ways
-    /// on from each other.
+    /// There it must not be changed by much more than the weights allow: else it was not near the motion, whatever its
+    /// error estimate says, but perhaps near another one. And the pose must be farther away than what the constraints
+    /// are off: else nothing tells the ways on from each other.
     pub(super) fn settle<M>(&mut self, system: &M, t: T) -> Result<(bool, Option<T>), Error>
     where
         D: Ode<M, Scalar = T, State = S>,
@@ -129,15 +136,16 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         Ok((is_corrected, Some(pivot)))
     }
 
-    /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the pivot, and so
-    /// velocities, along what the pivot belongs to, to one over its square.
+    /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the
+    /// pivot, and so velocities, along what the pivot belongs to, to one over its square.
     fn rounding(&self, pivot: T) -> T {
         let zero = T::constant(0.0);
         let size = self.y.as_ref().iter().fold(zero, |size, y| if y.abs() > size { y.abs() } else { size });
         T::EPSILON * size / (pivot * pivot)
     }
 
-    /// By how much a correction has changed the trial, not counting so much of each element: the root mean square in units of the weights.
+    /// By how much a correction has changed the trial, not counting so much of each element: the root mean square in
+    /// units of the weights.
     fn change_beyond(&self, rounding: T) -> f64 {
         let (mut sum, mut n) = (0.0, 0.0);
         let ends = self.raw.as_ref().iter().zip(self.trial.as_ref()).zip(self.weights.as_ref());
@@ -149,8 +157,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         libm::sqrt(sum / n)
     }
 
-    /// Where a singular pose lies within the next step, or ahead of one that has failed: steps over it, and returns so, or shortens the next
-    /// step to a part of the way there.
+    /// Where a singular pose lies within the next step, or ahead of one that has failed: steps over it, and returns so,
+    /// or shortens the next step to a part of the way there.
     pub(super) fn approach<M>(&mut self, system: &M, t_end: T) -> Result<bool, Error>
     where
         D: Ode<M, Scalar = T, State = S>,
@@ -183,10 +191,11 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
 
     /// Steps over a singular pose that lies within a step that has failed; returns whether it has come through.
     ///
-    /// A motion through such a pose is as smooth as elsewhere, but its accelerations are quotients of numbers that vanish there: the nearer, the
-    /// fewer digits they have, and off the constraints they are of any size. So the last states are extrapolated to about as far behind the
-    /// pose as the motion is before it, and what two polynomials differ by must be within the tolerance, as must be what the
-    /// correction changes: the constraints have not been asked so far, and have to agree.
+    /// A motion through such a pose is as smooth as elsewhere, but its accelerations are quotients of numbers that
+    /// vanish there: the nearer, the fewer digits they have, and off the constraints they are of any size. So the last
+    /// states are extrapolated to about as far behind the pose as the motion is before it, and what two polynomials
+    /// differ by must be within the tolerance, as must be what the correction changes: the constraints have not been
+    /// asked so far, and have to agree.
     fn leap<M>(&mut self, system: &M, t_end: T) -> bool
     where
         D: Ode<M, Scalar = T, State = S>,

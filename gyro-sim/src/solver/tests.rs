@@ -7,7 +7,8 @@ use crate::{
 };
 use core::marker::PhantomData;
 
-/// A pendulum-like motion with a known solution and every kind of term: `y = (sin θ, cos θ)` with θ = t + t²/4, in numbers of any type.
+/// A pendulum-like motion with a known solution and every kind of term: `y = (sin θ, cos θ)` with θ = t + t²/4, in
+/// numbers of any type.
 #[derive(Clone, Copy, Debug)]
 struct Chirp;
 

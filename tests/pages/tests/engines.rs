@@ -10,10 +10,14 @@ use support::compare;
 /// Seeds of the sample; the example `engines 0 300` does more.
 const SEEDS: std::ops::Range<u64> = 3000..3012;
 
+/// Pages whose comparison is delicate: a damper too stiff for the first steps, a slide along which its base is thrown, a drive of which the method
+/// loses the constraints, and a rod whose moments count little beside its mass at its length.
+const DELICATE: [u64; 4] = [4146, 4210, 4220, 4262];
+
 #[test]
 fn random_pages_agree_in_every_engine() {
     let (mut wrong, mut n_forms, mut worst) = (Vec::new(), 0, 0.0_f64);
-    for seed in SEEDS {
+    for seed in SEEDS.chain(DELICATE) {
         let comparison = compare(&gyro_pages::page(seed)).expect("a correct page");
         n_forms += comparison.n_forms;
         worst = comparison.found.iter().fold(worst, |worst, (_, ratio)| worst.max(*ratio));
@@ -21,7 +25,10 @@ fn random_pages_agree_in_every_engine() {
             comparison.wrong().iter().map(|(what, ratio)| format!("page {seed}, {what}: {ratio:.1e}")),
         );
     }
-    println!("{n_forms} forms of {} pages, at worst {worst:.1e} of what is allowed", SEEDS.count());
+    println!(
+        "{n_forms} forms of {} pages, at worst {worst:.1e} of what is allowed",
+        SEEDS.chain(DELICATE).count()
+    );
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(worst > 0.0, "bit for bit the same: one is compared with itself");
 }

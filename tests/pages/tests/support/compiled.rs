@@ -7,7 +7,7 @@ use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_codegen::Module;
 use gyro_model::Model;
 use gyro_sim::{Equations, Mechanism, Partition};
-use runs::{Ends, maximal};
+use runs::{Ends, STEPS, maximal};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -60,14 +60,16 @@ fn write_package(folder: &Path, pages: &[(u64, Model, Module)]) {
     for (seed, _, module) in pages {
         let name = &module.type_name;
         let _ = write!(main, "#[allow(warnings)]\nmod {};\n", module.name);
-        let _ = write!(
+        let _ = writeln!(
             calls,
-            "    let m = {}::{name}::<f64>::default();\n    print({seed}, &m, maximal(&m, &m.start()));\n",
+            "    let m = {}::{name}::<f64>::default();\n    for steps in STEPS {{",
             module.name
         );
+        let _ = writeln!(calls, "        print({seed}, &m, steps, maximal(&m, &m.start(), steps));");
         if module.code.contains(&format!("gyro_sim::JointSpace for {name}")) {
-            let _ = writeln!(calls, "    print({seed}, &m, joint(&m));");
+            let _ = writeln!(calls, "        print({seed}, &m, steps, joint(&m, steps));");
         }
+        let _ = writeln!(calls, "    }}");
         fs::write(folder.join(format!("src/{}.rs", module.name)), &module.code).expect("a file");
     }
     let _ = write!(main, "fn main() {{\n{calls}}}\n");
@@ -83,62 +85,74 @@ fn write_package(folder: &Path, pages: &[(u64, Model, Module)]) {
 
 /// The forms of the twin beside what the program has printed.
 fn of_page(seed: u64, model: &Model, lines: &[Vec<&str>]) -> Found {
-    let mut forms = vec![("dense", twin(Dense::<f64>::new(model).expect("it does every model")))];
+    let mut forms = vec![("dense", Twin::of(Dense::<f64>::new(model).expect("it does every model")))];
     if Careful::<f64>::supports(model).is_ok() {
-        forms.push(("careful", twin(Careful::<f64>::new(model).expect("it is supported"))));
+        forms.push(("careful", Twin::of(Careful::<f64>::new(model).expect("it is supported"))));
     }
     if Recursive::<f64>::supports(model).is_ok() {
-        forms.push(("recursive", twin(Recursive::<f64>::new(model).expect("it is supported"))));
+        forms.push(("recursive", Twin::of(Recursive::<f64>::new(model).expect("it is supported"))));
     }
+    let [coarse, fine] = STEPS.map(|steps| {
+        let is_this = move |line: &&Vec<&str>| line[0] == seed.to_string() && line[1] == steps.to_string();
+        lines.iter().filter(is_this)
+    });
     let mut found = Found::new();
-    for line in lines.iter().filter(|line| line[0] == seed.to_string()) {
-        let generated = numbers(line[2]);
-        for (form, (ends, noise, method)) in &forms {
-            // Trees in joint coordinates and by the closed form come to where the partition comes.
-            let twin = if ["joint", "closed form"].contains(&line[1]) { "partition" } else { line[1] };
-            let index = ends.iter().position(|(name, _)| *name == twin).expect("it is run");
-            let ratio = match (&ends[index].1, &generated) {
-                (Ok(y), Some(generated)) => {
-                    let scale = y.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-                    let allowed = ALLOWED * (noise[index] + ROUNDINGS * scale) + 3.0 * method;
-                    apart(y, generated) / allowed
-                }
-                (Err(error), None) if error.to_string() == line[2] => 0.0,
-                (Err(error), _) => {
-                    println!(
-                        "{seed}, {form}, {twin}: {error}; generated: {}",
-                        &line[2][..60.min(line[2].len())]
-                    );
-                    f64::NAN
-                }
-                (Ok(_), None) => {
-                    println!("{seed}, {form}, {twin} runs; generated: {}", line[2]);
-                    f64::NAN
-                }
-            };
-            found.push((format!("{seed}: {}, generated and {form}", line[1]), ratio));
+    for (line, finer) in coarse.zip(fine) {
+        for (form, twin) in &forms {
+            found.push((format!("{seed}: {}, generated and {form}", line[2]), twin.beside(line, finer)));
         }
     }
     assert!(!found.is_empty(), "{seed} was not run");
     found
 }
 
-/// A form's ends, what moving the start by a rounding does to each, and how far apart its corrections lead: as far as the method is off.
-fn twin<M: Partition<Scalar = f64, State = Vec<f64>> + Equations>(form: M) -> (Ends, Vec<f64>, f64) {
-    let start = Mechanism::start(&form);
-    let ends = maximal(&form, &start);
-    let mut noise = vec![0.0_f64; ends.len()];
-    for series in 0..DITHERS {
-        let moved = maximal(&form, &super::support::dithered(&start, series));
-        for ((noise, (_, moved)), (_, end)) in noise.iter_mut().zip(&moved).zip(&ends) {
-            if let (Ok(moved), Ok(end)) = (moved, end) {
-                *noise = noise.max(apart(moved, end));
+/// A form's ends, the same by finer steps, and what moving the start by a rounding does to each.
+struct Twin {
+    ends: [Ends; 2],
+    noise: Vec<f64>,
+}
+
+impl Twin {
+    fn of<M: Partition<Scalar = f64, State = Vec<f64>> + Equations>(form: M) -> Self {
+        let start = Mechanism::start(&form);
+        let ends = STEPS.map(|steps| maximal(&form, &start, steps));
+        let mut noise = vec![0.0_f64; ends[0].len()];
+        for series in 0..DITHERS {
+            let moved = maximal(&form, &super::support::dithered(&start, series), STEPS[0]);
+            for ((noise, (_, moved)), (_, end)) in noise.iter_mut().zip(&moved).zip(&ends[0]) {
+                if let (Ok(moved), Ok(end)) = (moved, end) {
+                    *noise = noise.max(apart(moved, end));
+                }
+            }
+        }
+        Self { ends, noise }
+    }
+
+    /// How far what was printed is from this form's end in terms of what is allowed: roundings, and what both are off by as finer steps tell.
+    fn beside(&self, line: &[&str], finer: &[&str]) -> f64 {
+        // Trees in joint coordinates and by the closed form come to where the partition comes.
+        let name = if ["joint", "closed form"].contains(&line[2]) { "partition" } else { line[2] };
+        let index = self.ends[0].iter().position(|(known, _)| *known == name).expect("it is run");
+        let [end, finer_end] = [0, 1].map(|steps| &self.ends[steps][index].1);
+        match (end, numbers(line[3])) {
+            (Ok(y), Some(generated)) => {
+                let scale = y.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+                let own = finer_end.as_ref().map_or(0.0, |finer| apart(y, finer));
+                let method = own + numbers(finer[3]).map_or(0.0, |finer| apart(&generated, &finer));
+                apart(y, &generated) / (ALLOWED * (self.noise[index] + ROUNDINGS * scale) + 3.0 * method)
+            }
+            (Err(error), None) if error.to_string() == line[3] => 0.0,
+            (end, _) => {
+                let end = end.as_ref().map_or_else(ToString::to_string, |_| "runs".to_owned());
+                println!(
+                    "{}, {name}: the twin: {end}; generated: {}",
+                    line[0],
+                    &line[3][..60.min(line[3].len())]
+                );
+                f64::NAN
             }
         }
     }
-    let good: Vec<&Vec<f64>> = ends.iter().filter_map(|(_, end)| end.as_ref().ok()).collect();
-    let method = good.iter().flat_map(|a| good.iter().map(|b| apart(a, b))).fold(0.0, f64::max);
-    (ends, noise, method)
 }
 
 fn numbers(text: &str) -> Option<Vec<f64>> {

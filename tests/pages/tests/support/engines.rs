@@ -19,9 +19,14 @@ const DITHERS: u64 = 6;
 /// Accelerations that are smaller, m/s² or rad/s², are those of a mechanism at rest.
 const AT_REST: f64 = 1e-6;
 
-/// A trajectory, s, and its steps; again with twice as many, to see how much the method is off by.
+/// A trajectory, s, and its steps; again with twice as many, to see how much the method is off by. So many times as many steps at most
+/// where motions are too stiff for fewer.
 const T_END: f64 = 0.005;
 const STEPS: u32 = 20;
+const STIFF: u32 = 64;
+
+/// No motion of a few milliseconds leads to larger numbers.
+const BLOWN_UP: f64 = 1e9;
 
 /// The worst difference of each comparison in terms of what is allowed.
 #[derive(Clone, Debug, Default)]
@@ -50,9 +55,9 @@ pub fn compare(text: &str) -> Option<Comparison> {
         n_forms: forms.list().len() + 1 + usize::from(module.joints.is_some()),
         ..Comparison::default()
     };
-    let end = accelerations_agree(&model, &module, &generated, &forms, &mut comparison);
-    trajectories_agree(&module, &generated, &forms, &mut comparison);
-    accelerations_at(&model, &module, (T_END, &normalised(&end)), &generated, &forms, &mut comparison);
+    accelerations_at(&model, &module, (0.0, &module.start), &generated, &forms, &mut comparison);
+    let end = trajectories_agree(&module, &generated, &forms, &mut comparison);
+    accelerations_at(&model, &module, (T_END, &normalised((), end)), &generated, &forms, &mut comparison);
     Some(comparison)
 }
 
@@ -124,8 +129,15 @@ where
     }
 
     fn run(&self, function: &str, t: f64, [y, x]: [&[f64]; 2], accelerations: &[F]) -> Vec<F> {
-        let numbers = |values: &[f64]| values.iter().map(|&value| (self.number)(value)).collect::<Vec<F>>();
-        let (t, state, joints) = ((self.number)(t), numbers(y), numbers(x));
+        self.run_at(function, t, [self.numbers(y), self.numbers(x)], accelerations)
+    }
+
+    fn numbers(&self, values: &[f64]) -> Vec<F> {
+        values.iter().map(|&value| (self.number)(value)).collect()
+    }
+
+    fn run_at(&self, function: &str, t: f64, [state, joints]: [Vec<F>; 2], accelerations: &[F]) -> Vec<F> {
+        let t = (self.number)(t);
         let (parameters, inputs) = (self.parameters.clone(), self.inputs.clone());
         let point = Point { context: self.context, t, state, parameters, inputs };
         let given = Given { point: &point, accelerations, charts: &[], changes: &[], joints: &joints };
@@ -159,14 +171,17 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| if (a - b).abs() <= worst { worst } else { (a - b).abs() })
 }
 
-/// With Euler parameters of length one again, which the method does not keep: formulas hold where p is a unit vector, and of others each engine
-/// makes something else.
-fn normalised(y: &[f64]) -> Vec<f64> {
-    let mut y = y.to_vec();
+/// With Euler parameters of length one, which neither rounding nor the method keeps: formulas hold where p is a unit vector, and of others each
+/// engine makes something else.
+fn normalised<F: Field>(context: F::Context, mut y: Vec<F>) -> Vec<F>
+where
+    Elementary: Atoms<F>,
+{
     let n_bodies = n_bodies(&y);
     for body in y[..7 * n_bodies].chunks_mut(7) {
-        let length = body[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
-        body[3..].iter_mut().for_each(|e| *e /= length);
+        let square = body[3..].iter().fold(F::zero(context), |sum, e| sum.add(&e.mul(e)));
+        let scale = Elementary.sqrt(&square).inv().expect("no p is zero");
+        body[3..].iter_mut().for_each(|e| *e = e.mul(&scale));
     }
     y
 }
@@ -192,19 +207,6 @@ fn noise(function: &dyn Fn(&Vec<f64>) -> Vec<f64>, y: &[f64], scale: f64) -> f64
     (0..DITHERS).map(moved).fold(f64::EPSILON * scale, f64::max)
 }
 
-/// At the start, and half a step on; gives where the generated formulas have come to in the end.
-fn accelerations_agree(
-    model: &Model,
-    module: &Module,
-    generated: &Generated<f64>,
-    forms: &Forms,
-    comparison: &mut Comparison,
-) -> Vec<f64> {
-    let start = &module.start;
-    accelerations_at(model, module, (0.0, start), generated, forms, comparison);
-    integrated(&|t, y| generated.derivative(t, y), start, STEPS)
-}
-
 fn accelerations_at(
     model: &Model,
     module: &Module,
@@ -216,9 +218,11 @@ fn accelerations_at(
     let n = 6 * model.coordinate_bodies().len();
     let precision = Precision::new();
     let exactly = Generated::new(model, module, &precision, |x| Real::new(&precision, x));
-    let exact = |y: &[f64]| exactly.accelerations(t, y)[..n].iter().map(Real::to_f64).collect::<Vec<f64>>();
-    let expected = exact(y);
-    let scale = largest(&expected).max(unrestrained(model, generated, t, y)).max(AT_REST);
+    let state = normalised(&precision, exactly.numbers(y));
+    let expected = exactly.run_at("accelerations", t, [state, Vec::new()], &[]);
+    let expected: Vec<f64> = expected[..n].iter().map(Real::to_f64).collect();
+    let scales = [unrestrained(model, generated, t, y), prescribed(model, t), AT_REST];
+    let scale = scales.into_iter().fold(largest(&expected), f64::max);
     let mut note = |name: &str, function: &dyn Fn(&Vec<f64>) -> Vec<f64>| {
         let ratio = difference(&function(y), &expected) / (ALLOWED * noise(function, y, scale));
         comparison.found.push((format!("{name}: accelerations at t = {t}"), ratio));
@@ -248,6 +252,14 @@ fn unrestrained(model: &Model, generated: &Generated<f64>, t: f64, y: &[f64]) ->
     accelerations.fold(0.0, f64::max)
 }
 
+/// The largest acceleration of a driven body: of it a joint may hand on a small part.
+fn prescribed(model: &Model, t: f64) -> f64 {
+    let motions = model.bodies.iter().filter_map(|body| body.motion.as_ref());
+    let components = motions
+        .flat_map(|motion| motion.translation.iter().chain(motion.rotations.iter().map(|(_, angle)| angle)));
+    components.fold(0.0, |largest, motion| largest.max(motion.value(model, t)[2].abs()))
+}
+
 /// Runge and Kutta's method.
 fn integrated(derivative: &dyn Fn(f64, &Vec<f64>) -> Vec<f64>, start: &[f64], steps: u32) -> Vec<f64> {
     let (h, mut y) = (T_END / f64::from(steps), start.to_vec());
@@ -264,38 +276,45 @@ fn integrated(derivative: &dyn Fn(f64, &Vec<f64>) -> Vec<f64>, start: &[f64], st
     y
 }
 
+/// Gives where the generated formulas have come to in the end.
 fn trajectories_agree(
     module: &Module,
     generated: &Generated<f64>,
     forms: &Forms,
     comparison: &mut Comparison,
-) {
+) -> Vec<f64> {
     let start = &module.start;
-    let maximal = |t: f64, y: &Vec<f64>| generated.derivative(t, y);
-    let (end, finer) = (integrated(&maximal, start, STEPS), integrated(&maximal, start, 2 * STEPS));
-    let scale = f64::from(STEPS) * largest(&end).max(1.0);
-    let method = difference(&finer, &end);
-    let own = noise(&|y| integrated(&maximal, y, STEPS), start, scale);
-    let mut note = |name: &str, function: &dyn Fn(&Vec<f64>) -> Vec<f64>, start: &[f64], method: f64| {
-        let noise = own + noise(function, start, scale);
-        let ratio = difference(&function(&start.to_vec()), &end) / (ALLOWED * noise + 3.0 * method);
+    let maximal = |y: &Vec<f64>, steps| integrated(&|t, y| generated.derivative(t, y), y, steps);
+    let is_stable = |steps: &u32| maximal(start, *steps).iter().all(|x| x.abs() < BLOWN_UP);
+    let steps = std::iter::successors(Some(STEPS), |steps| Some(2 * steps))
+        .find(|steps| *steps >= STIFF * STEPS || is_stable(steps))
+        .expect("the last will do");
+    let end = maximal(start, steps);
+    let method = difference(&maximal(start, 2 * steps), &end);
+    let scale = f64::from(steps) * largest(&end).max(1.0);
+    let own = noise(&|y| maximal(y, steps), start, scale);
+    // The method does not keep the constraints and the length of Euler parameters, and off them each engine goes its own way.
+    let mut note = |name: &str, function: &dyn Fn(&Vec<f64>, u32) -> Vec<f64>, start: &[f64]| {
+        let start = start.to_vec();
+        let (found, finer) = (function(&start, steps), function(&start, 2 * steps));
+        let noise = own + noise(&|y| function(y, steps), &start, scale);
+        let method = method + difference(&finer, &found);
+        let ratio = difference(&found, &end) / (ALLOWED * noise + 3.0 * method);
         comparison.found.push((format!("{name}: after {T_END} s"), ratio));
     };
-    // The method does not keep the length of Euler parameters, and off it each engine goes its own way.
     for (name, _, derivative) in forms.list() {
-        note(name, &|y| integrated(&*derivative, y, STEPS), start, method);
+        note(name, &|y, steps| integrated(&*derivative, y, steps), start);
     }
     if module.joints.is_some() {
         let joint = |t: f64, x: &Vec<f64>| generated.joint_derivative(t, x);
-        let by = |x: &[f64], steps| {
+        let by = |x: &Vec<f64>, steps| {
             let mut y = generated.run("to_maximal", T_END, [&[], &integrated(&joint, x, steps)], &[]);
             alike(&mut y, &end);
             y
         };
-        let start = &module.joint_start;
-        let own_method = difference(&by(start, 2 * STEPS), &by(start, STEPS));
-        note("generated, joint coordinates", &|x| by(x, STEPS), start, method + own_method);
+        note("generated, joint coordinates", &by, &module.joint_start);
     }
+    end
 }
 
 /// Gives Euler parameters the signs of those of another state: both signs are one orientation.
@@ -307,6 +326,6 @@ pub fn alike(y: &mut [f64], other: &[f64]) {
 }
 
 /// Bodies of a state of 13 numbers a body; the few beyond are work and turns.
-fn n_bodies(y: &[f64]) -> usize {
+fn n_bodies<F>(y: &[F]) -> usize {
     y.len() / 13
 }
