@@ -1,7 +1,7 @@
 //! Generated multibody dynamics at run time: `no_std`, no allocation, no `unsafe`, no panic on numerical input.
 //!
 //! A mechanism is a type that implements [`Mechanism`]: either a module that `gyro-codegen` wrote from a page of bodies
-//! and joints (this crate ships some in [`generated`]) or anything else that keeps the same contract. The two
+//! and joints (this crate has the paper's scene in [`generated`]) or anything else that keeps the same contract. The two
 //! algorithms of Gruzman and Sarzeto's section 5 run on it: *direct integration* and *coordinate partitioning*
 //! ([`Partitioned`]).
 //!
