@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 /// The data sheets.
 const FOLDED: Sheet = Sheet(include_str!("../../gyro-sim/src/generated/gyroscope.rs"));
-const MAXIMAL: Sheet = Sheet(include_str!("../../gyro-sim/src/generated/gyroscope_maximal.rs"));
+const MAXIMAL: Sheet = Sheet(include_str!("../../mechanisms/src/golden/gyroscope_maximal.rs"));
 
 /// The paper's second: corrections, and steps between them.
 pub(crate) const CORRECTIONS: u32 = 2000;

@@ -34,13 +34,16 @@ pub enum Command {
     Report(ReportArgs),
 }
 
-/// Write the Rust modules of models
+/// Write the Rust modules of models and their data sheets
 ///
-/// Models in models/ go to gyro-sim/src/generated/NAME.rs, others beside their page. Nothing is written unless every
-/// model is free of mistakes.
+/// The module of a model goes beside its model file, or where --out says. Of the models of this project the data sheets are
+/// kept (mechanisms/sheets, tests/sheets, embedded/sheets) and a few modules to be read (mechanisms/src/golden, and the
+/// paper's scene in gyro-sim/src/generated); all others are generated when they are compiled. Nothing is written unless
+/// every model is free of mistakes.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  cargo xtask generate                          every model in models/
+  cargo xtask generate                          what is kept of every model of this project
+  cargo xtask generate models/torsion.toml --out out/torsion.rs
   cargo xtask generate --check                  fail if a generated file is not fresh
   cargo xtask generate ~/gimbal.toml --out src/gimbal.rs")]
 pub struct GenerateArgs {
@@ -285,7 +288,7 @@ pub struct ImportArgs {
 /// takes about twenty minutes; leave the machine alone meanwhile.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  cargo xtask report                             every model in models/, to docs/report
+  cargo xtask report                             every model in models/, to out/report; what is kept, to docs/report
   cargo xtask report models/gyroscope.toml
   cargo xtask report --quick                     a minute, to target/report
   cargo xtask report ~/gimbal.toml --out ~/gimbal-report")]
@@ -296,7 +299,7 @@ pub struct ReportArgs {
     /// Few points and short runs, and the paper's scene alone if none is given
     #[arg(long)]
     pub(crate) quick: bool,
-    /// Folder of the report [default: docs/report; target/report with --quick]
+    /// Folder of the report [default: out/report; target/report with --quick]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }

@@ -1,8 +1,8 @@
-//! `cargo xtask generate`: one function with two modes, write and check.
+//! `cargo xtask generate`: data sheets and the modules that are kept, by one function with two modes, write and check.
 
 use crate::args::GenerateArgs;
 use crate::failure::Failure;
-use crate::places::{Places, all_pages, is_in, listing, module_path};
+use crate::places::{Place, all_pages, listing, module_path, place_of};
 use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{fs, io};
 
-/// Writes the modules of the models, or checks that they are fresh.
+/// Writes the data sheets of the models and the modules that are kept, or checks that they are fresh.
 pub(crate) fn generate(args: &GenerateArgs) -> Result<(), Failure> {
-    let outputs = outputs(args, &Places::of_workspace(&files::root()))?;
+    let outputs = outputs(args, &Place::of_workspace(&files::root()))?;
     if args.check { check(&outputs, &mend(args)) } else { write(&outputs) }
 }
 
@@ -29,6 +29,8 @@ struct Outputs {
     files: Vec<Output>,
     /// What has to be done by hand.
     to_do: Vec<String>,
+    /// Pages of which no module is written.
+    without_module: Vec<PathBuf>,
 }
 
 /// One generated file.
@@ -39,38 +41,69 @@ struct Output {
 }
 
 /// Generates everything in memory: a mistake anywhere leaves all files as they are.
-fn outputs(args: &GenerateArgs, places: &[Places]) -> Result<Outputs, Failure> {
+fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
     let pages = if args.models.is_empty() { all_pages(places)? } else { args.models.clone() };
     if args.out.is_some() && pages.len() != 1 {
         return Err(Failure::Usage("--out takes the module of a single MODEL: give one".to_owned()));
     }
     let mut outputs = Outputs::default();
-    let mut names = vec![Vec::new(); places.len()];
+    let mut names = Vec::new();
     let mut sources: Vec<(PathBuf, &PathBuf)> = Vec::new();
     for (page, made) in pages.iter().zip(modules(&pages, args.strict)) {
         let module = made?;
-        let place = places.iter().position(|place| args.out.is_none() && is_in(page, &place.models));
-        let path = args.out.clone().unwrap_or_else(|| module_path(places, page, &module.name));
-        if let Some((_, other)) = sources.iter().find(|(known, _)| *known == path) {
+        let place = place_of(places, page).filter(|_| args.out.is_none());
+        let path = args.out.clone().or_else(|| module_path(places, page, &module.name));
+        let sheet = place.map(|place| place.sheet(&module.name));
+        let first =
+            sheet.clone().or_else(|| path.clone()).expect("a page from elsewhere has its module beside it");
+        if let Some((_, other)) = sources.iter().find(|(known, _)| *known == first) {
             let (this, other) = (page.display(), other.display());
             return Err(Failure::Usage(format!("{this} and {other} have the same name `{}`", module.name)));
         }
-        sources.push((path.clone(), page));
-        if let Some(place) = place {
-            names[place].push(module.name);
+        sources.push((first, page));
+        outputs.files.extend(sheet.map(|path| Output { path, text: data_sheet(&module) }));
+        names.push(module.name);
+        match path {
+            // The module first: it is by the module beside them that the constants are known.
+            Some(path) => {
+                outputs.files.push(Output { path: path.clone(), text: module.code });
+                outputs.files.push(Output { path: path.with_extension("exact"), text: module.constants });
+            }
+            None => outputs.without_module.push(page.clone()),
         }
-        // The module first: it is by the module beside them that the constants are known.
-        outputs.files.push(Output { path: path.clone(), text: module.code });
-        outputs.files.push(Output { path: path.with_extension("exact"), text: module.constants });
     }
-    for (place, names) in places.iter().zip(&names) {
-        outputs.to_do.extend(by_hand(&place.generated, names, args.models.is_empty())?);
+    if args.models.is_empty() {
+        for place in places {
+            outputs
+                .to_do
+                .extend(orphans(&place.sheets, "txt", |name| names.iter().any(|known| known == name))?);
+            for (folder, kept) in &place.kept {
+                outputs.to_do.extend(by_hand(folder, kept)?);
+            }
+        }
     }
     Ok(outputs)
 }
 
+/// The head of a module as a text of its own, with digests by which a change of anything else shows.
+fn data_sheet(module: &Module) -> String {
+    let head = module
+        .code
+        .lines()
+        .take_while(|line| line.is_empty() || line.starts_with(MARK) || line.starts_with("//!"));
+    let lines =
+        head.map(|line| line.strip_prefix("//!").map_or(line, |line| line.strip_prefix(' ').unwrap_or(line)));
+    let mut text = lines.collect::<Vec<_>>().join("\n").trim_end().to_owned();
+    text.push('\n');
+    for (what, of) in [("module", &module.code), ("exact constants", &module.constants)] {
+        let (lines, digest) = (count(of.lines().count() as u64, "line"), write::digest(of.as_bytes()));
+        let _ = write!(text, "\n{what}: {lines}, digest {digest}");
+    }
+    text + "\n"
+}
+
 /// The modules of pages, each proved and with the proof on its data sheet.
-fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
+pub(crate) fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let model = scene::read(page)?;
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
@@ -101,6 +134,12 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
     }
     if n_fresh > 0 {
         say(&format!("{} fresh already", count(n_fresh, "file")));
+    }
+    if let [page] = &outputs.without_module[..] {
+        say(&format!(
+            "{}: its module is generated when it is compiled; --out FILE writes it",
+            page.display()
+        ));
     }
     if outputs.to_do.is_empty() { Ok(()) } else { Err(Failure::Run(outputs.to_do.join("\n"))) }
 }
@@ -176,34 +215,32 @@ fn difference(output: &Output) -> Option<String> {
     Some(words)
 }
 
-/// What the hand-written door file lacks, and generated files that no model has any more.
-fn by_hand(generated: &Path, names: &[String], all: bool) -> Result<Vec<String>, Failure> {
-    if names.is_empty() {
-        return Ok(Vec::new());
-    }
-    let door = generated.join("mod.rs");
+/// What the hand-written door file of a folder of modules lacks, and generated files that do not belong there.
+fn by_hand(folder: &Path, kept: &[&str]) -> Result<Vec<String>, Failure> {
+    let door = folder.join("mod.rs");
     let text = fs::read_to_string(&door)
         .map_err(|e| Failure::Usage(format!("{} cannot be read: {e}", door.display())))?;
     let is_declared = |name: &str| text.lines().any(|line| line.trim() == format!("pub mod {name};"));
-    let mut to_do: Vec<String> = names
+    let mut to_do: Vec<String> = kept
         .iter()
         .filter(|name| !is_declared(name))
         .map(|name| format!("add this line to {}: pub mod {name};", door.display()))
         .collect();
-    if all {
-        to_do.extend(orphans(generated, names)?);
+    for extension in ["rs", "exact"] {
+        to_do.extend(orphans(folder, extension, |name| name == "mod" || kept.contains(&name))?);
     }
     Ok(to_do)
 }
 
-fn orphans(generated: &Path, names: &[String]) -> Result<Vec<String>, Failure> {
+fn orphans(folder: &Path, extension: &str, is_known: impl Fn(&str) -> bool) -> Result<Vec<String>, Failure> {
     let is_orphan = |path: &PathBuf| {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let is_generated = path.extension().is_some_and(|e| e == "rs" || e == "exact");
-        is_generated && stem != "mod" && !names.iter().any(|n| *n == stem)
+        path.extension().is_some_and(|e| e == extension) && !is_known(&stem)
     };
-    let orphans = listing(generated)?.into_iter().filter(is_orphan);
-    Ok(orphans.map(|p| format!("{} has no model: delete it and its line in mod.rs", p.display())).collect())
+    let orphans = listing(folder)?.into_iter().filter(is_orphan);
+    Ok(orphans
+        .map(|path| format!("{} is of no model that is kept here: delete it", path.display()))
+        .collect())
 }
 
 fn say(words: &str) {
@@ -225,15 +262,15 @@ mass = 0.1
 inertia = [1e-4, 1e-4, 2e-4]
 ";
 
-    /// A workspace with one model and, if so, its line in the door file.
-    fn workspace(door: &str) -> (Folder, [Places; 1]) {
+    /// A workspace with one model, its module kept and, if so, its line in the door file.
+    fn workspace(door: &str) -> (Folder, [Place; 1]) {
         let folder = Folder::new();
-        let places = Places { models: folder.0.join("models"), generated: folder.0.join("generated") };
-        fs::create_dir_all(&places.models).unwrap();
-        fs::create_dir_all(&places.generated).unwrap();
-        fs::write(places.models.join("plate.toml"), PAGE).unwrap();
-        fs::write(places.generated.join("mod.rs"), door).unwrap();
-        (folder, [places])
+        let generated = folder.0.join("generated");
+        let (models, sheets) = (folder.0.join("models"), folder.0.join("sheets"));
+        [&generated, &models, &sheets].iter().for_each(|folder| fs::create_dir_all(folder).unwrap());
+        fs::write(models.join("plate.toml"), PAGE).unwrap();
+        fs::write(generated.join("mod.rs"), door).unwrap();
+        (folder, [Place { models, sheets, kept: vec![(generated, &["plate"])] }])
     }
 
     fn args(models: &[PathBuf], out: Option<PathBuf>) -> GenerateArgs {
@@ -255,22 +292,49 @@ inertia = [1e-4, 1e-4, 2e-4]
         assert!(words(check(&outputs, mend)).contains("plate.rs is missing"));
         write(&outputs).unwrap();
         check(&outputs, mend).unwrap();
-        let path = places[0].generated.join("plate.rs");
-        let edited = fs::read_to_string(&path).unwrap() + "// edited\n";
-        fs::write(&path, edited).unwrap();
-        let found = words(check(&outputs, mend));
-        assert!(found.contains("-// edited"), "{found}");
-        assert!(found.ends_with("to mend this: cargo xtask generate"), "{found}");
+        for path in [places[0].module("plate").unwrap(), places[0].sheet("plate")] {
+            let fresh = fs::read_to_string(&path).unwrap();
+            fs::write(&path, format!("{fresh}// edited\n")).unwrap();
+            let found = words(check(&outputs, mend));
+            assert!(found.contains("-// edited"), "{found}");
+            assert!(found.ends_with("to mend this: cargo xtask generate"), "{found}");
+            fs::write(&path, fresh).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_module_that_is_not_kept_has_its_sheet_all_the_same() {
+        let (folder, mut places) = workspace("pub mod plate;\n");
+        places[0].kept.clear();
+        let sheet_of = |page: &str| {
+            fs::write(places[0].models.join("plate.toml"), page).unwrap();
+            let outputs = outputs(&args(&[], None), &places).unwrap();
+            write(&outputs).unwrap();
+            assert_eq!(outputs.files.len(), 1);
+            fs::read_to_string(folder.0.join("sheets/plate.txt")).unwrap()
+        };
+        let sheet = sheet_of(PAGE);
+        for part in
+            ["from plate.toml", "\n| accelerations | ", "\n# Proof\n", "\nmodule: ", "\nexact constants: "]
+        {
+            assert!(sheet.contains(part), "{part} is missing: {sheet}");
+        }
+        // As many operations, another literal.
+        assert_ne!(sheet_of(&PAGE.replace("mass = 0.1", "mass = 0.2")), sheet);
     }
 
     #[test]
     fn the_door_file_is_told_line_by_line() {
         let (_folder, places) = workspace("// pub mod plate;\n");
-        fs::write(places[0].generated.join("old.rs"), "").unwrap();
+        fs::write(places[0].kept[0].0.join("old.rs"), "").unwrap();
+        fs::write(places[0].sheets.join("older.txt"), "").unwrap();
         let outputs = outputs(&args(&[], None), &places).unwrap();
         let found = words(write(&outputs));
         assert!(found.contains("mod.rs: pub mod plate;"), "{found}");
-        assert!(found.contains("old.rs has no model"), "{found}");
+        assert!(
+            found.contains("old.rs is of no model") && found.contains("older.txt is of no model"),
+            "{found}"
+        );
     }
 
     #[test]
@@ -303,7 +367,7 @@ inertia = [1e-4, 1e-4, 2e-4]
             fs::write(&path, text).unwrap();
             assert!(matches!(attempt(), Err(Failure::Usage(words)) if words.contains(name)), "{name}");
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
-            assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 4, "nothing else is written either");
+            assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 5, "nothing else is written either");
             fs::remove_file(&path).unwrap();
         }
         attempt().unwrap();
@@ -317,6 +381,6 @@ inertia = [1e-4, 1e-4, 2e-4]
         let (_folder, places) = workspace("pub mod plate;\n");
         fs::write(places[0].models.join("zbad.toml"), PAGE.replace("mass = 0.1", "mass = -1")).unwrap();
         assert!(matches!(outputs(&args(&[], None), &places), Err(Failure::Page(_))));
-        assert!(!places[0].generated.join("plate.rs").exists());
+        assert!(!places[0].module("plate").unwrap().exists());
     }
 }

@@ -1,31 +1,52 @@
-//! Where pages and their generated modules are in the workspace.
+//! Where pages, their data sheets and the modules that are kept are in the workspace.
 
 use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// Where pages and their generated modules are in the workspace.
+/// A folder of pages, and what is kept in the repository of what is made of them.
 #[derive(Clone, Debug)]
-pub(crate) struct Places {
+pub(crate) struct Place {
     pub(crate) models: PathBuf,
-    pub(crate) generated: PathBuf,
+    /// The data sheet of every page.
+    pub(crate) sheets: PathBuf,
+    /// Folders of modules, with the names of those that are in them. All others are generated when they are compiled.
+    pub(crate) kept: Vec<(PathBuf, &'static [&'static str])>,
 }
 
-impl Places {
-    /// What is shipped, what only tests need, and what the firmware runs.
+/// The modules that are kept to be read.
+const GOLDEN: [&str; 5] =
+    ["driven_gyroscope", "four_bar", "gyroscope_maximal", "gyroscope_parameters", "heavy_top"];
+
+impl Place {
+    /// The gallery, what only tests need, and what the firmware runs.
     pub(crate) fn of_workspace(root: &Path) -> [Self; 3] {
-        let (shipped, tests) = (root.join("gyro-sim").join("src"), root.join("tests"));
-        let (firmware, scenes) = (root.join("embedded"), root.join("embedded").join("scenes").join("src"));
+        let (gallery, tests, firmware) = (root.join("mechanisms"), root.join("tests"), root.join("embedded"));
+        let kept = vec![
+            (root.join("gyro-sim").join("src").join("generated"), &["gyroscope"][..]),
+            (gallery.join("src").join("golden"), &GOLDEN[..]),
+        ];
         [
-            Self { models: root.join("models"), generated: shipped.join("generated") },
-            Self { models: tests.join("models"), generated: tests.join("support").join("generated") },
-            Self { models: firmware.join("models"), generated: scenes.join("mechanisms") },
+            Self { models: root.join("models"), sheets: gallery.join("sheets"), kept },
+            Self { models: tests.join("models"), sheets: tests.join("sheets"), kept: Vec::new() },
+            Self { models: firmware.join("models"), sheets: firmware.join("sheets"), kept: Vec::new() },
         ]
+    }
+
+    /// Where the module of this name is kept, if it is.
+    pub(crate) fn module(&self, name: &str) -> Option<PathBuf> {
+        let (folder, _) = self.kept.iter().find(|(_, names)| names.contains(&name))?;
+        Some(folder.join(name).with_extension("rs"))
+    }
+
+    /// Where the data sheet of this name is.
+    pub(crate) fn sheet(&self, name: &str) -> PathBuf {
+        self.sheets.join(name).with_extension("txt")
     }
 }
 
 /// The pages of the workspace, in the order of their names.
-pub(crate) fn all_pages(places: &[Places]) -> Result<Vec<PathBuf>, Failure> {
+pub(crate) fn all_pages(places: &[Place]) -> Result<Vec<PathBuf>, Failure> {
     let mut pages = Vec::new();
     for place in places {
         pages.extend(
@@ -35,12 +56,16 @@ pub(crate) fn all_pages(places: &[Places]) -> Result<Vec<PathBuf>, Failure> {
     Ok(pages)
 }
 
-/// Where a page's module is: in the workspace, or beside the page.
-pub(crate) fn module_path(places: &[Places], page: &Path, name: &str) -> PathBuf {
-    let file = format!("{name}.rs");
-    match places.iter().find(|place| is_in(page, &place.models)) {
-        Some(place) => place.generated.join(file),
-        None => page.with_file_name(file),
+/// The place that a page belongs to, unless it is from elsewhere.
+pub(crate) fn place_of<'p>(places: &'p [Place], page: &Path) -> Option<&'p Place> {
+    places.iter().find(|place| is_in(page, &place.models))
+}
+
+/// Where a page's module is: beside a page from elsewhere; nowhere if it is generated when it is compiled.
+pub(crate) fn module_path(places: &[Place], page: &Path, name: &str) -> Option<PathBuf> {
+    match place_of(places, page) {
+        Some(place) => place.module(name),
+        None => Some(page.with_file_name(format!("{name}.rs"))),
     }
 }
 
@@ -53,7 +78,7 @@ pub(crate) fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
-pub(crate) fn is_in(page: &Path, folder: &Path) -> bool {
+fn is_in(page: &Path, folder: &Path) -> bool {
     match (fs::canonicalize(page), fs::canonicalize(folder)) {
         (Ok(page), Ok(folder)) => page.parent() == Some(&folder),
         _ => false,

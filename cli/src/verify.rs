@@ -2,7 +2,7 @@
 
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
-use crate::places::{Places, all_pages, module_path};
+use crate::places::{Place, all_pages, module_path};
 use crate::progress::Spinner;
 use crate::words::count;
 use crate::{files, remarks, rounding, scene, stability};
@@ -16,7 +16,7 @@ use std::{fs, io};
 
 /// Verifies the modules of the models, prints what was proved, and fails unless all was.
 pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
-    let places = Places::of_workspace(&files::root());
+    let places = Place::of_workspace(&files::root());
     let pages = if args.models.is_empty() { all_pages(&places)? } else { args.models.clone() };
     if args.rounding {
         let tables: Result<Vec<rounding::Table>, Failure> =
@@ -44,20 +44,24 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     Err(Failure::Run(format!("{} not proved", count(n_unproved as u64, "module"))))
 }
 
-fn verify_page(places: &[Places], page: &Path, depth: Depth, seed: Seed) -> Result<Report, Failure> {
+fn verify_page(places: &[Place], page: &Path, depth: Depth, seed: Seed) -> Result<Report, Failure> {
     let (model, [code, constants]) = read_page(places, page)?;
     Ok(verify_at(&model, &code, &constants, depth, seed))
 }
 
-fn rounding_of(places: &[Places], page: &Path) -> Result<rounding::Table, Failure> {
+fn rounding_of(places: &[Place], page: &Path) -> Result<rounding::Table, Failure> {
     let (model, [code, constants]) = read_page(places, page)?;
     rounding::table(&model, &code, &constants)
 }
 
-/// A model with its module and exact constants as they are on disk.
-fn read_page(places: &[Places], page: &Path) -> Result<(Model, [String; 2]), Failure> {
+/// A model with its module and exact constants: as they are on disk, or as they are generated where they are not kept.
+fn read_page(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Failure> {
     let model = scene::read(page)?;
-    let path = module_path(places, page, &model.name);
+    let Some(path) = module_path(places, page, &model.name) else {
+        let module = gyro_codegen::generate_model(&files::shown(page), &model)
+            .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
+        return Ok((model, [module.code, module.constants]));
+    };
     let read = |path: &Path| {
         fs::read_to_string(path).map_err(|e| {
             let (path, page) = (path.display(), page.display());

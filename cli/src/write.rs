@@ -141,13 +141,18 @@ fn record(path: &Path, text: &str) -> io::Result<()> {
     OpenOptions::new().create(true).append(true).open(record_of(path))?.write_all(line.as_bytes())
 }
 
-/// Length, digest (FNV-1a) and name of a file: enough to see that it was changed, not proof against whoever wants to deceive.
-fn line(path: &Path, text: &[u8]) -> String {
-    let digest = text.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+/// FNV-1a: enough to see that a text was changed, not proof against whoever wants to deceive.
+pub(crate) fn digest(text: &[u8]) -> String {
+    let hash = text.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     });
+    format!("{hash:016x}")
+}
+
+/// Length, digest and name of a file.
+fn line(path: &Path, text: &[u8]) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    format!("{} {digest:016x} {name}", text.len())
+    format!("{} {} {name}", text.len(), digest(text))
 }
 
 /// Whether a file is there with just this text.

@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "a counting allocator must implement an unsafe trait")]
 
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_viscous::GyroscopeViscous};
+use gyro_mechanisms::{gyroscope::Gyroscope, gyroscope_viscous::GyroscopeViscous};
 use gyro_sim::integrate::Method;
 use gyro_sim::{
     Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Exact, Joint,

@@ -2,11 +2,11 @@
 //! ratios of 1e12, a linkage through the pose with all bars in line; and starts and numbers that are wrong.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_mechanisms as shipped;
 use gyro_reference::{DoubleDouble, Gyroscope as Reference, JointRow, Start as ReferenceStart, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim::{
     Direct, Error, Exact, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Rk4, Turns,
-    generated as shipped,
 };
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, Run, coordinate, fed, generated, model, simulate, violated_start};

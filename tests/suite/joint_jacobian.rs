@@ -2,9 +2,10 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::joint_space::random_state;
+use gyro_mechanisms as shipped;
 use gyro_runner::motion::{Linear, TreeWithJacobian};
 use gyro_runner::{Approach, Event, Settings, run_by};
-use gyro_sim::{Dual, JointSpace, Mechanism, generated as shipped};
+use gyro_sim::{Dual, JointSpace, Mechanism};
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, dense, model, start_of};
 use nalgebra::{DMatrix, DVector};

@@ -1,8 +1,9 @@
 //! Joint coordinates against maximal ones: the maps lead there and back, and both describe one motion.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_mechanisms as shipped;
 use gyro_model::{JointKind, Model, Support};
-use gyro_sim::{JointSpace, Partition, generated as shipped};
+use gyro_sim::{JointSpace, Partition};
 use gyro_sim_suite::Random;
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::model;

@@ -1,6 +1,6 @@
 //! Lanes against as many scalar runs of shipped trees: the same bits, whatever happens in the other lanes.
 
-use gyro_sim::generated::{
+use gyro_mechanisms::{
     driven_gyroscope::DrivenGyroscope,
     free_body::FreeBody,
     gyroscope::Gyroscope,

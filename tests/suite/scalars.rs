@@ -1,6 +1,6 @@
 //! Kernels take any scalar: packs of lanes and dual numbers run the same generated source.
 
-use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
+use gyro_mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use gyro_sim::{Mechanism, Scalar};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

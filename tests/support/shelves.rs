@@ -4,18 +4,14 @@ use crate::generated as own;
 use crate::{Duals, Engine};
 use gyro_assembled::{Careful, Dense};
 use gyro_codegen::Module;
+use gyro_mechanisms as shipped;
 use gyro_model::{Model, Tree};
-use gyro_sim::{Real, generated as shipped};
+use gyro_sim::Real;
 use std::path::{Path, PathBuf};
 
-/// A folder of pages and the folder of their generated modules.
+/// A folder of pages.
 #[derive(Clone, Debug)]
-pub struct Shelf {
-    /// Pages.
-    pub models: PathBuf,
-    /// Modules.
-    pub generated: PathBuf,
-}
+pub struct Shelf(PathBuf);
 
 /// Does something with the generated mechanism of every page, shipped or not.
 pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
@@ -231,17 +227,15 @@ pub fn dense(model: &Model) -> Engine {
     Engine::new(Dense::<f64>::new(model).unwrap_or_else(|error| panic!("{}: {error}", model.name)))
 }
 
-/// Where pages and modules are: the shipped ones, then those for tests.
+/// Where pages are: the shipped ones, then those for tests.
 pub fn shelves() -> [Shelf; 2] {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    [("models", "gyro-sim/src/generated"), ("tests/models", "tests/support/generated")]
-        .map(|(models, generated)| Shelf { models: root.join(models), generated: root.join(generated) })
+    ["models", "tests/models"].map(|folder| Shelf(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)))
 }
 
 impl Shelf {
     /// Its pages in the order of their names, without extension.
     pub fn pages(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(&self.models).expect("the folder is part of the project");
+        let entries = std::fs::read_dir(&self.0).expect("the folder is part of the project");
         let mut pages: Vec<String> = entries
             .map(|entry| entry.expect("its entries can be read").path())
             .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
@@ -286,7 +280,7 @@ fn file_name(page: &str) -> String {
 }
 
 fn path(page: &str) -> PathBuf {
-    let paths = shelves().map(|shelf| shelf.models.join(file_name(page)));
+    let paths = shelves().map(|shelf| shelf.0.join(file_name(page)));
     let found = paths.into_iter().find(|path| path.exists());
     found.unwrap_or_else(|| panic!("there is no page {page}.toml"))
 }

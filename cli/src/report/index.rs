@@ -42,10 +42,27 @@ pub(crate) fn add(study: &Study, machine: &str, folder: &Path) -> Result<(), Fai
         &study.lab.name,
         study.goals.iter().map(with_name).collect(),
     )?;
-    let page = page(scenes, goals, machine);
+    let page = page(scenes, goals, machine, None);
     own(&folder.join("index.md"), &page.markdown())?;
     own(&folder.join("index.html"), &page.html("gyro-sim: error against run time"))?;
     Ok(())
+}
+
+/// The index of a whole report for a folder that has the pages of some scenes only.
+pub(crate) fn kept(folder: &Path, machine: &str, kept: &[&str]) -> String {
+    let [scenes, goals] = ["index.csv", "goals.csv"].map(|file| rows(&folder.join(file)));
+    page(scenes, goals, machine, Some(kept)).markdown()
+}
+
+/// The rows of a table; none if there is no such file.
+fn rows(path: &Path) -> Vec<Vec<String>> {
+    match csv::Reader::from_path(path) {
+        Ok(mut reader) => {
+            let rows = reader.records().filter_map(Result::ok);
+            rows.map(|row| row.iter().map(str::to_owned).collect()).collect()
+        }
+        Err(_) => Vec::new(),
+    }
 }
 
 /// The rows of a table with those of a scene replaced, in the order of names; the file is written anew.
@@ -55,13 +72,7 @@ fn merged(
     scene: &str,
     new: Vec<Vec<String>>,
 ) -> Result<Vec<Vec<String>>, Failure> {
-    let mut rows: Vec<Vec<String>> = match csv::Reader::from_path(path) {
-        Ok(mut reader) => {
-            let rows = reader.records().filter_map(Result::ok);
-            rows.map(|row| row.iter().map(str::to_owned).collect()).collect()
-        }
-        Err(_) => Vec::new(),
-    };
+    let mut rows = rows(path);
     // What another version has written is not understood any more.
     rows.retain(|row| row.len() == head.len() && row.first().is_some_and(|name| name != scene));
     rows.extend(new);
@@ -98,7 +109,8 @@ fn row(study: &Study) -> Vec<String> {
     ]
 }
 
-fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str) -> Page {
+/// The page; `kept` are the scenes whose pages are beside it, unless all are.
+fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str, kept: Option<&[&str]>) -> Page {
     let mut page = Page::default();
     page.heading(1, "Error against run time");
     page.text(format!(
@@ -106,8 +118,16 @@ fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str) -> Pag
          hand-derived second (the paper's scene in minimal coordinates by RK4, 10 000 steps) in the same process; errors are counted from \
          reference solutions of their own."
     ));
+    if kept.is_some() {
+        page.text(
+            "Only the pages with a link are kept here. `cargo xtask report` writes those of all scenes, each also as one HTML file, and the raw \
+             data to `out/report`; `cargo xtask report models/torsion.toml` those of one.",
+        );
+    }
     let linked = |mut row: Vec<String>| {
-        row[0] = format!("[{0}]({0}.md)", row[0]);
+        if kept.is_none_or(|kept| kept.contains(&row[0].as_str())) {
+            row[0] = format!("[{0}]({0}.md)", row[0]);
+        }
         row
     };
     page.heading(2, "Scenes");
@@ -126,6 +146,17 @@ fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str) -> Pag
 mod tests {
     use super::*;
     use crate::files::tests::Folder;
+
+    #[test]
+    fn only_kept_pages_are_linked() {
+        let row = |name: &str| [name, "", "", "", "", "", "", "1", "0"].map(str::to_owned).to_vec();
+        let rows = || vec![row("gyroscope"), row("torsion")];
+        let all = page(rows(), Vec::new(), "m", None).markdown();
+        assert!(all.contains("[torsion](torsion.md)") && !all.contains("out/report"), "{all}");
+        let some = page(rows(), Vec::new(), "m", Some(&["gyroscope"])).markdown();
+        assert!(some.contains("[gyroscope](gyroscope.md)") && some.contains("| torsion |"), "{some}");
+        assert!(some.contains("`out/report`") && !some.contains("](torsion.md)"), "{some}");
+    }
 
     #[test]
     fn a_scene_s_rows_are_replaced_and_others_kept() {

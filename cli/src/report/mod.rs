@@ -14,6 +14,7 @@ mod explore;
 mod figures;
 mod goals;
 mod index;
+mod kept;
 mod lab;
 mod limits;
 mod order;
@@ -40,11 +41,10 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     // A mistake in the last of them is better known before anything is compiled.
     let names =
         pages.iter().map(|path| Ok(scene::read(path)?.name)).collect::<Result<Vec<String>, Failure>>()?;
-    let folder = args.out.clone().unwrap_or_else(|| {
-        // A quick look does not replace what was measured with care.
-        let root = files::root();
-        if args.quick { root.join("target").join("report") } else { root.join("docs").join("report") }
-    });
+    let root = files::root();
+    // A quick look does not replace what was measured with care.
+    let own = root.join(if args.quick { "target" } else { "out" }).join("report");
+    let folder = args.out.clone().unwrap_or(own);
     fs::create_dir_all(folder.join("images")).map_err(|e| unusable(&folder, &e))?;
     names.iter().try_for_each(|name| write::check(name, &folder))?;
     let twin = nested::twin()?;
@@ -58,6 +58,11 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
         index::add(&study, &machine, &folder)?;
         missed.extend(study.goals.into_iter().filter(|goal| !goal.is_met()));
         eprintln!("wrote {}", folder.join(format!("{}.md", study.lab.name)).display());
+    }
+    if args.models.is_empty() && args.out.is_none() && !args.quick {
+        let docs = root.join("docs").join("report");
+        kept::keep(&folder, &docs, &machine)?;
+        eprintln!("wrote what is kept of it to {}", docs.display());
     }
     judge(&missed, args.quick)
 }

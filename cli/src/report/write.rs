@@ -60,7 +60,11 @@ fn known(path: &Path) -> Known {
         let found = path.parent().map(fs::canonicalize);
         matches!((own, found), (Ok(own), Some(Ok(found))) if found.starts_with(&own))
     };
-    if inside("docs/report") || inside("target") { Known::Place } else { Known::Record }
+    if inside("docs/report") || inside("out/report") || inside("target") {
+        Known::Place
+    } else {
+        Known::Record
+    }
 }
 
 fn page(study: &Study, machine: &str) -> Page {
@@ -95,8 +99,8 @@ fn lead(study: &Study, machine: &str, page: &mut Page) {
     page.text(format!(
         "{}, measured in {} s on {machine}. Times are what the processor spends on steps and corrections alone, medians of runs made in \
          turns with the hand-derived second (the paper's scene in minimal coordinates by RK4, 10 000 steps), whose median time they are \
-         multiples of: a ratio of 1 is as long as that. Where coordinates are maximal and corrected, it is after every step.{depth} All runs are in [{name}.csv]({name}.csv); all pages \
-         in [the index](index.md).",
+         multiples of: a ratio of 1 is as long as that. Where coordinates are maximal and corrected, it is after every step.{depth} All runs are in `{name}.csv`, which \
+         `cargo xtask report` writes; all scenes in [the index](index.md).",
         count(points.len() as u64, "run"),
         number(*took, 3)
     ));
@@ -231,7 +235,7 @@ fn drift(study: &Study, page: &mut Page) {
     let settings = &study.lab.model.simulation;
     page.heading(2, "Drift");
     page.text(format!(
-        "{} s by RK4 at the page's own step of {} s, corrected every {} s. Data: [{name}-drift.csv]({name}-drift.csv).",
+        "{} s by RK4 at the page's own step of {} s, corrected every {} s. Data: `{name}-drift.csv`.",
         number(study.long, 4),
         number(settings.step, 4),
         number(settings.correct_every, 4),
@@ -282,7 +286,7 @@ fn stability(study: &Study, page: &mut Page) {
         "Fixed steps that keep a run of 4000 steps bounded, over the {knob}. The limit in theory is where |R(hλ)| = 1 at the fastest eigenvalue λ \
          about the start, R being the method's own amplification: it holds for motions near the start, and where steps are too long to follow the scene \
          something else ends a run before. Rodas4 is L-stable and has no limit. Data: \
-         [{name}-stability.csv]({name}-stability.csv).",
+         `{name}-stability.csv`.",
         name = study.lab.name
     ));
     let chart = figures::stability(&study.maps, &study.lab.name, &knob);

@@ -1,10 +1,10 @@
 //! What is measured, over a whole run: the same work that [`crate::runs`] does, taken apart.
 
 use crate::mechanisms::chain::Chain;
+use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use crate::runs::{CHAIN, PAPER, STEPS, Settings, time};
 use crate::{Minimal, Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use gyro_sim::{Corrected, Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
 
 /// A piece of work.

@@ -1,7 +1,7 @@
 //! All scenarios, on all cores.
 
 use crate::scenario::Scenario;
-use gyro_sim::generated::gyroscope_misalignments::GyroscopeMisalignments;
+use gyro_mechanisms::gyroscope_misalignments::GyroscopeMisalignments;
 use gyro_sim::lanes::{Lanes, f64x8};
 use gyro_sim::{Joint, Mechanism, Rk4, Scalar};
 use indicatif::ProgressBar;

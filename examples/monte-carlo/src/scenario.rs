@@ -1,6 +1,6 @@
 //! One gyroscope of the ensemble.
 
-use gyro_sim::generated::gyroscope_misalignments::{GyroscopeMisalignments, Parameters};
+use gyro_mechanisms::gyroscope_misalignments::{GyroscopeMisalignments, Parameters};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

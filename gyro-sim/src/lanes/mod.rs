@@ -20,10 +20,8 @@
 //! # Example
 //! Eight gyroscopes of different weight:
 //! ```
-//! # #[cfg(feature = "generated")]
-//! # fn main() {
 //! use gyro_sim::lanes::{Lanes, Partitioned, f64x8};
-//! use gyro_sim::generated::gyroscope_parameters::{GyroscopeParameters, Parameters};
+//! use gyro_mechanisms::gyroscope_parameters::{GyroscopeParameters, Parameters};
 //! use gyro_sim::Mechanism;
 //!
 //! let rotor_mass = f64x8::from_lanes(|lane| 0.08 + 0.001 * lane as f64);
@@ -37,9 +35,6 @@
 //! assert_eq!(solver.failures().count(), 0);
 //! let precession = |lane| states[25].lane(lane);
 //! assert!(precession(7) > precession(0));
-//! # }
-//! # #[cfg(not(feature = "generated"))]
-//! # fn main() {}
 //! ```
 
 mod chart;

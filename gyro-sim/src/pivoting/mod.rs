@@ -22,9 +22,9 @@
 //! # Example
 //! A planar four-bar linkage has one degree of freedom, so that one of its 21 coordinates is independent:
 //! ```
-//! # #[cfg(feature = "generated")]
 //! # fn main() -> Result<(), gyro_sim::Error> {
-//! use gyro_sim::{Ode, Partitioned, generated::four_bar::FourBar};
+//! use gyro_mechanisms::four_bar::FourBar;
+//! use gyro_sim::{Ode, Partitioned};
 //!
 //! let linkage = FourBar::<f64>::default();
 //! let mut state = linkage.start();
@@ -35,8 +35,6 @@
 //! assert_eq!(solver.independent().independent().len(), 1);
 //! # Ok(())
 //! # }
-//! # #[cfg(not(feature = "generated"))]
-//! # fn main() {}
 //! ```
 //!
 //! # Cost

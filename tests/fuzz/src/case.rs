@@ -1,6 +1,6 @@
 //! One case: an input made from the corpus, and what becomes of it.
 
-use crate::corpus::{Corpus, Emitted};
+use crate::corpus::{Corpus, Emitted, TABLE};
 use crate::{text, tree};
 use gyro_model::{Model, read_with};
 use gyro_verifier::{Depth, verify};
@@ -23,8 +23,6 @@ const GENERATED: usize = 3;
 
 /// What became of a good page whose module the verifier calls wrong.
 pub const REFUTED: &str = "generated and refuted";
-
-const TABLE: &str = "t,x\n0,0\n1,0.5\n2,1\n";
 
 impl Case {
     pub fn new(corpus: &Corpus, seed: u64, index: u64) -> Self {
@@ -78,8 +76,8 @@ impl fmt::Display for Case {
 }
 
 fn tampered(random: &mut ChaCha8Rng, emitted: &Emitted) -> Case {
-    let Emitted { page, module, constants } = emitted;
-    let page = page.clone();
+    let page = emitted.page.clone();
+    let [module, constants] = emitted.module();
     if random.random_bool(0.7) {
         Case::Module { page, module: text::changed(random, module), constants: constants.clone() }
     } else {

@@ -1,34 +1,36 @@
-//! What is mutated: the pages of the workspace, and the modules that were generated from them.
+//! What is mutated: the pages of the workspace, and the modules that are generated from them.
 
+use gyro_model::{Model, read_with};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
-/// Pages and modules by their names.
+/// Pages by their names, and modules.
 pub struct Corpus {
     pub pages: Vec<(String, String)>,
     pub modules: Vec<Emitted>,
 }
 
-/// A page with its module and the exact constants of its literals.
+/// A page with its module and the exact constants of its literals, which are generated when they are first asked for.
 pub struct Emitted {
     pub page: String,
-    pub module: String,
-    pub constants: String,
+    module: OnceLock<[String; 2]>,
 }
 
-/// The longest module that is tampered with: the others take the verifier seconds.
-const LONGEST_MODULE: usize = 150_000;
+/// What every motion by a table follows.
+pub const TABLE: &str = "t,x\n0,0\n1,0.5\n2,1\n";
+
+/// Bodies of the largest page whose module is tampered with: the others take generator and verifier seconds.
+const BODIES: usize = 3;
 
 impl Corpus {
     /// Reads them from the workspace.
     pub fn read() -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let shipped = texts(&root.join("models"));
-        let of_tests = texts(&root.join("tests/models"));
-        let mut modules = emitted(&shipped, &root.join("gyro-sim/src/generated"));
-        modules.extend(emitted(&of_tests, &root.join("tests/support/generated")));
-        let bad = texts(&root.join("tests/bad-models"));
-        let pages = shipped.into_iter().chain(of_tests).chain(bad);
+        let good: Vec<(PathBuf, String)> =
+            ["models", "tests/models"].iter().flat_map(|folder| texts(&root.join(folder))).collect();
+        let modules: Vec<Emitted> = good.iter().filter_map(|(_, text)| Emitted::of(text)).collect();
+        let pages = good.into_iter().chain(texts(&root.join("tests/bad-models")));
         let corpus = Self { pages: pages.map(|(path, text)| (name(&path), text)).collect(), modules };
         assert!(
             !corpus.pages.is_empty() && !corpus.modules.is_empty(),
@@ -36,6 +38,29 @@ impl Corpus {
         );
         corpus
     }
+}
+
+impl Emitted {
+    /// The module of a page that is small enough.
+    fn of(page: &str) -> Option<Self> {
+        let model = model(page);
+        (model.coordinate_bodies().len() <= BODIES)
+            .then(|| Self { page: page.to_owned(), module: OnceLock::new() })
+    }
+
+    /// The module and its constants.
+    pub fn module(&self) -> &[String; 2] {
+        self.module.get_or_init(|| {
+            let module = gyro_codegen::generate_model("fuzz.toml", &model(&self.page));
+            let module = module.expect("a page of the workspace has a module");
+            [module.code, module.constants]
+        })
+    }
+}
+
+/// The model of a page of the workspace.
+fn model(page: &str) -> Model {
+    read_with("fuzz.toml", page, &mut |_| Ok(TABLE.to_owned())).expect("a page of the workspace is good")
 }
 
 fn name(path: &Path) -> String {
@@ -48,15 +73,4 @@ fn texts(folder: &Path) -> Vec<(PathBuf, String)> {
         entries.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
     pages.sort();
     pages.into_iter().filter_map(|path| Some((path.clone(), fs::read_to_string(path).ok()?))).collect()
-}
-
-fn emitted(pages: &[(PathBuf, String)], folder: &Path) -> Vec<Emitted> {
-    let of_page = |(path, text): &(PathBuf, String)| {
-        let file = folder.join(name(path).replace('-', "_"));
-        let module = fs::read_to_string(file.with_extension("rs")).ok()?;
-        let constants = fs::read_to_string(file.with_extension("exact")).ok()?;
-        let is_short = module.len() <= LONGEST_MODULE;
-        is_short.then(|| Emitted { page: text.clone(), module, constants })
-    };
-    pages.iter().filter_map(of_page).collect()
 }

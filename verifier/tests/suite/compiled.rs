@@ -1,5 +1,6 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
+use gyro_mechanisms::{four_bar::FourBar, torsion::Torsion};
 use gyro_sim::{JointJacobian, Partition, Ports, Projection};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
@@ -9,32 +10,18 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 
-#[path = "../../../gyro-sim/src/generated/four_bar.rs"]
-#[rustfmt::skip]
-#[allow(warnings, clippy::all, reason = "generated code is checked for what it computes, not for its style")]
-mod four_bar;
-#[path = "../../../gyro-sim/src/generated/torsion.rs"]
-#[rustfmt::skip]
-#[allow(warnings, clippy::all, reason = "generated code is checked for what it computes, not for its style")]
-mod torsion;
-
 const STATES: usize = 20;
 
 #[test]
 fn an_interpreted_tree_is_a_compiled_one() {
-    let code = include_str!("../../../gyro-sim/src/generated/torsion.rs");
-    let mechanism = torsion::Torsion::<f64>::default();
-    check("torsion", code, &mechanism);
-    check_joints("torsion", code, &mechanism);
+    let mechanism = Torsion::<f64>::default();
+    check("torsion", &mechanism);
+    check_joints("torsion", &mechanism);
 }
 
 #[test]
 fn an_interpreted_loop_is_a_compiled_one() {
-    check(
-        "four-bar",
-        include_str!("../../../gyro-sim/src/generated/four_bar.rs"),
-        &four_bar::FourBar::<f64>::default(),
-    );
+    check("four-bar", &FourBar::<f64>::default());
 }
 
 /// Takes each literal for exact: over `f64` only literals count.
@@ -46,11 +33,11 @@ fn literals(code: &str) -> String {
     literals.into_iter().filter_map(exact).collect()
 }
 
-fn check<M>(page: &str, code: &str, mechanism: &M)
+fn check<M>(page: &str, mechanism: &M)
 where
     M: Projection<Scalar = f64> + Ports,
 {
-    let (page, module) = read(page, code);
+    let (page, module) = read(page);
     let mut random = ChaCha8Rng::seed_from_u64(9);
     for _ in 0..STATES {
         let mut y = mechanism.start();
@@ -60,21 +47,21 @@ where
     }
 }
 
-fn read(page: &str, code: &str) -> (crate::support::Page, Module) {
+fn read(page: &str) -> (crate::support::Page, Module) {
     let page = crate::support::page(page);
     // A start has literals that no formula has.
     let is_start = |function: &str| function.starts_with("start(") || function.starts_with("joint_start(");
-    let formulas: String = code.split("fn ").filter(|function| !is_start(function)).collect();
-    let module = Module::read(&page.model, code, &literals(&formulas)).expect("the emitted subset");
+    let formulas: String = page.code.split("fn ").filter(|function| !is_start(function)).collect();
+    let module = Module::read(&page.model, &page.code, &literals(&formulas)).expect("the emitted subset");
     (page, module)
 }
 
 /// The functions of joint coordinates.
-fn check_joints<M>(page: &str, code: &str, mechanism: &M)
+fn check_joints<M>(page: &str, mechanism: &M)
 where
     M: JointJacobian<Scalar = f64> + Partition,
 {
-    let (page, module) = read(page, code);
+    let (page, module) = read(page);
     let numbers: Vec<f64> = constants((), &module);
     let mut random = ChaCha8Rng::seed_from_u64(10);
     for _ in 0..STATES {

@@ -1,4 +1,4 @@
-//! `cargo xtask embedded`: builds the firmware, runs it under QEMU, compares it with the host, and writes the tables of
+//! `cargo xtask embedded`: generates its mechanisms, builds the firmware, runs it under QEMU, compares it with the host, and writes the tables of
 //! docs/embedded.md.
 
 mod budget;
@@ -9,6 +9,7 @@ mod host;
 mod output;
 mod process;
 mod proof;
+mod scenes;
 mod stack;
 mod tables;
 mod tools;
@@ -27,6 +28,7 @@ use tools::Tools;
 /// Builds, runs, compares and writes the page.
 pub(crate) fn embedded(args: &EmbeddedArgs) -> Result<(), Failure> {
     let tools = Tools::find()?;
+    scenes::generate()?;
     let host = host::run()?;
     let mut boards = Vec::new();
     for chip in Chip::ALL {
