@@ -47,7 +47,7 @@ pub enum Command {
   cargo xtask generate --check                  fail if a generated file is not fresh
   cargo xtask generate ~/gimbal.toml --out src/gimbal.rs")]
 pub struct GenerateArgs {
-    /// Model pages; all of models/ if none is given
+    /// Model pages; all of this project if none is given
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// Write nothing: exit with status 1 and show the difference if a file is not what its model says

@@ -103,7 +103,7 @@ fn data_sheet(module: &Module) -> String {
 }
 
 /// The modules of pages, each proved and with the proof on its data sheet.
-pub(crate) fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
+pub fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let model = scene::read(page)?;
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;

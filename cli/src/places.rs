@@ -69,7 +69,7 @@ pub(crate) fn module_path(places: &[Place], page: &Path, name: &str) -> Option<P
     }
 }
 
-pub(crate) fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+pub fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let said = |e: io::Error| Failure::Usage(format!("{} cannot be read: {e}", folder.display()));
     let entries: io::Result<Vec<PathBuf>> =
         fs::read_dir(folder).map_err(said)?.map(|entry| Ok(entry?.path())).collect();

@@ -119,7 +119,10 @@ impl fmt::Display for Error {
                 write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
             }
             Self::Setting { setting, value } => write!(f, "{setting} = {value} s is not a valid step length"),
-            Self::InvalidEndTime { t, t_end } => write!(f, "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"),
+            Self::InvalidEndTime { t, t_end } => write!(
+                f,
+                "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"
+            ),
             Self::TooManySteps { t, steps } => {
                 write!(f, "at t = {t} s the budget of {steps} steps is used up")
             }

@@ -1,10 +1,10 @@
 //! The mechanisms of the firmware. Its compiler is another than this tool's, so that no build script of its own generates them.
 
 use super::folder;
-use crate::failure::Failure;
-use crate::places::listing;
-use crate::programs::said;
-use crate::{files, generate};
+use gyro_cli::failure::Failure;
+use gyro_cli::places::listing;
+use gyro_cli::programs::said;
+use gyro_cli::{files, generate};
 use std::fs;
 
 /// What it runs besides the pages in `embedded/models` and the paper's scene, which `gyro-sim` has.

@@ -44,7 +44,8 @@ impl ModuleWriter<'_> {
             "Solution",
         );
         let n_solution = index(space.solution.len());
-        let sizes = space.jacobian.as_ref().map(|j| [self.n_by_state(space), j.by_inputs.roots.len()].map(index));
+        let sizes =
+            space.jacobian.as_ref().map(|j| [self.n_by_state(space), j.by_inputs.roots.len()].map(index));
         let [(jacobian_type, zero_jacobian), (input_jacobian_type, zero_input_jacobian)] = match sizes {
             Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
             None => [(); 2].map(|()| (quote! { () }, quote! { () })),
