@@ -3,6 +3,7 @@
 //! ```text
 //! page ─lab─▶ programs ─explore, drift, stability─▶ points, long runs, maps ─best, order, goals─▶ tables
 //!    ─figures, chart─▶ SVG ─page─▶ NAME.md, NAME.html ─data─▶ CSV ─index─▶ index.md, index.html
+//!    ─kept─▶ docs/report, if all scenes were measured
 //! ```
 
 mod best;
