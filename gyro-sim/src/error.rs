@@ -1,9 +1,9 @@
-//! What can go wrong in a run.
+//! Errors of a run.
 
 use crate::Owner;
 use core::fmt;
 
-/// A failure of a run, with the time and the number that failed. The run has not gone on past it.
+/// A failure of a run, with the time and the number that failed. The run stops there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
     /// The state is no longer finite: the step is too large for the motion, the pose is singular, or the start was not
@@ -44,7 +44,7 @@ pub enum Error {
         /// Whose constraint was violated most.
         owner: Owner,
     },
-    /// The tolerance cannot be met however short the step.
+    /// The tolerance cannot be met, however short the step is.
     StepTooShort {
         /// Time, s.
         t: f64,
@@ -61,7 +61,7 @@ pub enum Error {
         steps: u64,
     },
     /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the scene is stiff
-    /// for it. An L-stable method such as [`Rodas4`](crate::Rodas4) is not limited so.
+    /// for it. An L-stable method such as [`Rodas4`](crate::Rodas4) does not have this limit.
     Stiff {
         /// Time, s.
         t: f64,
@@ -119,7 +119,10 @@ impl fmt::Display for Error {
                 write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
             }
             Self::Setting { setting, value } => write!(f, "{setting} = {value} s is not a valid step length"),
-            Self::InvalidEndTime { t, t_end } => write!(f, "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"),
+            Self::InvalidEndTime { t, t_end } => write!(
+                f,
+                "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"
+            ),
             Self::TooManySteps { t, steps } => {
                 write!(f, "at t = {t} s the budget of {steps} steps is used up")
             }

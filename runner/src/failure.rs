@@ -71,8 +71,10 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
             "at t = {t} s {} would need steps as short as {step:e} s for this tolerance",
             element(index)
         ),
-        Error::Setting { setting, value } => format!("{setting} = {value} s is no length of a step"),
-        Error::InvalidEndTime { t, t_end } => format!("cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"),
+        Error::Setting { setting, value } => format!("{setting} = {value} s is not a valid step length"),
+        Error::InvalidEndTime { t, t_end } => format!(
+            "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"
+        ),
         Error::TooManySteps { t, steps } => format!("at t = {t} s the budget of {steps} steps is used up"),
         Error::Stiff { t, rate, step } => format!(
             "at t = {t} s a rate of {rate:.4e}/s allows this method steps of no more than {step:.3e} s, too many for its budget"
