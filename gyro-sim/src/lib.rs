@@ -4,17 +4,17 @@
 //! A *solver* combines equations, a method and a correction, and is handed the model at each call. Who only integrates
 //! meets three names: [`Ode`], the equations; [`Solver`]; and a method such as [`Tsit5`].
 //!
-//! | what | trait | implemented by |
+//! | trait | what it is | implemented by |
 //! |---|---|---|
-//! | a number of a kernel | [`Scalar`] | `f32`, `f64`, [`Dual`], packs of SIMD lanes |
-//! | a number on which a solver decides | [`Real`]; [`Lanes`] for packs | `f32`, `f64`; packs of the feature `lanes` |
-//! | first-order equations `ẏ = f(t, y)` of a model | [`Ode`] | [`Exact`], [`Corrected`], [`Joint`], [`Baumgarte`], [`ByDuals`], yours |
-//! | a step | [`Method`](integrate::Method) | [`Kutta4`], [`Tsit5`], [`Dop853`], [`Rodas4`] |
-//! | a way back onto the constraints | [`Correction`] | [`Partitioning`], [`ClosedForm`], [`MassWeighted`], [`Watched`], [`Uncorrected`] |
-//! | a mechanism: description, Φ, energy, inputs, outputs | [`Mechanism`] | generated and runtime-assembled mechanisms |
-//! | its equations of motion term by term | [`Equations`] | the same |
-//! | its independent coordinates | [`Partition`] | the same |
-//! | its joint coordinates | [`JointSpace`] | generated trees |
+//! | [`Scalar`] | a number of a kernel | `f32`, `f64`, [`Dual`], packs of SIMD lanes |
+//! | [`Real`], [`Lanes`] | a number, or pack, on which a solver decides | `f32`, `f64`; packs (feature `lanes`) |
+//! | [`Ode`] | equations `ẏ = f(t, y)` of a model | [`Exact`], [`Corrected`], [`Joint`], [`Baumgarte`], [`ByDuals`] |
+//! | [`Method`](integrate::Method) | a step | [`Kutta4`], [`Tsit5`], [`Dop853`], [`Rodas4`] |
+//! | [`Correction`] | a way back onto the constraints | see [`correct`] |
+//! | [`Mechanism`] | description, Φ, energy, inputs, outputs | generated and runtime-assembled mechanisms |
+//! | [`Equations`] | the equations of motion term by term | the same |
+//! | [`Partition`] | independent and dependent coordinates | the same |
+//! | [`JointSpace`] | joint coordinates | generated trees |
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
 //! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
