@@ -8,7 +8,7 @@ use std::fmt;
 pub enum BuildError {
     /// The model has no consistent start.
     Start(AssemblyError),
-    /// The chosen form of the twin is not made for the model.
+    /// The chosen form does not support the model.
     Unsupported(Unsupported),
 }
 

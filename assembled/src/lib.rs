@@ -1,8 +1,8 @@
-//! The runtime-assembled twin of any mechanism: textbook formulas typed by hand, `nalgebra` and a heap.
+//! Mechanisms assembled at run time: textbook formulas typed by hand, `nalgebra` and a heap.
 //!
-//! The twin reads the same [`Model`](gyro_model::Model) as the code generator and keeps the same contract
+//! It reads the same [`Model`](gyro_model::Model) as the code generator and keeps the same contract
 //! ([`gyro_sim::Partition`], [`gyro_sim::Equations`]), but shares no derivation with it: Φ, Φ_q, ν and γ are typed from
-//! the paper and from Haug (1989). So it is the oracle of the tests, the honest opponent of the benchmarks and the quick
+//! the paper and from Haug (1989). So it is the reference of the tests, the comparison of the benchmarks and the quick
 //! look of `simulate --engine assembled`, all at once. It comes in three forms:
 //! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the dense
 //!   Jacobian. It does every model.

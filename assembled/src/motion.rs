@@ -74,7 +74,7 @@ impl<T: Number> Motion<T> {
 }
 
 impl Motion<f64> {
-    /// In the number type of the twin.
+    /// In the number type of the mechanism.
     pub(crate) fn rounded<T: Number>(&self) -> Motion<T> {
         let vector = |v: &Vector3<f64>| v.map(number);
         Motion {

@@ -1,4 +1,4 @@
-//! The number type of the twin.
+//! The number type of assembled mechanisms.
 
 use gyro_sim::{Real, Scalar};
 use nalgebra::RealField;

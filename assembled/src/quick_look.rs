@@ -1,4 +1,4 @@
-//! A whole run of the twin, for a command line: compiled here once, so that its caller need not be optimised.
+//! A whole run of an assembled mechanism, for a command line: compiled here once, so that its caller need not be optimised.
 
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
@@ -6,7 +6,7 @@ use gyro_runner::{Approach, Event, Failure, Settings, Start, Summary, motion, ru
 use gyro_sim::{Equations, Partition, Real};
 use std::fmt;
 
-/// Which of the twin's forms.
+/// Which form of assembled mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// [`Careful`].
@@ -37,7 +37,7 @@ pub enum Precision {
 /// Why there is no summary.
 #[derive(Debug)]
 pub enum QuickLookError {
-    /// The model has no consistent start, or is beyond the form of the twin.
+    /// The model has no consistent start, or is beyond the chosen form.
     Start(BuildError),
     /// The run failed midway.
     Run(Failure),
@@ -54,7 +54,7 @@ impl fmt::Display for QuickLookError {
 
 impl std::error::Error for QuickLookError {}
 
-/// Runs the twin of a model to a schedule; `tell` hears of samples and progress. [`Form::for_model`] picks the form that
+/// Runs an assembled model to a schedule; `tell` receives samples and progress. [`Form::for_model`] picks the form that
 /// suits a model.
 ///
 /// # Errors

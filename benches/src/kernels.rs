@@ -212,11 +212,10 @@ pub fn runs(scene: &Scene) -> Vec<Kernel<'_>> {
     vec![
         Kernel::new(SECOND, "floor, by hand, RK4", None, || black_box(scene.floor).second()),
         Kernel::new(SECOND, "generated, joint coordinates, RK4", None, || {
-            let form = JointForm(&scene.generated);
-            let mut x = form.start();
+            let mut x = scene.generated.joint_start();
             let mut rk4 = Rk4::new(&x);
             for step in 0..CORRECTIONS * STEPS_PER_CORRECTION {
-                rk4.step(&form, f64::from(step) * STEP, STEP, &mut x);
+                rk4.step(&Joint, &scene.generated, f64::from(step) * STEP, STEP, &mut x);
             }
             black_box(x);
         }),

@@ -4,7 +4,7 @@ use crate::Kernel;
 use crate::kernels::{CORRECTIONS, STEPS_PER_CORRECTION};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
-use gyro_sim::{Joint, JointSpace, Mechanism, Partition, Partitioned, Rk4, Scalar, charts};
+use gyro_sim::{Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Rk4, Scalar, charts::Charts};
 use gyro_yardstick::STEP;
 use std::hint::black_box;
 
@@ -140,11 +140,13 @@ where
             "Newton step of the positions",
             for_each(self.states.clone(), self.states[0], move |y, out| {
                 *out = *y;
-                Gyroscope::default().newton_step_on(T::Lane::constant(0.0), &alone, out);
+                let stepped = Gyroscope::default().newton_step(T::Lane::constant(0.0), &alone, out);
+                stepped.expect("a tree can always be solved");
             }),
             for_each(vec![self.packed], self.packed, move |y, out| {
                 *out = *y;
-                Gyroscope::default().newton_step_on(T::constant(0.0), &together, out);
+                let stepped = Gyroscope::default().newton_step(T::constant(0.0), &together, out);
+                stepped.expect("a tree can always be solved");
             }),
         )
     }
@@ -155,22 +157,24 @@ where
             "solve of the velocities",
             for_each(self.states.clone(), self.states[0], move |y, out| {
                 *out = *y;
-                Gyroscope::default().solve_velocities_on(T::Lane::constant(0.0), &alone, out);
+                let solved = Gyroscope::default().solve_velocities(T::Lane::constant(0.0), &alone, out);
+                solved.expect("a tree can always be solved");
             }),
             for_each(vec![self.packed], self.packed, move |y, out| {
                 *out = *y;
-                Gyroscope::default().solve_velocities_on(T::constant(0.0), &together, out);
+                let solved = Gyroscope::default().solve_velocities(T::constant(0.0), &together, out);
+                solved.expect("a tree can always be solved");
             }),
         )
     }
 
     /// The best charts of the first state; all are close to each other.
-    fn charts(&self) -> [[T::Lane; 4]; 3] {
-        charts::one_hot(&charts::best(&Gyroscope::default().chart_vectors(&self.states[0])))
+    fn charts(&self) -> Charts<T::Lane, 3> {
+        Gyroscope::default().independent(T::Lane::constant(0.0), &self.states[0])
     }
 
-    fn packed_charts(&self) -> [[T; 4]; 3] {
-        self.charts().map(|unit| unit.map(|x| T::from_lanes(|_| x)))
+    fn packed_charts(&self) -> Charts<T, 3> {
+        Gyroscope::default().independent(T::constant(0.0), &self.packed)
     }
 
     fn second_in_joint_coordinates(&self) -> Pair<'static> {
@@ -209,13 +213,13 @@ fn for_each<S, O>(inputs: Vec<S>, mut out: O, call: impl Fn(&S, &mut O)) -> impl
 
 /// Runge and Kutta's method, a scalar or a pack.
 fn joint_second<M: JointSpace>(scene: &M, x: &mut M::Joints) {
-    let (form, mut rk4) = (JointForm(scene), Rk4::new(x));
+    let mut rk4 = Rk4::new(x);
     for step in 0..CORRECTIONS * STEPS_PER_CORRECTION {
-        rk4.step(&form, time(step), M::Scalar::constant(STEP), x);
+        rk4.step(&Joint, scene, time(step), M::Scalar::constant(STEP), x);
     }
 }
 
-fn second<M: Partition>(scene: &M, y: &mut M::State) {
+fn second<M: Partition<Scalar: Real>>(scene: &M, y: &mut M::State) {
     let mut solver = Partitioned::new(scene, y);
     for interval in 0..CORRECTIONS {
         let t = time(interval * STEPS_PER_CORRECTION);
@@ -224,7 +228,7 @@ fn second<M: Partition>(scene: &M, y: &mut M::State) {
     }
 }
 
-fn second_of_lanes<M: Charted<Scalar: Lanes>>(scene: &M, y: &mut M::State) {
+fn second_of_lanes<M: Partition>(scene: &M, y: &mut M::State) {
     let mut solver = lanes::Partitioned::new(scene, y);
     for interval in 0..CORRECTIONS {
         let t = time(interval * STEPS_PER_CORRECTION);

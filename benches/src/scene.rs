@@ -92,9 +92,9 @@ fn model(name: &str, page: &str) -> gyro_model::Model {
 
 /// The state of the floor after [`STEPS`].
 fn in_the_middle(floor: &Floor) -> [f64; 6] {
-    let mut y = floor.start();
+    let mut y = gyro_yardstick::START;
     let mut rk4 = Rk4::new(&y);
-    (0..STEPS).for_each(|step| rk4.step(floor, f64::from(step) * STEP, STEP, &mut y));
+    (0..STEPS).for_each(|step| rk4.step(floor, &(), f64::from(step) * STEP, STEP, &mut y));
     y
 }
 

@@ -24,7 +24,7 @@ pub enum Number {
     Fixed(f64),
     /// The parameter of this place.
     Given(u16),
-    /// The same with a minus sign.
+    /// The negative of the parameter of this place.
     Negated(u16),
 }
 

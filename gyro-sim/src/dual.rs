@@ -1,4 +1,4 @@
-//! Dual numbers: derivatives without a symbol, to the last bits.
+//! Dual numbers: automatic differentiation, accurate to rounding.
 
 use crate::contract::Storage;
 use crate::{Ode, Scalar};
@@ -16,7 +16,7 @@ pub struct Dual<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Dual<T, N> {
-    /// A number that does not depend on anything.
+    /// A constant: all derivatives are zero.
     pub fn new(value: T) -> Self {
         Self { value, slopes: [T::constant(0.0); N] }
     }

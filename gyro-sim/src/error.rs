@@ -1,9 +1,9 @@
-//! What can go wrong in a run.
+//! Errors of a run.
 
 use crate::Owner;
 use core::fmt;
 
-/// A failure of a run, with the time and the number that failed. The run has not gone on past it.
+/// A failure of a run, with the time and the number that failed. The run stops there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
     /// The state is no longer finite: the step is too large for the motion, the pose is singular, or the start was not
@@ -44,7 +44,7 @@ pub enum Error {
         /// Whose constraint was violated most.
         owner: Owner,
     },
-    /// The tolerance cannot be met however short the step.
+    /// The tolerance cannot be met, however short the step is.
     StepTooShort {
         /// Time, s.
         t: f64,
@@ -61,7 +61,7 @@ pub enum Error {
         steps: u64,
     },
     /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the scene is stiff
-    /// for it. An L-stable method such as [`Rodas4`](crate::Rodas4) is not limited so.
+    /// for it. An L-stable method such as [`Rodas4`](crate::Rodas4) does not have this limit.
     Stiff {
         /// Time, s.
         t: f64,

@@ -1,31 +1,31 @@
 //! Generated multibody dynamics at run time: `no_std`, no allocation, no `unsafe`, no panic on numerical input.
 //!
 //! # The contract on one page
-//! A *solver* combines equations, a method and a correction, and is handed the model at each call. Who only integrates meets
-//! three names: [`Ode`], the equations; [`Solver`]; and a method such as [`Tsit5`].
+//! A *solver* combines equations, a method and a correction, and is handed the model at each call. Who only integrates
+//! meets three names: [`Ode`], the equations; [`Solver`]; and a method such as [`Tsit5`].
 //!
-//! | what | trait | implemented by |
+//! | trait | what it is | implemented by |
 //! |---|---|---|
-//! | a number of a kernel | [`Scalar`] | `f32`, `f64`, [`Dual`], packs of SIMD lanes |
-//! | a number on which a solver decides | [`Real`]; [`Lanes`] for packs | `f32`, `f64`; packs of the feature `lanes` |
-//! | first-order equations `ẏ = f(t, y)` of a model | [`Ode`] | [`Exact`], [`Corrected`], [`Joint`], [`Baumgarte`], [`ByDuals`], yours |
-//! | a step | [`Method`](integrate::Method) | [`Kutta4`], [`Tsit5`], [`Dop853`], [`Rodas4`] |
-//! | a way back onto the constraints | [`Correction`] | [`Partitioning`], [`ClosedForm`], [`MassWeighted`], [`Watched`], [`Uncorrected`] |
-//! | a mechanism: description, Φ, energy, inputs, outputs | [`Mechanism`] | generated and runtime-assembled mechanisms |
-//! | its equations of motion term by term | [`Equations`] | the same |
-//! | its independent coordinates | [`Partition`] | the same |
-//! | its joint coordinates | [`JointSpace`] | generated trees |
+//! | [`Scalar`] | a number of a kernel | `f32`, `f64`, [`Dual`], packs of SIMD lanes |
+//! | [`Real`], [`Lanes`] | a number, or pack, on which a solver decides | `f32`, `f64`; packs (feature `lanes`) |
+//! | [`Ode`] | equations `ẏ = f(t, y)` of a model | [`Exact`], [`Corrected`], [`Joint`], [`Baumgarte`], [`ByDuals`] |
+//! | [`Method`](integrate::Method) | a step | [`Kutta4`], [`Tsit5`], [`Dop853`], [`Rodas4`] |
+//! | [`Correction`] | a way back onto the constraints | see [`correct`] |
+//! | [`Mechanism`] | description, Φ, energy, inputs, outputs | generated and runtime-assembled mechanisms |
+//! | [`Equations`] | the equations of motion term by term | the same |
+//! | [`Partition`] | independent and dependent coordinates | the same |
+//! | [`JointSpace`] | joint coordinates | generated trees |
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
-//! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their types.
-//!   [`Mechanism::buffers`], [`Equations::terms`] and [`JointSpace::joint_buffers`] return them, zeroed.
+//! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
+//!   types. [`Mechanism::buffers`], [`Equations::terms`] and [`JointSpace::joint_buffers`] return them, zeroed.
 //! * **Equations.** The equations are a value without content, and the mechanism stays the caller's: its inputs and
-//!   parameters may change between two calls. [`Exact`] holds at any state, [`Corrected`] takes fewer operations near the
-//!   constraints, [`Joint`] integrates joint coordinates, which satisfy them by construction.
-//! * **Corrections** admit some equations and not others: a `Correction<D, M>` is one for the equations `D` of a model `M`.
-//!   [`MassWeighted`] needs [`Exact`] ones; with others the program does not compile.
-//! * **What a program does not use costs nothing:** a mechanism is straight-line code for each function, and a solver holds
-//!   the buffers of its own method and correction alone.
+//!   parameters may change between two calls. [`Exact`] holds at any state, [`Corrected`] takes fewer operations near
+//!   the constraints, [`Joint`] integrates joint coordinates, which satisfy them by construction.
+//! * **Corrections** admit some equations and not others: a `Correction<D, M>` is one for the equations `D` of a model
+//!   `M`. [`MassWeighted`] needs [`Exact`] ones; with others the program does not compile.
+//! * **What a program does not use costs nothing:** a mechanism is straight-line code for each function, and a solver
+//!   holds the buffers of its own method and correction alone.
 //!
 //! ```
 //! # #[cfg(feature = "generated")]
@@ -57,9 +57,9 @@
 //! # fn main() {}
 //! ```
 //!
-//! Mechanisms are modules that `gyro-codegen` writes from a model file (this crate ships some in `generated`), or anything else
-//! that keeps this contract. The two algorithms of Gruzman and Sarzeto's section 5, *direct integration* and *coordinate
-//! partitioning*, are [`Direct`] and [`Partitioned`].
+//! Mechanisms are modules that `gyro-codegen` writes from a model file (this crate ships some in `generated`), or
+//! anything else that keeps this contract. The two algorithms of Gruzman and Sarzeto's section 5, *direct integration*
+//! and *coordinate partitioning*, are [`Direct`] and [`Partitioned`].
 //!
 //! # Conventions
 //! Stated once, here, and followed everywhere:
@@ -69,10 +69,10 @@
 //! * Velocities are `s = ṙ` in the global frame and the angular velocity `w'` in the *body* frame; `ṗ = ½ G(p)ᵀ w'`
 //!   (eq. (14)).
 //! * The state is one flat buffer: seven positions `(r, p)` for each body, then six velocities `(s, w')` for each body;
-//!   then, in mechanisms with non-conservative forces or drivers only, the work that these have done (model files leave it
-//!   out by `count_work = false`); then one *turn reference* for each joint angle on whose continuous value something
-//!   acts (a spring, a stop, a coupler, a driver). Solvers integrate what follows the velocities with the rest;
-//!   corrections leave the work alone and set turn references to their angles.
+//!   then, in mechanisms with non-conservative forces or drivers only, the work that these have done (model files leave
+//!   it out by `count_work = false`); then one *turn reference* for each joint angle on whose continuous value
+//!   something acts (a spring, a stop, a coupler, a driver). Solvers integrate what follows the velocities with the
+//!   rest; corrections leave the work alone and set turn references to their angles.
 //! * Only bodies that move freely have coordinates: those held fixed or moved by prescription are folded into the
 //!   formulas, the latter as functions of time.
 //! * The constraint rows (*joint rows* for short) are those of constrained bodies, joints, couplers and drivers, in the

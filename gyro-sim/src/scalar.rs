@@ -1,4 +1,4 @@
-//! What a number must offer: little for the generated kernels, a little more for the solvers around them.
+//! Number types: few operations for the generated kernels, a few more for the solvers around them.
 
 use crate::{charts, fused, spline};
 use core::fmt::Debug;
@@ -45,7 +45,7 @@ pub trait Scalar:
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3];
 }
 
-/// A scalar on which a solver can decide.
+/// A scalar that can be compared, as solvers need it.
 pub trait Real: Scalar + PartialOrd {
     /// Distance from one to the next larger number.
     const EPSILON: Self;
@@ -57,7 +57,7 @@ pub trait Real: Scalar + PartialOrd {
     fn round(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// For messages.
+    /// The nearest `f64`, for messages.
     fn to_f64(self) -> f64;
 }
 

@@ -74,7 +74,7 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
             "at t = {t} s {} would need steps as short as {step:e} s for this tolerance",
             element(index)
         ),
-        Error::Setting { setting, value } => format!("{setting} = {value} s is no length of a step"),
+        Error::Setting { setting, value } => format!("{setting} = {value} s is not a valid step length"),
         Error::InvalidEndTime { t, t_end } => format!(
             "cannot go from t = {t} s to t = {t_end} s: the time is not finite or lies outside the last step"
         ),

@@ -85,7 +85,7 @@ impl Floor {
 }
 
 /// The rings at rest, the rotor at 100 rad/s.
-const START: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.0, 100.0];
+pub const START: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.0, 100.0];
 
 impl Ode for Floor {
     type Scalar = f64;

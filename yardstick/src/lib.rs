@@ -8,4 +8,4 @@ mod beside;
 mod floor;
 
 pub use beside::{Measured, beside, processor_time};
-pub use floor::{FLOPS, Floor, STEP};
+pub use floor::{FLOPS, Floor, START, STEP};

@@ -3,7 +3,7 @@
 use crate::scenario::Scenario;
 use gyro_mechanisms::gyroscope_misalignments::GyroscopeMisalignments;
 use gyro_sim::lanes::{Lanes, f64x8};
-use gyro_sim::{Joint, Mechanism, Rk4, Scalar};
+use gyro_sim::{Joint, JointSpace, Rk4, Scalar};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
@@ -82,15 +82,14 @@ fn run<T: Scalar>(parameters: &[T; Scenario::SIZE], mut sample: impl FnMut(usize
     for (index, &value) in parameters.iter().enumerate() {
         gyroscope.set_parameter(index, value);
     }
-    let form = JointForm(&gyroscope);
-    let mut x = form.start();
+    let mut x = gyroscope.joint_start();
     let mut rk4 = Rk4::new(&x);
     let h = T::constant(STEP);
     sample(0, [x[0], x[1]]);
     for index in 1..SAMPLES {
         for step in 0..STRIDE {
             let t = T::constant(f64::from(step) * STEP + (index - 1) as f64 * f64::from(STRIDE) * STEP);
-            rk4.step(&form, t, h, &mut x);
+            rk4.step(&Joint, &gyroscope, t, h, &mut x);
         }
         sample(index, [x[0], x[1]]);
     }
@@ -135,11 +134,10 @@ mod tests {
             .iter()
             .enumerate()
             .for_each(|(index, &value)| assert!(gyroscope.set_parameter(index, value)));
-        let form = JointForm(&gyroscope);
-        let mut x = form.start();
+        let mut x = gyroscope.joint_start();
         let mut rk4 = Rk4::new(&x);
         for step in 0..10_000 {
-            rk4.step(&form, f64::from(step) * STEP, STEP, &mut x);
+            rk4.step(&Joint, &gyroscope, f64::from(step) * STEP, STEP, &mut x);
             finest = finest.max(x[1].abs());
         }
         let sampled = Ensemble::one_by_one(&[scenario], &ProgressBar::hidden());

@@ -13,8 +13,8 @@ use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, 
 ///
 /// # The equations that it admits
 /// Errors are as small as this correction can make them only where the accelerations are exact off the constraints too:
-/// it admits [`Exact`] equations, with a Jacobian by [`ByDuals`] or without. [`Corrected`](crate::Corrected) ones do not
-/// compile:
+/// it admits [`Exact`] equations, with a Jacobian by [`ByDuals`] or without. [`Corrected`](crate::Corrected) ones do
+/// not compile:
 /// ```compile_fail,E0277
 /// # use gyro_sim::{Corrected, Equations, Error, Kutta4, MassWeighted, Partition, Solver};
 /// fn step<M: Partition<Scalar = f64> + Equations>(mechanism: &M, y: &M::State) -> Result<(), Error> {
@@ -32,14 +32,15 @@ use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, 
 /// ```
 #[derive(Clone, Debug)]
 pub struct MassWeighted<M: Equations> {
-    /// Where singular poses divide by small numbers what the iteration leaves, it takes a step more.
+    /// Near singular poses the residual of the iteration is amplified, so it takes one more step.
     has_poses: bool,
     phi: M::Constraints,
     rows: M::Rows,
     change: M::Velocities,
 }
 
-/// Farther than so many radians, or lengths of the mechanism's size, is no correction but another pose.
+/// A change of more than this many radians, or lengths in units of the mechanism's size, leads to another pose and is
+/// refused.
 const FARTHEST: f64 = 0.5;
 
 impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {

@@ -4,10 +4,10 @@
 //! |---|---|
 //! | [`Partitioning`] | the independent coordinates as they were integrated (eqs. (18) to (20)); any mechanism |
 //! | [`ClosedForm`] | the joint coordinates; trees, no iteration |
-//! | [`MassWeighted`] | as much of everything as it can: the smallest change in the metric of the masses; any mechanism |
-//! | [`Baumgarte`] | nothing: the accelerations steer back; a system, not a correction |
-//! | [`Uncorrected`] | all of it: direct integration, and systems that have nothing to correct |
-//! | [`Watched`] | all of it too, but drift and singular poses are seen |
+//! | [`MassWeighted`] | nothing exactly, but it makes the smallest change in the metric of the masses; any mechanism |
+//! | [`Baumgarte`] | nothing: its accelerations reduce violations; equations, not a correction |
+//! | [`Uncorrected`] | everything: direct integration, and systems that have no constraints |
+//! | [`Watched`] | everything, but drift and singular poses are detected |
 
 mod baumgarte;
 mod closed_form;
@@ -95,7 +95,7 @@ where
 /// When a correction is due.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// After so many steps; 1 is after every step.
+    /// After this number of steps; 1 means after every step.
     Steps(u32),
     /// After each step that leaves a violation of a position constraint larger than this, lengths in units of the
     /// mechanism's size.
@@ -125,7 +125,7 @@ fn reach<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
     coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
 }
 
-/// Refuses a time to go from, or to, that is not finite: a mechanism that time does not enter would not notice.
+/// Refuses start and end times that are not finite: equations that do not depend on time would not reveal them.
 pub(crate) fn check_time<T: Real>(t: T, t_end: T) -> Result<(), Error> {
     if t.is_finite() && t_end.is_finite() {
         return Ok(());

@@ -75,8 +75,8 @@ impl<M: Partition<Scalar: Real>> Partitioning<M> {
         self.correct_with_current_choice(mechanism, t, y)
     }
 
-    /// Corrects the dependent coordinates without looking whether the choice is still a good one: to show what a fixed
-    /// choice does, or to choose by other means.
+    /// Corrects the dependent coordinates without checking whether the choice is still a good one: to show the effect
+    /// of a fixed choice, or to choose by other means.
     ///
     /// # Errors
     /// [`Error`], with `y` as it was when the failure was noticed.

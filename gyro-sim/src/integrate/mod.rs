@@ -1,4 +1,4 @@
-//! One-step methods for first-order systems: the contract that all of them keep.
+//! One-step methods for first-order systems, and the trait that they implement.
 //!
 //! | method | order | for |
 //! |---|---|---|
@@ -80,7 +80,7 @@ pub trait Method<D: Ode<M>, M = ()> {
     }
 }
 
-/// What the steps have cost.
+/// The cost of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {

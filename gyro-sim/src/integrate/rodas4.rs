@@ -177,7 +177,7 @@ where
         }
     }
 
-    /// Nothing is limited by a fast rate, and none is looked for.
+    /// An L-stable method is not limited by fast rates and does not estimate them.
     fn rate(&self) -> [D::Scalar; 2] {
         [D::Scalar::constant(0.0); 2]
     }

@@ -6,14 +6,14 @@ use crate::{Error, Real};
 /// The largest number of lanes in a pack.
 pub const MAX_LANES: usize = 8;
 
-/// What went wrong in which lane. A lane fails once: it keeps the state in which it failed.
+/// The errors of the lanes. A lane fails once and keeps the state in which it failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Failures {
     errors: [Option<Error>; MAX_LANES],
 }
 
 impl Failures {
-    /// What went wrong in a lane.
+    /// The error of a lane, if it has failed.
     pub fn of(&self, lane: usize) -> Option<Error> {
         self.errors.get(lane).copied().flatten()
     }

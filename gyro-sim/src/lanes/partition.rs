@@ -41,7 +41,7 @@ impl<D, S: Clone> Direct<D, S> {
         self.failures.note_not_finite(end, y.as_ref());
     }
 
-    /// What has gone wrong so far.
+    /// The errors so far.
     pub fn failures(&self) -> &Failures {
         &self.failures
     }
@@ -83,7 +83,7 @@ impl<M: Partition> Partitioned<M> {
         failures.note_not_finite(t, y.as_ref());
     }
 
-    /// What has gone wrong so far.
+    /// The errors so far.
     pub fn failures(&self) -> &Failures {
         self.direct.failures()
     }

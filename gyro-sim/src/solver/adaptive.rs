@@ -7,15 +7,15 @@ use crate::correct::check_time;
 use crate::integrate::Method;
 use crate::{Control, Correction, Error, Ode, Real, Statistics};
 
-/// What of the best next step is taken.
+/// The fraction of the optimal next step that is taken.
 const SAFETY: f64 = 0.9;
-/// A step is at most so many times as long as the last one, and at least this part of it.
+/// A step is at most this many times as long as the last one, and at least this fraction of it.
 const GROWTH: f64 = 6.0;
 const SHRINKAGE: f64 = 0.2;
 
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
-    /// Steps until `t_end`, each as long as the tolerances allow. The method must estimate its error; with another the program
-    /// does not compile:
+    /// Steps until `t_end`, each as long as the tolerances allow. The method must estimate its error; with another the
+    /// program does not compile:
     /// ```compile_fail,E0080
     /// # use gyro_sim::{Kutta4, Ode, Solver};
     /// # struct Rest;
@@ -137,7 +137,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         }
     }
 
-    /// Steps shorter than this do not move the time, or are not wanted.
+    /// Steps shorter than this do not advance the time, or are excluded by the settings.
     fn shortest(&self) -> f64 {
         let rounding = 16.0 * T::EPSILON.to_f64() * libm::fabs(self.t.to_f64());
         rounding.max(self.control.smallest_step).max(f64::MIN_POSITIVE)

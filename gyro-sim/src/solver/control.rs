@@ -1,17 +1,17 @@
-//! What a solver is told, and what it reports.
+//! Settings and statistics of a solver.
 
 use super::Passage;
 use crate::When;
 use crate::integrate::Work;
 
-/// What a solver is to keep to.
+/// Settings of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
-    /// Error tolerated in each step, relative to each element's size.
+    /// Relative error tolerated in each step.
     pub relative: f64,
-    /// Error tolerated in each step besides, in the element's own unit.
+    /// Absolute error tolerated in each step in addition, in the element's own unit.
     pub absolute: f64,
-    /// Length of the first step that is tried, s; zero to have it guessed.
+    /// Length of the first step that is tried, s; zero to have it estimated.
     pub first_step: f64,
     /// Steps are not made shorter than this, s; rounding of the time sets a limit of its own.
     pub smallest_step: f64,
@@ -45,13 +45,13 @@ impl Control {
     }
 }
 
-/// What a run has cost and met.
+/// Statistics of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// Steps that were kept.
     pub accepted: u64,
-    /// Steps that were tried again with a shorter one.
+    /// Steps that were repeated with a shorter length.
     pub rejected: u64,
     /// Corrections made.
     pub corrections: u64,
@@ -59,16 +59,16 @@ pub struct Statistics {
     pub work: Work,
     /// Accepted steps of explicit methods whose length was at the limit of stability rather than set by accuracy.
     pub limited_by_stability: u64,
-    /// The fastest rate |λ| of the system that a step has seen, 1/s; explicit methods only.
+    /// The largest estimate of a rate |λ| of the system, 1/s; explicit methods only.
     pub fastest_rate: f64,
-    /// The shortest accepted step, s, those left aside that were cut to end where they were told to.
+    /// The shortest accepted step, s, not counting steps that were shortened to end at a given time.
     pub shortest_step: f64,
     /// The longest accepted step, s.
     pub longest_step: f64,
     /// Accepted steps that were extrapolated over a singular pose.
     pub leaps: u64,
-    /// Singular poses that steps of fixed length have passed so near that they may have gone on in another way than the
-    /// motion does.
+    /// Singular poses that steps of fixed length have passed so closely that they may have continued on another branch
+    /// than the motion does.
     pub passages: u64,
     /// The first of them.
     pub first_passage: Option<Passage>,

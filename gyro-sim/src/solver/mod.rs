@@ -1,4 +1,4 @@
-//! From a method and a correction to a motion.
+//! The solver: equations, a method and a correction combined.
 
 mod adaptive;
 mod control;
@@ -17,9 +17,9 @@ pub use passages::Passage;
 use past::Past;
 use poses::{Approach, Watch};
 
-/// A motion under way: a method, a correction, the time and the state.
+/// A simulation in progress: equations, a method, a correction, the time and the state.
 ///
-/// The mechanism, or whatever the system is, stays the caller's and is handed in at each call.
+/// The model stays the caller's and is passed at each call.
 #[derive(Clone, Debug)]
 pub struct Solver<D, S, T, A, C> {
     dynamics: D,
@@ -27,45 +27,45 @@ pub struct Solver<D, S, T, A, C> {
     correction: C,
     control: Control,
     t: T,
-    /// What rounding has taken from `t` so far.
+    /// Accumulated rounding error of `t` (compensated summation).
     t_rest: T,
     y: S,
     /// The last step: where it began and its length.
     before: (T, S, T),
-    /// What an error may be, element by element.
+    /// The tolerated error of each element.
     weights: S,
-    /// The state as it is tried.
+    /// The state at the end of the step that is being tried.
     trial: S,
     next_step: T,
     last_error: f64,
     since_correction: u32,
-    /// Consecutive steps at the limit of stability, and such as were not since.
+    /// Number of steps at the limit of stability, and of others since the last of them.
     stiff: u32,
     not_stiff: u32,
-    /// The last attempt has been kept, and the method does not know yet.
+    /// Whether the last attempt was accepted and has not been carried over by the method yet.
     is_kept: bool,
     /// Whether the method has prepared interpolation within the last step.
     is_prepared: bool,
-    /// Whether the state is where the method left it.
+    /// Whether the state is exactly the end of the method's last attempt.
     is_untouched: bool,
     /// Whether time and state are known to be finite.
     is_checked: bool,
-    /// Where there are singular poses: the states that the last steps have led to.
+    /// For mechanisms with singular poses: the states after the last steps.
     past: Past<S, T>,
     /// The state before it was corrected.
     raw: S,
     /// The degree of the polynomial that the last step was extrapolated by, if it was.
     leap: Option<usize>,
-    /// Where there is a singular pose ahead that must be stepped over.
+    /// Set while a singular pose lies ahead that must be stepped over.
     approach: Option<Approach>,
     watch: Watch,
-    /// Under steps of fixed length, where there are singular poses: how near they are.
+    /// With steps of fixed length, for mechanisms with singular poses: the distance to them.
     nearness: Option<Nearness<T>>,
     resumes: bool,
     statistics: Statistics,
 }
 
-/// A step this part of the limit of stability is limited by it.
+/// A step longer than this fraction of the stability limit counts as limited by stability.
 const NEAR_LIMIT: f64 = 0.8;
 /// After so many such steps, with no more than that many others among them, the scene is stiff for the method (as in
 /// DOPRI5 and DOP853).
@@ -116,7 +116,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         }
     }
 
-    /// The same with another control.
+    /// Replaces the control settings.
     #[must_use]
     pub fn with_control(mut self, control: Control) -> Self {
         self.control = control;
@@ -134,7 +134,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         &self.y
     }
 
-    /// What the run has cost and met so far.
+    /// Statistics of the run so far.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
     }
@@ -163,7 +163,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         (self.leap, self.nearness) = (None, None);
     }
 
-    /// The system has changed, as by a new value of an input: nothing that was found out about it holds any longer.
+    /// To be called when the model or the equations have changed, for example by a new value of an input: what was
+    /// computed from them is discarded.
     pub fn system_has_changed(&mut self) {
         self.is_untouched = false;
         self.resumes = false;
@@ -171,8 +172,8 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         self.leap = None;
     }
 
-    /// One step of length `h`, and a correction if it is due. Nothing is estimated, and nothing tried again: singular
-    /// poses that it passes are counted ([`Statistics::passages`]).
+    /// One step of length `h`, and a correction if it is due. No error is estimated, and no step is repeated; singular
+    /// poses that are passed are counted ([`Statistics::passages`]).
     ///
     /// # Errors
     /// [`Error`], with state and time as they were before.
@@ -216,7 +217,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         (0..n).try_for_each(|_| self.step(system, h))
     }
 
-    /// Corrects the state now, whether that is due or not.
+    /// Corrects the state now, whether a correction is due or not.
     ///
     /// # Errors
     /// [`Error`], with the state as it was before.

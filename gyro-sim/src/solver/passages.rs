@@ -1,4 +1,4 @@
-//! Singular poses under steps of fixed length: seen and told.
+//! Singular poses under steps of fixed length: detected and reported.
 //!
 //! Such steps end where they end: near a pose or in it, with accelerations that are quotients of small numbers, and
 //! nothing is tried again. Mostly they come through on the right way. But where a step covers what is left of the way

@@ -23,7 +23,7 @@ impl Default for Approach {
     }
 }
 
-/// Whether a system has singular poses that can be seen.
+/// Whether a system has singular poses that can be detected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Watch {
     Unknown,

@@ -1,7 +1,7 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
 use gyro_mechanisms::{four_bar::FourBar, torsion::Torsion};
-use gyro_sim::{JointJacobian, Partition, Ports, Projection};
+use gyro_sim::{Equations, JointSpace, Mechanism, Partition};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
 use gyro_verifier::module::{Module, source_of_accelerations};
@@ -35,7 +35,7 @@ fn literals(code: &str) -> String {
 
 fn check<M>(page: &str, mechanism: &M)
 where
-    M: Projection<Scalar = f64> + Ports,
+    M: Equations<Scalar = f64>,
 {
     let (page, module) = read(page);
     let mut random = ChaCha8Rng::seed_from_u64(9);
@@ -59,7 +59,7 @@ fn read(page: &str) -> (crate::support::Page, Module) {
 /// The functions of joint coordinates.
 fn check_joints<M>(page: &str, mechanism: &M)
 where
-    M: JointJacobian<Scalar = f64> + Partition,
+    M: JointSpace<Scalar = f64> + Partition,
 {
     let (page, module) = read(page);
     let numbers: Vec<f64> = constants((), &module);
@@ -76,7 +76,7 @@ where
             let accelerations = run(source_of_accelerations(function), &[]);
             assert_same(function, &run(function, &accelerations), compiled);
         };
-        let mut rates = mechanism.rates();
+        let mut rates = mechanism.joint_buffers().rates;
         mechanism.joint_accelerations(t, &x, &mut rates);
         same("joint_accelerations", rates.as_ref());
         mechanism.joint_accelerations_at(t, &y, &mut rates);
@@ -84,7 +84,7 @@ where
         let mut dx = x.clone();
         mechanism.joint_derivative(t, &x, &mut dx);
         same("joint_derivative", dx.as_ref());
-        let (mut by_state, mut by_time) = (mechanism.joint_jacobian_buffer(), x.clone());
+        let (mut by_state, mut by_time) = (mechanism.joint_buffers().jacobian, x.clone());
         mechanism.joint_jacobian(t, &x, &mut by_state, &mut by_time);
         same("joint_jacobian", &[by_state.as_ref(), by_time.as_ref()].concat());
         let mut joints = x.clone();
@@ -93,13 +93,13 @@ where
         let (mut maximal, mut dy) = (y.clone(), y.clone());
         mechanism.to_maximal(t, &x, &mut maximal);
         same("to_maximal", maximal.as_ref());
-        let mut accelerations = mechanism.velocities();
+        let mut accelerations = mechanism.terms().velocities;
         mechanism.corrected_accelerations(t, &y, &mut accelerations);
         same("corrected_accelerations", accelerations.as_ref());
-        let mut lambda = mechanism.rows();
+        let mut lambda = mechanism.buffers().rows;
         mechanism.corrected_multipliers(t, &y, &accelerations, &mut lambda);
         same("corrected_multipliers", lambda.as_ref());
-        let mut solution = mechanism.solution();
+        let mut solution = mechanism.joint_buffers().solution;
         mechanism.corrected_solution(t, &y, &mut solution);
         same("corrected_solution", solution.as_ref());
         mechanism.corrected_derivative(t, &y, &mut dy);
@@ -121,13 +121,13 @@ fn assert_same(function: &str, interpreted: &[f64], compiled: &[f64]) {
 
 fn compare<M>(module: &Module, model: &gyro_model::Model, mechanism: &M, t: f64, y: &M::State)
 where
-    M: Projection<Scalar = f64> + Ports,
+    M: Equations<Scalar = f64>,
 {
     let point = point(model, t, y.as_ref());
     let numbers: Vec<f64> = constants((), module);
-    let mut accelerations = mechanism.accelerations_buffer();
+    let mut accelerations = mechanism.terms().accelerations;
     mechanism.accelerations(t, y, &mut accelerations);
-    let mut changes = mechanism.rows();
+    let mut changes = mechanism.buffers().rows;
     changes.as_mut().iter_mut().zip(y.as_ref()).for_each(|(change, y)| *change = *y);
     let same = |function: &str, compiled: &[f64]| {
         let (accelerations, changes) = (accelerations.as_ref(), changes.as_ref());
@@ -140,27 +140,27 @@ where
     let mut dy = y.clone();
     mechanism.derivative(t, y, &mut dy);
     same("derivative", dy.as_ref());
-    let mut phi = mechanism.constraints();
+    let mut phi = mechanism.buffers().constraints;
     mechanism.phi(t, y, &mut phi);
     same("phi", phi.as_ref());
-    let mut phi_q = mechanism.phi_q_values();
+    let mut phi_q = mechanism.terms().phi_q;
     mechanism.phi_q(t, y, &mut phi_q);
     same("phi_q", phi_q.as_ref());
-    let mut gamma = mechanism.rows();
+    let mut gamma = mechanism.buffers().rows;
     mechanism.gamma(t, y, &mut gamma);
     same("gamma", gamma.as_ref());
-    let mut lambda = mechanism.rows();
+    let mut lambda = mechanism.buffers().rows;
     mechanism.multipliers(t, y, &accelerations, &mut lambda);
     same("multipliers", lambda.as_ref());
-    let mut motion = mechanism.velocities();
+    let mut motion = mechanism.terms().velocities;
     mechanism.project(t, y, &changes, &mut motion);
     same("project", motion.as_ref());
     let energy = mechanism.energy(t, y);
     same("energy", &[energy.kinetic, energy.potential]);
-    let mut readings = mechanism.readings();
+    let mut readings = mechanism.buffers().readings;
     mechanism.read_joints(t, y, &mut readings);
     same("read_joints", readings.as_ref());
-    let mut outputs = mechanism.outputs_buffer();
+    let mut outputs = mechanism.buffers().outputs;
     mechanism.outputs(t, y, &mut outputs);
     same("outputs", outputs.as_ref());
 }
