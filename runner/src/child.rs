@@ -1,6 +1,6 @@
 //! The program that the command line compiles around a generated mechanism: all but its five lines.
 
-use crate::motion::Kit;
+use crate::motion::MotionBuilder;
 use crate::protocol::{END, Reply, Request, sample_line};
 use crate::{Event, Failure, Settings, Summary, run_by, time_by};
 use gyro_sim::{Partition, Ports};
@@ -8,14 +8,16 @@ use std::io::{self, BufRead, BufWriter, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's parameters with the kit
+/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's parameters with the builder
 /// beside it, and writes the samples to standard output as they come.
 ///
 /// The exit code says whether the last run was complete; the last line of its answer says why not.
-pub fn main<M: Partition + Ports + 'static, K: Kit<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
+pub fn main<M: Partition + Ports + 'static, K: MotionBuilder<M>>(
+    build: impl Fn(&[f64]) -> (M, K),
+) -> ExitCode {
     answer_all(|request, output| {
-        let (mut mechanism, kit) = build(&request.parameters);
-        answer(&mut mechanism, &kit, request, output)
+        let (mut mechanism, builder) = build(&request.parameters);
+        answer(&mut mechanism, &builder, request, output)
     })
 }
 
@@ -61,7 +63,7 @@ fn request_text(input: &mut impl BufRead) -> Option<Result<String, Failure>> {
 /// The failure of the run or of its output.
 pub fn answer<M: Partition + Ports + 'static>(
     mechanism: &mut M,
-    kit: &dyn Kit<M>,
+    builder: &dyn MotionBuilder<M>,
     request: &Request,
     output: &mut dyn Write,
 ) -> Result<Summary, Failure> {
@@ -79,10 +81,10 @@ pub fn answer<M: Partition + Ports + 'static>(
             output.flush()
         }
     };
-    let summary = run_by(mechanism, kit, plan, &request.start, told)?;
+    let summary = run_by(mechanism, builder, plan, &request.start, told)?;
     if let Some(seconds) = request.measure_for {
         let budget = Duration::from_secs_f64(seconds);
-        let timing = time_by(mechanism, kit, plan, &request.start, budget)?;
+        let timing = time_by(mechanism, builder, plan, &request.start, budget)?;
         writeln!(output, "{}", Reply::Timed(timing).to_line())?;
     }
     Ok(summary)

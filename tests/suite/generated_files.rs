@@ -1,12 +1,12 @@
 //! What the generator writes: always the same, and the same as what is checked in.
 
-use gyro_sim_suite::{module, page, shelves};
+use gyro_sim_suite::{fixture_folders, module, page};
 use std::path::PathBuf;
 
 /// Of all modules `cargo xtask generate --check` says so; here one shows that the tests run what the generator writes.
 #[test]
 fn a_checked_in_module_is_fresh() {
-    let checked_in = shelves()[0].generated.join("heavy_top.rs");
+    let checked_in = fixture_folders()[0].generated.join("heavy_top.rs");
     let found = std::fs::read_to_string(checked_in).unwrap();
     assert!(without_proof(&found) == module("heavy-top").code, "stale, run: cargo xtask generate");
 }
@@ -32,17 +32,17 @@ fn another_page_gives_other_bytes() {
     // The freshness test must be able to fail: one digit of a page shows.
     let text = page("heavy-top").replace("-0.04]", "-0.05]");
     let module = gyro_codegen::generate("heavy-top.toml", &text).unwrap();
-    let checked_in = shelves()[0].generated.join("heavy_top.rs");
+    let checked_in = fixture_folders()[0].generated.join("heavy_top.rs");
     assert!(without_proof(&std::fs::read_to_string(checked_in).unwrap()) != module.code);
 }
 
 #[test]
 fn no_generated_module_is_an_orphan() {
-    for shelf in shelves() {
-        let mut expected: Vec<String> = shelf.pages().iter().map(|page| page.replace('-', "_")).collect();
+    for folder in fixture_folders() {
+        let mut expected: Vec<String> = folder.pages().iter().map(|page| page.replace('-', "_")).collect();
         expected.push("mod".to_owned());
         expected.sort();
-        let folder = std::fs::read_dir(&shelf.generated).unwrap().map(|entry| entry.unwrap().path());
+        let folder = std::fs::read_dir(&folder.generated).unwrap().map(|entry| entry.unwrap().path());
         let modules = folder.filter(|path| path.extension().is_some_and(|extension| extension == "rs"));
         let stem = |path: PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
         let mut found: Vec<String> = modules.map(stem).collect();

@@ -120,7 +120,7 @@ impl Package {
 fn main(module: &Module, precision: Precision) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let has = |name: &str| module.code.contains(&format!("gyro_sim::{name} for {type_name}"));
-    let kit = match (has("JointSpace"), has("JointJacobian")) {
+    let builder = match (has("JointSpace"), has("JointJacobian")) {
         (true, true) => "TreeWithJacobian",
         (true, false) => "Tree",
         (false, _) => "WithDuals",
@@ -141,7 +141,7 @@ type Dual = ::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>;
 
 fn main() -> ::std::process::ExitCode {{
     ::gyro_runner::child::main(|parameters| {{
-        (build::<{precision}>(parameters), ::gyro_runner::motion::{kit}(build::<Dual>(parameters)))
+        (build::<{precision}>(parameters), ::gyro_runner::motion::{builder}(build::<Dual>(parameters)))
     }})
 }}
 "
@@ -208,11 +208,11 @@ fn target() -> PathBuf {
 /// Brings a package up to date.
 fn build(package: &Package) -> Result<(), Failure> {
     let (cache, folder) = (cache(), package.folder());
-    let said = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
-    fs::create_dir_all(folder.join("src")).map_err(said)?;
-    let lock = File::create(cache.join("lock")).map_err(said)?;
+    let failure = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
+    fs::create_dir_all(folder.join("src")).map_err(failure)?;
+    let lock = File::create(cache.join("lock")).map_err(failure)?;
     // Released when the file is closed at the end of this function. Two runs at once take turns at building.
-    wait_for(&lock, remarks::note).map_err(said)?;
+    wait_for(&lock, remarks::note).map_err(failure)?;
     files::write(&folder.join("Cargo.toml"), &package.manifest)?;
     let (file, root) = &package.root;
     files::write(&folder.join("src").join(file), root)?;
@@ -356,7 +356,7 @@ fn listen(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyro_codegen::Sheet;
+    use gyro_codegen::DataSheet;
 
     type Heard = Result<Option<(Summary, Option<Timing>)>, Failure>;
 
@@ -406,7 +406,7 @@ mod tests {
             type_name: "Top".to_owned(),
             code: code.to_owned(),
             constants: String::new(),
-            sheet: Sheet::default(),
+            data_sheet: DataSheet::default(),
         };
         let name = |code, precision| Package::program(&module(code), precision).name;
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));

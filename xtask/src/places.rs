@@ -45,10 +45,10 @@ pub(crate) fn module_path(places: &[Places], page: &Path, name: &str) -> PathBuf
 }
 
 pub(crate) fn listing(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let said = |e: io::Error| Failure::Usage(format!("{} cannot be read: {e}", folder.display()));
+    let failure = |e: io::Error| Failure::Usage(format!("{} cannot be read: {e}", folder.display()));
     let entries: io::Result<Vec<PathBuf>> =
-        fs::read_dir(folder).map_err(said)?.map(|entry| Ok(entry?.path())).collect();
-    let mut paths = entries.map_err(said)?;
+        fs::read_dir(folder).map_err(failure)?.map(|entry| Ok(entry?.path())).collect();
+    let mut paths = entries.map_err(failure)?;
     paths.sort();
     Ok(paths)
 }

@@ -3,7 +3,7 @@
 //! 32 bits, little-endian, as the linker writes it for these chips.
 
 use crate::failure::Failure;
-use crate::programs::said;
+use crate::programs::io_failure;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -27,7 +27,7 @@ const HEADER: usize = 40;
 
 impl Elf {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
-        let data = fs::read(path).map_err(|e| said(path, &e))?;
+        let data = fs::read(path).map_err(|e| io_failure(path, &e))?;
         Self::parse(data).ok_or_else(|| Failure::Run(format!("{} is not as expected", path.display())))
     }
 

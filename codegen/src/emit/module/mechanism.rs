@@ -59,7 +59,7 @@ impl ModuleWriter<'_> {
     /// Names, rows and sizes.
     fn tables(&self) -> TokenStream {
         let e = self.equations;
-        let bodies = self.slots().into_iter().map(|body| &e.model.bodies[body].name);
+        let bodies = self.moving_bodies().into_iter().map(|body| &e.model.bodies[body].name);
         let joints = e.model.joints.iter().map(|joint| {
             let (name, coordinates) = (&joint.name, coordinates(joint.kind));
             quote! { gyro_sim::JointInfo { name: #name, coordinates: &[#(gyro_sim::Coordinate::#coordinates),*] } }
@@ -69,7 +69,10 @@ impl ModuleWriter<'_> {
             let (owner, index) = match row.owner {
                 RowOwner::Body(body) => (
                     "Body",
-                    self.slots().iter().position(|&b| b == body).expect("a held body has coordinates"),
+                    self.moving_bodies()
+                        .iter()
+                        .position(|&b| b == body)
+                        .expect("a held body has coordinates"),
                 ),
                 RowOwner::Joint(joint) => ("Joint", joint),
                 RowOwner::Coupler(coupler) => ("Coupler", coupler),
@@ -81,11 +84,11 @@ impl ModuleWriter<'_> {
         let (couplers, drivers) =
             (e.model.couplers.iter().map(|c| &c.name), e.model.drivers.iter().map(|d| &d.name));
         let [n_couplers, n_drivers] = [e.model.couplers.len(), e.model.drivers.len()].map(index);
-        let [n_bodies, n_joints, n_rows] = [e.n_slots(), e.model.joints.len(), e.n_rows()].map(index);
+        let [n_bodies, n_joints, n_rows] = [e.n_moving_bodies(), e.model.joints.len(), e.n_rows()].map(index);
         let size = float(e.model.size());
         let references = self.turn_references();
         let (y, work) = if e.model.has_work() {
-            let at = index(13 * e.n_slots());
+            let at = index(13 * e.n_moving_bodies());
             (quote! { y }, quote! { y[#at] })
         } else {
             (quote! { _y }, quote! { T::constant(0.0) })

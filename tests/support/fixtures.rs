@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// A folder of pages and the folder of their generated modules.
 #[derive(Clone, Debug)]
-pub struct Shelf {
+pub struct FixtureFolder {
     /// Pages.
     pub models: PathBuf,
     /// Modules.
@@ -109,7 +109,7 @@ pub fn generated(page: &str) -> Engine {
         "two-four-bars" => Engine::new(own::two_four_bars::TwoFourBars::default()),
         "universal" => Engine::new(own::universal::Universal::default()),
         "weld" => Engine::new(own::weld::Weld::default()),
-        _ => panic!("{page}.toml has no line in tests/support/shelves.rs: add it"),
+        _ => panic!("{page}.toml has no line in tests/support/fixtures.rs: add it"),
     }
 }
 
@@ -232,13 +232,14 @@ pub fn dense(model: &Model) -> Engine {
 }
 
 /// Where pages and modules are: the shipped ones, then those for tests.
-pub fn shelves() -> [Shelf; 2] {
+pub fn fixture_folders() -> [FixtureFolder; 2] {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    [("models", "gyro-sim/src/generated"), ("tests/models", "tests/support/generated")]
-        .map(|(models, generated)| Shelf { models: root.join(models), generated: root.join(generated) })
+    [("models", "gyro-sim/src/generated"), ("tests/models", "tests/support/generated")].map(
+        |(models, generated)| FixtureFolder { models: root.join(models), generated: root.join(generated) },
+    )
 }
 
-impl Shelf {
+impl FixtureFolder {
     /// Its pages in the order of their names, without extension.
     pub fn pages(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.models).expect("the folder is part of the project");
@@ -254,7 +255,7 @@ impl Shelf {
 
 /// All pages, those for tests last.
 pub fn pages() -> Vec<String> {
-    shelves().iter().flat_map(Shelf::pages).collect()
+    fixture_folders().iter().flat_map(FixtureFolder::pages).collect()
 }
 
 /// The text of a page.
@@ -286,7 +287,7 @@ fn file_name(page: &str) -> String {
 }
 
 fn path(page: &str) -> PathBuf {
-    let paths = shelves().map(|shelf| shelf.models.join(file_name(page)));
+    let paths = fixture_folders().map(|folder| folder.models.join(file_name(page)));
     let found = paths.into_iter().find(|path| path.exists());
     found.unwrap_or_else(|| panic!("there is no page {page}.toml"))
 }
