@@ -1,10 +1,10 @@
 //! Accelerations from the leaves to the root and back, without λ.
 
-use crate::freedom::{self, Attitude, Freedom};
 use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::joint::Joint;
 use crate::lowered::Lowered;
 use crate::motion::Motion;
+use crate::motion_subspace::{self, Attitude, MotionSubspace};
 use crate::number::{Number, number};
 use crate::place::{Moment, Place};
 use crate::spatial::{Inertia, Spatial};
@@ -46,7 +46,7 @@ struct Follower<T> {
     child_arm: Vector3<T>,
     /// What γ adds to the acceleration that the child would have as part of its parent.
     bias: Spatial<T>,
-    freedom: Freedom<T>,
+    subspace: MotionSubspace<T>,
 }
 
 impl<T: Number> Node<T> {
@@ -61,7 +61,7 @@ impl<T: Number> Node<T> {
                 parent_arm: zero,
                 child_arm: zero,
                 bias: Spatial::zero(),
-                freedom: Freedom::None,
+                subspace: MotionSubspace::None,
             },
             acceleration: Spatial::zero(),
         }
@@ -80,11 +80,11 @@ pub(crate) fn accelerations<T: Number>(
     let Space { nodes, driven, .. } = space;
     for link in links.iter().rev() {
         if let Hold::Joint(hinge) = &link.hold {
-            fold(&lowered.joints[hinge.joint], hinge, link.slot, nodes, driven);
+            fold(&lowered.joints[hinge.joint], hinge, link.moving_body, nodes, driven);
         }
     }
     for link in links {
-        nodes[link.slot].acceleration = acceleration(lowered, at.y, link, nodes, driven);
+        nodes[link.moving_body].acceleration = acceleration(lowered, at.y, link, nodes, driven);
     }
     for (node, out) in nodes.iter().zip(out.as_chunks_mut::<6>().0) {
         out[..3].copy_from_slice(node.acceleration.linear.as_slice());
@@ -98,17 +98,19 @@ pub(crate) fn place_all<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, spac
         *motion = lowered.driven_motion(at.t, index);
     }
     lowered.applied_force(at, &mut space.forces);
-    for (slot, (node, force)) in space.nodes.iter_mut().zip(space.forces.as_chunks::<6>().0).enumerate() {
-        place(lowered, at.y, slot, force, node);
+    for (moving_body, (node, force)) in
+        space.nodes.iter_mut().zip(space.forces.as_chunks::<6>().0).enumerate()
+    {
+        place(lowered, at.y, moving_body, force, node);
     }
 }
 
 /// A body by itself.
-fn place<T: Number>(lowered: &Lowered<T>, y: &[T], slot: usize, force: &[T; 6], node: &mut Node<T>) {
-    let body = &lowered.bodies[slot];
-    let a = direction_rotation(&lowered.p(y, slot));
+fn place<T: Number>(lowered: &Lowered<T>, y: &[T], moving_body: usize, force: &[T; 6], node: &mut Node<T>) {
+    let body = &lowered.bodies[moving_body];
+    let a = direction_rotation(&lowered.p(y, moving_body));
     let [fx, fy, fz, nx, ny, nz] = *force;
-    node.attitude = Attitude { a, omega: a * lowered.w(y, slot) };
+    node.attitude = Attitude { a, omega: a * lowered.w(y, moving_body) };
     node.applied = Spatial { linear: Vector3::new(fx, fy, fz), angular: a * Vector3::new(nx, ny, nz) };
     node.force = node.applied;
     node.inertia = Inertia {
@@ -131,7 +133,7 @@ fn fold<T: Number>(
     let node = &nodes[child];
     let (parent_arm, child_arm) = (parent.a * parent_end.point, node.attitude.a * child_end.point);
     let [i, j] = [&joint.first, &joint.second].map(|end| attitude(&end.place, nodes, driven));
-    let bias = freedom::rotation_bias((hinge.bearing, joint), &i, &j);
+    let bias = motion_subspace::rotation_bias((hinge.bearing, joint), &i, &j);
     let angular = match hinge.child {
         Side::First => -bias,
         Side::Second => bias,
@@ -140,15 +142,15 @@ fn fold<T: Number>(
     let bias = Spatial { linear, angular };
     let (mut inertia, mut force) = (node.inertia.about(&child_arm), node.force.about(&child_arm));
     force -= inertia.apply(&bias);
-    let freedom = match hinge.bearing {
-        Bearing::Fixed => Freedom::None,
-        Bearing::Spherical => Freedom::all(&inertia, &force),
+    let subspace = match hinge.bearing {
+        Bearing::Fixed => MotionSubspace::None,
+        Bearing::Spherical => MotionSubspace::all(&inertia, &force),
         // Both dot-1 rows have the second body's axis in their null space.
-        Bearing::Revolute => Freedom::about(j.a * joint.second.h, &inertia, &force),
+        Bearing::Revolute => MotionSubspace::about(j.a * joint.second.h, &inertia, &force),
     };
-    nodes[child].follower = Follower { parent_arm, child_arm, bias, freedom };
+    nodes[child].follower = Follower { parent_arm, child_arm, bias, subspace };
     if let Some(parent) = hinge.loads {
-        freedom.eliminate(&mut inertia, &mut force);
+        subspace.eliminate(&mut inertia, &mut force);
         nodes[parent].inertia += inertia.about(&-parent_arm);
         nodes[parent].force += force.about(&-parent_arm);
     }
@@ -161,7 +163,7 @@ fn acceleration<T: Number>(
     nodes: &[Node<T>],
     driven: &[Motion<T>],
 ) -> Spatial<T> {
-    let node = &nodes[link.slot];
+    let node = &nodes[link.moving_body];
     match &link.hold {
         Hold::Free => node.inertia.solve(&node.force),
         Hold::Constrained(index, _) => {
@@ -174,7 +176,7 @@ fn acceleration<T: Number>(
         Hold::Joint(hinge) => {
             let (parent_end, _) = hinge.ends(&lowered.joints[hinge.joint]);
             node.follower.acceleration(&match parent_end.place {
-                Place::Slot(slot) => nodes[slot].acceleration,
+                Place::Slot(moving_body) => nodes[moving_body].acceleration,
                 Place::Ground(_) => Spatial::zero(),
                 Place::Driven(index) => {
                     let Motion { a, s_dot, w_dot, .. } = driven[index];
@@ -190,7 +192,7 @@ impl<T: Number> Follower<T> {
     fn acceleration(&self, parent: &Spatial<T>) -> Spatial<T> {
         let linear = parent.linear + parent.angular.cross(&self.parent_arm);
         let carried = Spatial { linear, angular: parent.angular };
-        let angular = self.freedom.angular(&carried, &self.bias);
+        let angular = self.subspace.angular(&carried, &self.bias);
         let linear = carried.linear + self.bias.linear;
         Spatial { linear: linear - angular.cross(&self.child_arm), angular }
     }
@@ -199,7 +201,7 @@ impl<T: Number> Follower<T> {
 /// How a joint's body is turned.
 pub(crate) fn attitude<T: Number>(place: &Place<T>, nodes: &[Node<T>], driven: &[Motion<T>]) -> Attitude<T> {
     match place {
-        Place::Slot(slot) => nodes[*slot].attitude,
+        Place::Slot(moving_body) => nodes[*moving_body].attitude,
         Place::Ground(motion) => Attitude { a: motion.a, omega: Vector3::zeros() },
         Place::Driven(index) => Attitude { a: driven[*index].a, omega: driven[*index].omega() },
     }

@@ -174,9 +174,9 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
 
     fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
         let (lowered, at) = (&self.lowered, Moment { t, y });
-        for (slot, dq) in dy.as_chunks_mut::<7>().0[..lowered.n_bodies()].iter_mut().enumerate() {
-            dq[..3].copy_from_slice(lowered.s(y, slot).as_slice()); // eq. (16)
-            let p_dot: Vector4<T> = p_dot(&lowered.p(y, slot), &lowered.w(y, slot));
+        for (moving_body, dq) in dy.as_chunks_mut::<7>().0[..lowered.n_bodies()].iter_mut().enumerate() {
+            dq[..3].copy_from_slice(lowered.s(y, moving_body).as_slice()); // eq. (16)
+            let p_dot: Vector4<T> = p_dot(&lowered.p(y, moving_body), &lowered.w(y, moving_body));
             dq[3..].copy_from_slice(p_dot.as_slice());
         }
         let velocities = lowered.n_q()..lowered.n_q() + lowered.n_v();

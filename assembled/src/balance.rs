@@ -34,15 +34,15 @@ pub(crate) fn multipliers<T: Number>(
         let Some(hinge) = &limb.hinge else { continue };
         let rows = &space.gradients[hinge.rows.clone()];
         let lambda = &mut lambda[hinge.rows.clone()];
-        solve(rows, weight, &unbalanced[limb.slot], lambda);
-        if let Some(parent) = hinge.ends(&lowered.joints[hinge.joint]).0.place.slot() {
+        solve(rows, weight, &unbalanced[limb.moving_body], lambda);
+        if let Some(parent) = hinge.ends(&lowered.joints[hinge.joint]).0.place.moving_body() {
             for ([_, of_parent], lambda) in rows.iter().zip(lambda) {
                 unbalanced[parent] = plus(&unbalanced[parent], -*lambda, of_parent);
             }
         }
     }
-    for (slot, rows) in &tree.held {
-        solve(&space.gradients[rows.clone()], weight, &unbalanced[*slot], &mut lambda[rows.clone()]);
+    for (moving_body, rows) in &tree.held {
+        solve(&space.gradients[rows.clone()], weight, &unbalanced[*moving_body], &mut lambda[rows.clone()]);
     }
 }
 

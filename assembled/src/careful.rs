@@ -108,14 +108,15 @@ impl<T: Number> Solver<T> for Elimination<T> {
 }
 
 fn lower_link<T: Number>(model: &Model, lowered: &Lowered<T>, link: &gyro_model::Link) -> Link {
-    let slots = model.coordinate_bodies();
-    let slot_of = |body| slots.iter().position(|&b| b == body);
-    let slot = slot_of(link.body).expect("bodies of links have coordinates");
-    let constrained = |slot| lowered.constrained.iter().position(|body| body.slot == slot);
+    let moving_bodies = model.coordinate_bodies();
+    let moving_body_of = |body| moving_bodies.iter().position(|&b| b == body);
+    let moving_body = moving_body_of(link.body).expect("bodies of links have coordinates");
+    let constrained =
+        |moving_body| lowered.constrained.iter().position(|body| body.moving_body == moving_body);
     let hold = match link.attachment {
         Attachment::Free => Hold::Free,
         Attachment::Constrained => Hold::Constrained(
-            constrained(slot).expect("it was lowered as such"),
+            constrained(moving_body).expect("it was lowered as such"),
             model.rows_of(RowOwner::Body(link.body)).start,
         ),
         Attachment::Joint { joint, parent, reversed } => Hold::Joint(Hinge {
@@ -123,8 +124,8 @@ fn lower_link<T: Number>(model: &Model, lowered: &Lowered<T>, link: &gyro_model:
             first_row: model.rows_of(RowOwner::Joint(joint)).start,
             bearing: Bearing::of(model.joints[joint].kind).expect("other kinds are not supported"),
             child: if reversed { Side::First } else { Side::Second },
-            loads: slot_of(parent).filter(|&parent| constrained(parent).is_none()),
+            loads: moving_body_of(parent).filter(|&parent| constrained(parent).is_none()),
         }),
     };
-    Link { slot, hold }
+    Link { moving_body, hold }
 }

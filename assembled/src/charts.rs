@@ -46,18 +46,18 @@ pub(crate) fn newton_step<T: Number>(
         match &link.hold {
             Hold::Constrained(index, _) => restore(&lowered.constrained[*index], y),
             Hold::Free => {
-                let step = parameter_step(lowered, link.slot, &[], chart, y)?;
-                set_p(y, link.slot, &(lowered.p(y, link.slot) + step));
+                let step = parameter_step(lowered, link.moving_body, &[], chart, y)?;
+                set_p(y, link.moving_body, &(lowered.p(y, link.moving_body) + step));
             }
             Hold::Joint(hinge) => {
                 let (facing, parent) = facing_dots(lowered, hinge, Moment { t, y });
                 let n_dots = lowered.joints[hinge.joint].dots.len();
-                let step = parameter_step(lowered, link.slot, &facing[..n_dots], chart, y)?;
-                let p = lowered.p(y, link.slot) + step;
-                set_p(y, link.slot, &p);
+                let step = parameter_step(lowered, link.moving_body, &facing[..n_dots], chart, y)?;
+                let p = lowered.p(y, link.moving_body) + step;
+                set_p(y, link.moving_body, &p);
                 let (parent_end, child_end) = hinge.ends(&lowered.joints[hinge.joint]);
                 let r = parent.r + parent.a * parent_end.point - rotation(&p) * child_end.point; // eq. (7)
-                y[7 * link.slot..7 * link.slot + 3].copy_from_slice(r.as_slice());
+                y[7 * link.moving_body..7 * link.moving_body + 3].copy_from_slice(r.as_slice());
             }
         }
     }
@@ -72,7 +72,7 @@ pub(crate) fn solve_velocities<T: Number>(
     y: &mut [T],
 ) -> Result<(), T> {
     for link in links {
-        let slot = link.slot;
+        let moving_body = link.moving_body;
         let (s, w) = match &link.hold {
             Hold::Constrained(..) => (Vector3::zeros(), Vector3::zeros()),
             Hold::Free => continue,
@@ -80,13 +80,13 @@ pub(crate) fn solve_velocities<T: Number>(
                 let joint = &lowered.joints[hinge.joint];
                 let (facing, parent) = facing_dots(lowered, hinge, Moment { t, y });
                 let (parent_end, child_end) = hinge.ends(joint);
-                let (a, w) = (rotation(&lowered.p(y, slot)), lowered.w(y, slot));
+                let (a, w) = (rotation(&lowered.p(y, moving_body)), lowered.w(y, moving_body));
                 let rows = facing.map(|facing| facing.velocity_row(&a, &w));
                 let w = w + angular_change(hinge.bearing, &rows, &child_end.h)?;
                 (parent.tip_velocity(&parent_end.point) - a * w.cross(&child_end.point), w)
             }
         };
-        let at = lowered.n_q() + 6 * slot;
+        let at = lowered.n_q() + 6 * moving_body;
         y[at..at + 3].copy_from_slice(s.as_slice());
         y[at + 3..at + 6].copy_from_slice(w.as_slice());
     }
@@ -133,7 +133,7 @@ impl<T: Number> Facing<T> {
 
 /// The vector whose largest component decides the chart; none where no rotation is free.
 fn deciding_vector<T: Number>(lowered: &Lowered<T>, link: &Link, y: &[T]) -> Option<[T; 4]> {
-    let p = lowered.p(y, link.slot);
+    let p = lowered.p(y, link.moving_body);
     let Hold::Joint(hinge) = &link.hold else {
         return matches!(link.hold, Hold::Free).then(|| p.into());
     };
@@ -169,12 +169,12 @@ fn facing_dots<T: Number>(
 /// The Newton step of a body's Euler parameters.
 fn parameter_step<T: Number>(
     lowered: &Lowered<T>,
-    slot: usize,
+    moving_body: usize,
     facing: &[Facing<T>],
     chart: u8,
     y: &[T],
 ) -> Result<Vector4<T>, T> {
-    let p = lowered.p(y, slot);
+    let p = lowered.p(y, moving_body);
     let a = rotation(&p);
     let mut right = Vector4::zeros();
     for (k, facing) in facing.iter().enumerate() {
@@ -211,13 +211,13 @@ fn solve<T: Number>(matrix: &Matrix4<T>, right: &Vector4<T>) -> Result<Vector4<T
 
 /// Puts a constrained body back, with the sign of its Euler parameters as it is.
 pub(crate) fn restore<T: Number>(body: &Constrained<T>, y: &mut [T]) {
-    let at = 7 * body.slot;
+    let at = 7 * body.moving_body;
     let p = Vector4::from_column_slice(&y[at + 3..at + 7]);
     let sign = if p.dot(&body.p0) < T::zero() { -T::one() } else { T::one() };
     y[at..at + 3].copy_from_slice(body.r0.as_slice());
-    set_p(y, body.slot, &(body.p0 * sign));
+    set_p(y, body.moving_body, &(body.p0 * sign));
 }
 
-pub(crate) fn set_p<T: Number>(y: &mut [T], slot: usize, p: &Vector4<T>) {
-    y[7 * slot + 3..7 * slot + 7].copy_from_slice(p.as_slice());
+pub(crate) fn set_p<T: Number>(y: &mut [T], moving_body: usize, p: &Vector4<T>) {
+    y[7 * moving_body + 3..7 * moving_body + 7].copy_from_slice(p.as_slice());
 }

@@ -39,7 +39,7 @@ impl<'a, T: Number> Pairs<'a, T> {
             let joint = &lowered.joints[joint];
             [&joint.first.place, &joint.second.place].map(|place| {
                 let motion = lowered.motion(*at, place);
-                if place.slot().is_some() { moved(motion) } else { motion }
+                if place.moving_body().is_some() { moved(motion) } else { motion }
             })
         };
         &last.get_or_insert_with(|| (joint, evaluate())).1
@@ -50,8 +50,8 @@ impl<T: Number> Lowered<T> {
     /// Writes Φ: joint rows, then normalisations.
     pub(crate) fn phi(&self, at: Moment<'_, T>, out: &mut [T]) {
         self.for_each_jet(at, |row, [value, ..]| out[row] = value);
-        for (slot, out) in out[self.n_rows()..].iter_mut().enumerate() {
-            *out = self.p(at.y, slot).norm_squared() - T::one(); // eq. (12)
+        for (moving_body, out) in out[self.n_rows()..].iter_mut().enumerate() {
+            *out = self.p(at.y, moving_body).norm_squared() - T::one(); // eq. (12)
         }
     }
 
@@ -60,9 +60,11 @@ impl<T: Number> Lowered<T> {
         // The orientation rows are linear in p: rows e1 to e3 of p̄₀ ∘ p, which are G(p₀) p.
         let orientation = |body: &Constrained<T>| g_matrix(&body.p0);
         self.for_each_gradient(at, along_p, orientation, &mut sink);
-        for slot in 0..self.n_bodies() {
-            let p = self.p(at.y, slot);
-            (0..4).for_each(|k| sink(self.n_rows() + slot, 7 * slot + 3 + k, number::<T>(2.0) * p[k]));
+        for moving_body in 0..self.n_bodies() {
+            let p = self.p(at.y, moving_body);
+            (0..4).for_each(|k| {
+                sink(self.n_rows() + moving_body, 7 * moving_body + 3 + k, number::<T>(2.0) * p[k])
+            });
         }
     }
 
@@ -99,7 +101,7 @@ impl<T: Number> Lowered<T> {
 
     /// Scalar and vector part of `p̄₀ ∘ p`.
     pub(crate) fn relative_orientation(&self, y: &[T], body: &Constrained<T>) -> (T, Vector3<T>) {
-        let relative = relative_matrix(&body.p0) * self.p(y, body.slot);
+        let relative = relative_matrix(&body.p0) * self.p(y, body.moving_body);
         (relative[0], relative.fixed_rows::<3>(1).into_owned())
     }
 
@@ -144,10 +146,10 @@ impl<T: Number> Lowered<T> {
 
     /// Eqs. (5) and (6). The second derivative of the latter follows from `Ġᵀw' = −½|w'|² p`: −¼|w'|² times the row itself.
     fn constrained_jet(&self, y: &[T], body: &Constrained<T>, component: usize) -> [T; 3] {
-        let w = self.w(y, body.slot);
+        let w = self.w(y, body.moving_body);
         if component < 3 {
-            let displacement = self.r(y, body.slot) - body.r0;
-            return [displacement[component], self.s(y, body.slot)[component], T::zero()];
+            let displacement = self.r(y, body.moving_body) - body.r0;
+            return [displacement[component], self.s(y, body.moving_body)[component], T::zero()];
         }
         let relative = self.relative_orientation(y, body);
         let (row, rate) = (relative.1[component - 3], (orientation_block(&relative) * w)[component - 3]);
@@ -168,7 +170,7 @@ impl<T: Number> Lowered<T> {
             match row {
                 Row::Constrained { body, component } => {
                     let body = &self.constrained[*body];
-                    constrained_pull(*component, &orientation(body)).walk(body.slot, sink);
+                    constrained_pull(*component, &orientation(body)).walk(body.moving_body, sink);
                 }
                 Row::Measured { terms, .. } => self.measured_gradient(terms, &mut pairs, turning, sink),
             }
@@ -185,19 +187,23 @@ impl<T: Number> Lowered<T> {
         let mut pulls = |term: &Term<T>| {
             let joint = &self.joints[term.joint];
             let [first, second] = term.measure.pulls(joint, pairs.of(term.joint), turning);
-            [(joint.first.place.slot(), first), (joint.second.place.slot(), second)]
+            [(joint.first.place.moving_body(), first), (joint.second.place.moving_body(), second)]
         };
         if let [term] = terms {
             // One joint's row has nothing to add up; its factor is one, and columns ascend whichever body comes first.
             let mut pulls = pulls(term);
-            pulls.sort_by_key(|(slot, _)| *slot);
-            pulls.iter().for_each(|(slot, pull)| slot.iter().for_each(|slot| pull.walk(*slot, &mut sink)));
+            pulls.sort_by_key(|(moving_body, _)| *moving_body);
+            pulls.iter().for_each(|(moving_body, pull)| {
+                moving_body.iter().for_each(|moving_body| pull.walk(*moving_body, &mut sink))
+            });
             return;
         }
         let mut gradient = Gradient::<T, N>::new();
         for term in terms {
-            for (slot, pull) in pulls(term) {
-                slot.into_iter().for_each(|slot| gradient.add(slot, pull.times(term.factor)));
+            for (moving_body, pull) in pulls(term) {
+                moving_body
+                    .into_iter()
+                    .for_each(|moving_body| gradient.add(moving_body, pull.times(term.factor)));
             }
         }
         gradient.walk(sink);

@@ -22,7 +22,7 @@ pub(crate) enum Course {
 
 /// A body's whole motion.
 #[derive(Clone, Debug)]
-pub(crate) struct Carriage {
+pub(crate) struct DrivenBody {
     r0: Vector3<f64>,
     p0: Vector4<f64>,
     translation: [Course; 3],
@@ -91,7 +91,7 @@ fn table(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
     if t == inside { [value, slope, bend] } else { [value + slope * (t - inside), slope, 0.0] }
 }
 
-impl Carriage {
+impl DrivenBody {
     /// The motion of a driven body; one of which the page says nothing stays where it is.
     pub(crate) fn new(model: &Model, body: usize) -> Self {
         let body = &model.bodies[body];
@@ -186,9 +186,9 @@ mod tests {
     }
 
     #[test]
-    fn the_velocities_of_a_carriage_are_those_of_its_pose() {
+    fn the_velocities_of_a_driven_body_are_those_of_its_pose() {
         let [a, b, c, d, e] = <[Course; 5]>::try_from(courses()).expect("there are five");
-        let carriage = Carriage {
+        let body = DrivenBody {
             r0: Vector3::new(0.1, 0.2, 0.3),
             p0: Vector4::new(1.0, 2.0, -1.0, 0.5).normalize(),
             translation: [a.clone(), b.clone(), c],
@@ -199,7 +199,7 @@ mod tests {
             ],
         };
         for t in [0.2, 0.7, 2.1] {
-            let [before, now, after] = [t - STEP, t, t + STEP].map(|t| carriage.motion(t));
+            let [before, now, after] = [t - STEP, t, t + STEP].map(|t| body.motion(t));
             let s = (after.r - before.r) / (2.0 * STEP);
             let s_dot = (after.s - before.s) / (2.0 * STEP);
             // Eq. (14) the other way: w' = 2 G ṗ.
@@ -212,12 +212,12 @@ mod tests {
     }
     /// The model has an evaluation of its own, by dual numbers.
     #[test]
-    fn a_carriage_moves_as_the_model_says() {
+    fn a_driven_body_moves_as_the_model_says() {
         let page = include_str!("../tests/models/carried.toml");
         let model = gyro_model::read("carried.toml", page).expect("a page without mistakes");
         let deck = &model.bodies[0];
         for t in [0.0, 0.3, 1.7] {
-            let motion = Carriage::new(&model, 0).motion(t);
+            let motion = DrivenBody::new(&model, 0).motion(t);
             let expected = deck.motion.as_ref().expect("it is driven").state(&model, deck, t);
             let vectors = [motion.r, motion.s, motion.w, motion.s_dot, motion.w_dot];
             let expected_vectors = [expected.r, expected.s, expected.w, expected.ds, expected.dw];

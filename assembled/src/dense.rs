@@ -94,8 +94,8 @@ fn solve<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DVector<T> {
 fn matrix<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
     let n_v = lowered.n_v();
     let mut matrix = DMatrix::zeros(n_v + lowered.n_rows(), n_v + lowered.n_rows());
-    for (slot, body) in lowered.bodies.iter().enumerate() {
-        let at = 6 * slot;
+    for (moving_body, body) in lowered.bodies.iter().enumerate() {
+        let at = 6 * moving_body;
         (at..at + 3).for_each(|k| matrix[(k, k)] = body.mass);
         matrix.fixed_view_mut::<3, 3>(at + 3, at + 3).copy_from(&body.inertia);
     }

@@ -19,8 +19,8 @@ impl<T: Number> Lowered<T> {
     /// Kinetic and potential energy, the latter of gravity and springs.
     pub(crate) fn energy(&self, at: Moment<'_, T>) -> Energy<T> {
         let mut energy = Energy { kinetic: T::zero(), potential: T::zero() };
-        for (slot, body) in self.bodies.iter().enumerate() {
-            let (r, s, w) = (self.r(at.y, slot), self.s(at.y, slot), self.w(at.y, slot));
+        for (moving_body, body) in self.bodies.iter().enumerate() {
+            let (r, s, w) = (self.r(at.y, moving_body), self.s(at.y, moving_body), self.w(at.y, moving_body));
             let twice = body.mass * s.norm_squared() + w.dot(&(body.inertia * w));
             energy.kinetic += twice * number(0.5);
             energy.potential -= body.mass * self.gravity.dot(&r);

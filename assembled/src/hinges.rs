@@ -6,7 +6,7 @@ use gyro_model::JointKind;
 /// A body with coordinates and what holds it; parents come before children.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
-    pub(crate) slot: usize,
+    pub(crate) moving_body: usize,
     pub(crate) hold: Hold,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Hinge {
     pub(crate) first_row: usize,
     pub(crate) bearing: Bearing,
     pub(crate) child: Side,
-    /// The parent's slot, if the parent moves under the child's load.
+    /// The parent's moving_body, if the parent moves under the child's load.
     pub(crate) loads: Option<usize>,
 }
 

@@ -20,14 +20,14 @@ pub(crate) struct Limbs<T: Number> {
     pub(crate) held: Vec<(usize, Range<usize>)>,
     /// Fixed bodies where the page puts them, in the model's order.
     pub(crate) fixed: Vec<Motion<T>>,
-    /// Of each row the slot of the body that it holds.
+    /// Of each row the moving_body of the body that it holds.
     pub(crate) children: Vec<usize>,
 }
 
 /// A moving body and what holds it; parents come before children.
 #[derive(Clone, Debug)]
 pub(crate) struct Limb<T> {
-    pub(crate) slot: usize,
+    pub(crate) moving_body: usize,
     /// Index of its parent's node: the ground for a free body.
     pub(crate) parent: usize,
     /// None of a free body.
@@ -72,10 +72,11 @@ impl<T: Number> Limbs<T> {
             }
         }
         let mut children = vec![0; lowered.n_rows()];
-        let hinges =
-            limbs.iter().filter_map(|limb: &Limb<T>| Some((limb.slot, limb.hinge.as_ref()?.rows.clone())));
-        for (slot, rows) in hinges.chain(held.iter().cloned()) {
-            children[rows].fill(slot);
+        let hinges = limbs
+            .iter()
+            .filter_map(|limb: &Limb<T>| Some((limb.moving_body, limb.hinge.as_ref()?.rows.clone())));
+        for (moving_body, rows) in hinges.chain(held.iter().cloned()) {
+            children[rows].fill(moving_body);
         }
         Self { limbs, screws, held, fixed, children }
     }
@@ -90,10 +91,11 @@ fn limb<T: Number>(
     screws: &mut Vec<Screw<T>>,
     link: &gyro_model::Link,
 ) -> Option<Limb<T>> {
-    let slots = model.coordinate_bodies();
-    let slot = slots.iter().position(|&body| body == link.body).expect("bodies of links have coordinates");
+    let moving_bodies = model.coordinate_bodies();
+    let moving_body =
+        moving_bodies.iter().position(|&body| body == link.body).expect("bodies of links have coordinates");
     let Attachment::Joint { joint, reversed, .. } = link.attachment else {
-        return (link.attachment == Attachment::Free).then_some(Limb { slot, parent: 0, hinge: None });
+        return (link.attachment == Attachment::Free).then_some(Limb { moving_body, parent: 0, hinge: None });
     };
     let lead = number(model.value(&model.joints[joint].lead));
     let (of_joint, described) = (Screw::all(&lowered.joints[joint], lead), &lowered.joints[joint]);
@@ -123,19 +125,19 @@ fn limb<T: Number>(
         Place::Slot(parent) => match held.iter().position(|(held, _)| *held == parent) {
             Some(index) => first_held + index,
             None => {
-                let of_parent = limbs.iter().position(|limb| limb.slot == parent);
+                let of_parent = limbs.iter().position(|limb| limb.moving_body == parent);
                 first_fixed + n_fixed(&model.bodies) + of_parent.expect("parents come before children")
             }
         },
     };
-    Some(Limb { slot, parent, hinge: Some(hinge) })
+    Some(Limb { moving_body, parent, hinge: Some(hinge) })
 }
 
 /// Slots and rows of constrained bodies.
 fn held<T: Number>(model: &Model, lowered: &Lowered<T>) -> Vec<(usize, Range<usize>)> {
-    let slots = model.coordinate_bodies();
-    let rows = |slot: usize| model.rows_of(RowOwner::Body(slots[slot]));
-    lowered.constrained.iter().map(|body| (body.slot, rows(body.slot))).collect()
+    let moving_bodies = model.coordinate_bodies();
+    let rows = |moving_body: usize| model.rows_of(RowOwner::Body(moving_bodies[moving_body]));
+    lowered.constrained.iter().map(|body| (body.moving_body, rows(body.moving_body))).collect()
 }
 
 /// Euler parameters of a joint frame.

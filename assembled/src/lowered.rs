@@ -47,16 +47,16 @@ impl<T: Number> DerefMut for Lowered<T> {
 
 impl<T: Number> Lowered<T> {
     pub(crate) fn new(model: &Model) -> Result<Self, AssemblyError> {
-        let (slots, places) = (model.coordinate_bodies(), Places::new(model));
-        let work = model.has_work().then_some(13 * slots.len());
+        let (moving_bodies, places) = (model.coordinate_bodies(), Places::new(model));
+        let work = model.has_work().then_some(13 * moving_bodies.len());
         let turns = model.turn_references();
-        let first_turn = 13 * slots.len() + usize::from(work.is_some());
+        let first_turn = 13 * moving_bodies.len() + usize::from(work.is_some());
         let reference = |of| turns.iter().position(|&turn| turn == of).map(|index| first_turn + index);
         let scene = Scene::new(model, &places, reference);
         let rows = model.rows();
         Ok(Self {
-            rows: rows.iter().map(|row| Row::new(model, &slots, &scene.joints, row)).collect(),
-            row_infos: rows.iter().map(|row| row_info(&slots, row)).collect(),
+            rows: rows.iter().map(|row| Row::new(model, &moving_bodies, &scene.joints, row)).collect(),
+            row_infos: rows.iter().map(|row| row_info(&moving_bodies, row)).collect(),
             elements: Element::all(model, &places, &scene.joints),
             outputs: model.outputs.iter().map(|output| Output::new(model, &places, output)).collect(),
             size: number(model.size()),
@@ -75,11 +75,11 @@ impl<T: Number> Lowered<T> {
     }
 }
 
-fn row_info(slots: &[usize], row: &gyro_model::Row) -> RowInfo {
+fn row_info(moving_bodies: &[usize], row: &gyro_model::Row) -> RowInfo {
     let index = |index: usize| u16::try_from(index).expect("a model page has fewer than 65536 elements");
     let owner = match row.owner {
         RowOwner::Body(body) => Owner::Body(index(
-            slots.iter().position(|&b| b == body).expect("bodies with rows have coordinates"),
+            moving_bodies.iter().position(|&b| b == body).expect("bodies with rows have coordinates"),
         )),
         RowOwner::Joint(joint) => Owner::Joint(index(joint)),
         RowOwner::Coupler(coupler) => Owner::Coupler(index(coupler)),

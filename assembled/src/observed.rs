@@ -62,9 +62,10 @@ impl<T: Number> Lowered<T> {
     /// The motion of a body with its acceleration, prescribed or not.
     fn accelerated(&self, at: Moment<'_, T>, place: &Place<T>, accelerations: &[T]) -> Motion<T> {
         let motion = self.motion(at, place);
-        let Some(slot) = place.slot() else { return motion };
-        let of =
-            |from: usize| Vector3::from_column_slice(&accelerations[6 * slot + from..6 * slot + from + 3]);
+        let Some(moving_body) = place.moving_body() else { return motion };
+        let of = |from: usize| {
+            Vector3::from_column_slice(&accelerations[6 * moving_body + from..6 * moving_body + from + 3])
+        };
         Motion { s_dot: of(0), w_dot: of(3), ..motion }
     }
 
@@ -73,7 +74,8 @@ impl<T: Number> Lowered<T> {
     fn reaction(&self, at: Moment<'_, T>, joint: usize, rows: &[usize], lambda: &[T]) -> [Vector3<T>; 2] {
         let joint = &self.joints[joint];
         let motions = self.motions(at, joint);
-        let (side, sign) = if joint.second.place.slot().is_some() { (1, -T::one()) } else { (0, T::one()) };
+        let (side, sign) =
+            if joint.second.place.moving_body().is_some() { (1, -T::one()) } else { (0, T::one()) };
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
         for &row in rows {
             let Row::Measured { terms, .. } = &self.rows[row] else { continue };

@@ -121,11 +121,11 @@ pub(crate) fn solve_velocities<T: Number>(
     }
     let mut change = DVector::zeros(lowered.n_q());
     dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| change[column] = *value);
-    for slot in 0..lowered.n_bodies() {
-        let (from, to) = (7 * slot, lowered.n_q() + 6 * slot);
+    for moving_body in 0..lowered.n_bodies() {
+        let (from, to) = (7 * moving_body, lowered.n_q() + 6 * moving_body);
         (0..3).for_each(|k| y[to + k] += change[from + k] * lowered.size);
         let p_dot: Vector4<T> = change.fixed_rows::<4>(from + 3).into_owned();
-        let w = angular_velocity(&lowered.p(y, slot), &p_dot);
+        let w = angular_velocity(&lowered.p(y, moving_body), &p_dot);
         (0..3).for_each(|k| y[to + 3 + k] += w[k]);
     }
     Ok(())

@@ -29,9 +29,9 @@ pub(crate) enum Place<T> {
 pub(crate) struct Places<T>(Vec<Place<T>>);
 
 impl<T> Place<T> {
-    pub(crate) fn slot(&self) -> Option<usize> {
+    pub(crate) fn moving_body(&self) -> Option<usize> {
         match self {
-            Self::Slot(slot) => Some(*slot),
+            Self::Slot(moving_body) => Some(*moving_body),
             Self::Ground(_) | Self::Driven(_) => None,
         }
     }
@@ -39,12 +39,12 @@ impl<T> Place<T> {
 
 impl<T: Number> Places<T> {
     pub(crate) fn new(model: &Model) -> Self {
-        let (mut slots, mut driven) = (0.., 0..);
+        let (mut moving_bodies, mut driven) = (0.., 0..);
         let next = |range: &mut std::ops::RangeFrom<usize>| range.next().expect("it has no end");
         let place = |body: usize| match model.bodies[body].support {
             Support::Fixed => Place::Ground(resting(model, body)),
             Support::Driven => Place::Driven(next(&mut driven)),
-            Support::Moving | Support::Free | Support::Constrained => Place::Slot(next(&mut slots)),
+            Support::Moving | Support::Free | Support::Constrained => Place::Slot(next(&mut moving_bodies)),
         };
         Self((0..model.bodies.len()).map(place).collect())
     }

@@ -29,9 +29,9 @@ impl<T: Number, const N: usize> Pull<T, N> {
         Self { r_columns: self.r_columns.clone(), r: self.r * factor, turn: self.turn * factor }
     }
 
-    /// Calls the sink with column and value of each entry that is not zero by structure, of a body with this slot.
-    pub(crate) fn walk(&self, slot: usize, mut sink: impl FnMut(usize, T)) {
-        let first_column = (3 + N) * slot;
+    /// Calls the sink with column and value of each entry that is not zero by structure, of a body with this moving_body.
+    pub(crate) fn walk(&self, moving_body: usize, mut sink: impl FnMut(usize, T)) {
+        let first_column = (3 + N) * moving_body;
         self.r_columns.clone().for_each(|k| sink(first_column + k, self.r[k]));
         (0..N).for_each(|k| sink(first_column + 3 + k, self.turn[k]));
     }

@@ -28,11 +28,11 @@ fn build<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, rows: &[T], work: &
     let stride = n_v + lowered.n_rows() + 1;
     work.clear();
     work.resize((stride - 1) * stride, T::zero());
-    for (slot, body) in lowered.bodies.iter().enumerate() {
+    for (moving_body, body) in lowered.bodies.iter().enumerate() {
         for i in 0..3 {
-            let (linear, angular) = (6 * slot + i, 6 * slot + 3 + i);
+            let (linear, angular) = (6 * moving_body + i, 6 * moving_body + 3 + i);
             work[linear * stride + linear] = body.mass;
-            (0..3).for_each(|j| work[angular * stride + 6 * slot + 3 + j] = body.inertia[(i, j)]);
+            (0..3).for_each(|j| work[angular * stride + 6 * moving_body + 3 + j] = body.inertia[(i, j)]);
         }
     }
     lowered.phi_pi(at, |row, column, value| {

@@ -1,10 +1,10 @@
 //! λ by a balance of forces from the leaves to the root: `Φ_qᵀ λ = f − M a` of each body and its descendants.
 
 use crate::articulated::{Space, attitude, place_all};
-use crate::freedom::dual_directions;
 use crate::hinges::{Hinge, Hold, Link, Side};
 use crate::joint::Joint;
 use crate::lowered::Lowered;
+use crate::motion_subspace::dual_directions;
 use crate::number::{Number, number};
 use crate::place::{Moment, Place};
 use crate::spatial::Spatial;
@@ -26,19 +26,19 @@ pub(crate) fn multipliers<T: Number>(
         node.applied.angular -= node.attitude.a * (body.inertia * Vector3::new(*u, *v, *w));
     }
     for link in links.iter().rev() {
-        let unbalanced = space.nodes[link.slot].applied;
+        let unbalanced = space.nodes[link.moving_body].applied;
         match &link.hold {
             Hold::Free => {}
             Hold::Constrained(index, first_row) => {
                 let body = &lowered.constrained[*index];
-                let torque = space.nodes[link.slot].attitude.a.tr_mul(&unbalanced.angular);
+                let torque = space.nodes[link.moving_body].attitude.a.tr_mul(&unbalanced.angular);
                 let orientation = orientation_multipliers(&lowered.relative_orientation(at.y, body), &torque);
                 lambda[*first_row..first_row + 3].copy_from_slice(unbalanced.linear.as_slice());
                 lambda[first_row + 3..first_row + 6].copy_from_slice(orientation.as_slice());
             }
             Hold::Joint(hinge) => {
                 let joint = &lowered.joints[hinge.joint];
-                let on_parent = joint_multipliers(joint, hinge, &unbalanced, link.slot, space, lambda);
+                let on_parent = joint_multipliers(joint, hinge, &unbalanced, link.moving_body, space, lambda);
                 if let Place::Slot(parent) = hinge.ends(joint).0.place {
                     space.nodes[parent].applied += on_parent;
                 }

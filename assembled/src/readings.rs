@@ -56,6 +56,10 @@ impl<T: Number> Lowered<T> {
     /// The motion with a true rotation, also where a stage of the integrator has left p a little off unit length.
     fn true_motion(&self, at: Moment<'_, T>, place: &Place<T>) -> Motion<T> {
         let motion = self.motion(at, place);
-        if place.slot().is_some() { Motion { a: direction_rotation(&motion.p), ..motion } } else { motion }
+        if place.moving_body().is_some() {
+            Motion { a: direction_rotation(&motion.p), ..motion }
+        } else {
+            motion
+        }
     }
 }

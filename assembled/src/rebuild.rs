@@ -25,14 +25,14 @@ pub(crate) fn positions<T: Number>(
     lowered.constrained.iter().for_each(|body| restore(body, y));
     for limb in &tree.limbs {
         let p = match &limb.hinge {
-            None => normalised(lowered.p(y, limb.slot))?,
+            None => normalised(lowered.p(y, limb.moving_body))?,
             Some(hinge) => {
                 let (r, p) = position(tree, lowered, hinge, Moment { t, y })?;
-                y[7 * limb.slot..7 * limb.slot + 3].copy_from_slice(r.as_slice());
+                y[7 * limb.moving_body..7 * limb.moving_body + 3].copy_from_slice(r.as_slice());
                 p
             }
         };
-        set_p(y, limb.slot, &p);
+        set_p(y, limb.moving_body, &p);
     }
     Ok(())
 }
@@ -108,13 +108,13 @@ fn normalised<T: Number>(p: Vector4<T>) -> Result<Vector4<T>, T> {
 /// Gives every body the velocity that its parent's and the rates of its joint make; the rates are the state's.
 pub(crate) fn velocities<T: Number>(tree: &Limbs<T>, lowered: &Lowered<T>, t: T, y: &mut [T]) {
     let velocities = lowered.n_q();
-    for (slot, _) in &tree.held {
-        y[velocities + 6 * slot..velocities + 6 * slot + 6].fill(number(0.0));
+    for (moving_body, _) in &tree.held {
+        y[velocities + 6 * moving_body..velocities + 6 * moving_body + 6].fill(number(0.0));
     }
     for limb in &tree.limbs {
         let Some(hinge) = &limb.hinge else { continue };
         let (s, w) = velocity(tree, lowered, hinge, Moment { t, y });
-        let at = velocities + 6 * limb.slot;
+        let at = velocities + 6 * limb.moving_body;
         y[at..at + 3].copy_from_slice(s.as_slice());
         y[at + 3..at + 6].copy_from_slice(w.as_slice());
     }

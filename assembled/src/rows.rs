@@ -25,7 +25,12 @@ pub(crate) struct Term<T> {
 }
 
 impl<T: Number> Row<T> {
-    pub(crate) fn new(model: &Model, slots: &[usize], joints: &[Joint<T>], row: &gyro_model::Row) -> Self {
+    pub(crate) fn new(
+        model: &Model,
+        moving_bodies: &[usize],
+        joints: &[Joint<T>],
+        row: &gyro_model::Row,
+    ) -> Self {
         let coordinate = |factor: f64, of: JointCoordinate| Term {
             factor: number(factor),
             joint: of.joint,
@@ -33,7 +38,7 @@ impl<T: Number> Row<T> {
         };
         match row.owner {
             RowOwner::Body(body) => {
-                let before = slots.iter().take_while(|&&b| b != body);
+                let before = moving_bodies.iter().take_while(|&&b| b != body);
                 let held = |&&b: &&usize| model.bodies[b].support == gyro_model::Support::Constrained;
                 Self::Constrained { body: before.filter(held).count(), component: row.index }
             }

@@ -1,6 +1,6 @@
 //! Bodies and joints in numbers, and how they move at a moment.
 
-use crate::course::Carriage;
+use crate::course::DrivenBody;
 use crate::joint::Joint;
 use crate::motion::Motion;
 use crate::number::{Number, number};
@@ -12,11 +12,11 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 #[derive(Clone, Debug)]
 pub struct Scene<T: Number> {
     pub(crate) gravity: Vector3<T>,
-    /// Bodies with coordinates, by slot.
+    /// Bodies with coordinates, by moving_body.
     pub(crate) bodies: Vec<Body<T>>,
     pub(crate) constrained: Vec<Constrained<T>>,
     /// Bodies whose whole motion is prescribed.
-    pub(crate) driven: Vec<Carriage>,
+    pub(crate) driven: Vec<DrivenBody>,
     pub(crate) joints: Vec<Joint<T>>,
     /// Names and values.
     pub(crate) inputs: Vec<(String, T)>,
@@ -34,7 +34,7 @@ pub(crate) struct Body<T> {
 /// A body that its own six rows hold in place, paper, eqs. (5) and (6).
 #[derive(Clone, Debug)]
 pub(crate) struct Constrained<T> {
-    pub(crate) slot: usize,
+    pub(crate) moving_body: usize,
     pub(crate) r0: Vector3<T>,
     pub(crate) p0: Vector4<T>,
 }
@@ -46,20 +46,20 @@ impl<T: Number> Scene<T> {
         places: &Places<T>,
         reference: impl Fn(JointCoordinate) -> Option<usize> + Copy,
     ) -> Self {
-        let slots = model.coordinate_bodies();
+        let moving_bodies = model.coordinate_bodies();
         let joints: Vec<_> =
             (0..model.joints.len()).map(|joint| Joint::new(model, places, joint, reference)).collect();
-        let constrained = |(slot, &body): (usize, &usize)| {
+        let constrained = |(moving_body, &body): (usize, &usize)| {
             let held = model.bodies[body].support == Support::Constrained;
-            held.then(|| constrained(model, body, slot))
+            held.then(|| constrained(model, body, moving_body))
         };
         let is_driven = |&body: &usize| model.bodies[body].support == Support::Driven;
         let driven = (0..model.bodies.len()).filter(is_driven);
         Self {
             gravity: vector(model.values(&model.gravity)),
-            bodies: slots.iter().map(|&body| lower_body(model, body)).collect(),
-            constrained: slots.iter().enumerate().filter_map(constrained).collect(),
-            driven: driven.map(|body| Carriage::new(model, body)).collect(),
+            bodies: moving_bodies.iter().map(|&body| lower_body(model, body)).collect(),
+            constrained: moving_bodies.iter().enumerate().filter_map(constrained).collect(),
+            driven: driven.map(|body| DrivenBody::new(model, body)).collect(),
             joints,
             inputs: model
                 .inputs
@@ -83,25 +83,25 @@ impl<T: Number> Scene<T> {
         6 * self.bodies.len()
     }
 
-    /// r of a slot.
-    pub(crate) fn r(&self, y: &[T], slot: usize) -> Vector3<T> {
-        Vector3::from_column_slice(&y[7 * slot..7 * slot + 3])
+    /// r of a moving_body.
+    pub(crate) fn r(&self, y: &[T], moving_body: usize) -> Vector3<T> {
+        Vector3::from_column_slice(&y[7 * moving_body..7 * moving_body + 3])
     }
 
-    /// p of a slot.
-    pub(crate) fn p(&self, y: &[T], slot: usize) -> Vector4<T> {
-        Vector4::from_column_slice(&y[7 * slot + 3..7 * slot + 7])
+    /// p of a moving_body.
+    pub(crate) fn p(&self, y: &[T], moving_body: usize) -> Vector4<T> {
+        Vector4::from_column_slice(&y[7 * moving_body + 3..7 * moving_body + 7])
     }
 
-    /// s of a slot.
-    pub(crate) fn s(&self, y: &[T], slot: usize) -> Vector3<T> {
-        let at = self.n_q() + 6 * slot;
+    /// s of a moving_body.
+    pub(crate) fn s(&self, y: &[T], moving_body: usize) -> Vector3<T> {
+        let at = self.n_q() + 6 * moving_body;
         Vector3::from_column_slice(&y[at..at + 3])
     }
 
-    /// w' of a slot.
-    pub(crate) fn w(&self, y: &[T], slot: usize) -> Vector3<T> {
-        let at = self.n_q() + 6 * slot + 3;
+    /// w' of a moving_body.
+    pub(crate) fn w(&self, y: &[T], moving_body: usize) -> Vector3<T> {
+        let at = self.n_q() + 6 * moving_body + 3;
         Vector3::from_column_slice(&y[at..at + 3])
     }
 
@@ -109,9 +109,14 @@ impl<T: Number> Scene<T> {
     #[inline]
     pub(crate) fn motion(&self, at: Moment<'_, T>, place: &Place<T>) -> Motion<T> {
         match place {
-            Place::Slot(slot) => {
+            Place::Slot(moving_body) => {
                 let y = at.y;
-                Motion::new(self.r(y, *slot), self.p(y, *slot), self.s(y, *slot), self.w(y, *slot))
+                Motion::new(
+                    self.r(y, *moving_body),
+                    self.p(y, *moving_body),
+                    self.s(y, *moving_body),
+                    self.w(y, *moving_body),
+                )
             }
             Place::Ground(motion) => *motion,
             Place::Driven(index) => self.driven_motion(at.t, *index),
@@ -137,7 +142,7 @@ fn lower_body<T: Number>(model: &Model, body: usize) -> Body<T> {
     Body { name: body.name.clone(), mass: number(model.value(&body.mass)), inertia }
 }
 
-fn constrained<T: Number>(model: &Model, body: usize, slot: usize) -> Constrained<T> {
+fn constrained<T: Number>(model: &Model, body: usize, moving_body: usize) -> Constrained<T> {
     let Motion { r, p, .. } = resting(model, body);
-    Constrained { slot, r0: r, p0: p }
+    Constrained { moving_body, r0: r, p0: p }
 }

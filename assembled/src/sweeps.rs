@@ -101,7 +101,7 @@ pub(crate) fn accelerations<T: Number>(
         out.fill(number(0.0));
         return;
     };
-    let origin = lowered.r(at.y, first.slot);
+    let origin = lowered.r(at.y, first.moving_body);
     place_roots(tree, lowered, at, &origin, &mut space.nodes);
     let has_forces = !lowered.elements.is_empty();
     if has_forces {
@@ -113,23 +113,23 @@ pub(crate) fn accelerations<T: Number>(
     for (index, limb) in tree.limbs.iter().enumerate() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         let node = &mut node[0];
-        place(lowered, at, limb.slot, &origin, node);
+        place(lowered, at, limb.moving_body, &origin, node);
         coast(tree, limb, &before[limb.parent], node, free);
-        let force = has_forces.then(|| &space.forces[6 * limb.slot..6 * limb.slot + 6]);
-        load(&lowered.bodies[limb.slot], &lowered.gravity, force, node);
+        let force = has_forces.then(|| &space.forces[6 * limb.moving_body..6 * limb.moving_body + 6]);
+        load(&lowered.bodies[limb.moving_body], &lowered.gravity, force, node);
     }
     for (index, limb) in tree.limbs.iter().enumerate().rev() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         let parent = (limb.parent >= n_roots).then(|| &mut before[limb.parent]);
         fold(limb, &mut node[0], parent, free);
     }
-    for (slot, _) in &tree.held {
-        out[6 * slot..6 * slot + 6].fill(number(0.0));
+    for (moving_body, _) in &tree.held {
+        out[6 * moving_body..6 * moving_body + 6].fill(number(0.0));
     }
     for (index, limb) in tree.limbs.iter().enumerate() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         release(limb, &before[limb.parent], &mut node[0], free);
-        write(&node[0], &mut out[6 * limb.slot..6 * limb.slot + 6]);
+        write(&node[0], &mut out[6 * limb.moving_body..6 * limb.moving_body + 6]);
     }
 }
 
@@ -152,8 +152,8 @@ fn place_roots<T: Number>(
     for (node, motion) in nodes[first_fixed..].iter_mut().zip(&tree.fixed) {
         *node = Node::known(motion, origin);
     }
-    for (node, &(slot, _)) in nodes[first_held..].iter_mut().zip(&tree.held) {
-        let pose = Motion::new(lowered.r(at.y, slot), lowered.p(at.y, slot), zero, zero);
+    for (node, &(moving_body, _)) in nodes[first_held..].iter_mut().zip(&tree.held) {
+        let pose = Motion::new(lowered.r(at.y, moving_body), lowered.p(at.y, moving_body), zero, zero);
         *node = Node::known(&pose, origin);
     }
 }
@@ -163,14 +163,14 @@ fn place_roots<T: Number>(
 fn place<T: Number>(
     lowered: &Lowered<T>,
     at: Moment<'_, T>,
-    slot: usize,
+    moving_body: usize,
     origin: &Vector3<T>,
     node: &mut Node<T>,
 ) {
-    node.a = unit_rotation(&lowered.p(at.y, slot));
-    node.centre = lowered.r(at.y, slot) - origin;
-    node.centre_velocity = lowered.s(at.y, slot);
-    let omega = node.a * lowered.w(at.y, slot);
+    node.a = unit_rotation(&lowered.p(at.y, moving_body));
+    node.centre = lowered.r(at.y, moving_body) - origin;
+    node.centre_velocity = lowered.s(at.y, moving_body);
+    let omega = node.a * lowered.w(at.y, moving_body);
     node.velocity = six(&(node.centre_velocity + node.centre.cross(&omega)), &omega);
 }
 

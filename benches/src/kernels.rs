@@ -1,15 +1,16 @@
 //! What is measured: one line for each kernel.
 
+use crate::data_sheet::DataSheet;
 use crate::scene::Scene;
-use crate::sheet::Sheet;
+use crate::data_sheet::DataSheet;
 use gyro_sim::{Equations, Joint, JointSpace, Mechanism, Partition, Partitioned, Rk4};
 use gyro_yardstick::{FLOPS, STEP};
 use std::fmt;
 use std::hint::black_box;
 
 /// The data sheets.
-const FOLDED: Sheet = Sheet(include_str!("../../gyro-sim/src/generated/gyroscope.rs"));
-const MAXIMAL: Sheet = Sheet(include_str!("../../mechanisms/src/golden/gyroscope_maximal.rs"));
+const FOLDED: DataSheet = DataSheet(include_str!("../../gyro-sim/src/generated/gyroscope.rs"));
+const MAXIMAL: DataSheet = DataSheet(include_str!("../../mechanisms/src/golden/gyroscope_maximal.rs"));
 
 /// The paper's second: corrections, and steps between them.
 pub(crate) const CORRECTIONS: u32 = 2000;
@@ -98,7 +99,7 @@ fn floor(scene: &Scene) -> Kernel<'_> {
 }
 
 /// All functions of a generated mechanism, with the operations of its data sheet.
-fn generated<'a, M>(side: &'static str, mechanism: &'a M, y: &M::State, sheet: Sheet) -> Vec<Kernel<'a>>
+fn generated<'a, M>(side: &'static str, mechanism: &'a M, y: &M::State, sheet: DataSheet) -> Vec<Kernel<'a>>
 where
     M: Equations + Partition<Scalar = f64>,
     M::State: 'a,
@@ -110,7 +111,7 @@ where
 }
 
 /// What a tree has besides: joint coordinates, and short ways for states that satisfy the constraints.
-fn joint_space<'a, M>(mechanism: &'a M, y: &M::State, sheet: Sheet) -> Vec<Kernel<'a>>
+fn joint_space<'a, M>(mechanism: &'a M, y: &M::State, sheet: DataSheet) -> Vec<Kernel<'a>>
 where
     M: JointSpace + Partition<Scalar = f64>,
     M::State: 'a,

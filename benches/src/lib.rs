@@ -4,11 +4,11 @@
 //! Every kernel does its work on the same state, in the middle of the paper's second and on the constraints, in the same build.
 //! [`Scene::new`] checks all that is measured against the floor first: what is wrong is not fast.
 
+mod data_sheet;
 mod kernels;
 pub mod lanes;
 mod round;
 mod scene;
-mod sheet;
 
 pub use gyro_yardstick::Floor;
 pub use kernels::{Kernel, kernels, runs};

@@ -8,7 +8,7 @@ use crate::verify::verify_quickly;
 use crate::words::table;
 use crate::{files, json, machine_code, nested, remarks, scene};
 use gyro_codegen::{
-    Elimination, Form, Function, Kernel, Module, Operations, Sheet, generate_by, generate_model, large,
+    DataSheet, Elimination, Form, Function, Kernel, Module, Operations, generate_by, generate_model, large,
 };
 use gyro_model::Model;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ use std::io::Write as _;
 /// All that is shown of a model.
 struct Inspection {
     model: Model,
-    sheet: Sheet,
+    data_sheet: DataSheet,
     bytes: Option<BTreeMap<Kernel, u64>>,
     /// What the accelerations would take by a factorisation of all of eq. (17). Trees only.
     saddle: Option<usize>,
@@ -30,7 +30,7 @@ struct Inspection {
 /// What becomes of the functions without an element of the model, or with a free one.
 struct Element {
     what: String,
-    sheet: Result<Sheet, String>,
+    data_sheet: Result<DataSheet, String>,
 }
 
 /// Generates the model and its variants and prints what came of it.
@@ -39,16 +39,17 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
     let page = files::shown(&args.model);
     remarks::report_redundant(&model, &args.model.display().to_string(), false)?;
     let spinner = Spinner::new(format!("generating {} and its variants", model.name));
-    let said = |e: gyro_codegen::Error| Failure::Usage(format!("{}: {e}", args.model.display()));
-    let module = generate_model(&page, &model).map_err(said)?;
+    let failure = |e: gyro_codegen::Error| Failure::Usage(format!("{}: {e}", args.model.display()));
+    let module = generate_model(&page, &model).map_err(failure)?;
     verify_quickly(&model, &module)?;
-    let saddle = module.sheet.function(Kernel::JointAccelerations).is_some();
-    let saddle = saddle.then(|| generate_by(Elimination::Saddle, &page, &model)).transpose().map_err(said)?;
+    let saddle = module.data_sheet.function(Kernel::JointAccelerations).is_some();
+    let saddle =
+        saddle.then(|| generate_by(Elimination::Saddle, &page, &model)).transpose().map_err(failure)?;
     let elements = variants(&model).into_par_iter().map(|variant| Element::of(&page, variant)).collect();
     drop(spinner);
     let bytes = if args.no_compile { None } else { bytes(&module)? };
-    let saddle = saddle.and_then(|module| total(&module.sheet, Kernel::Accelerations));
-    let inspection = Inspection { model, sheet: module.sheet, bytes, saddle, elements };
+    let saddle = saddle.and_then(|module| total(&module.data_sheet, Kernel::Accelerations));
+    let inspection = Inspection { model, data_sheet: module.data_sheet, bytes, saddle, elements };
     let text = if args.json { format!("{:#}\n", inspection.to_json()) } else { inspection.to_text() };
     // Nobody is left to be told if standard output is closed.
     let _ = std::io::stdout().write_all(text.as_bytes());
@@ -56,7 +57,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
 }
 
 fn bytes(module: &Module) -> Result<Option<BTreeMap<Kernel, u64>>, Failure> {
-    let kernels: Vec<Kernel> = module.sheet.functions.iter().map(|function| function.kernel).collect();
+    let kernels: Vec<Kernel> = module.data_sheet.functions.iter().map(|function| function.kernel).collect();
     let bytes = machine_code::bytes(&nested::library(module, &kernels)?);
     if bytes.is_none() {
         remarks::warn("the machine code is not measured: `nm` is not installed");
@@ -67,14 +68,14 @@ fn bytes(module: &Module) -> Result<Option<BTreeMap<Kernel, u64>>, Failure> {
 impl Element {
     fn of(page: &str, variant: Variant) -> Self {
         let sheet = |model: Model| {
-            generate_model(page, &model).map(|module| module.sheet).map_err(|error| error.to_string())
+            generate_model(page, &model).map(|module| module.data_sheet).map_err(|error| error.to_string())
         };
-        Self { what: variant.what, sheet: variant.model.and_then(sheet) }
+        Self { what: variant.what, data_sheet: variant.model.and_then(sheet) }
     }
 
-    fn row(&self, whole: &Sheet, kernels: &[Kernel]) -> Vec<String> {
-        let cell = |total: &dyn Fn(&Sheet) -> Option<usize>| {
-            let Ok(sheet) = &self.sheet else { return "cannot be assembled".to_owned() };
+    fn row(&self, whole: &DataSheet, kernels: &[Kernel]) -> Vec<String> {
+        let cell = |total: &dyn Fn(&DataSheet) -> Option<usize>| {
+            let Ok(sheet) = &self.data_sheet else { return "cannot be assembled".to_owned() };
             match (total(whole), total(sheet)) {
                 (Some(with), Some(without)) if with == without => without.to_string(),
                 (Some(with), Some(without)) => format!("{without} ({:+})", without as i64 - with as i64),
@@ -86,8 +87,8 @@ impl Element {
         [self.what.clone()].into_iter().chain(of_kernels).chain([of_all]).collect()
     }
 
-    fn to_json(&self, whole: &Sheet) -> Value {
-        let sheet = match &self.sheet {
+    fn to_json(&self, whole: &DataSheet) -> Value {
+        let sheet = match &self.data_sheet {
             Ok(sheet) => sheet,
             Err(why) => return json!({ "what": self.what, "error": why }),
         };
@@ -113,17 +114,17 @@ const KERNELS: [Kernel; 6] = [
     Kernel::Outputs,
 ];
 
-fn total(sheet: &Sheet, kernel: Kernel) -> Option<usize> {
+fn total(sheet: &DataSheet, kernel: Kernel) -> Option<usize> {
     sheet.function(kernel).map(|function| function.operations.total())
 }
 
-fn total_of_all(sheet: &Sheet) -> usize {
+fn total_of_all(sheet: &DataSheet) -> usize {
     sheet.functions.iter().map(|function| function.operations.total()).sum()
 }
 
 impl Inspection {
     fn to_text(&self) -> String {
-        let sheet = &self.sheet;
+        let sheet = &self.data_sheet;
         let mut text = format!("{}\n\n", sheet.mechanism);
         let (coordinates, rows, constraints) = (sheet.coordinates(), sheet.rows, sheet.constraints());
         text += &facts(&[
@@ -154,7 +155,7 @@ impl Inspection {
         let head = ["function", "written out", "shared", "emitted", "functions", "zeros", "bytes"];
         let n_columns = head.len() - usize::from(self.bytes.is_none());
         let mut rows = vec![head[..n_columns].iter().map(|&word| word.to_owned()).collect::<Vec<_>>()];
-        for function in &self.sheet.functions {
+        for function in &self.data_sheet.functions {
             let bytes = self.bytes.iter().map(|bytes| bytes.get(&function.kernel));
             let bytes = bytes.map(|bytes| bytes.map_or(String::new(), u64::to_string));
             let cells = [
@@ -173,7 +174,7 @@ impl Inspection {
     /// What was compared, and what the normal form did.
     fn choices(&self) -> String {
         let mut text = String::new();
-        for function in self.sheet.functions.iter().filter(|function| !function.forms.is_empty()) {
+        for function in self.data_sheet.functions.iter().filter(|function| !function.forms.is_empty()) {
             let _ = writeln!(text, "\nways of writing {}", function.kernel.name());
             let row = |form: &Form| {
                 let taken = if form.is_taken { "taken" } else { "" };
@@ -193,7 +194,7 @@ impl Inspection {
                 let _ = writeln!(text, "  normal form of {what}: {before} before, {after} after");
             }
         }
-        if let Some((ours, saddle)) = total(&self.sheet, Kernel::Accelerations).zip(self.saddle) {
+        if let Some((ours, saddle)) = total(&self.data_sheet, Kernel::Accelerations).zip(self.saddle) {
             let _ = writeln!(
                 text,
                 "\naccelerations through the null space of the joints: {ours}; by a factorisation of all of eq. (17): {saddle}"
@@ -203,15 +204,15 @@ impl Inspection {
     }
 
     fn element_table(&self) -> String {
-        let has = |kernel: &Kernel| self.sheet.function(*kernel).is_some();
+        let has = |kernel: &Kernel| self.data_sheet.function(*kernel).is_some();
         let kernels: Vec<Kernel> = KERNELS.into_iter().filter(has).collect();
         let names = kernels.iter().map(|kernel| kernel.name());
         let head = ["the same model"].into_iter().chain(names).chain(["all functions"]);
-        let whole = kernels.iter().filter_map(|&kernel| total(&self.sheet, kernel));
-        let whole = whole.chain([total_of_all(&self.sheet)]).map(|total| total.to_string());
+        let whole = kernels.iter().filter_map(|&kernel| total(&self.data_sheet, kernel));
+        let whole = whole.chain([total_of_all(&self.data_sheet)]).map(|total| total.to_string());
         let mut rows = vec![head.map(str::to_owned).collect()];
         rows.push(["as it is".to_owned()].into_iter().chain(whole).collect());
-        rows.extend(self.elements.iter().map(|element| element.row(&self.sheet, &kernels)));
+        rows.extend(self.elements.iter().map(|element| element.row(&self.data_sheet, &kernels)));
         format!(
             "\noperations of the model without an element, or with numbers as parameters\n{}",
             table(&rows)
@@ -219,7 +220,7 @@ impl Inspection {
     }
 
     fn to_json(&self) -> Value {
-        let sheet = &self.sheet;
+        let sheet = &self.data_sheet;
         let functions: Vec<Value> =
             sheet.functions.iter().map(|function| function_json(function, self.bytes.as_ref())).collect();
         json!({

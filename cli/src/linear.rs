@@ -219,11 +219,11 @@ impl System<'_> {
 
 /// The angular acceleration of each body in the global frame; zero for folded bodies. As `w̃'w' = 0`, it is `A ẇ'`.
 fn body_accelerations(model: &Model, y: &[f64], dy: &[f64]) -> Vec<Vector> {
-    let slots = model.coordinate_bodies();
+    let moving_bodies = model.coordinate_bodies();
     let mut accelerations = vec![Vector::zeros(); model.bodies.len()];
-    for (slot, &body) in slots.iter().enumerate() {
-        let at = 7 * slots.len() + 6 * slot + 3;
-        accelerations[body] = orientation(y, slot).rotate(Vector::from([dy[at], dy[at + 1], dy[at + 2]]));
+    for (moving_body, &body) in moving_bodies.iter().enumerate() {
+        let at = 7 * moving_bodies.len() + 6 * moving_body + 3;
+        accelerations[body] = orientation(y, moving_body).rotate(Vector::from([dy[at], dy[at + 1], dy[at + 2]]));
     }
     accelerations
 }
@@ -231,9 +231,9 @@ fn body_accelerations(model: &Model, y: &[f64], dy: &[f64]) -> Vec<Vector> {
 /// `θ̈ = h·(ω̇_second − ω̇_first)`: the remaining term of the relative acceleration, `ω_first × h θ̇`, is normal to h.
 fn joint_acceleration(model: &Model, joint: &Joint, y: &[f64], accelerations: &[Vector]) -> f64 {
     let end = if is_folded(model, joint.second.body) { &joint.first } else { &joint.second };
-    let slot = model.coordinate_bodies().iter().position(|&b| b == end.body);
+    let moving_body = model.coordinate_bodies().iter().position(|&b| b == end.body);
     let axis = Vector::from(model.values(&end.axis)).normalize();
-    let h = slot.map_or(axis, |slot| orientation(y, slot).rotate(axis));
+    let h = moving_body.map_or(axis, |moving_body| orientation(y, moving_body).rotate(axis));
     h.dot(&accelerations[joint.second.body]) - h.dot(&accelerations[joint.first.body])
 }
 
@@ -241,8 +241,8 @@ fn is_folded(model: &Model, body: usize) -> bool {
     model.bodies[body].support == Support::Fixed
 }
 
-fn orientation(y: &[f64], slot: usize) -> Quaternion {
-    Quaternion(std::array::from_fn(|k| y[7 * slot + 3 + k]))
+fn orientation(y: &[f64], moving_body: usize) -> Quaternion {
+    Quaternion(std::array::from_fn(|k| y[7 * moving_body + 3 + k]))
 }
 
 /// Central differences of sixth order: ((f₁ − f₋₁)·45 − (f₂ − f₋₂)·9 + (f₃ − f₋₃)) / 60 h.

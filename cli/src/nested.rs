@@ -121,7 +121,7 @@ fn main(module: &Module, precision: Precision) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let has = |text: String| module.code.contains(&text);
     let is_tree = has(format!("gyro_sim::JointSpace for {type_name}"));
-    let kit = match (is_tree, has("fn joint_jacobian(".to_owned())) {
+    let builder = match (is_tree, has("fn joint_jacobian(".to_owned())) {
         (true, true) => "TreeWithJacobian",
         (true, false) => "Tree",
         (false, _) => "WithDuals",
@@ -142,7 +142,7 @@ type Dual = ::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>;
 
 fn main() -> ::std::process::ExitCode {{
     ::gyro_runner::child::main(|parameters| {{
-        (build::<{precision}>(parameters), ::gyro_runner::motion::{kit}(build::<Dual>(parameters)))
+        (build::<{precision}>(parameters), ::gyro_runner::motion::{builder}(build::<Dual>(parameters)))
     }})
 }}
 "
@@ -209,11 +209,11 @@ fn target() -> PathBuf {
 /// Brings a package up to date.
 fn build(package: &Package) -> Result<(), Failure> {
     let (cache, folder) = (cache(), package.folder());
-    let said = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
-    fs::create_dir_all(folder.join("src")).map_err(said)?;
-    let lock = File::create(cache.join("lock")).map_err(said)?;
+    let failure = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
+    fs::create_dir_all(folder.join("src")).map_err(failure)?;
+    let lock = File::create(cache.join("lock")).map_err(failure)?;
     // Released when the file is closed at the end of this function. Two runs at once take turns at building.
-    wait_for(&lock, remarks::note).map_err(said)?;
+    wait_for(&lock, remarks::note).map_err(failure)?;
     files::write(&folder.join("Cargo.toml"), &package.manifest)?;
     let (file, root) = &package.root;
     files::write(&folder.join("src").join(file), root)?;
@@ -355,7 +355,7 @@ fn listen(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyro_codegen::Sheet;
+    use gyro_codegen::DataSheet;
     use gyro_runner::Sample;
 
     type Heard = Result<Option<(Summary, Option<Timing>)>, Failure>;
@@ -411,7 +411,7 @@ mod tests {
             type_name: "Top".to_owned(),
             code: code.to_owned(),
             constants: String::new(),
-            sheet: Sheet::default(),
+            data_sheet: DataSheet::default(),
         };
         let name = |code, precision| Package::program(&module(code), precision).name;
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));

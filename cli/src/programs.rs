@@ -11,7 +11,7 @@ pub fn folder() -> PathBuf {
     files::root().join("target").join("performance")
 }
 
-pub fn said(path: &Path, error: &std::io::Error) -> Failure {
+pub fn io_failure(path: &Path, error: &std::io::Error) -> Failure {
     Failure::Run(format!("{} cannot be used: {error}", path.display()))
 }
 

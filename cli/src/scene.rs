@@ -240,12 +240,15 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
             .collect(),
         angles,
         inputs: Vec::new(),
-        observed_bodies: observed(model).into_iter().map(|(slot, _)| slot).collect(),
+        observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
     }
 }
 
 /// Slot and name of each free body.
 pub(crate) fn observed(model: &Model) -> Vec<(usize, &str)> {
     let bodies = model.coordinate_bodies().into_iter().map(|b| &model.bodies[b]).enumerate();
-    bodies.filter(|(_, b)| b.support == Support::Free).map(|(slot, b)| (slot, b.name.as_str())).collect()
+    bodies
+        .filter(|(_, b)| b.support == Support::Free)
+        .map(|(moving_body, b)| (moving_body, b.name.as_str()))
+        .collect()
 }

@@ -63,8 +63,11 @@ const AGREES: f64 = 1e-13;
 
 /// The pose of a body at the start against the expected one.
 fn stands(model: &Model, start: &Start, body: &str, expected: Pose) {
-    let slot = model.coordinate_bodies().into_iter().position(|b| model.bodies[b].name == body).unwrap();
-    let [x, y, z, e0, e1, e2, e3] = start.q[7 * slot..7 * slot + 7] else { panic!("seven coordinates") };
+    let moving_body =
+        model.coordinate_bodies().into_iter().position(|b| model.bodies[b].name == body).unwrap();
+    let [x, y, z, e0, e1, e2, e3] = start.q[7 * moving_body..7 * moving_body + 7] else {
+        panic!("seven coordinates")
+    };
     // Paper, eq. (3).
     let rotation = [
         [e0 * e0 + e1 * e1 - 0.5, e1 * e2 - e0 * e3, e1 * e3 + e0 * e2],

@@ -180,7 +180,7 @@ impl Kernels {
     /// Whether part of ẏ depends on multipliers that only the exact accelerations come with.
     pub fn derivative_needs_multipliers(&self, graph: &Graph) -> bool {
         let reachable = graph.reachable(self.roots(Kernel::Derivative));
-        reachable.into_iter().any(|id| matches!(graph.node(id), Node::Symbol(Symbol::Closing(_))))
+        reachable.into_iter().any(|id| matches!(graph.node(id), Node::Symbol(Symbol::LoopMultiplier(_))))
     }
 }
 

@@ -46,7 +46,7 @@ mod kernels;
 mod simplify;
 mod solve;
 
-pub use emit::data_sheet::{Function, Sheet, large};
+pub use emit::data_sheet::{DataSheet, Function, large};
 pub use expr::schedule::{Operations, Passes};
 pub use kernels::Kernel;
 pub use simplify::cheapest::Form;
@@ -78,7 +78,7 @@ pub struct Module {
     /// several round to one literal, they are listed with what its occurrences stand for, in the order of the text: ` as 1*3 2`.
     pub constants: String,
     /// What was generated, as data: the head of the file shows it.
-    pub sheet: Sheet,
+    pub data_sheet: DataSheet,
 }
 
 impl Module {
@@ -164,9 +164,9 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
     let mut kernels = Kernels::of(&equations);
     kernels.finish(&mut equations.graph, equations.passes);
     let type_name = module::type_name(&model.name);
-    let module::Text { code, constants, sheet } =
+    let module::Text { code, constants, data_sheet } =
         module::write(file_name, &type_name, (&equations, kernels), &start);
-    Ok(Module { name: model.name.clone(), type_name, code, constants, sheet })
+    Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet })
 }
 
 /// From the model to what its module computes: derives, solves and chooses.

@@ -1,6 +1,6 @@
 //! The program that the command line compiles around a generated mechanism: all but its five lines.
 
-use crate::motion::Kit;
+use crate::motion::MotionBuilder;
 use crate::protocol::{Reply, Request, read, write};
 use crate::{Event, Failure, Settings, Summary, run_by, time_by};
 use gyro_sim::{Partition, Real};
@@ -8,14 +8,14 @@ use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's parameters with the kit
+/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's parameters with the builder
 /// beside it, and writes the samples to standard output as they come.
 ///
 /// The exit code says whether the last run was complete; the last line of its answer says why not.
-pub fn main<M: Partition<Scalar: Real> + 'static, K: Kit<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
+pub fn main<M: Partition<Scalar: Real> + 'static, K: MotionBuilder<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
     answer_all(|request, output| {
-        let (mut mechanism, kit) = build(&request.parameters);
-        answer(&mut mechanism, &kit, request, output)
+        let (mut mechanism, builder) = build(&request.parameters);
+        answer(&mut mechanism, &builder, request, output)
     })
 }
 
@@ -47,7 +47,7 @@ pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Sum
 /// The failure of the run or of its output.
 pub fn answer<M: Partition<Scalar: Real> + 'static>(
     mechanism: &mut M,
-    kit: &dyn Kit<M>,
+    builder: &dyn MotionBuilder<M>,
     request: &Request,
     output: &mut dyn Write,
 ) -> Result<Summary, Failure> {
@@ -59,10 +59,10 @@ pub fn answer<M: Partition<Scalar: Real> + 'static>(
         Event::Forecast(forecast) => write(output, &Reply::Forecast(forecast)).and_then(|()| output.flush()),
         Event::Progress(t) => write(output, &Reply::Progress(t)).and_then(|()| output.flush()),
     };
-    let summary = run_by(mechanism, kit, plan, &request.start, told)?;
+    let summary = run_by(mechanism, builder, plan, &request.start, told)?;
     if let Some(seconds) = request.measure_for {
         let budget = Duration::from_secs_f64(seconds);
-        let timing = time_by(mechanism, kit, plan, &request.start, budget)?;
+        let timing = time_by(mechanism, builder, plan, &request.start, budget)?;
         write(output, &Reply::Timed(timing))?;
     }
     Ok(summary)

@@ -44,7 +44,7 @@ pub trait Motion<M: Mechanism> {
 }
 
 /// What there is to begin motions of a mechanism with: more for some than for others.
-pub trait Kit<M: Partition<Scalar: Real>> {
+pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     /// A motion from a maximal state at time zero; in words why there cannot be one.
     ///
     /// # Errors
@@ -131,7 +131,7 @@ pub struct TreeWithJacobian<D>(pub D);
 /// Columns of a Jacobian that are computed at a time.
 pub const COLUMNS: usize = 4;
 
-impl<M: Partition<Scalar: Real> + 'static> Kit<M> for Any {
+impl<M: Partition<Scalar: Real> + 'static> MotionBuilder<M> for Any {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         only_explicit(approach)?;
@@ -149,7 +149,7 @@ impl<M: Partition<Scalar: Real> + 'static> Kit<M> for Any {
     }
 }
 
-impl<M: Partition<Scalar: Real> + Equations + 'static> Kit<M> for Projecting {
+impl<M: Partition<Scalar: Real> + Equations + 'static> MotionBuilder<M> for Projecting {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         only_explicit(approach)?;
@@ -170,7 +170,7 @@ impl<M: Partition<Scalar: Real> + Equations + 'static> Kit<M> for Projecting {
     }
 }
 
-impl<M, D> Kit<M> for WithDuals<D>
+impl<M, D> MotionBuilder<M> for WithDuals<D>
 where
     M: Partition<Scalar: Real> + Equations + 'static,
     D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
@@ -197,7 +197,7 @@ where
     }
 }
 
-impl<M, D> Kit<M> for Tree<D>
+impl<M, D> MotionBuilder<M> for Tree<D>
 where
     M: Partition<Scalar: Real> + JointSpace + 'static,
     D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
@@ -251,7 +251,7 @@ where
     }
 }
 
-impl<M, D> Kit<M> for TreeWithJacobian<D>
+impl<M, D> MotionBuilder<M> for TreeWithJacobian<D>
 where
     M: Partition<Scalar: Real>
         + JointSpace<

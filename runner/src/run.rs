@@ -4,7 +4,7 @@ use crate::advice::Plan;
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
-use crate::motion::{self, Kit, Linear, Motion};
+use crate::motion::{self, Linear, Motion, MotionBuilder};
 use crate::offers::Offers;
 use crate::sample::Observer;
 use crate::spectrum::fastest_rate;
@@ -72,7 +72,7 @@ pub fn run<M: Partition<Scalar: Real> + 'static>(
     run_by(mechanism, &motion::Any, (settings, &Approach::default()), start, tell)
 }
 
-/// The same by any approach for which there is a kit.
+/// The same by any approach for which there is a builder.
 ///
 /// Under error control samples are interpolated, and inputs must not vary.
 ///
@@ -80,7 +80,7 @@ pub fn run<M: Partition<Scalar: Real> + 'static>(
 /// As [`run`]; [`Failure::Run`] also if the approach does not suit the mechanism.
 pub fn run_by<M: Partition<Scalar: Real> + 'static>(
     mechanism: &mut M,
-    kit: &dyn Kit<M>,
+    builder: &dyn MotionBuilder<M>,
     (settings, approach): (&Settings, &Approach),
     start: &Start,
     tell: impl FnMut(Event<'_>) -> io::Result<()>,
@@ -89,7 +89,7 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
     let offers = Offers {
         epsilon: <M::Scalar as Real>::EPSILON.to_f64(),
         inputs_vary: any_varies(&start.inputs),
-        ..kit.offers()
+        ..builder.offers()
     };
     if let Some(words) = offers.refusal(&settings, approach) {
         return Err(Failure::Refused(words));
@@ -98,10 +98,10 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
     refuse_singular(mechanism, &y)?;
     set(mechanism, &start.inputs, 0.0);
     let mut told = Told { tell, last: Instant::now() };
-    foretell(mechanism, kit, (&settings, approach), &y, &mut told)?;
-    let motion = kit.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
+    foretell(mechanism, builder, (&settings, approach), &y, &mut told)?;
+    let motion = builder.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
     let mut run = Run::new(mechanism, motion, y, start, approach);
-    let outcome = run.follow(kit, (&settings, approach), &mut told);
+    let outcome = run.follow(builder, (&settings, approach), &mut told);
     run.finish();
     match outcome {
         Ok(()) => Ok(run.summary),
@@ -116,7 +116,7 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
             // The steps' length is asked about only where stability may limit it.
             let asks = matches!(error, Error::Stiff { .. } | Error::TooManySteps { .. });
             let linear =
-                asks.then(|| kit.linearise(run.mechanism, run.read_at, &run.y, &run.angles())).flatten();
+                asks.then(|| builder.linearise(run.mechanism, run.read_at, &run.y, &run.angles())).flatten();
             let fastest = linear.as_ref().map(fastest_rate);
             Err(Failure::Run { words, advice: plan.after(&error, &run.summary.statistics, fastest) })
         }
@@ -160,7 +160,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Told<F> {
 /// Says how long many fixed steps will take; refuses them where that is longer than anyone wants to wait.
 fn foretell<M: Partition<Scalar: Real> + 'static, F: FnMut(Event<'_>) -> io::Result<()>>(
     mechanism: &M,
-    kit: &dyn Kit<M>,
+    builder: &dyn MotionBuilder<M>,
     (settings, approach): (&Settings, &Approach),
     y: &M::State,
     told: &mut Told<F>,
@@ -171,7 +171,7 @@ fn foretell<M: Partition<Scalar: Real> + 'static, F: FnMut(Event<'_>) -> io::Res
     if approach.tolerance.is_some() || !forecast::is_long(steps) {
         return Ok(());
     }
-    let motion = kit.begin(mechanism, approach, y).map_err(Failure::Refused)?;
+    let motion = builder.begin(mechanism, approach, y).map_err(Failure::Refused)?;
     let Some(forecast) = forecast::forecast(mechanism, motion, (steps, settings.step)) else { return Ok(()) };
     (told.tell)(Event::Forecast(forecast))?;
     match approach.patience {
@@ -257,24 +257,25 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
     /// From the start, which is the first sample, to the end.
     fn follow<F: FnMut(Event<'_>) -> io::Result<()>>(
         &mut self,
-        kit: &dyn Kit<M>,
+        builder: &dyn MotionBuilder<M>,
         (settings, approach): (&Settings, &Approach),
         told: &mut Told<F>,
     ) -> Result<(), Halt> {
         let mut tracker = Tracker::default();
-        self.record(0.0, (kit, approach), &mut tracker, told)?;
+        self.record(0.0, (builder, approach), &mut tracker, told)?;
         for segment in Schedule::new(settings) {
             match approach.tolerance {
                 None => self.advance(&segment, told)?,
                 Some(_) => self.advance_beyond(segment.to, settings.t_end, told)?,
             }
             if segment.samples {
-                self.record(segment.to, (kit, approach), &mut tracker, told)?;
+                self.record(segment.to, (builder, approach), &mut tracker, told)?;
             }
             told.progress(segment.to)?;
         }
-        let linear =
-            approach.examine.then(|| kit.linearise(self.mechanism, settings.t_end, &self.y, &self.angles()));
+        let linear = approach
+            .examine
+            .then(|| builder.linearise(self.mechanism, settings.t_end, &self.y, &self.angles()));
         if let Some(linear) = linear.flatten() {
             let linear = if self.counts_work { linear.without_last() } else { linear };
             (told.tell)(Event::Linear(&linear))?;
@@ -287,15 +288,15 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
     fn record<F: FnMut(Event<'_>) -> io::Result<()>>(
         &mut self,
         t: f64,
-        (kit, approach): (&dyn Kit<M>, &Approach),
+        (builder, approach): (&dyn MotionBuilder<M>, &Approach),
         tracker: &mut Tracker,
         told: &mut Told<F>,
     ) -> Result<(), Halt> {
         let sample = self.sample(t)?;
         if t > 0.0 {
-            self.look_at_pivots(kit, approach, t);
+            self.look_at_pivots(builder, approach, t);
         }
-        let scale = kit.work_scale(self.mechanism, t, &self.y).max(sample.potential.abs());
+        let scale = builder.work_scale(self.mechanism, t, &self.y).max(sample.potential.abs());
         tracker.add(&sample, scale * <M::Scalar as Real>::EPSILON.to_f64());
         Ok((told.tell)(Event::Sample(&sample))?)
     }
@@ -396,9 +397,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         all.map(angle).collect()
     }
 
-    fn look_at_pivots(&mut self, kit: &dyn Kit<M>, approach: &Approach, t: f64) {
+    fn look_at_pivots(&mut self, builder: &dyn MotionBuilder<M>, approach: &Approach, t: f64) {
         if let Some(pivot) =
-            approach.examine.then(|| kit.smallest_pivot(self.mechanism, t, &self.y)).flatten()
+            approach.examine.then(|| builder.smallest_pivot(self.mechanism, t, &self.y)).flatten()
         {
             let smallest = &mut self.summary.smallest_pivot;
             *smallest = Some(smallest.map_or(pivot, |before| before.min(pivot)));
@@ -464,93 +465,4 @@ fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> R
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::JointSample;
-    use crate::spinner::Spinner;
-
-    fn samples(rate: f64, settings: &Settings) -> (Vec<Sample>, Summary) {
-        let spinner = Spinner { rate, torque: 0.0 };
-        samples_of(spinner.initial(), spinner, settings)
-    }
-
-    fn samples_of(start: Start, mut spinner: Spinner, settings: &Settings) -> (Vec<Sample>, Summary) {
-        let mut samples = Vec::new();
-        let summary = run(&mut spinner, settings, &start, |event| {
-            if let Event::Sample(sample) = event {
-                samples.push(sample.clone());
-            }
-            Ok(())
-        });
-        (samples, summary.unwrap())
-    }
-
-    /// RK4's error over the run is far larger than this for coarse steps; whole turns are 2π.
-    const WITHIN: f64 = 1e-2;
-
-    #[test]
-    fn turns_are_counted_between_sparse_samples() {
-        for (rate, step) in [(100.0, 1e-4), (-100.0, 1e-3), (1e5, 1e-6)] {
-            for correct_every in [None, Some(5.0 * step)] {
-                let settings = Settings { t_end: 1000.0 * step, step, correct_every, sample_every: 1.0 };
-                let (samples, summary) = samples(rate, &settings);
-                let JointSample::Angle { position, .. } = samples.last().unwrap().coordinates[0] else {
-                    panic!("an angle was expected")
-                };
-                let expected = rate * settings.t_end;
-                assert!((position - expected).abs() < WITHIN, "{position} for {expected}");
-                assert_eq!((samples.len(), summary.steps), (2, 1000));
-            }
-        }
-    }
-
-    #[test]
-    fn corrections_keep_the_constraints_that_integration_loses() {
-        let settings = Settings { t_end: 1.0, step: 1e-3, correct_every: None, sample_every: 0.1 };
-        let (direct, _) = samples(100.0, &settings);
-        let corrected = samples(100.0, &Settings { correct_every: Some(1e-2), ..settings });
-        assert_eq!(direct.len(), 11);
-        assert_eq!(direct.last().unwrap().t, 1.0);
-        assert!(corrected.1.position_violation < 1e-15);
-        assert!(corrected.1.chart_switches > 10, "{:?}", corrected.1);
-    }
-
-    #[test]
-    fn inputs_are_set_before_every_step_and_every_sample() {
-        let ramp = Input { index: 0, rows: vec![[0.0, 0.0], [1.0, 2.0]] };
-        let start = Start { inputs: vec![ramp], ..Spinner::default().initial() };
-        for correct_every in [None, Some(0.2)] {
-            let settings = Settings { t_end: 2.0, step: 0.05, correct_every, sample_every: 1.0 };
-            let (samples, _) = samples_of(start.clone(), Spinner::default(), &settings);
-            let outputs: Vec<f64> = samples.iter().map(|s| s.outputs[0]).collect();
-            assert_eq!(outputs, [0.0, 2.0, 2.0]);
-            let rate = |sample: &Sample| sample.bodies[0].velocity[3];
-            // Held over each of the ramp's 20 steps: Σ 2 k/20 · 1/20 = 19/20.
-            assert!((rate(&samples[1]) - 0.95).abs() < 1e-12, "{}", rate(&samples[1]));
-            assert!((rate(&samples[2]) - 2.95).abs() < 1e-12, "{}", rate(&samples[2]));
-        }
-    }
-
-    #[test]
-    fn turn_references_are_the_last_elements_of_the_state() {
-        let start = Start { turn_references: vec![7.0], ..Spinner::default().initial() };
-        let failure = state(&Spinner::default(), &start).unwrap_err().to_string();
-        assert!(failure.contains("1 turn references") && failure.contains("13 elements"), "{failure}");
-    }
-
-    #[test]
-    fn a_run_that_blows_up_says_where() {
-        let mut spinner = Spinner { rate: f64::MAX, torque: 0.0 };
-        let start = spinner.initial();
-        let settings = Settings { t_end: 1.0, step: 0.1, correct_every: None, sample_every: 0.1 };
-        let failure = run(&mut spinner, &settings, &start, |_| Ok(())).unwrap_err().to_string();
-        assert!(failure.contains("orientation of body `rotor` is no longer finite"), "{failure}");
-    }
-
-    #[test]
-    fn a_start_of_another_mechanism_is_refused() {
-        let settings = Settings { t_end: 1.0, step: 0.1, correct_every: None, sample_every: 0.1 };
-        let failure = run(&mut Spinner::default(), &settings, &Start::default(), |_| Ok(())).unwrap_err();
-        assert!(failure.to_string().starts_with("the start has 0 positions"), "{failure}");
-    }
-}
+mod tests;

@@ -80,7 +80,7 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
             t,
             coordinates: coordinates(mechanism, turns),
             outputs: self.outputs.as_ref().iter().map(|x| x.to_f64()).collect(),
-            bodies: self.observed_bodies.iter().map(|&slot| body(mechanism, slot, y)).collect(),
+            bodies: self.observed_bodies.iter().map(|&moving_body| body(mechanism, moving_body, y)).collect(),
             kinetic: energy.kinetic.to_f64(),
             potential: energy.potential.to_f64(),
             work: mechanism.work(y).to_f64(),
@@ -125,10 +125,10 @@ fn in_f64<T: Real>(coordinate: JointCoordinate<T>) -> JointSample {
     }
 }
 
-fn body<M: Mechanism<Scalar: Real>>(mechanism: &M, slot: usize, y: &M::State) -> BodySample {
+fn body<M: Mechanism<Scalar: Real>>(mechanism: &M, moving_body: usize, y: &M::State) -> BodySample {
     let (y, velocities) = (y.as_ref(), 7 * mechanism.description().bodies.len());
     BodySample {
-        pose: std::array::from_fn(|k| y[7 * slot + k].to_f64()),
-        velocity: std::array::from_fn(|k| y[velocities + 6 * slot + k].to_f64()),
+        pose: std::array::from_fn(|k| y[7 * moving_body + k].to_f64()),
+        velocity: std::array::from_fn(|k| y[velocities + 6 * moving_body + k].to_f64()),
     }
 }

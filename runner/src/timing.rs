@@ -1,6 +1,6 @@
 //! What a run costs without being looked at.
 
-use crate::motion::Kit;
+use crate::motion::MotionBuilder;
 use crate::run::{scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
 use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
@@ -22,7 +22,7 @@ pub struct Timing {
 /// [`Failure::Run`] as of [`run_by`](crate::run_by).
 pub fn time_by<M: Partition<Scalar: Real> + 'static>(
     mechanism: &M,
-    kit: &dyn Kit<M>,
+    builder: &dyn MotionBuilder<M>,
     (settings, approach): (&Settings, &Approach),
     start: &Start,
     budget: Duration,
@@ -32,7 +32,7 @@ pub fn time_by<M: Partition<Scalar: Real> + 'static>(
     let segments: Vec<_> = Schedule::new(&settings).collect();
     let mut statistics = Statistics::default();
     let once = || -> Result<(), Failure> {
-        let mut motion = kit.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
+        let mut motion = builder.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
         let in_words = |error: Error| Failure::run(describe_in(mechanism, approach.coordinates, &error));
         if approach.tolerance.is_some() {
             // As the motion counts time: in single precision the end may come before this number.

@@ -5,7 +5,7 @@
 use crate::poses::{HEAD, hinge, read, rod, rough};
 use gyro_assembled::Dense;
 use gyro_model::Model;
-use gyro_runner::motion::{Kit, Projecting};
+use gyro_runner::motion::{MotionBuilder, Projecting};
 use gyro_runner::{
     Approach, BodySample, Correction, Failure, Integrator, Sample, Settings, Summary, When, balance,
 };
@@ -322,11 +322,11 @@ impl Case {
             let mut start = start_of(&model(page));
             start.velocities.iter_mut().for_each(|v| *v *= self.start[1] / 12.0);
             let engine = extreme::<T>(page);
-            return moved(&engine, &*engine.kit(duals(page)), by, &start);
+            return moved(&engine, &*engine.builder(duals(page)), by, &start);
         }
         let model: Model = read(&self.linkage.page(self.start[0], self.start[1]));
         let engine = Engine::new(Dense::<T>::new(&model).unwrap_or_else(|error| panic!("{error}")));
-        moved(&engine, &Projecting as &dyn Kit<Engine<T>>, by, &start_of(&model))
+        moved(&engine, &Projecting as &dyn MotionBuilder<Engine<T>>, by, &start_of(&model))
     }
 
     /// The worst error of an angle of a bar at any sample, rad.

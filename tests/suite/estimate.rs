@@ -7,7 +7,7 @@ use gyro_runner::{
 };
 use gyro_sim::Real;
 use gyro_sim_suite::{
-    Duals, EXTREME, Engine, duals, extreme, generated, model, moved, rotation, shelves, start_of,
+    Duals, EXTREME, Engine, duals, extreme, fixture_folders, generated, model, moved, rotation, start_of,
 };
 use std::collections::HashMap;
 
@@ -135,7 +135,7 @@ impl Page {
         let (step, start) = (times * self.settings.step, start_of(&model(&self.name)));
         let settings = Settings { step, correct_every: Some(5.0 * step), ..self.settings };
         let what = format!("{}, {approach}, step {step:e} s", self.name);
-        let (samples, outcome) = moved(engine, &*engine.kit(self.duals()), (&settings, approach), &start);
+        let (samples, outcome) = moved(engine, &*engine.builder(self.duals()), (&settings, approach), &start);
         if let Err(failure) = outcome {
             // What ends in an error has no verdict.
             if self.name != SINGULAR {
@@ -143,13 +143,13 @@ impl Page {
             }
             return;
         }
-        let (double, kit) = (&self.engine, self.engine.kit(self.duals()));
+        let (double, builder) = (&self.engine, self.engine.builder(self.duals()));
         let companions = &mut self.companions;
         let estimates = estimate(&samples, &settings, approach, |settings, approach| {
             // Error control does not ask for a step.
             let step = approach.tolerance.map_or(settings.step, |_| 0.0);
             let run = || {
-                let (samples, outcome) = moved(double, &*kit, (settings, approach), &start);
+                let (samples, outcome) = moved(double, &*builder, (settings, approach), &start);
                 outcome.is_ok().then_some(samples)
             };
             companions.entry(format!("{step} {approach:?}")).or_insert_with(run).clone()
@@ -181,7 +181,7 @@ impl Page {
 #[test]
 fn the_estimate_is_of_the_size_of_the_error() {
     let mut wrong = Vec::new();
-    for name in shelves()[0].pages() {
+    for name in fixture_folders()[0].pages() {
         let Some(mut page) = Page::new(&name) else { continue };
         let engine = page.engine.clone();
         let (is_tree, is_extreme) = (engine.is_tree(), EXTREME.contains(&name.as_str()));

@@ -148,7 +148,7 @@ fn fault<T: Real + 'static>(engine: &Engine<T>, model: &Model, approach: &Approa
     let t_end = STEPS * step;
     let settings =
         Settings { t_end, step, correct_every: Some(STEPS_PER_CORRECTION * step), sample_every: t_end };
-    let (samples, outcome) = moved(engine, &*engine.kit(Duals::none()), (&settings, approach), &start);
+    let (samples, outcome) = moved(engine, &*engine.builder(Duals::none()), (&settings, approach), &start);
     if let Err(failure) = outcome {
         return Some(failure.to_string());
     }

@@ -164,12 +164,12 @@ fn jacobians_are_limits_of_the_twin_s_differences() {
 #[test]
 fn a_linearisation_has_the_mechanism_s_own_states_alone() {
     let model = model("motor");
-    let kit = TreeWithJacobian(own::motor::Motor::<Dual<f64, 4>>::default());
+    let builder = TreeWithJacobian(own::motor::Motor::<Dual<f64, 4>>::default());
     let approach = Approach { examine: true, ..Approach::default() };
     let settings = Settings { t_end: 0.01, step: 1e-3, correct_every: None, sample_every: 0.01 };
     let mut linear = Linear::default();
     let mut motor = own::motor::Motor::<f64>::default();
-    run_by(&mut motor, &kit, (&settings, &approach), &start_of(&model), |event| {
+    run_by(&mut motor, &builder, (&settings, &approach), &start_of(&model), |event| {
         if let Event::Linear(found) = event {
             linear = found.clone();
         }

@@ -4,7 +4,7 @@
 
 use gyro_model::Model;
 use gyro_reference::Pendulum;
-use gyro_runner::motion::{Kit, Projecting, WithDuals};
+use gyro_runner::motion::{MotionBuilder, Projecting, WithDuals};
 use gyro_runner::{Approach, Coordinates, Correction, Failure, Integrator, Sample, Settings, Summary};
 use gyro_sim_suite::generated::two_four_bars::TwoFourBars;
 use gyro_sim_suite::{Duals, Engine, coordinate, dense, duals, generated, model, moved, start_of, worst};
@@ -92,12 +92,12 @@ pub(crate) fn approach(integrator: Integrator, tolerance: f64, correction: Corre
 
 pub(crate) fn run(
     engine: &Engine,
-    kit: &dyn Kit<Engine>,
+    builder: &dyn MotionBuilder<Engine>,
     (model, t_end): (&Model, f64),
     approach: &Approach,
 ) -> (Vec<Sample>, Result<Summary, Failure>) {
     let settings = Settings { t_end, step: 1e-3, correct_every: None, sample_every: t_end / 50.0 };
-    moved(engine, kit, (&settings, approach), &start_of(model))
+    moved(engine, builder, (&settings, approach), &start_of(model))
 }
 
 /// The worst error of the bars' angles, which must not be those of another way on.
@@ -158,8 +158,8 @@ fn the_published_position_is_met() {
 #[test]
 fn generated_code_passes_by_every_integrator() {
     let model = model("four-bar-in-line");
-    let (engine, kit) =
-        (generated("four-bar-in-line"), generated("four-bar-in-line").kit(duals("four-bar-in-line")));
+    let (engine, builder) =
+        (generated("four-bar-in-line"), generated("four-bar-in-line").builder(duals("four-bar-in-line")));
     // The head of the page: I = 0.0507 kg.m2, G = 2.7468 N.m, from -60 degrees with 12 rad/s.
     let pendulum = Pendulum {
         mass: 1.4,
@@ -180,7 +180,7 @@ fn generated_code_passes_by_every_integrator() {
         (Integrator::Rodas4, 1e-7, Correction::MassWeighted),
     ] {
         let approach = approach(integrator, tolerance, correction);
-        let (samples, outcome) = run(&engine, &*kit, (&model, 2.0), &approach);
+        let (samples, outcome) = run(&engine, &*builder, (&model, 2.0), &approach);
         let summary = outcome.unwrap_or_else(|failure| panic!("{approach}: {failure}"));
         let error = off_by(&samples, 2, &pendulum, |from_gravity| from_gravity - FRAC_PI_2);
         println!("in line, {approach}: off by {error:.1e}, {:?}", summary.statistics);
@@ -239,7 +239,7 @@ fn two_cells_pass_for_twenty_seconds_in_both_engines() {
     let page = model("two-four-bars");
     let engines = [("generated", generated("two-four-bars")), ("dense", dense(&page))];
     let rodas = WithDuals(Duals::new(TwoFourBars::default()));
-    let kits: [&dyn Kit<Engine>; 2] = [&rodas, &Projecting];
+    let kits: [&dyn MotionBuilder<Engine>; 2] = [&rodas, &Projecting];
     for (engine, integrator, tolerance, correction) in [
         (0, Integrator::Dop853, 1e-6, Correction::Partition),
         (0, Integrator::Dop853, 1e-9, Correction::MassWeighted),

@@ -3,7 +3,7 @@
 
 use gyro_reference::{JointRow, scene};
 use gyro_runner::{JointSample, Sample, Settings};
-use gyro_sim_suite::{generated, model, rotation, shelves, simulate, times};
+use gyro_sim_suite::{fixture_folders, generated, model, rotation, simulate, times};
 
 /// Steps of the page's own length.
 const STEPS: f64 = 20.0;
@@ -54,7 +54,7 @@ fn error(page: &str, reference: &str) -> Option<f64> {
 #[test]
 fn every_shipped_page_with_joints_moves_as_its_reference() {
     let mut failed = Vec::new();
-    for page in shelves()[0].pages() {
+    for page in fixture_folders()[0].pages() {
         let Some(error) = error(&page, &page) else {
             assert!(
                 model(&page).joints.is_empty(),

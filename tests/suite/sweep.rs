@@ -4,7 +4,7 @@
 
 use crate::estimate::{Deviation, deviations, estimate, expected};
 use gyro_reference::JointRow;
-use gyro_runner::motion::Kit;
+use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{
     Approach, Coordinates, Correction, Difference, Failure, Integrator, Sample, Settings, Start, Summary,
     differences, time_by,
@@ -91,19 +91,19 @@ impl Scene {
 /// A mechanism in one precision, and the double-precision runs that it is compared with.
 struct Stand<T> {
     engine: Engine<T>,
-    kit: Box<dyn Kit<Engine<T>>>,
+    builder: Box<dyn MotionBuilder<Engine<T>>>,
     start: Start,
 }
 
 impl<T: Real + 'static> Stand<T> {
     fn new(page: &str, start: &Start) -> Self {
         let engine = extreme::<T>(page);
-        let kit = engine.kit(duals(page));
-        Self { engine, kit, start: start.clone() }
+        let builder = engine.builder(duals(page));
+        Self { engine, builder, start: start.clone() }
     }
 
     fn run(&self, settings: &Settings, approach: &Approach) -> (Vec<Sample>, Result<Summary, Failure>) {
-        moved(&self.engine, &*self.kit, (settings, approach), &self.start)
+        moved(&self.engine, &*self.builder, (settings, approach), &self.start)
     }
 }
 
@@ -378,6 +378,6 @@ fn a_run_in_single_precision_is_timed_to_its_end() {
     assert!(f64::from(0.01_f32) < scene.t_end, "rounded down");
     let approach = Approach { integrator: Integrator::Tsit5, tolerance: Some(1e-4), ..Approach::default() };
     let plan = (&scene.settings(1.0), &approach);
-    let timing = time_by(&stand.engine, &*stand.kit, plan, &stand.start, Duration::ZERO).unwrap();
+    let timing = time_by(&stand.engine, &*stand.builder, plan, &stand.start, Duration::ZERO).unwrap();
     assert!(timing.statistics.accepted > 0 && timing.measured.runs == 1, "{timing:?}");
 }

@@ -7,8 +7,8 @@ use gyro_assembled::Careful;
 use gyro_model::Model;
 use gyro_sim::{Equations, Mechanism};
 use gyro_sim_suite::{
-    Engine, Matrix, Random, careful, dense, difference, for_each_generated, is_open, model, phi_pi, phi_q,
-    shelves, state,
+    Engine, Matrix, Random, careful, dense, difference, fixture_folders, for_each_generated, is_open, model,
+    phi_pi, phi_q, state,
 };
 use nalgebra::{DMatrix, Matrix3, Matrix6};
 
@@ -124,14 +124,14 @@ fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
     let n_columns = 6 * mechanism.description().bodies.len();
     let jacobian = DMatrix::from_fn(rows.len(), n_columns, |row, column| rows[row][column]);
     let mut mobility = DMatrix::zeros(n_columns, n_columns);
-    for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
+    for (moving_body, body) in model.coordinate_bodies().into_iter().enumerate() {
         let body = &model.bodies[body];
         let ([xx, yy, zz, xy, xz, yz], mass) = (model.values(&body.inertia), model.value(&body.mass));
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         let mut mass_matrix = Matrix6::identity() * mass;
         mass_matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&inertia);
         let inverse = mass_matrix.try_inverse().expect("masses and inertias are positive");
-        mobility.view_mut((6 * slot, 6 * slot), (6, 6)).copy_from(&inverse);
+        mobility.view_mut((6 * moving_body, 6 * moving_body), (6, 6)).copy_from(&inverse);
     }
     let matrix = &jacobian * mobility * jacobian.transpose();
     let is_length = |row: usize| mechanism.description().rows[row].is_length;
@@ -281,7 +281,7 @@ fn compare(page: &str, mechanism: &Engine) {
     let dense = dense(&model);
     let (mut random, mut to_careful, mut to_dense) = (Random::new(7), Worst::default(), Worst::default());
     let mut most_lost = 0.0_f64;
-    let is_shipped = shelves()[0].pages().iter().any(|shipped| shipped == page);
+    let is_shipped = fixture_folders()[0].pages().iter().any(|shipped| shipped == page);
     for index in 0..if is_shipped { STATES } else { STATES_OF_TEST_PAGES } {
         let (values, condition) = drawn(mechanism, &model, &mut random);
         let uneven = UNEVEN.iter().find(|(uneven, _)| *uneven == page);
@@ -318,9 +318,9 @@ fn generated_terms_of_test_pages_agree_with_the_twins() {
     all_agree(1);
 }
 
-/// All pages of a shelf.
-fn all_agree(shelf: usize) {
-    let (mut failed, pages) = (Vec::new(), shelves()[shelf].pages());
+/// All pages of a folder.
+fn all_agree(folder: usize) {
+    let (mut failed, pages) = (Vec::new(), fixture_folders()[folder].pages());
     for_each_generated(|page, mechanism| {
         if !pages.iter().any(|own| own == page) {
             return;

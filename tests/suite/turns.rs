@@ -4,7 +4,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
-use gyro_runner::motion::Kit;
+use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{Approach, Correction, Integrator, Offers, Sample, Settings, Start};
 use gyro_sim::{Real, Scalar};
 use gyro_sim_suite::generated as own;
@@ -117,12 +117,12 @@ fn approaches(speed: f64) -> Vec<Approach> {
 
 /// What a run has come to, or why it has not.
 fn end<T: Real + 'static>(
-    (engine, kit): (&Engine<T>, &dyn Kit<Engine<T>>),
+    (engine, builder): (&Engine<T>, &dyn MotionBuilder<Engine<T>>),
     settings: &Settings,
     approach: &Approach,
     start: &Start,
 ) -> Result<Sample, String> {
-    let (samples, outcome) = moved(engine, kit, (settings, approach), start);
+    let (samples, outcome) = moved(engine, builder, (settings, approach), start);
     outcome.map_err(|failure| failure.to_string())?;
     Ok(samples.last().unwrap().clone())
 }
@@ -141,7 +141,7 @@ fn difference(ends: [&Sample; 2], starts: [&Start; 2]) -> f64 {
 fn compare<T: Real + 'static>(train: &Train, turns: f64, approaches: &[Approach], tolerance: f64) {
     let starts = [0.0, BEFORE].map(|before| start_of(&train.after(before)));
     let engines = [0.0, BEFORE].map(|before| train.generated::<T>(before));
-    let kits = engines.each_ref().map(|(engine, duals)| engine.kit(duals.clone()));
+    let kits = engines.each_ref().map(|(engine, duals)| engine.builder(duals.clone()));
     for approach in approaches {
         let said = format!("{} by {} with {}", train.page, approach.integrator, approach.correction);
         let end_of = |k: usize| {
@@ -176,12 +176,12 @@ fn coarse_steps_lose_no_turn() {
     let t_end = 6000.0 * step;
     let settings = Settings { t_end, step, correct_every: Some(step), sample_every: t_end };
     let (generated, duals) = train.generated::<f64>(0.0);
-    let kit = generated.kit(duals);
+    let builder = generated.builder(duals);
     for correction in
         [Correction::Partition, Correction::MassWeighted, Correction::Baumgarte(RATE * train.speed)]
     {
         let approach = Approach { correction, ..Approach::default() };
-        let end = end((&generated, &*kit), &settings, &approach, &start)
+        let end = end((&generated, &*builder), &settings, &approach, &start)
             .unwrap_or_else(|failure| panic!("{correction}: {failure}"));
         let off = |k: usize| (coordinate(&end, k).1 / [10.0, -17.0][k] - 1.0).abs();
         // Steering balances what such steps lose and is off by far more: it must only arrive.
@@ -206,8 +206,8 @@ fn the_twin_turns_on_too() {
         let (start, approach) = (start_of(&model), Approach::default());
         let engines = [dense(&model), train.generated(BEFORE).0];
         let ends = engines.map(|engine| {
-            let kit = engine.kit(Duals::none());
-            end((&engine, &*kit), &train.settings(10.0), &approach, &start).unwrap()
+            let builder = engine.builder(Duals::none());
+            end((&engine, &*builder), &train.settings(10.0), &approach, &start).unwrap()
         });
         let difference = difference([&ends[0], &ends[1]], [&start, &start]);
         println!("{}: {difference:e}", train.page);

@@ -6,7 +6,7 @@
 use crate::estimate::{deviations, expected};
 use gyro_assembled::{Careful, Dense, Number};
 use gyro_reference::JointRow;
-use gyro_runner::motion::{Kit, Projecting};
+use gyro_runner::motion::{MotionBuilder, Projecting};
 use gyro_runner::{
     Advice, Approach, Coordinates, Correction, Failure, Grade, Integrator, Judgement, Measure, Offers, Plan,
     Promise, Remark, Sample, Settings, Start, Summary, When, balance, companions, judge,
@@ -60,8 +60,8 @@ struct Case {
 
 /// A mechanism in both precisions.
 struct Stand {
-    double: (Engine<f64>, Box<dyn Kit<Engine<f64>>>),
-    single: (Engine<f32>, Box<dyn Kit<Engine<f32>>>),
+    double: (Engine<f64>, Box<dyn MotionBuilder<Engine<f64>>>),
+    single: (Engine<f32>, Box<dyn MotionBuilder<Engine<f32>>>),
     start: Start,
     size: f64,
     form: Form,
@@ -75,13 +75,13 @@ impl Stand {
         fn with_kit<T: Real + Number + 'static>(
             page: &str,
             form: Form,
-        ) -> (Engine<T>, Box<dyn Kit<Engine<T>>>) {
+        ) -> (Engine<T>, Box<dyn MotionBuilder<Engine<T>>>) {
             let model = model(page);
             match (form, Careful::<T>::new(&model)) {
                 (Form::Generated, _) => {
                     let engine = extreme::<T>(page);
-                    let kit = engine.kit(duals(page));
-                    (engine, kit)
+                    let builder = engine.builder(duals(page));
+                    (engine, builder)
                 }
                 (Form::Twin, Ok(careful)) => (Engine::new(careful), Box::new(Projecting)),
                 (Form::Twin, Err(_)) => (Engine::new(Dense::<T>::new(&model).unwrap()), Box::new(Projecting)),

@@ -1,7 +1,7 @@
 //! Any mechanism behind one type: a mechanism is compiled once for each precision, and what runs and compares mechanisms once
 //! for all of them.
 
-use gyro_runner::motion::{COLUMNS, Kit, TreeWithJacobian, WithDuals};
+use gyro_runner::motion::{COLUMNS, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{
     Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointSpace, Mechanism,
     Partition, Real, Terms,
@@ -22,10 +22,6 @@ type AsTree<T> = for<'a> fn(&'a dyn Erased<T>) -> Option<&'a dyn ErasedTree<T>>;
 /// The same mechanism in dual numbers, where there is need of it.
 #[derive(Debug)]
 pub struct Duals<T = f64>(Option<Box<dyn ErasedDuals<T>>>);
-
-/// A choice of independent coordinates of any mechanism.
-#[derive(Debug)]
-pub struct Choice(Box<dyn ErasedChoice>);
 
 impl<T: Real + 'static> Engine<T> {
     /// The same mechanism, its type forgotten.
@@ -58,7 +54,7 @@ impl<T: Real + 'static> Engine<T> {
     }
 
     /// All that motions of it can be begun with, as a program of its own would have it.
-    pub fn kit(&self, duals: Duals<T>) -> Box<dyn Kit<Self>> {
+    pub fn builder(&self, duals: Duals<T>) -> Box<dyn MotionBuilder<Self>> {
         if self.is_tree() { Box::new(TreeWithJacobian(duals)) } else { Box::new(WithDuals(duals)) }
     }
 

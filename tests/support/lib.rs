@@ -2,22 +2,22 @@
 
 mod against;
 mod engine;
+mod fixtures;
 pub mod generated;
 mod matrix;
 mod nested;
 mod random;
 mod runs;
-mod shelves;
 
 pub use against::{along, body, check, check_pairs, cross, pair, reference_body, rotation, times, worst};
 pub use engine::{Choice, Duals, Engine};
+pub use fixtures::{
+    EXTREME, FixtureFolder, careful, dense, duals, extreme, fixture_folders, for_each_generated, generated,
+    in_single_precision, is_open, model, module, page, pages,
+};
 pub use matrix::{Matrix, difference, phi_pi, phi_q};
 pub use nested::{Said, cargo, say};
 pub use random::{Random, posed, state, state_at, violated_start};
 pub use runs::{
     PAPER, Run, as_paged, coordinate, fed, moved, multipliers, output, played, simulate, start_of,
-};
-pub use shelves::{
-    EXTREME, Shelf, careful, dense, duals, extreme, for_each_generated, generated, in_single_precision,
-    is_open, model, module, page, pages, shelves,
 };

@@ -2,7 +2,7 @@
 
 use crate::Engine;
 use gyro_model::{Joint, JointKind, Model};
-use gyro_runner::motion::Kit;
+use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{
     Approach, Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run, run_by,
 };
@@ -90,12 +90,12 @@ pub fn fed(
 /// A run by any approach: its samples, as far as it came, and how it ended.
 pub fn moved<T: Real + 'static>(
     mechanism: &Engine<T>,
-    kit: &dyn Kit<Engine<T>>,
+    builder: &dyn MotionBuilder<Engine<T>>,
     by: (&Settings, &Approach),
     start: &Start,
 ) -> (Vec<Sample>, Result<Summary, Failure>) {
     let mut samples = Vec::new();
-    let outcome = run_by(&mut mechanism.clone(), kit, by, start, |event| {
+    let outcome = run_by(&mut mechanism.clone(), builder, by, start, |event| {
         if let Event::Sample(sample) = event {
             samples.push(sample.clone());
         }

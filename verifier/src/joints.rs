@@ -39,7 +39,7 @@ pub enum Freedom {
     /// (r, p) and (s, w') of a free body.
     Body {
         /// Its place in [`Model::coordinate_bodies`].
-        slot: usize,
+        moving_body: usize,
     },
 }
 
@@ -80,9 +80,9 @@ impl JointLayout {
                 layout.add(Freedom::Orientation { joint });
             }
         }
-        for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
+        for (moving_body, body) in model.coordinate_bodies().into_iter().enumerate() {
             if model.bodies[body].support == Support::Free {
-                layout.add(Freedom::Body { slot });
+                layout.add(Freedom::Body { moving_body });
             }
         }
         Some(layout)

@@ -42,6 +42,7 @@
 
 pub mod atoms;
 pub mod constants;
+mod data_sheet;
 pub mod divisors;
 pub mod field;
 mod finite;
@@ -58,7 +59,6 @@ pub mod refusal;
 mod report;
 pub mod rounding;
 mod seed;
-mod sheet;
 mod states;
 pub mod structure;
 mod tape;

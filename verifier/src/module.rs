@@ -25,7 +25,7 @@ use syn::Block;
 #[derive(Clone, Debug)]
 pub struct Module {
     /// The text's documentation: the data sheet, a line each.
-    pub sheet: Vec<String>,
+    pub data_sheet: Vec<String>,
     /// The functions that compute something, by name, as they are written.
     pub written: BTreeMap<String, Program>,
     /// What each of them computes from parameters, time and state: `set_up` is part of those that read what it computes.
@@ -235,7 +235,7 @@ impl Module {
         };
         let pattern = |name: &str| block::pattern(&block(&matched.holes[name])?);
         let module = Self {
-            sheet: matched.sheet.clone(),
+            data_sheet: matched.data_sheet.clone(),
             all_docs: matched.docs.clone(),
             docs: matched.holes.iter().map(|(name, hole)| (name.clone(), hole.doc.clone())).collect(),
             phi_q_pattern: pattern("phi_q_pattern")?,

@@ -49,14 +49,14 @@ impl<F: Field> Point<F> {
         }
     }
 
-    /// (r, p) of the body in a slot (see [`Model::coordinate_bodies`]).
-    pub fn position(&self, slot: usize) -> &[F] {
-        &self.state[7 * slot..7 * slot + 7]
+    /// (r, p) of the body in a moving_body (see [`Model::coordinate_bodies`]).
+    pub fn position(&self, moving_body: usize) -> &[F] {
+        &self.state[7 * moving_body..7 * moving_body + 7]
     }
 
-    /// (s, w') of the body in a slot of a model.
-    pub fn velocity(&self, model: &Model, slot: usize) -> &[F] {
-        let start = 7 * model.coordinate_bodies().len() + 6 * slot;
+    /// (s, w') of the body in a moving_body of a model.
+    pub fn velocity(&self, model: &Model, moving_body: usize) -> &[F] {
+        let start = 7 * model.coordinate_bodies().len() + 6 * moving_body;
         &self.state[start..start + 6]
     }
 

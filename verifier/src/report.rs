@@ -1,10 +1,10 @@
 //! What was proved of a module, for people and for programs.
 
+use crate::data_sheet::PROOF;
 use crate::divisors::Divisor;
 use crate::proof::{Claim, Verdict};
 use crate::refusal::Refusal;
 use crate::seed::Seed;
-use crate::sheet::PROOF;
 use serde_json::{Value, json};
 use std::fmt;
 

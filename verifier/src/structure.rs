@@ -1,9 +1,9 @@
 //! What the text of a module is like: nothing unused, nothing computed twice, counted as its data sheet says.
 
+use crate::data_sheet;
 use crate::module::{Module, SET_UP};
 use crate::program::{Node, Program, Source};
 use crate::refusal::Refusal;
-use crate::sheet;
 use gyro_model::Model;
 use std::collections::{HashMap, HashSet};
 
@@ -20,7 +20,7 @@ pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
         }));
     }
     problems.extend(unread(module));
-    problems.extend(sheet::problems(model, module));
+    problems.extend(data_sheet::problems(model, module));
     problems
 }
 

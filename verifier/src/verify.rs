@@ -5,7 +5,7 @@ use crate::module::Module;
 use crate::proof::{Claim, Decider, Statements, Verdict};
 use crate::report::{self, ACCEPTED_LOG10, Finding, Report};
 use crate::seed::Seed;
-use crate::{finite, numeric, sheet, structure};
+use crate::{data_sheet, finite, numeric, structure};
 use gyro_model::Model;
 use num_bigint::BigUint;
 use std::f64::consts::LOG10_2;
@@ -114,7 +114,7 @@ fn prove(model: &Model, module: &Module, report: Report) -> Report {
     }
     report.prime_bits = tested.prime.bits();
     report.is_mersenne = tested.prime.count_ones() == report.prime_bits;
-    if sheet::proof(module).is_some_and(|section| section != report.section()) {
+    if data_sheet::proof(module).is_some_and(|section| section != report.section()) {
         report
             .flaws
             .push("the data sheet's section on the proof says something else than was proved".to_owned());

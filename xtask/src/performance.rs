@@ -5,7 +5,7 @@ use crate::lanes;
 use crate::scaling;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
-use gyro_cli::programs::{built, folder, output, said, three};
+use gyro_cli::programs::{built, folder, output, io_failure, three};
 use gyro_cli::progress::Spinner;
 use std::fmt::Write as _;
 use std::fs;
@@ -19,7 +19,7 @@ const CALLS: u64 = 100;
 pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
     let path = args.out.clone().unwrap_or_else(|| files::root().join("docs").join("performance.md"));
     let page = files::read_template(&path)?;
-    fs::create_dir_all(folder()).map_err(|e| said(&folder(), &e))?;
+    fs::create_dir_all(folder()).map_err(|e| io_failure(&folder(), &e))?;
     let page = if args.only_lanes { page } else { without_lanes(page, args)? };
     let page = replaced(&page, "lanes", &lanes::table()?)?;
     let is_new = files::write(&path, &page)?;
@@ -84,7 +84,7 @@ fn count(program: &Path) -> Result<Option<Vec<f64>>, Failure> {
     let dumps = folder().join("callgrind");
     // Those of an earlier run must not be taken for this one's.
     let _ = fs::remove_dir_all(&dumps);
-    fs::create_dir_all(&dumps).map_err(|e| said(&dumps, &e))?;
+    fs::create_dir_all(&dumps).map_err(|e| io_failure(&dumps, &e))?;
     let mut command = Command::new("valgrind");
     command
         .arg("--tool=callgrind")

@@ -4,7 +4,7 @@ use gyro_cli::chain;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
 use gyro_cli::machine_code::{self, SYMBOLS};
-use gyro_cli::programs::{cargo, folder, output, said, three};
+use gyro_cli::programs::{cargo, folder, output, io_failure, three};
 use gyro_cli::progress::Spinner;
 use gyro_codegen::Kernel;
 use std::fmt::Write as _;
@@ -70,7 +70,7 @@ impl Place {
     fn write(&self, path: &str, text: &str) -> Result<(), Failure> {
         let path = self.folder.join(path);
         let parent = path.parent().unwrap_or(&self.folder);
-        fs::create_dir_all(parent).map_err(|e| said(parent, &e))?;
+        fs::create_dir_all(parent).map_err(|e| io_failure(parent, &e))?;
         files::write(&path, text).map(|_| ())
     }
 
@@ -82,14 +82,14 @@ impl Place {
             let name = format!("chain_{bodies}");
             self.write(&format!("{name}/page.toml"), &chain::page(bodies))?;
             let page = self.folder.join(&name).join("page.toml");
-            let file = fs::File::open(&page).map_err(|e| said(&page, &e))?;
+            let file = fs::File::open(&page).map_err(|e| io_failure(&page, &e))?;
             let before = children_cpu_s();
             let module = Command::new(generator)
                 .arg("--generate")
                 .stdin(file)
                 .stderr(Stdio::inherit())
                 .output()
-                .map_err(|e| said(generator, &e))?;
+                .map_err(|e| io_failure(generator, &e))?;
             let generation_s = children_cpu_s() - before;
             if !module.status.success() {
                 return Err(Failure::Run(format!("a chain of {bodies} cannot be generated")));
@@ -129,7 +129,7 @@ impl Place {
         );
         self.write("Cargo.toml", &workspace)?;
         let lock = files::root().join("Cargo.lock");
-        let text = fs::read_to_string(&lock).map_err(|e| said(&lock, &e))?;
+        let text = fs::read_to_string(&lock).map_err(|e| io_failure(&lock, &e))?;
         self.write("Cargo.lock", &text)
     }
 
@@ -138,7 +138,7 @@ impl Place {
         // What an earlier run has compiled would take no time.
         let built = self.folder.join("target");
         if built.exists() {
-            fs::remove_dir_all(&built).map_err(|e| said(&built, &e))?;
+            fs::remove_dir_all(&built).map_err(|e| io_failure(&built, &e))?;
         }
         for profile in ["release", "dev"] {
             self.cargo(&["build", "--profile", profile, "--package", "gyro-sim"])?;

@@ -89,14 +89,14 @@ fn single_precision_follows_double() {
 }
 
 fn mass_matrix(model: &gyro_model::Model) -> DMatrix<f64> {
-    let slots = model.coordinate_bodies();
-    let mut matrix = DMatrix::zeros(6 * slots.len(), 6 * slots.len());
-    for (slot, &body) in slots.iter().enumerate() {
+    let moving_bodies = model.coordinate_bodies();
+    let mut matrix = DMatrix::zeros(6 * moving_bodies.len(), 6 * moving_bodies.len());
+    for (moving_body, &body) in moving_bodies.iter().enumerate() {
         let body = &model.bodies[body];
         let [xx, yy, zz, xy, xz, yz] = model.values(&body.inertia);
         let inertia = nalgebra::Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        (0..3).for_each(|k| matrix[(6 * slot + k, 6 * slot + k)] = model.value(&body.mass));
-        matrix.fixed_view_mut::<3, 3>(6 * slot + 3, 6 * slot + 3).copy_from(&inertia);
+        (0..3).for_each(|k| matrix[(6 * moving_body + k, 6 * moving_body + k)] = model.value(&body.mass));
+        matrix.fixed_view_mut::<3, 3>(6 * moving_body + 3, 6 * moving_body + 3).copy_from(&inertia);
     }
     matrix
 }

@@ -80,10 +80,13 @@ fn the_careful_partition_holds_what_the_joint_leaves_free_of_the_angular_velocit
         let drifted = state_near(&mechanism, 0.02, &mut Random(seed));
         let mut y = drifted.clone();
         Partitioned::new(&mechanism, &y).correct(&mechanism, 0.0, &mut y).expect("it can be corrected");
-        let (slots, n_q) = (model.coordinate_bodies(), 7 * mechanism.description().bodies.len());
+        let (moving_bodies, n_q) = (model.coordinate_bodies(), 7 * mechanism.description().bodies.len());
         for link in Tree::of(&model).links {
-            let slot = slots.iter().position(|&body| body == link.body).expect("it has coordinates");
-            let w = |y: &Vec<f64>| Vector3::from_column_slice(&y[n_q + 6 * slot + 3..n_q + 6 * slot + 6]);
+            let moving_body =
+                moving_bodies.iter().position(|&body| body == link.body).expect("it has coordinates");
+            let w = |y: &Vec<f64>| {
+                Vector3::from_column_slice(&y[n_q + 6 * moving_body + 3..n_q + 6 * moving_body + 6])
+            };
             let (before, after) = (w(&drifted), w(&y));
             let Attachment::Joint { joint, reversed, .. } = link.attachment else {
                 let moves = link.attachment == Attachment::Free;

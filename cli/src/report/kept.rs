@@ -3,7 +3,7 @@
 use super::index;
 use super::write::own;
 use crate::failure::Failure;
-use crate::programs::said;
+use crate::programs::io_failure;
 use std::fs;
 use std::path::Path;
 
@@ -14,7 +14,7 @@ const KEPT: [&str; 4] = ["gyroscope", "gyroscope-gimbal-lock", "gyroscope-light-
 pub(crate) fn keep(report: &Path, kept: &Path, machine: &str) -> Result<(), Failure> {
     let copy = |file: &str| {
         let from = report.join(file);
-        let text = fs::read_to_string(&from).map_err(|e| said(&from, &e))?;
+        let text = fs::read_to_string(&from).map_err(|e| io_failure(&from, &e))?;
         own(&kept.join(file), &text)?;
         Ok(text)
     };

@@ -11,9 +11,9 @@ use gyro_model::{Coupler, JointCoordinate, JointKind, Support};
 /// The rows of `Model::rows`, in their order.
 pub fn rows(system: &mut System) -> Vec<ExprId> {
     let mut rows = Vec::new();
-    for slot in 0..system.slots.len() {
-        if system.model.bodies[system.slots[slot]].support == Support::Constrained {
-            rows.extend(held(system, slot));
+    for moving_body in 0..system.moving_bodies.len() {
+        if system.model.bodies[system.moving_bodies[moving_body]].support == Support::Constrained {
+            rows.extend(held(system, moving_body));
         }
     }
     for joint in 0..system.joints.len() {
@@ -62,10 +62,10 @@ fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
     system.graph.sub(lag, offset)
 }
 
-/// `pᵀp − 1` of each slot, eq. (12).
+/// `pᵀp − 1` of each moving_body, eq. (12).
 pub fn normalisations(system: &mut System) -> Vec<ExprId> {
     let one = Graph::ONE;
-    let euler: Vec<_> = system.slots.iter().map(|&body| system.poses[body].p).collect();
+    let euler: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body].p).collect();
     euler
         .iter()
         .map(|p| {
@@ -76,8 +76,8 @@ pub fn normalisations(system: &mut System) -> Vec<ExprId> {
 }
 
 /// A body held where it is given: `r − r0` and the vector part of `p0* p`, eqs. (5) and (6).
-fn held(system: &mut System, slot: usize) -> Vec<ExprId> {
-    let body = system.slots[slot];
+fn held(system: &mut System, moving_body: usize) -> Vec<ExprId> {
+    let body = system.moving_bodies[moving_body];
     let (pose, given) = (system.poses[body], system.fixed_pose(body));
     let position = system.graph.sub_vec(&pose.r, &given.r);
     // G(p0) p is the vector part of p0* p.

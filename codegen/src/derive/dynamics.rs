@@ -11,9 +11,9 @@ use crate::expr::vector::{Mat3, Vec3};
 /// The terms of eq. (17) that do not come from Φ.
 #[derive(Debug)]
 pub struct Dynamics {
-    /// diag(m, m, m, J') of each slot, by rows.
+    /// diag(m, m, m, J') of each moving_body, by rows.
     pub mass_matrix: Matrix,
-    /// (f, n' − w̃'J'w') of each slot.
+    /// (f, n' − w̃'J'w') of each moving_body.
     pub applied_force: Vec<ExprId>,
     /// What acts on each body besides gravity and forces along joint coordinates.
     pub other_loads: Vec<Load>,
@@ -30,19 +30,19 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
-    /// Minus (f, n' − w̃'J'w') of a slot.
-    pub fn minus_applied_force(&self, graph: &mut Graph, slot: usize) -> SpatialVector {
-        let force = |k: usize| self.applied_force[6 * slot + k];
+    /// Minus (f, n' − w̃'J'w') of a moving_body.
+    pub fn minus_applied_force(&self, graph: &mut Graph, moving_body: usize) -> SpatialVector {
+        let force = |k: usize| self.applied_force[6 * moving_body + k];
         let applied =
             SpatialVector { t: [force(0), force(1), force(2)], rho: [force(3), force(4), force(5)] };
         applied.negated(graph)
     }
 
     pub fn derive(system: &mut System) -> Self {
-        let n_slots = system.slots.len();
+        let n_moving_bodies = system.moving_bodies.len();
         let forces = Forces::of(system);
         let mut dynamics = Self {
-            mass_matrix: vec![vec![Graph::ZERO; 6 * n_slots]; 6 * n_slots],
+            mass_matrix: vec![vec![Graph::ZERO; 6 * n_moving_bodies]; 6 * n_moving_bodies],
             applied_force: Vec::new(),
             other_loads: forces.other_loads.clone(),
             kinetic: Graph::ZERO,
@@ -51,20 +51,20 @@ impl Dynamics {
             power_at_points: forces.power_at_points,
             power_of_driven_bodies: forces.power_of_driven_bodies(system),
         };
-        for slot in 0..n_slots {
-            dynamics.add_body(system, slot, &forces.loads[system.slots[slot]]);
+        for moving_body in 0..n_moving_bodies {
+            dynamics.add_body(system, moving_body, &forces.loads[system.moving_bodies[moving_body]]);
         }
         dynamics
     }
 
-    fn add_body(&mut self, system: &mut System, slot: usize, load: &Load) {
-        let (mass, inertia) = (system.mass(slot), system.inertia(slot));
+    fn add_body(&mut self, system: &mut System, moving_body: usize, load: &Load) {
+        let (mass, inertia) = (system.mass(moving_body), system.inertia(moving_body));
         let gravity = system.numbers(&system.model.gravity);
-        let pose = system.poses[system.slots[slot]];
+        let pose = system.poses[system.moving_bodies[moving_body]];
         let graph = &mut system.graph;
         for (row, inertia_row) in inertia.iter().enumerate() {
-            self.mass_matrix[6 * slot + row][6 * slot + row] = mass;
-            let start = 6 * slot + 3;
+            self.mass_matrix[6 * moving_body + row][6 * moving_body + row] = mass;
+            let start = 6 * moving_body + 3;
             self.mass_matrix[start + row][start..start + 3].copy_from_slice(inertia_row);
         }
         let weight = graph.scale_vec(mass, &gravity);

@@ -35,13 +35,14 @@ impl Kinematics {
     pub fn derive(system: &mut System) -> Self {
         let (phi, normalisations) = (constraints::rows(system), constraints::normalisations(system));
         let all: Vec<_> = phi.iter().chain(&normalisations).copied().collect();
-        let n_slots = system.slots.len();
+        let n_moving_bodies = system.moving_bodies.len();
 
-        let rows_of_slots = rows_of_slots(system, &all);
-        let phi_q = columns(system, &all, &rows_of_slots, coordinate_directions(n_slots));
-        let rotations = (0..n_slots).flat_map(|slot| (0..6).map(move |k| (slot, k)));
-        let virtual_motions = rotations.map(|(slot, k)| system.unit_direction(slot, k)).collect();
-        let phi_pi = columns(system, &phi, &rows_of_slots, virtual_motions);
+        let rows_of_moving_bodies = rows_of_moving_bodies(system, &all);
+        let phi_q = columns(system, &all, &rows_of_moving_bodies, coordinate_directions(n_moving_bodies));
+        let rotations = (0..n_moving_bodies).flat_map(|moving_body| (0..6).map(move |k| (moving_body, k)));
+        let virtual_motions =
+            rotations.map(|(moving_body, k)| system.unit_direction(moving_body, k)).collect();
+        let phi_pi = columns(system, &phi, &rows_of_moving_bodies, virtual_motions);
 
         let time = Direction::from([(Symbol::Time, Graph::ONE)]);
         let phi_t = along(system, &phi, time);
@@ -52,9 +53,9 @@ impl Kinematics {
         Self { phi, normalisations, phi_q, phi_pi, velocity_residual, nu, gamma }
     }
 
-    /// Columns π' of a slot in a row of Φ_π'.
-    pub fn rotation(&self, row: usize, slot: usize) -> Vec3 {
-        std::array::from_fn(|k| self.phi_pi[row][6 * slot + 3 + k])
+    /// Columns π' of a moving_body in a row of Φ_π'.
+    pub fn rotation(&self, row: usize, moving_body: usize) -> Vec3 {
+        std::array::from_fn(|k| self.phi_pi[row][6 * moving_body + 3 + k])
     }
 }
 
@@ -78,58 +79,62 @@ fn motion_derivative(system: &mut System, rows: &[ExprId]) -> Vec<ExprId> {
     along(system, rows, direction)
 }
 
-/// Unit directions of r and p of each slot. A and A_iᵀA_j then differentiate as their definitions.
-fn coordinate_directions(n_slots: usize) -> Vec<Direction> {
-    let symbol =
-        |slot, k| if k < 3 { Symbol::Position { slot, k } } else { Symbol::Euler { slot, k: k - 3 } };
-    (0..n_slots)
-        .flat_map(|slot| (0..7).map(move |k| Direction::from([(symbol(slot, k), Graph::ONE)])))
+/// Unit directions of r and p of each moving_body. A and A_iᵀA_j then differentiate as their definitions.
+fn coordinate_directions(n_moving_bodies: usize) -> Vec<Direction> {
+    let symbol = |moving_body, k| {
+        if k < 3 { Symbol::Position { moving_body, k } } else { Symbol::Euler { moving_body, k: k - 3 } }
+    };
+    (0..n_moving_bodies)
+        .flat_map(|moving_body| (0..7).map(move |k| Direction::from([(symbol(moving_body, k), Graph::ONE)])))
         .collect()
 }
 
-/// The derivatives of some rows along directions, equally many for each slot, of rows in which the slot occurs: others do not change.
+/// The derivatives of some rows along directions, equally many for each moving_body, of rows in which the moving_body occurs: others do not change.
 fn columns(
     system: &mut System,
     rows: &[ExprId],
-    rows_of_slots: &[Vec<usize>],
+    rows_of_moving_bodies: &[Vec<usize>],
     directions: Vec<Direction>,
 ) -> Matrix {
     let mut matrix = vec![vec![Graph::ZERO; directions.len()]; rows.len()];
-    let of_each = directions.len() / rows_of_slots.len().max(1);
+    let of_each = directions.len() / rows_of_moving_bodies.len().max(1);
     for (column, direction) in directions.into_iter().enumerate() {
         let mut derivative = Derivative::new(&system.definitions, direction);
-        for &row in rows_of_slots[column / of_each].iter().filter(|row| **row < rows.len()) {
+        for &row in rows_of_moving_bodies[column / of_each].iter().filter(|row| **row < rows.len()) {
             matrix[row][column] = derivative.of(&mut system.graph, rows[row]);
         }
     }
     matrix
 }
 
-/// For each slot the rows that depend on where its body is.
-fn rows_of_slots(system: &System, rows: &[ExprId]) -> Vec<Vec<usize>> {
-    let (mut rows_of_slots, mut known) = (vec![Vec::new(); system.slots.len()], HashMap::default());
+/// For each moving_body the rows that depend on where its body is.
+fn rows_of_moving_bodies(system: &System, rows: &[ExprId]) -> Vec<Vec<usize>> {
+    let (mut rows_of_moving_bodies, mut known) =
+        (vec![Vec::new(); system.moving_bodies.len()], HashMap::default());
     for (row, &root) in rows.iter().enumerate() {
-        slots_of(system, root, &mut known).iter().for_each(|&slot| rows_of_slots[slot].push(row));
+        slots_of(system, root, &mut known)
+            .iter()
+            .for_each(|&moving_body| rows_of_moving_bodies[moving_body].push(row));
     }
-    rows_of_slots
+    rows_of_moving_bodies
 }
 
-/// The slots whose coordinates an expression depends on, symbols being what they stand for.
+/// The moving_bodies whose coordinates an expression depends on, symbols being what they stand for.
 fn slots_of(system: &System, root: ExprId, known: &mut HashMap<Symbol, BTreeSet<usize>>) -> BTreeSet<usize> {
-    let mut slots = BTreeSet::new();
+    let mut moving_bodies = BTreeSet::new();
     for id in system.graph.reachable(&[root]) {
         let Node::Symbol(symbol) = *system.graph.node(id) else { continue };
-        if let Symbol::Position { slot, .. } | Symbol::Euler { slot, .. } = symbol {
-            slots.insert(slot);
+        if let Symbol::Position { moving_body, .. } | Symbol::Euler { moving_body, .. } = symbol {
+            moving_bodies.insert(moving_body);
         } else if let Some(definition) = system.definitions.get(symbol) {
             if !known.contains_key(&symbol) {
                 let of_definition = slots_of(system, definition, known);
                 known.insert(symbol, of_definition);
             }
-            slots.extend(&known[&symbol]);
+            moving_bodies.extend(&known[&symbol]);
         }
     }
-    slots
+    moving_bodies
 }
 
 fn along(system: &mut System, rows: &[ExprId], direction: Direction) -> Vec<ExprId> {

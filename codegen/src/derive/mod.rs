@@ -42,7 +42,7 @@ pub struct Observed {
     /// Rates of the turn references.
     pub turn_rates: Vec<ExprId>,
     pub readings: Vec<ExprId>,
-    /// (ṙ, ṗ) of each slot by eqs. (16) and (14).
+    /// (ṙ, ṗ) of each moving_body by eqs. (16) and (14).
     pub position_rates: Vec<ExprId>,
 }
 
@@ -63,7 +63,7 @@ impl Observed {
 }
 
 fn position_rates(system: &mut System) -> Vec<ExprId> {
-    let poses: Vec<_> = system.slots.iter().map(|&body| system.poses[body]).collect();
+    let poses: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body]).collect();
     let rates = poses.iter().flat_map(|pose| {
         let p_rate = system.graph.euler_rate(&pose.p, &pose.w);
         pose.s.into_iter().chain(p_rate)

@@ -72,9 +72,9 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
 /// Acceleration of a point, global frame, `r̈ = s̈ + A (ẇ' × c + w' × (w' × c))`, and ẇ'.
 fn acceleration(system: &mut System, body: usize, point: &[Number; 3]) -> (Vec3, Vec3) {
     let (pose, point) = (system.poses[body], system.numbers(point));
-    let (linear, angular) = match system.slot_of(body) {
-        Some(slot) => {
-            let mut component = |k| system.graph.symbol(Symbol::Acceleration { slot, k });
+    let (linear, angular) = match system.moving_body_of(body) {
+        Some(moving_body) => {
+            let mut component = |k| system.graph.symbol(Symbol::Acceleration { moving_body, k });
             (from_fn(&mut component), from_fn(|k| component(3 + k)))
         }
         None => (time_derivative(system, &pose.s), time_derivative(system, &pose.w)),
@@ -101,7 +101,7 @@ fn reaction(system: &mut System, sources: &Sources, index: usize) -> Vec<ExprId>
     let arm = system.graph.mat_vec(&pose_j.a, &joint.second.point);
     let point = system.graph.add_vec(&pose_j.r, &arm);
     // Without coordinates of the second body: the opposite of what acts on the first.
-    let (body, sign) = if system.slot_of(j).is_some() { (j, -1) } else { (i, 1) };
+    let (body, sign) = if system.moving_body_of(j).is_some() { (j, -1) } else { (i, 1) };
     let taken = taken(system, sources, index, body);
     let sign = system.graph.integer(sign);
     let from_point = system.graph.sub_vec(&system.poses[body].r, &point);
@@ -117,9 +117,9 @@ fn reaction(system: &mut System, sources: &Sources, index: usize) -> Vec<ExprId>
 /// `Φ_rᵀλ` and `Φ_π'ᵀλ` of a joint's rows for one body; nothing of a body without coordinates.
 fn taken(system: &mut System, sources: &Sources, joint: usize, body: usize) -> Load {
     let mut taken = Load { force: ZERO3, torque: ZERO3 };
-    let Some(slot) = system.slot_of(body) else { return taken };
+    let Some(moving_body) = system.moving_body_of(body) else { return taken };
     for row in system.model.rows_of(RowOwner::Joint(joint)) {
-        let column = |k: usize| sources.kinematics.phi_pi[row][6 * slot + k];
+        let column = |k: usize| sources.kinematics.phi_pi[row][6 * moving_body + k];
         let (by_r, by_pi): (Vec3, Vec3) = (from_fn(column), from_fn(|k| column(3 + k)));
         let graph = &mut system.graph;
         let (force, torque) =

@@ -27,8 +27,8 @@ pub struct System<'m> {
     pub tree: Tree,
     pub graph: Graph,
     pub definitions: Definitions,
-    /// Bodies with coordinates: slot to index into the model's bodies.
-    pub slots: Vec<usize>,
+    /// Bodies with coordinates: moving_body to index into the model's bodies.
+    pub moving_bodies: Vec<usize>,
     /// One for each body of the model.
     pub poses: Vec<Pose>,
     /// One for each joint of the model.
@@ -41,13 +41,13 @@ pub struct System<'m> {
 
 impl<'m> System<'m> {
     pub fn new(model: &'m Model) -> Self {
-        let (slots, tree) = (model.coordinate_bodies(), Tree::of(model));
+        let (moving_bodies, tree) = (model.coordinate_bodies(), Tree::of(model));
         let mut system = Self {
             model,
             tree,
             graph: Graph::new(),
             definitions: Definitions::default(),
-            slots,
+            moving_bodies,
             poses: Vec::new(),
             joints: Vec::new(),
             tables: Vec::new(),
@@ -76,8 +76,8 @@ impl<'m> System<'m> {
         }
     }
 
-    pub fn slot_of(&self, body: usize) -> Option<usize> {
-        self.slots.iter().position(|&b| b == body)
+    pub fn moving_body_of(&self, body: usize) -> Option<usize> {
+        self.moving_bodies.iter().position(|&b| b == body)
     }
 
     /// A number of the model page.
@@ -99,41 +99,42 @@ impl<'m> System<'m> {
         from_fn(|k| self.number(&numbers[k]))
     }
 
-    pub fn mass(&mut self, slot: usize) -> ExprId {
-        self.number(&self.model.bodies[self.slots[slot]].mass)
+    pub fn mass(&mut self, moving_body: usize) -> ExprId {
+        self.number(&self.model.bodies[self.moving_bodies[moving_body]].mass)
     }
 
     /// J' of a body.
-    pub fn inertia(&mut self, slot: usize) -> Mat3 {
-        let [xx, yy, zz, xy, xz, yz] = self.numbers(&self.model.bodies[self.slots[slot]].inertia);
+    pub fn inertia(&mut self, moving_body: usize) -> Mat3 {
+        let [xx, yy, zz, xy, xz, yz] =
+            self.numbers(&self.model.bodies[self.moving_bodies[moving_body]].inertia);
         [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
     }
 
     fn pose(&mut self, body: usize) -> Pose {
-        match (self.slot_of(body), &self.model.bodies[body].motion) {
-            (Some(slot), _) => self.moving_pose(slot),
+        match (self.moving_body_of(body), &self.model.bodies[body].motion) {
+            (Some(moving_body), _) => self.moving_pose(moving_body),
             (None, Some(motion)) => self.driven_pose(body, motion),
             (None, None) => self.fixed_pose(body),
         }
     }
 
-    fn moving_pose(&mut self, slot: usize) -> Pose {
+    fn moving_pose(&mut self, moving_body: usize) -> Pose {
         let graph = &mut self.graph;
-        let p = from_fn(|k| graph.symbol(Symbol::Euler { slot, k }));
+        let p = from_fn(|k| graph.symbol(Symbol::Euler { moving_body, k }));
         let rotation = graph.rotation(&p);
         let a = from_fn(|row| {
             from_fn(|column| {
-                let symbol = Symbol::Rotation { slot, row, column };
+                let symbol = Symbol::Rotation { moving_body, row, column };
                 self.definitions.insert(symbol, rotation[row][column]);
                 graph.symbol(symbol)
             })
         });
         Pose {
-            r: from_fn(|k| graph.symbol(Symbol::Position { slot, k })),
+            r: from_fn(|k| graph.symbol(Symbol::Position { moving_body, k })),
             p,
             a,
-            s: from_fn(|k| graph.symbol(Symbol::Velocity { slot, k })),
-            w: from_fn(|k| graph.symbol(Symbol::Spin { slot, k })),
+            s: from_fn(|k| graph.symbol(Symbol::Velocity { moving_body, k })),
+            w: from_fn(|k| graph.symbol(Symbol::Spin { moving_body, k })),
         }
     }
 
@@ -157,7 +158,7 @@ impl<'m> System<'m> {
     /// A_iᵀ A_j, eq. (4). Against a body without coordinates it is no quantity of its own.
     fn relative_rotation(&mut self, joint: usize, first: usize, second: usize) -> Mat3 {
         let (a_i, a_j) = (self.poses[first].a, self.poses[second].a);
-        let both_move = self.slot_of(first).is_some() && self.slot_of(second).is_some();
+        let both_move = self.moving_body_of(first).is_some() && self.moving_body_of(second).is_some();
         from_fn(|row| {
             from_fn(|column| {
                 let (left, right) = (from_fn::<_, 3, _>(|k| a_i[k][row]), from_fn(|k| a_j[k][column]));
@@ -191,42 +192,42 @@ impl<'m> System<'m> {
         End { body: end.body, point, f, g, h }
     }
 
-    /// What the symbols change by along a motion with the given velocities of each slot, paper eqs. (14) and (16):
+    /// What the symbols change by along a motion with the given velocities of each moving_body, paper eqs. (14) and (16):
     /// `ṙ = s`, `ṗ = ½ Gᵀ w'`, `Ȧ = A w̃'` and, between bodies, `(A_iᵀA_j)˙ = A_iᵀA_j w̃'_j − w̃'_i A_iᵀA_j`.
     pub fn direction(&mut self, motion: &[(Vec3, Vec3)]) -> Direction {
-        self.direction_of(motion, 0..self.slots.len(), 0..self.joints.len())
+        self.direction_of(motion, 0..self.moving_bodies.len(), 0..self.joints.len())
     }
 
-    /// No motion but a unit velocity or virtual rotation: column `k` of slot `slot`, of (r, π'). What does not change with it is not named.
-    pub fn unit_direction(&mut self, slot: usize, k: usize) -> Direction {
-        let mut motion = vec![(ZERO3, ZERO3); self.slots.len()];
-        motion[slot] = if k < 3 { (UNIT3[k], ZERO3) } else { (ZERO3, UNIT3[k - 3]) };
-        let body = self.slots[slot];
+    /// No motion but a unit velocity or virtual rotation: column `k` of moving_body `moving_body`, of (r, π'). What does not change with it is not named.
+    pub fn unit_direction(&mut self, moving_body: usize, k: usize) -> Direction {
+        let mut motion = vec![(ZERO3, ZERO3); self.moving_bodies.len()];
+        motion[moving_body] = if k < 3 { (UNIT3[k], ZERO3) } else { (ZERO3, UNIT3[k - 3]) };
+        let body = self.moving_bodies[moving_body];
         let is_on_it = |joint: &usize| {
             let joint = &self.joints[*joint];
             joint.first.body == body || joint.second.body == body
         };
         let joints: Vec<_> = (0..self.joints.len()).filter(is_on_it).collect();
-        self.direction_of(&motion, [slot], joints)
+        self.direction_of(&motion, [moving_body], joints)
     }
 
-    /// What the symbols of some slots and joints change by.
+    /// What the symbols of some moving_bodies and joints change by.
     fn direction_of(
         &mut self,
         motion: &[(Vec3, Vec3)],
-        slots: impl IntoIterator<Item = usize>,
+        moving_bodies: impl IntoIterator<Item = usize>,
         joints: impl IntoIterator<Item = usize>,
     ) -> Direction {
         let mut direction = Direction::new();
-        for slot in slots {
-            let (s, w) = &motion[slot];
-            let pose = self.poses[self.slots[slot]];
+        for moving_body in moving_bodies {
+            let (s, w) = &motion[moving_body];
+            let pose = self.poses[self.moving_bodies[moving_body]];
             let p_rate = self.graph.euler_rate(&pose.p, w);
             let tilde = self.graph.tilde(w);
             let a_rate = self.graph.mat_mul(&pose.a, &tilde);
-            direction.extend((0..3).map(|k| (Symbol::Position { slot, k }, s[k])));
-            direction.extend((0..4).map(|k| (Symbol::Euler { slot, k }, p_rate[k])));
-            direction.extend(entries(&a_rate, |row, column| Symbol::Rotation { slot, row, column }));
+            direction.extend((0..3).map(|k| (Symbol::Position { moving_body, k }, s[k])));
+            direction.extend((0..4).map(|k| (Symbol::Euler { moving_body, k }, p_rate[k])));
+            direction.extend(entries(&a_rate, |row, column| Symbol::Rotation { moving_body, row, column }));
         }
         for joint in joints {
             let (tilde_i, tilde_j) = self.joint_tildes(joint, motion);
@@ -248,7 +249,9 @@ impl<'m> System<'m> {
         let mut direction = Direction::from([(Symbol::Time, Graph::ONE)]);
         for (symbol, derivative) in first {
             let rate = match symbol {
-                Symbol::Rotation { slot, row, column } => Symbol::RotationRate { slot, row, column },
+                Symbol::Rotation { moving_body, row, column } => {
+                    Symbol::RotationRate { moving_body, row, column }
+                }
                 Symbol::Relative { joint, row, column } => Symbol::RelativeRate { joint, row, column },
                 _ => {
                     direction.insert(symbol, derivative);
@@ -258,11 +261,15 @@ impl<'m> System<'m> {
             self.definitions.insert(rate, derivative);
             direction.insert(symbol, self.graph.symbol(rate));
         }
-        for (slot, (_, w)) in motion.iter().enumerate() {
+        for (moving_body, (_, w)) in motion.iter().enumerate() {
             let tilde = self.graph.tilde(w);
             let square = self.graph.mat_mul(&tilde, &tilde);
-            let second = self.graph.mat_mul(&self.poses[self.slots[slot]].a, &square);
-            direction.extend(entries(&second, |row, column| Symbol::RotationRate { slot, row, column }));
+            let second = self.graph.mat_mul(&self.poses[self.moving_bodies[moving_body]].a, &square);
+            direction.extend(entries(&second, |row, column| Symbol::RotationRate {
+                moving_body,
+                row,
+                column,
+            }));
         }
         for joint in 0..self.joints.len() {
             let second = self.relative_second_rate(joint, &motion);
@@ -287,13 +294,13 @@ impl<'m> System<'m> {
     /// w̃' of a joint's first and second body.
     fn joint_tildes(&mut self, joint: usize, motion: &[(Vec3, Vec3)]) -> (Mat3, Mat3) {
         let (first, second) = (self.joints[joint].first.body, self.joints[joint].second.body);
-        let spin = |body: usize| self.slot_of(body).map_or(ZERO3, |slot| motion[slot].1);
+        let spin = |body: usize| self.moving_body_of(body).map_or(ZERO3, |moving_body| motion[moving_body].1);
         let (w_i, w_j) = (spin(first), spin(second));
         (self.graph.tilde(&w_i), self.graph.tilde(&w_j))
     }
 
     /// The rows that close something, by their place among all rows.
-    pub fn closing_rows(&self) -> Vec<usize> {
+    pub fn loop_closure_rows(&self) -> Vec<usize> {
         let carries = |joint: usize| {
             let carried = |attachment: &Attachment| matches!(attachment, Attachment::Joint { joint: j, .. } if *j == joint);
             self.tree.links.iter().any(|link| carried(&link.attachment))
@@ -312,9 +319,9 @@ impl<'m> System<'m> {
         Expansion::with_values(&self.definitions, values.clone()).all(&mut self.graph, roots)
     }
 
-    /// The velocities (s, w') of each slot.
+    /// The velocities (s, w') of each moving_body.
     pub fn velocities(&self) -> Vec<(Vec3, Vec3)> {
-        self.slots.iter().map(|&body| (self.poses[body].s, self.poses[body].w)).collect()
+        self.moving_bodies.iter().map(|&body| (self.poses[body].s, self.poses[body].w)).collect()
     }
 }
 

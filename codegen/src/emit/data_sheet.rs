@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 /// What was generated and what was left out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Sheet {
+pub struct DataSheet {
     /// Name of the mechanism.
     pub mechanism: String,
     /// Names of the bodies with coordinates.
@@ -50,7 +50,7 @@ pub struct Function {
     pub reductions: Vec<Reduction>,
 }
 
-impl Sheet {
+impl DataSheet {
     pub(crate) fn of(equations: &Equations, kernels: &Kernels) -> Self {
         let model = equations.model;
         let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.clone());
@@ -76,7 +76,7 @@ impl Sheet {
         self.rows + self.bodies.len()
     }
 
-    /// Degrees of freedom.
+    /// Degrees of subspace.
     pub fn degrees_of_freedom(&self) -> usize {
         (6 * self.bodies.len()).saturating_sub(self.rows)
     }

@@ -47,13 +47,13 @@ pub struct Equations<'m> {
     pub gamma: Vec<ExprId>,
     pub velocity_residual: Vec<ExprId>,
     pub applied_force: Vec<ExprId>,
-    /// (s̈, ẇ') of each slot, then the multipliers that are found with them.
+    /// (s̈, ẇ') of each moving_body, then the multipliers that are found with them.
     pub solved: Chosen,
-    /// (δr, δπ') of each slot that change the rows as given.
+    /// (δr, δπ') of each moving_body that change the rows as given.
     pub projection: Chosen,
     /// All multipliers, the accelerations being known.
     pub lambda: Vec<ExprId>,
-    /// (ṙ, ṗ) of each slot.
+    /// (ṙ, ṗ) of each moving_body.
     pub position_rates: Vec<ExprId>,
     /// Power of non-conservative forces and drivers, where the state carries their work; the accelerations being known.
     pub power: Option<ExprId>,
@@ -85,7 +85,7 @@ pub struct Parts {
     pub textbook: Textbook,
     pub solution: Solution,
     pub observed: Observed,
-    /// The smallest (δr, δπ') of each slot that change the rows as given.
+    /// The smallest (δr, δπ') of each moving_body that change the rows as given.
     pub projection: Vec<ExprId>,
     /// Where charts cover the mechanism.
     pub partition: Option<Partition>,
@@ -102,9 +102,9 @@ impl<'m> Equations<'m> {
         joint_space: Option<JointSpace>,
     ) -> Self {
         let Parts { textbook: Textbook { kinematics, dynamics }, solution, observed, .. } = parts;
-        let System { model, tables, mut graph, slots, .. } = system;
+        let System { model, tables, mut graph, moving_bodies, .. } = system;
         let (phi_pi, n_vanishing) =
-            virtual_jacobian(&mut graph, &mut rotations, &kinematics.phi_pi, slots.len());
+            virtual_jacobian(&mut graph, &mut rotations, &kinematics.phi_pi, moving_bodies.len());
         let projection = rotations.cheapest(&mut graph, &parts.projection);
         let mut expanded = |roots: &[ExprId]| rotations.expanded(&mut graph, roots);
         let energy = expanded(&[dynamics.kinetic, dynamics.potential]);
@@ -142,7 +142,7 @@ impl<'m> Equations<'m> {
         equations
     }
 
-    pub fn n_slots(&self) -> usize {
+    pub fn n_moving_bodies(&self) -> usize {
         self.phi.len() - self.n_rows()
     }
 
@@ -150,18 +150,18 @@ impl<'m> Equations<'m> {
         self.lambda.len()
     }
 
-    /// Length of (s̈, ẇ') of all slots.
+    /// Length of (s̈, ẇ') of all moving_bodies.
     pub fn n_velocities(&self) -> usize {
-        6 * self.n_slots()
+        6 * self.n_moving_bodies()
     }
 
     /// Number of multipliers that are found with the accelerations.
-    pub fn n_closing(&self) -> usize {
+    pub fn n_loop_multipliers(&self) -> usize {
         self.solved.roots.len() - self.n_velocities()
     }
 
     pub fn n_state(&self) -> usize {
-        13 * self.n_slots() + usize::from(self.power.is_some()) + self.turn_rates.len()
+        13 * self.n_moving_bodies() + usize::from(self.power.is_some()) + self.turn_rates.len()
     }
 
     /// ẏ without the accelerations.
@@ -176,10 +176,11 @@ fn virtual_jacobian(
     graph: &mut Graph,
     rotations: &mut Rotations<'_>,
     phi_pi: &Matrix,
-    n_slots: usize,
+    n_moving_bodies: usize,
 ) -> (Sparse, usize) {
-    let euler: Vec<Vec<_>> =
-        (0..n_slots).map(|slot| (0..4).map(|k| graph.symbol(Symbol::Euler { slot, k })).collect()).collect();
+    let euler: Vec<Vec<_>> = (0..n_moving_bodies)
+        .map(|moving_body| (0..4).map(|k| graph.symbol(Symbol::Euler { moving_body, k })).collect())
+        .collect();
     let derived = non_zeros(&expanded_matrix(phi_pi, &mut |roots| rotations.expanded(graph, roots)));
     let n_derived = derived.len();
     let kept = derived.into_iter().filter(|&(.., entry)| !vanishes(graph, &euler, entry));

@@ -36,7 +36,7 @@ impl<'d> Rotations<'d> {
         let relative = relative(system, Graph::rotation);
         let mut doubled_relative = self::relative(system, Graph::rotation_by_doubles);
         doubled_relative.extend(doubled.clone());
-        let passes = FinalPasses::of(!system.closing_rows().is_empty());
+        let passes = FinalPasses::of(!system.loop_closure_rows().is_empty());
         let way = |name, values, holds_for_any, is_doubled| Way {
             name,
             expansion: Expansion::with_values(definitions, values),
@@ -49,7 +49,7 @@ impl<'d> Rotations<'d> {
             way("relative Euler parameters", relative, false, false),
             way("relative Euler parameters, doubled", doubled_relative, false, true),
         ];
-        if system.slots.len() > MAX_UNDOUBLED {
+        if system.moving_bodies.len() > MAX_UNDOUBLED {
             ways.retain(|way| way.is_doubled);
         }
         Self { ways, passes }
@@ -72,12 +72,12 @@ impl<'d> Rotations<'d> {
     }
 }
 
-/// A(p) of each slot by way of 2p.
+/// A(p) of each moving_body by way of 2p.
 fn by_doubles(system: &mut System) -> Values {
     let mut values = Values::default();
-    for (slot, &body) in system.slots.iter().enumerate() {
+    for (moving_body, &body) in system.moving_bodies.iter().enumerate() {
         let rotation = system.graph.rotation_by_doubles(&system.poses[body].p);
-        insert(&mut values, &rotation, |row, column| Symbol::Rotation { slot, row, column });
+        insert(&mut values, &rotation, |row, column| Symbol::Rotation { moving_body, row, column });
     }
     values
 }
@@ -85,7 +85,7 @@ fn by_doubles(system: &mut System) -> Values {
 /// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
 fn relative(system: &mut System, rotation: fn(&mut Graph, &Vec4) -> Mat3) -> Values {
     let mut values = Values::default();
-    if !system.closing_rows().is_empty() {
+    if !system.loop_closure_rows().is_empty() {
         return values;
     }
     for (joint, frames) in system.joints.clone().iter().enumerate() {

@@ -39,3 +39,19 @@ pub fn sample(seed: u64) -> impl Fn(Symbol) -> f64 {
         2.0 * fraction - 1.0
     }
 }
+
+/// A reproducible state with unit Euler parameters and positive parameters.
+#[cfg(test)]
+pub fn random_state(seed: u64) -> impl Fn(Symbol) -> f64 {
+    move |symbol| {
+        let value = sample(seed);
+        match symbol {
+            Symbol::Euler { moving_body, .. } => {
+                let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { moving_body, k }));
+                value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
+            }
+            Symbol::Parameter(_) => value(symbol).abs(),
+            _ => value(symbol),
+        }
+    }
+}

@@ -393,7 +393,7 @@ mod tests {
     use crate::expr::evaluate::{evaluate, sample};
 
     fn symbols(graph: &mut Graph) -> [ExprId; 3] {
-        [0, 1, 2].map(|k| graph.symbol(Symbol::Position { slot: 0, k }))
+        [0, 1, 2].map(|k| graph.symbol(Symbol::Position { moving_body: 0, k }))
     }
 
     #[test]

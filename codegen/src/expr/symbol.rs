@@ -1,24 +1,24 @@
 //! The variables of the expression graph.
 
-/// A variable. `slot` counts the bodies that have coordinates; `k`, `row` and `column` count from zero.
+/// A variable. `moving_body` counts the bodies that have coordinates; `k`, `row` and `column` count from zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Symbol {
     /// t.
     Time,
     /// Component of r.
-    Position { slot: usize, k: usize },
+    Position { moving_body: usize, k: usize },
     /// Component of p.
-    Euler { slot: usize, k: usize },
+    Euler { moving_body: usize, k: usize },
     /// Component of s = ṙ.
-    Velocity { slot: usize, k: usize },
+    Velocity { moving_body: usize, k: usize },
     /// Component of w'.
-    Spin { slot: usize, k: usize },
+    Spin { moving_body: usize, k: usize },
     /// Component of a joint's chart: one for the special Euler parameter, else zero.
     Chart { chart: usize, k: usize },
     /// A tunable number of the model.
     Parameter(usize),
     /// A number that follows from parameters, by its place among what is set up before all steps.
-    SetUp(usize),
+    ParameterSetup(usize),
     /// A number that the caller sets at every step.
     Input(usize),
     /// The turn reference of an angle, by its place in `Model::turn_references`: part of the state, and constant in all
@@ -28,10 +28,10 @@ pub enum Symbol {
     Angle(usize),
     /// Value (order 0) or a derivative of a table's curve at t.
     Table { table: usize, order: usize },
-    /// Component of (s̈, ẇ') of a slot, where accelerations are known.
-    Acceleration { slot: usize, k: usize },
+    /// Component of (s̈, ẇ') of a moving_body, where accelerations are known.
+    Acceleration { moving_body: usize, k: usize },
     /// Multiplier of a row that closes a loop, where accelerations are known.
-    Closing(usize),
+    LoopMultiplier(usize),
     /// By how much a row is asked to change.
     Change(usize),
     /// Joint coordinate, by its place in x: see `joint_space::Layout`.
@@ -45,11 +45,11 @@ pub enum Symbol {
     /// Its cosine.
     Cosine(usize),
     /// Entry of A(p), defined by eq. (3).
-    Rotation { slot: usize, row: usize, column: usize },
+    Rotation { moving_body: usize, row: usize, column: usize },
     /// Entry of A_iᵀ A_j between a joint's first and second body, eq. (4).
     Relative { joint: usize, row: usize, column: usize },
     /// Entry of Ȧ.
-    RotationRate { slot: usize, row: usize, column: usize },
+    RotationRate { moving_body: usize, row: usize, column: usize },
     /// Entry of (A_iᵀ A_j)˙.
     RelativeRate { joint: usize, row: usize, column: usize },
 }

@@ -1,7 +1,7 @@
 //! The forms of the rates' rates that are compared.
 
 use super::coordinates::Coordinates;
-use super::dynamics::{self, MAX_FACTORED, NORMAL_FORM, Reduced};
+use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
 use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
@@ -19,25 +19,25 @@ pub type Candidate = (&'static str, Vec<ExprId>);
 #[derive(Debug)]
 pub struct Candidates {
     /// What u̇ is the solution of, angular velocities made of rates.
-    pub balance: Reduced,
+    pub balance: JointDynamics,
     /// By elimination.
     pub eliminated: Vec<Candidate>,
     /// The shortest of them in joint coordinates, for what has to be short rather than accurate: the Jacobian.
     pub shortest: Vec<ExprId>,
     pub eliminated_on_spins: Vec<Candidate>,
     /// By Gram–Schmidt, which cancels nothing, in small trees.
-    pub orthogonal: Option<Candidate>,
-    pub orthogonal_on_spins: Option<Candidate>,
+    pub by_gram_schmidt: Option<Candidate>,
+    pub by_gram_schmidt_on_spins: Option<Candidate>,
     /// What the normal form made of the parts of the form of this name.
     pub reductions: Vec<Reduction>,
 }
 
 impl Candidates {
     pub fn solve(system: &mut System, textbook: &Textbook, coordinates: &Coordinates) -> Self {
-        let Coordinates { layout, carriages_of_dynamics: carriages, unit, along, .. } = coordinates;
+        let Coordinates { layout, links_of_dynamics: links, unit, along, .. } = coordinates;
         let loads = &textbook.dynamics.other_loads;
-        let spins = dynamics::spins(system, carriages);
-        let balance = Reduced::new(system, layout, carriages, &spins, loads, along);
+        let spins = dynamics::spins(system, links);
+        let balance = JointDynamics::new(system, layout, links, &spins, loads, along);
         let mut reductions = Vec::new();
         let mut eliminated = vec![("recursion", balance.recursion(system))];
         if layout.n_rates <= MAX_FACTORED {
@@ -46,33 +46,33 @@ impl Candidates {
         let shortest = expanded(system, &coordinates.in_joints, &eliminated);
         let shortest = FinalPasses::of(false).cheapest(&mut system.graph, shortest).roots;
         let spins = spins_at_hand(system, coordinates);
-        let on_spins = Reduced::new(system, layout, carriages, &spins, loads, along);
+        let on_spins = JointDynamics::new(system, layout, links, &spins, loads, along);
         let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
         let is_small = (2..=gram_schmidt::MAX_RATES).contains(&layout.n_rates);
-        let orthogonal = is_small.then(|| ("orthogonal motions", balance.orthogonal(system)));
-        let orthogonal_on_spins =
-            is_small.then(|| ("orthogonal motions on the bodies' spins", on_spins.orthogonal(system)));
+        let by_gram_schmidt = is_small.then(|| ("orthogonal motions", balance.by_gram_schmidt(system)));
+        let by_gram_schmidt_on_spins =
+            is_small.then(|| ("orthogonal motions on the bodies' spins", on_spins.by_gram_schmidt(system)));
         Self {
             balance,
             eliminated,
             shortest,
             eliminated_on_spins,
-            orthogonal,
-            orthogonal_on_spins,
+            by_gram_schmidt,
+            by_gram_schmidt_on_spins,
             reductions,
         }
     }
 
     /// Leaves out the forms that lose digits by cancellation which Gram–Schmidt keeps.
     pub fn retain_accurate(&mut self, system: &mut System, coordinates: &Coordinates) {
-        let Some((_, keeping)) = &self.orthogonal else { return };
-        if !cancellation::are_at_stake(system) {
+        let Some((_, keeping)) = &self.by_gram_schmidt else { return };
+        if !cancellation::may_matter(system) {
             return;
         }
         let keeping = system.expanded(&coordinates.in_joints, keeping);
         let eliminated = self.eliminated.iter().chain(&self.eliminated_on_spins);
         let forms = expanded(system, &coordinates.in_joints, eliminated);
-        let losing = losing_digits(system, coordinates, &forms, &keeping);
+        let losing = inaccurate(system, coordinates, &forms, &keeping);
         let keeps = |(name, _): &Candidate| losing.iter().all(|losing| losing != name);
         self.eliminated.retain(keeps);
         self.eliminated_on_spins.retain(keeps);
@@ -80,13 +80,17 @@ impl Candidates {
 
     /// Those that have rates at hand, in given terms.
     pub fn on_rates(&self, system: &mut System, values: &Values) -> Vec<(String, Vec<ExprId>)> {
-        expanded(system, values, self.eliminated.iter().chain(&self.orthogonal))
+        expanded(system, values, self.eliminated.iter().chain(&self.by_gram_schmidt))
     }
 
     /// All, in given terms.
     pub fn all(&self, system: &mut System, values: &Values) -> Vec<(String, Vec<ExprId>)> {
         let eliminated = self.eliminated.iter().chain(&self.eliminated_on_spins);
-        expanded(system, values, eliminated.chain(&self.orthogonal).chain(&self.orthogonal_on_spins))
+        expanded(
+            system,
+            values,
+            eliminated.chain(&self.by_gram_schmidt).chain(&self.by_gram_schmidt_on_spins),
+        )
     }
 }
 
@@ -100,7 +104,7 @@ fn expanded<'c>(
 }
 
 /// The names of those ways of writing the rates' rates that lose digits which another keeps.
-fn losing_digits(
+fn inaccurate(
     system: &System,
     coordinates: &Coordinates,
     ways: &[(String, Vec<ExprId>)],
@@ -112,19 +116,19 @@ fn losing_digits(
     let angles = scalars.filter(|scalar| scalar.kind.is_angle()).map(|scalar| scalar.place.x).collect();
     let all: Vec<_> = ways.iter().flat_map(|(_, roots)| roots).chain(keeping).copied().collect();
     let trials = Trials::draw(system, &all, &angles);
-    let loses = |roots: &[ExprId]| !is_tried || !trials.keep_digits(&system.graph, roots, keeping);
+    let loses = |roots: &[ExprId]| !is_tried || !trials.is_accurate(&system.graph, roots, keeping);
     ways.iter().filter(|(_, roots)| loses(roots)).map(|(name, _)| name.clone()).collect()
 }
 
-/// w' of each slot as a maximal state has it, but of bodies whose frame does not turn with them.
+/// w' of each moving_body as a maximal state has it, but of bodies whose frame does not turn with them.
 fn spins_at_hand(system: &mut System, coordinates: &Coordinates) -> Vec<Vec3> {
-    let own: Vec<_> = system.slots.iter().map(|&body| system.poses[body].w).collect();
+    let own: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body].w).collect();
     let mut spins = own.clone();
-    for (link, carriage) in coordinates.layout.links.iter().zip(&coordinates.carriages_of_dynamics) {
+    for (link, link_kinematics) in coordinates.layout.links.iter().zip(&coordinates.links_of_dynamics) {
         if link.scalars.iter().any(|scalar| coordinates.invariant.contains(&scalar.place.x)) {
             // A leaf: nothing else looks at this frame.
-            let of_parent = dynamics::spin_of(system, carriage.parent, &own);
-            spins[carriage.slot] = carriage.spin(&mut system.graph, &of_parent);
+            let of_parent = dynamics::spin_of(system, link_kinematics.parent, &own);
+            spins[link_kinematics.moving_body] = link_kinematics.spin(&mut system.graph, &of_parent);
         }
     }
     spins

@@ -23,11 +23,11 @@ pub struct JointSpace {
     pub derivative: Vec<ExprId>,
     /// u̇ in terms of a maximal state that satisfies the constraints.
     pub accelerations_at: Chosen,
-    /// (s̈, ẇ') of each slot at such a state.
+    /// (s̈, ẇ') of each moving_body at such a state.
     pub corrected: Chosen,
     /// λ at such a state, in terms of [`Symbol::Acceleration`].
     pub multipliers: Vec<ExprId>,
-    /// (s̈, ẇ') of each slot at such a state, then λ.
+    /// (s̈, ẇ') of each moving_body at such a state, then λ.
     pub solution: Vec<ExprId>,
     /// Maximal positions, velocities and turn references in terms of joint coordinates and rates.
     pub maximal: Vec<ExprId>,
@@ -142,7 +142,7 @@ impl Power {
         rates_of_rates: &[ExprId],
     ) -> Option<ExprId> {
         system.model.has_work().then(|| {
-            let motions = motions::motions(system, &coordinates.carriages, rates_of_rates, true);
+            let motions = motions::motions(system, &coordinates.links, rates_of_rates, true);
             let motions = system.expanded(&coordinates.in_joints, &motions);
             let mut values = coordinates.in_joints.clone();
             values.extend(motions::accelerations_by_symbol(&motions));

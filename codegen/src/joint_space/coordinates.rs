@@ -1,7 +1,7 @@
 //! A tree in joint coordinates: what is derived before anything is solved.
 
 use super::layout::Layout;
-use super::link_kinematics::{self, Carriage};
+use super::link_kinematics::{self, LinkKinematics};
 use super::{dynamics, maps};
 use crate::derive::Textbook;
 use crate::derive::dynamics::Dynamics;
@@ -16,9 +16,9 @@ use crate::expr::vector::ZERO3;
 pub struct Coordinates {
     pub layout: Layout,
     /// How each body moves on its carrier.
-    pub carriages: Vec<Carriage>,
+    pub links: Vec<LinkKinematics>,
     /// The same, but that a body which looks the same all around its axis is described in a frame that does not turn with it.
-    pub carriages_of_dynamics: Vec<Carriage>,
+    pub links_of_dynamics: Vec<LinkKinematics>,
     /// The angles that turn such bodies, by their places in x.
     pub invariant: Vec<usize>,
     /// Maximal positions and velocities in terms of joint coordinates and rates.
@@ -36,30 +36,20 @@ pub struct Coordinates {
 impl Coordinates {
     /// Whether joint coordinates describe the mechanism.
     pub fn cover(system: &System) -> bool {
-        system.tree.is_open() && system.closing_rows().is_empty()
+        system.tree.is_open() && system.loop_closure_rows().is_empty()
     }
 
     pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
         let layout = Layout::of(system);
-        let carriages = carriages_of(system, &layout, &|_| true);
-        let maximal = maps::of_bodies(system, &layout, &carriages);
+        let links = links_of(system, &layout, &|_| true);
+        let maximal = maps::of_bodies(system, &layout, &links);
         let in_joints = maps::in_joints(system, &layout, &maximal);
         let of_joints = maps::of_joints(system, &layout);
-        let invariant = invariant_angles(system, &layout, &carriages, &textbook.dynamics);
-        let carriages_of_dynamics = carriages_of(system, &layout, &|x| !invariant.contains(&x));
+        let invariant = invariant_angles(system, &layout, &links, &textbook.dynamics);
+        let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
         let along = dynamics::forces_along(system, &layout);
         let unit = unit_atoms(system, &layout);
-        Self {
-            layout,
-            carriages,
-            carriages_of_dynamics,
-            invariant,
-            maximal,
-            in_joints,
-            of_joints,
-            along,
-            unit,
-        }
+        Self { layout, links, links_of_dynamics, invariant, maximal, in_joints, of_joints, along, unit }
     }
 
     /// Bodies that are described in a frame that does not turn with them.
@@ -76,8 +66,8 @@ impl Coordinates {
     }
 }
 
-fn carriages_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turned) -> Vec<Carriage> {
-    layout.links.iter().map(|link| Carriage::of(system, link, turned)).collect()
+fn links_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turned) -> Vec<LinkKinematics> {
+    layout.links.iter().map(|link| LinkKinematics::of(system, link, turned)).collect()
 }
 
 /// Angles that turn nothing but a body that looks the same whatever the angle is: a leaf with a single axis, its mass centre on
@@ -86,23 +76,23 @@ fn carriages_of(system: &mut System, layout: &Layout, turned: link_kinematics::T
 fn invariant_angles(
     system: &mut System,
     layout: &Layout,
-    carriages: &[Carriage],
+    links: &[LinkKinematics],
     dynamics: &Dynamics,
 ) -> Vec<usize> {
-    let is_leaf = |body: usize| carriages.iter().all(|carriage| carriage.parent != Some(body));
-    let links = layout.links.iter().zip(carriages);
-    let invariant = links.filter_map(|(link, carriage)| {
+    let is_leaf = |body: usize| links.iter().all(|link_kinematics| link_kinematics.parent != Some(body));
+    let links = layout.links.iter().zip(links);
+    let invariant = links.filter_map(|(link, link_kinematics)| {
         let angles: Vec<_> = link.scalars.iter().filter(|scalar| scalar.kind.is_angle()).collect();
         let [angle] = angles[..] else { return None };
-        let turning = carriage.free.iter().find(|free| free.rate == angle.place.u)?;
+        let turning = link_kinematics.free.iter().find(|free| free.rate == angle.place.u)?;
         let axis = turning.twist.rho;
         let load = dynamics.other_loads[link.link.body];
         let unloaded = load.force == ZERO3 && load.torque == ZERO3;
-        let inertia = system.inertia(carriage.slot);
+        let inertia = system.inertia(link_kinematics.moving_body);
         let graph = &mut system.graph;
         let tilde = graph.tilde(&axis);
         let (left, right) = (graph.mat_mul(&tilde, &inertia), graph.mat_mul(&inertia, &tilde));
-        let on_axis = graph.cross(&axis, &carriage.on_body) == ZERO3;
+        let on_axis = graph.cross(&axis, &link_kinematics.on_body) == ZERO3;
         let symmetric = graph.sub_mat(&left, &right) == [ZERO3; 3];
         (is_leaf(link.link.body) && unloaded && on_axis && symmetric).then_some(angle.place.x)
     });

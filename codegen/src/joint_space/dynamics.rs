@@ -1,9 +1,9 @@
 //! The accelerations of the joint coordinates: by a recursion over the tree, or through its reduced mass matrix `Bᵀ M B`.
 //!
-//! Both work in the bodies' own frames, on what [`Carriage`] says. Gravity enters as an acceleration of the ground.
+//! Both work in the bodies' own frames, on what [`LinkKinematics`] says. Gravity enters as an acceleration of the ground.
 
 use super::layout::Layout;
-use super::link_kinematics::{Bias, Carriage};
+use super::link_kinematics::{Bias, LinkKinematics};
 use crate::derive::dynamics::gyroscopic_torque;
 use crate::derive::forces::{self, Readings};
 use crate::derive::joint_coordinate::Load;
@@ -17,9 +17,9 @@ use crate::expr::symbol::Symbol;
 use crate::expr::vector::{UNIT3, Vec3, ZERO3};
 use crate::simplify::normal_form::{Reduction, normal_form_of};
 use crate::solve::articulated_body::{Arm, Basis, EliminatedTree, Excitation, Inertia};
-use crate::solve::gram_schmidt::OrthogonalTree;
+use crate::solve::gram_schmidt::GramSchmidtTree;
 use crate::solve::ldl::Elimination;
-use crate::solve::motion_subspace::{Freedom, Parent};
+use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use gyro_model::{Attachment, JointCoordinate};
 use std::collections::BTreeMap;
 
@@ -90,54 +90,58 @@ fn add_spherical_friction(system: &mut System, layout: &Layout, along: &mut [Exp
 
 /// A tree in joint coordinates, ready to be solved.
 #[derive(Debug)]
-pub struct Reduced {
+pub struct JointDynamics {
     /// Rates of each link's free twists, root first.
     rates: Vec<Vec<usize>>,
-    freedoms: Vec<Freedom>,
+    subspaces: Vec<MotionSubspace>,
     /// In the bodies' own frames.
     excitation: Excitation,
     n_rates: usize,
 }
 
-impl Reduced {
+impl JointDynamics {
     /// `loads` act on each body of the model besides gravity; `along` is the force along each rate.
     pub fn new(
         system: &mut System,
         layout: &Layout,
-        carriages: &[Carriage],
+        links: &[LinkKinematics],
         spins: &[Vec3],
         loads: &[Load],
         along: &[ExprId],
     ) -> Self {
-        let freedoms = carriages.iter().map(|carriage| local_freedom(system, carriage)).collect();
+        let subspaces = links.iter().map(|link_kinematics| local_subspace(system, link_kinematics)).collect();
         let gravity = system.numbers(&system.model.gravity);
-        let forced = carriages.iter().map(|carriage| {
-            let bias = bias(system, carriage, spins);
+        let forced = links.iter().map(|link_kinematics| {
+            let bias = bias(system, link_kinematics, spins);
             let graph = &mut system.graph;
-            let at_joint = graph.transposed_vec(&carriage.rotation, &bias.on_parent);
+            let at_joint = graph.transposed_vec(&link_kinematics.rotation, &bias.on_parent);
             let own = SpatialVector { t: graph.add_vec(&at_joint, &bias.on_body), rho: bias.rho };
-            let ground = of_ground(system, carriage, &gravity);
+            let ground = of_ground(system, link_kinematics, &gravity);
             own.plus(&mut system.graph, &ground)
         });
         let forced = forced.collect();
-        let bias = (0..spins.len()).map(|slot| inertial(system, slot, &spins[slot], loads)).collect();
-        let rates: Vec<Vec<_>> =
-            carriages.iter().map(|carriage| carriage.free.iter().map(|free| free.rate).collect()).collect();
+        let bias = (0..spins.len())
+            .map(|moving_body| inertial(system, moving_body, &spins[moving_body], loads))
+            .collect();
+        let rates: Vec<Vec<_>> = links
+            .iter()
+            .map(|link_kinematics| link_kinematics.free.iter().map(|free| free.rate).collect())
+            .collect();
         let along = rates.iter().map(|rates| rates.iter().map(|&rate| along[rate]).collect()).collect();
         let excitation = Excitation { bias, forced, along };
-        Self { rates, freedoms, excitation, n_rates: layout.n_rates }
+        Self { rates, subspaces, excitation, n_rates: layout.n_rates }
     }
 
     /// u̇ through orthogonal motions.
-    pub fn orthogonal(&self, system: &mut System) -> Vec<ExprId> {
-        let tree = OrthogonalTree::new(system, self.freedoms.clone(), Basis::Mixed);
+    pub fn by_gram_schmidt(&self, system: &mut System) -> Vec<ExprId> {
+        let tree = GramSchmidtTree::new(system, self.subspaces.clone(), Basis::Mixed);
         let response = tree.respond(&mut system.graph, &self.excitation);
         self.scattered(&response.rates)
     }
 
     /// u̇ by elimination from the leaves to the roots: operations grow linearly with the number of bodies.
     pub fn recursion(&self, system: &mut System) -> Vec<ExprId> {
-        let tree = EliminatedTree::new(system, self.freedoms.clone(), Basis::Mixed);
+        let tree = EliminatedTree::new(system, self.subspaces.clone(), Basis::Mixed);
         let response = tree.respond(&mut system.graph, &self.excitation);
         self.scattered(&response.rates)
     }
@@ -173,10 +177,10 @@ impl Reduced {
 
     /// The rates' rates that forces along the rates alone bring about, for each column of forces: `M⁻¹ force`.
     pub fn accelerations_of(&self, system: &mut System, columns: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
-        let tree = EliminatedTree::new(system, self.freedoms.clone(), Basis::Mixed);
+        let tree = EliminatedTree::new(system, self.subspaces.clone(), Basis::Mixed);
         let solved = |forces: &Vec<ExprId>| {
             let along = self.rates.iter().map(|rates| rates.iter().map(|&rate| forces[rate]).collect());
-            let none = Excitation::none(self.excitation.bias.len(), self.freedoms.len());
+            let none = Excitation::none(self.excitation.bias.len(), self.subspaces.len());
             let excitation = Excitation { along: along.collect(), ..none };
             self.scattered(&tree.respond(&mut system.graph, &excitation).rates)
         };
@@ -220,23 +224,23 @@ impl Reduced {
     /// beyond it moving as one body.
     fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
         let mut bodies: Vec<_> =
-            (0..self.excitation.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+            (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
         let mut matrix = BTreeMap::new();
-        for (freedom, rates) in self.freedoms.iter().zip(&self.rates).rev() {
-            let arm = Arm::on_body(graph, freedom);
-            let beyond = bodies[freedom.slot].seen_through(graph, &arm);
-            for (k, (twist, &rate)) in freedom.free.iter().zip(rates).enumerate() {
+        for (subspace, rates) in self.subspaces.iter().zip(&self.rates).rev() {
+            let arm = Arm::on_body(graph, subspace);
+            let beyond = bodies[subspace.moving_body].seen_through(graph, &arm);
+            for (k, (twist, &rate)) in subspace.free.iter().zip(rates).enumerate() {
                 let mut wrench = beyond.times(graph, twist);
-                for (other, &other_rate) in freedom.free[..=k].iter().zip(rates) {
+                for (other, &other_rate) in subspace.free[..=k].iter().zip(rates) {
                     let entry = other.dot(graph, &wrench);
                     matrix.insert((rate.max(other_rate), rate.min(other_rate)), entry);
                 }
-                let mut link = freedom;
+                let mut link = subspace;
                 while let Some(parent) = link.parent {
                     let carried = parent.wrench(graph, &wrench);
-                    let at = self.place_of(parent.slot);
-                    link = &self.freedoms[at];
+                    let at = self.place_of(parent.moving_body);
+                    link = &self.subspaces[at];
                     wrench = Arm::on_body(graph, link).wrench(graph, &carried);
                     for (other, &other_rate) in link.free.iter().zip(&self.rates[at]) {
                         let entry = other.dot(graph, &wrench);
@@ -244,19 +248,22 @@ impl Reduced {
                     }
                 }
             }
-            if let Some(parent) = freedom.parent {
+            if let Some(parent) = subspace.parent {
                 let load = beyond.on_parent(graph, &parent);
                 let arm = Arm::on_parent(graph, &parent);
                 let load = load.seen_through(graph, &arm);
-                bodies[parent.slot].add(graph, &load);
+                bodies[parent.moving_body].add(graph, &load);
             }
         }
         matrix.retain(|_, entry| *entry != Graph::ZERO);
         matrix
     }
 
-    fn place_of(&self, slot: usize) -> usize {
-        self.freedoms.iter().position(|freedom| freedom.slot == slot).expect("every slot is a link")
+    fn place_of(&self, moving_body: usize) -> usize {
+        self.subspaces
+            .iter()
+            .position(|subspace| subspace.moving_body == moving_body)
+            .expect("every moving_body is a link")
     }
 
     /// What drives each rate: forces less what the motion at constant rates takes.
@@ -267,36 +274,37 @@ impl Reduced {
     /// The force along each rate that is left over by the motion with these rates' rates.
     pub fn left_over(&self, system: &mut System, rates_of_rates: &[ExprId]) -> Vec<ExprId> {
         let bodies: Vec<_> =
-            (0..self.excitation.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+            (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
         let mut motions = vec![SpatialVector::ZERO; self.excitation.bias.len()];
-        for ((freedom, forced), rates) in self.freedoms.iter().zip(&self.excitation.forced).zip(&self.rates) {
+        for ((subspace, forced), rates) in self.subspaces.iter().zip(&self.excitation.forced).zip(&self.rates)
+        {
             let mut motion = *forced;
-            if let Some(parent) = freedom.parent {
-                let carried = parent.twist(graph, &motions[parent.slot]);
+            if let Some(parent) = subspace.parent {
+                let carried = parent.twist(graph, &motions[parent.moving_body]);
                 motion = motion.plus(graph, &carried);
             }
-            for (twist, &rate) in freedom.free.iter().zip(rates) {
+            for (twist, &rate) in subspace.free.iter().zip(rates) {
                 let own = twist.scaled(graph, rates_of_rates[rate]);
                 motion = motion.plus(graph, &own);
             }
-            motions[freedom.slot] = Arm::on_body(graph, freedom).twist(graph, &motion);
+            motions[subspace.moving_body] = Arm::on_body(graph, subspace).twist(graph, &motion);
         }
         let mut taken: Vec<_> = (motions.iter().zip(&bodies).zip(&self.excitation.bias))
             .map(|((motion, inertia), bias)| inertia.times(graph, motion).plus(graph, bias))
             .collect();
         let mut forces = vec![Graph::ZERO; self.n_rates];
-        for ((freedom, rates), along) in
-            self.freedoms.iter().zip(&self.rates).zip(&self.excitation.along).rev()
+        for ((subspace, rates), along) in
+            self.subspaces.iter().zip(&self.rates).zip(&self.excitation.along).rev()
         {
-            let wrench = Arm::on_body(graph, freedom).wrench(graph, &taken[freedom.slot]);
-            for ((twist, &rate), &along) in freedom.free.iter().zip(rates).zip(along) {
+            let wrench = Arm::on_body(graph, subspace).wrench(graph, &taken[subspace.moving_body]);
+            for ((twist, &rate), &along) in subspace.free.iter().zip(rates).zip(along) {
                 let resisted = twist.dot(graph, &wrench);
                 forces[rate] = graph.sub(along, resisted);
             }
-            if let Some(parent) = freedom.parent {
+            if let Some(parent) = subspace.parent {
                 let carried = parent.wrench(graph, &wrench);
-                taken[parent.slot] = taken[parent.slot].plus(graph, &carried);
+                taken[parent.moving_body] = taken[parent.moving_body].plus(graph, &carried);
             }
         }
         forces
@@ -304,43 +312,46 @@ impl Reduced {
 }
 
 /// Translations in the body's own frame.
-pub fn local_freedom(system: &System, carriage: &Carriage) -> Freedom {
-    let parent = carriage.parent.and_then(|body| system.slot_of(body)).map(|slot| Parent {
-        slot,
-        point: carriage.on_parent,
-        relative: carriage.rotation,
-        frame: UNIT3,
-        carried: carriage.rotation,
-    });
-    let free = carriage.free.iter().map(|free| free.twist).collect();
-    Freedom::of_tree(carriage.slot, parent, carriage.on_body, free)
+pub fn local_subspace(system: &System, link_kinematics: &LinkKinematics) -> MotionSubspace {
+    let parent =
+        link_kinematics.parent.and_then(|body| system.moving_body_of(body)).map(|moving_body| Parent {
+            moving_body,
+            point: link_kinematics.on_parent,
+            relative: link_kinematics.rotation,
+            frame: UNIT3,
+            carried: link_kinematics.rotation,
+        });
+    let free = link_kinematics.free.iter().map(|free| free.twist).collect();
+    MotionSubspace::of_tree(link_kinematics.moving_body, parent, link_kinematics.on_body, free)
 }
 
-/// w' of each slot, from the rates.
-pub fn spins(system: &mut System, carriages: &[Carriage]) -> Vec<Vec3> {
-    let mut spins = vec![ZERO3; system.slots.len()];
-    for carriage in carriages {
-        let of_parent = spin_of(system, carriage.parent, &spins);
-        spins[carriage.slot] = carriage.spin(&mut system.graph, &of_parent);
+/// w' of each moving_body, from the rates.
+pub fn spins(system: &mut System, links: &[LinkKinematics]) -> Vec<Vec3> {
+    let mut spins = vec![ZERO3; system.moving_bodies.len()];
+    for link_kinematics in links {
+        let of_parent = spin_of(system, link_kinematics.parent, &spins);
+        spins[link_kinematics.moving_body] = link_kinematics.spin(&mut system.graph, &of_parent);
     }
     spins
 }
 
 /// w' of a carrier.
 pub fn spin_of(system: &System, body: Option<usize>, spins: &[Vec3]) -> Vec3 {
-    body.map_or(ZERO3, |body| system.slot_of(body).map_or(system.poses[body].w, |slot| spins[slot]))
+    body.map_or(ZERO3, |body| {
+        system.moving_body_of(body).map_or(system.poses[body].w, |moving_body| spins[moving_body])
+    })
 }
 
-pub fn bias(system: &mut System, carriage: &Carriage, spins: &[Vec3]) -> Bias {
-    let of_parent = spin_of(system, carriage.parent, spins);
-    carriage.bias(&mut system.graph, &of_parent, &spins[carriage.slot])
+pub fn bias(system: &mut System, link_kinematics: &LinkKinematics, spins: &[Vec3]) -> Bias {
+    let of_parent = spin_of(system, link_kinematics.parent, spins);
+    link_kinematics.bias(&mut system.graph, &of_parent, &spins[link_kinematics.moving_body])
 }
 
 /// The acceleration of the joint point and the angular acceleration that a carrier without coordinates imposes, centripetal
 /// parts left out, less gravity; in the body's frame.
-pub fn of_ground(system: &mut System, carriage: &Carriage, gravity: &Vec3) -> SpatialVector {
-    let (linear, angular, a) = match carriage.parent {
-        Some(body) if system.slot_of(body).is_some() => return SpatialVector::ZERO,
+pub fn of_ground(system: &mut System, link_kinematics: &LinkKinematics, gravity: &Vec3) -> SpatialVector {
+    let (linear, angular, a) = match link_kinematics.parent {
+        Some(body) if system.moving_body_of(body).is_some() => return SpatialVector::ZERO,
         Some(body) => {
             let pose = system.poses[body];
             (time_derivative(system, &pose.s), time_derivative(system, &pose.w), pose.a)
@@ -350,17 +361,17 @@ pub fn of_ground(system: &mut System, carriage: &Carriage, gravity: &Vec3) -> Sp
     let graph = &mut system.graph;
     let felt = graph.sub_vec(&linear, gravity);
     let felt = graph.transposed_vec(&a, &felt);
-    let tangential = graph.cross(&angular, &carriage.on_parent);
+    let tangential = graph.cross(&angular, &link_kinematics.on_parent);
     let at_joint = graph.add_vec(&felt, &tangential);
     SpatialVector {
-        t: graph.transposed_vec(&carriage.rotation, &at_joint),
-        rho: graph.transposed_vec(&carriage.rotation, &angular),
+        t: graph.transposed_vec(&link_kinematics.rotation, &at_joint),
+        rho: graph.transposed_vec(&link_kinematics.rotation, &angular),
     }
 }
 
 /// What a body at constant velocity takes: `w̃'J'w'`, less the loads on it.
-fn inertial(system: &mut System, slot: usize, spin: &Vec3, loads: &[Load]) -> SpatialVector {
-    let (inertia, body) = (system.inertia(slot), system.slots[slot]);
+fn inertial(system: &mut System, moving_body: usize, spin: &Vec3, loads: &[Load]) -> SpatialVector {
+    let (inertia, body) = (system.inertia(moving_body), system.moving_bodies[moving_body]);
     let (load, a) = (&loads[body], system.poses[body].a);
     let graph = &mut system.graph;
     let gyroscopic = gyroscopic_torque(graph, &inertia, spin);

@@ -10,7 +10,7 @@
 //! written out, from within and from without, and the cheapest is taken.
 
 use super::coordinates::Coordinates;
-use super::dynamics::{MAX_FACTORED, NORMAL_FORM, Reduced};
+use super::dynamics::{JointDynamics, MAX_FACTORED, NORMAL_FORM};
 
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion};
@@ -43,7 +43,7 @@ pub struct JointForm<'a> {
     /// In terms of [`Symbol::RateOfRate`].
     pub power: Option<ExprId>,
     /// What u̇ is the solution of.
-    pub balance: &'a Reduced,
+    pub balance: &'a JointDynamics,
     pub passes: FinalPasses,
 }
 

@@ -13,8 +13,8 @@ use std::array::from_fn;
 
 /// A link of the tree.
 #[derive(Clone, Debug)]
-pub struct Carriage {
-    pub slot: usize,
+pub struct LinkKinematics {
+    pub moving_body: usize,
     /// The carrier, index into the model's bodies; none is the global frame.
     pub parent: Option<usize>,
     /// `A_parentᵀ A_body`.
@@ -44,29 +44,29 @@ pub struct Free {
 /// Whether an angle turns the frame in which a body is described: see [`super::invariant`].
 pub type Turned<'a> = &'a dyn Fn(usize) -> bool;
 
-impl Carriage {
+impl LinkKinematics {
     /// `turned` says of an angle (index into x) whether it turns the body's frame.
     pub fn of(system: &mut System, coordinates: &LinkCoordinates, turned: Turned) -> Self {
-        let slot = system.slot_of(coordinates.link.body).expect("links have coordinates");
+        let moving_body = system.moving_body_of(coordinates.link.body).expect("links have coordinates");
         match coordinates.link.attachment {
             Attachment::Joint { joint, parent, reversed } => {
                 let frames = system.joints[joint];
-                Self::on_joint(system, coordinates, (slot, parent), &frames, reversed, turned)
+                Self::on_joint(system, coordinates, (moving_body, parent), &frames, reversed, turned)
             }
             Attachment::Constrained => {
                 let given = system.fixed_pose(coordinates.link.body);
-                Self::in_space(slot, given.a, given.r)
+                Self::in_space(moving_body, given.a, given.r)
             }
-            Attachment::Free => Self::free(system, coordinates, slot),
+            Attachment::Free => Self::free(system, coordinates, moving_body),
         }
     }
 
-    fn in_space(slot: usize, rotation: Mat3, on_parent: Vec3) -> Self {
+    fn in_space(moving_body: usize, rotation: Mat3, on_parent: Vec3) -> Self {
         let (parent, on_body, free, sliding) = (None, ZERO3, Vec::new(), Vec::new());
-        Self { slot, parent, rotation, on_parent, on_body, free, slides_on_parent: true, sliding }
+        Self { moving_body, parent, rotation, on_parent, on_body, free, slides_on_parent: true, sliding }
     }
 
-    fn free(system: &mut System, coordinates: &LinkCoordinates, slot: usize) -> Self {
+    fn free(system: &mut System, coordinates: &LinkCoordinates, moving_body: usize) -> Self {
         let (Some(position), Some(orientation)) = (coordinates.position, coordinates.orientation) else {
             unreachable!("a free body has all coordinates")
         };
@@ -85,21 +85,21 @@ impl Carriage {
             about_axis_of_parent: false,
         });
         let (free, sliding) = (translations.chain(rotations).collect(), [UNIT3, [ZERO3; 3]].concat());
-        Self { free, sliding, ..Self::in_space(slot, rotation, r) }
+        Self { free, sliding, ..Self::in_space(moving_body, rotation, r) }
     }
 
     fn on_joint(
         system: &mut System,
         coordinates: &LinkCoordinates,
-        (slot, parent): (usize, usize),
+        (moving_body, parent): (usize, usize),
         joint: &JointFrames,
         reversed: bool,
         turned: Turned,
     ) -> Self {
         let relative = relative_rotation(system, coordinates, joint, turned);
         let rotation = if reversed { transposed(&relative) } else { relative };
-        let mut carriage = Self {
-            slot,
+        let mut link_kinematics = Self {
+            moving_body,
             parent: Some(parent),
             rotation,
             on_parent: if reversed { joint.second.point } else { joint.first.point },
@@ -109,15 +109,15 @@ impl Carriage {
             sliding: Vec::new(),
         };
         for scalar in &coordinates.scalars {
-            carriage.add_scalar(&mut system.graph, joint, reversed, scalar.kind, scalar.place.u);
-            carriage.slide(system, joint, reversed, scalar.kind, scalar.place.x);
+            link_kinematics.add_scalar(&mut system.graph, joint, reversed, scalar.kind, scalar.place.u);
+            link_kinematics.slide(system, joint, reversed, scalar.kind, scalar.place.x);
         }
         if let Some(place) = coordinates.orientation {
             for (k, &axis) in UNIT3.iter().enumerate() {
-                carriage.add(&mut system.graph, ZERO3, Turn::AboutSecond(axis), reversed, place.u + k);
+                link_kinematics.add(&mut system.graph, ZERO3, Turn::AboutSecond(axis), reversed, place.u + k);
             }
         }
-        carriage
+        link_kinematics
     }
 
     fn add_scalar(

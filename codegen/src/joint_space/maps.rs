@@ -2,7 +2,7 @@
 
 use super::dynamics;
 use super::layout::{Layout, LinkCoordinates, Scalar};
-use super::link_kinematics::{Carriage, at_zero};
+use super::link_kinematics::{LinkKinematics, at_zero};
 use crate::derive::frames::{JointFrames, sine_and_cosine};
 use crate::derive::joint_coordinate::{self, relative_spin};
 use crate::derive::readings::{raw_angle, relative_euler};
@@ -16,39 +16,41 @@ use gyro_model::{Attachment, CoordinateKind, JointCoordinate, Start};
 use std::array::from_fn;
 
 /// Maximal positions and velocities in terms of joint coordinates and rates.
-pub fn of_bodies(system: &mut System, layout: &Layout, carriages: &[Carriage]) -> Values {
+pub fn of_bodies(system: &mut System, layout: &Layout, links: &[LinkKinematics]) -> Values {
     let mut values = Values::default();
-    let spins = dynamics::spins(system, carriages);
-    for (link, carriage) in layout.links.iter().zip(carriages) {
-        let slot = carriage.slot;
-        let carrier = Carrier::of(system, carriage.parent, &values);
+    let spins = dynamics::spins(system, links);
+    for (link, link_kinematics) in layout.links.iter().zip(links) {
+        let moving_body = link_kinematics.moving_body;
+        let carrier = Carrier::of(system, link_kinematics.parent, &values);
         let p = orientation(system, link, &carrier);
         let a = system.graph.rotation(&p);
-        let own = spins[slot];
-        let parent_spin = dynamics::spin_of(system, carriage.parent, &spins);
+        let own = spins[moving_body];
+        let parent_spin = dynamics::spin_of(system, link_kinematics.parent, &spins);
         let graph = &mut system.graph;
-        let (arm, own_arm) =
-            (graph.mat_vec(&carrier.a, &carriage.on_parent), graph.mat_vec(&a, &carriage.on_body));
+        let (arm, own_arm) = (
+            graph.mat_vec(&carrier.a, &link_kinematics.on_parent),
+            graph.mat_vec(&a, &link_kinematics.on_body),
+        );
         let point = graph.add_vec(&carrier.r, &arm);
         let r = graph.sub_vec(&point, &own_arm);
-        let slid = carriage.sliding_velocity(graph);
-        let turned = graph.cross(&parent_spin, &carriage.on_parent);
+        let slid = link_kinematics.sliding_velocity(graph);
+        let turned = graph.cross(&parent_spin, &link_kinematics.on_parent);
         let on_parent = graph.add_vec(&turned, &slid.on_parent);
-        let turned = graph.cross(&own, &carriage.on_body);
+        let turned = graph.cross(&own, &link_kinematics.on_body);
         let on_body = graph.sub_vec(&slid.on_body, &turned);
         let (on_parent, on_body) = (graph.mat_vec(&carrier.a, &on_parent), graph.mat_vec(&a, &on_body));
         let point = graph.add_vec(&carrier.s, &on_parent);
         let s = graph.add_vec(&point, &on_body);
         for k in 0..3 {
-            values.insert(Symbol::Position { slot, k }, r[k]);
-            values.insert(Symbol::Velocity { slot, k }, s[k]);
-            values.insert(Symbol::Spin { slot, k }, own[k]);
+            values.insert(Symbol::Position { moving_body, k }, r[k]);
+            values.insert(Symbol::Velocity { moving_body, k }, s[k]);
+            values.insert(Symbol::Spin { moving_body, k }, own[k]);
             for (column, &entry) in a[k].iter().enumerate() {
-                values.insert(Symbol::Rotation { slot, row: k, column }, entry);
+                values.insert(Symbol::Rotation { moving_body, row: k, column }, entry);
             }
         }
         for (k, &e) in p.iter().enumerate() {
-            values.insert(Symbol::Euler { slot, k }, e);
+            values.insert(Symbol::Euler { moving_body, k }, e);
         }
     }
     in_half_angles(system, layout, values)
@@ -90,14 +92,14 @@ impl Carrier {
             return Self { r: ZERO3, p, a: UNIT3, s: ZERO3 };
         };
         let pose = system.poses[body];
-        let Some(slot) = system.slot_of(body) else {
+        let Some(moving_body) = system.moving_body_of(body) else {
             return Self { r: pose.r, p: pose.p, a: pose.a, s: pose.s };
         };
         Self {
-            r: from_fn(|k| values[&Symbol::Position { slot, k }]),
-            p: from_fn(|k| values[&Symbol::Euler { slot, k }]),
-            a: from_fn(|row| from_fn(|column| values[&Symbol::Rotation { slot, row, column }])),
-            s: from_fn(|k| values[&Symbol::Velocity { slot, k }]),
+            r: from_fn(|k| values[&Symbol::Position { moving_body, k }]),
+            p: from_fn(|k| values[&Symbol::Euler { moving_body, k }]),
+            a: from_fn(|row| from_fn(|column| values[&Symbol::Rotation { moving_body, row, column }])),
+            s: from_fn(|k| values[&Symbol::Velocity { moving_body, k }]),
         }
     }
 }
@@ -215,7 +217,7 @@ pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
         for scalar in &link.scalars {
             scalar_of_joint(system, scalar, &mut values);
         }
-        let slot = system.slot_of(link.link.body).expect("links have coordinates");
+        let moving_body = system.moving_body_of(link.link.body).expect("links have coordinates");
         let pose = system.poses[link.link.body];
         if let Some(place) = link.position {
             for k in 0..3 {
@@ -229,7 +231,7 @@ pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
                     let frames = system.joints[joint];
                     (relative_euler(system, &frames), relative_spin(system, &frames))
                 }
-                _ => (system.poses[system.slots[slot]].p, pose.w),
+                _ => (system.poses[system.moving_bodies[moving_body]].p, pose.w),
             };
             values.extend((0..4).map(|k| (Symbol::Coordinate(place.x + k), p[k])));
             values.extend((0..3).map(|k| (Symbol::Rate(place.u + k), w[k])));
@@ -326,15 +328,18 @@ pub fn coordinate_rates(system: &mut System, layout: &Layout) -> Vec<ExprId> {
     rates
 }
 
-/// Positions (r, p) of each slot, then velocities (s, w'), then turn references.
+/// Positions (r, p) of each moving_body, then velocities (s, w'), then turn references.
 pub fn state(system: &mut System, layout: &Layout, values: &Values) -> Vec<ExprId> {
-    let slots = 0..system.slots.len();
-    let position =
-        |slot, k| if k < 3 { Symbol::Position { slot, k } } else { Symbol::Euler { slot, k: k - 3 } };
-    let velocity =
-        |slot, k| if k < 3 { Symbol::Velocity { slot, k } } else { Symbol::Spin { slot, k: k - 3 } };
-    let positions = slots.clone().flat_map(|slot| (0..7).map(move |k| position(slot, k)));
-    let velocities = slots.flat_map(|slot| (0..6).map(move |k| velocity(slot, k)));
+    let moving_bodies = 0..system.moving_bodies.len();
+    let position = |moving_body, k| {
+        if k < 3 { Symbol::Position { moving_body, k } } else { Symbol::Euler { moving_body, k: k - 3 } }
+    };
+    let velocity = |moving_body, k| {
+        if k < 3 { Symbol::Velocity { moving_body, k } } else { Symbol::Spin { moving_body, k: k - 3 } }
+    };
+    let positions =
+        moving_bodies.clone().flat_map(|moving_body| (0..7).map(move |k| position(moving_body, k)));
+    let velocities = moving_bodies.flat_map(|moving_body| (0..6).map(move |k| velocity(moving_body, k)));
     let state = positions.chain(velocities).map(|symbol| values[&symbol]);
     let turns = system.model.turn_references();
     let turns = turns.into_iter().map(|turn| {
@@ -353,10 +358,10 @@ pub fn joint_start(system: &System, layout: &Layout, reduced: &[ExprId], start: 
     let assembled = |on: JointCoordinate| start.joints[on.joint].position[on.coordinate];
     let turns = system.model.turn_references();
     let value = |symbol: Symbol| match symbol {
-        Symbol::Position { slot, k } => start.q[7 * slot + k],
-        Symbol::Euler { slot, k } => start.q[7 * slot + 3 + k],
-        Symbol::Velocity { slot, k } => start.v[6 * slot + k],
-        Symbol::Spin { slot, k } => start.v[6 * slot + 3 + k],
+        Symbol::Position { moving_body, k } => start.q[7 * moving_body + k],
+        Symbol::Euler { moving_body, k } => start.q[7 * moving_body + 3 + k],
+        Symbol::Velocity { moving_body, k } => start.v[6 * moving_body + k],
+        Symbol::Spin { moving_body, k } => start.v[6 * moving_body + 3 + k],
         Symbol::Turn(turn) => assembled(turns[turn]),
         Symbol::Coordinate(x) => scalar_at(x).map_or(0.0, assembled),
         Symbol::Parameter(index) => gyro_model::to_f64(&system.model.parameters[index].value),

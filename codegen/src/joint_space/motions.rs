@@ -2,7 +2,7 @@
 
 use super::coordinates::Coordinates;
 use super::dynamics;
-use super::link_kinematics::Carriage;
+use super::link_kinematics::LinkKinematics;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::ExprId;
@@ -10,41 +10,41 @@ use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{UNIT3, ZERO3, transposed};
 use crate::solve::articulated_body::Arm;
-use crate::solve::motion_subspace::{Freedom, Parent};
+use crate::solve::motion_subspace::{MotionSubspace, Parent};
 
-/// (s̈, ẇ') of each slot by the symbols that stand for them.
+/// (s̈, ẇ') of each moving_body by the symbols that stand for them.
 pub fn accelerations_by_symbol(accelerations: &[ExprId]) -> Values {
-    let symbol = |index: usize| Symbol::Acceleration { slot: index / 6, k: index % 6 };
+    let symbol = |index: usize| Symbol::Acceleration { moving_body: index / 6, k: index % 6 };
     accelerations.iter().enumerate().map(|(index, &value)| (symbol(index), value)).collect()
 }
 
-/// (s̈, ẇ') of each slot from the rates' rates: translations in each body's own frame, or in the global one.
+/// (s̈, ẇ') of each moving_body from the rates' rates: translations in each body's own frame, or in the global one.
 pub fn outward(system: &mut System, coordinates: &Coordinates, rates: &[ExprId]) -> [Vec<ExprId>; 2] {
     [false, true].map(|is_global| {
-        let motions = motions(system, &coordinates.carriages, rates, is_global);
+        let motions = motions(system, &coordinates.links, rates, is_global);
         system.expanded(&coordinates.of_joints, &motions)
     })
 }
 
-/// (s̈, ẇ') of each slot from the rates' rates, with translations in the global frame or in each body's own.
+/// (s̈, ẇ') of each moving_body from the rates' rates, with translations in the global frame or in each body's own.
 pub fn motions(
     system: &mut System,
-    carriages: &[Carriage],
+    links: &[LinkKinematics],
     rates: &[ExprId],
     is_global: bool,
 ) -> Vec<ExprId> {
-    let spins: Vec<_> = system.slots.iter().map(|&body| system.poses[body].w).collect();
+    let spins: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body].w).collect();
     let mut motions = vec![SpatialVector::ZERO; spins.len()];
-    for carriage in carriages {
-        let bias = dynamics::bias(system, carriage, &spins);
-        let ground = dynamics::of_ground(system, carriage, &ZERO3);
-        let freedom = dynamics::local_freedom(system, carriage);
-        let freedom = if is_global { in_global_frame(system, carriage, freedom) } else { freedom };
-        let body = system.slots[carriage.slot];
-        let parent_frame = match (is_global, carriage.parent) {
+    for link_kinematics in links {
+        let bias = dynamics::bias(system, link_kinematics, &spins);
+        let ground = dynamics::of_ground(system, link_kinematics, &ZERO3);
+        let subspace = dynamics::local_subspace(system, link_kinematics);
+        let subspace = if is_global { in_global_frame(system, link_kinematics, subspace) } else { subspace };
+        let body = system.moving_bodies[link_kinematics.moving_body];
+        let parent_frame = match (is_global, link_kinematics.parent) {
             (true, Some(parent)) => system.poses[parent].a,
             (true, None) => UNIT3,
-            (false, _) => transposed(&carriage.rotation),
+            (false, _) => transposed(&link_kinematics.rotation),
         };
         let own_frame = if is_global { system.poses[body].a } else { UNIT3 };
         let graph = &mut system.graph;
@@ -53,34 +53,38 @@ pub fn motions(
         let ground_t = graph.mat_vec(&own_frame, &ground.t);
         let mut motion = SpatialVector { t: graph.add_vec(&on_parent, &on_body), rho: bias.rho };
         motion = motion.plus(graph, &SpatialVector { t: ground_t, rho: ground.rho });
-        if let Some(parent) = freedom.parent {
-            let carried = parent.twist(graph, &motions[parent.slot]);
+        if let Some(parent) = subspace.parent {
+            let carried = parent.twist(graph, &motions[parent.moving_body]);
             motion = motion.plus(graph, &carried);
         }
-        for (free, twist) in carriage.free.iter().zip(&freedom.free).rev() {
+        for (free, twist) in link_kinematics.free.iter().zip(&subspace.free).rev() {
             let yielded = twist.scaled(graph, rates[free.rate]);
             motion = motion.plus(graph, &yielded);
         }
-        motions[carriage.slot] = Arm::on_body(graph, &freedom).twist(graph, &motion);
+        motions[link_kinematics.moving_body] = Arm::on_body(graph, &subspace).twist(graph, &motion);
     }
     let mut all = Vec::new();
-    for (slot, motion) in motions.iter().enumerate() {
-        let a = system.poses[system.slots[slot]].a;
+    for (moving_body, motion) in motions.iter().enumerate() {
+        let a = system.poses[system.moving_bodies[moving_body]].a;
         let linear = if is_global { motion.t } else { system.graph.mat_vec(&a, &motion.t) };
         all.extend(linear.into_iter().chain(motion.rho));
     }
     all
 }
 
-fn in_global_frame(system: &mut System, carriage: &Carriage, local: Freedom) -> Freedom {
-    let frame = system.poses[system.slots[carriage.slot]].a;
+fn in_global_frame(
+    system: &mut System,
+    link_kinematics: &LinkKinematics,
+    local: MotionSubspace,
+) -> MotionSubspace {
+    let frame = system.poses[system.moving_bodies[link_kinematics.moving_body]].a;
     let graph = &mut system.graph;
     let free =
         local.free.iter().map(|twist| SpatialVector { t: graph.mat_vec(&frame, &twist.t), rho: twist.rho });
     let free = free.collect();
     let parent = local.parent.map(|parent| {
-        let frame = system.poses[system.slots[parent.slot]].a;
+        let frame = system.poses[system.moving_bodies[parent.moving_body]].a;
         Parent { frame, carried: UNIT3, ..parent }
     });
-    Freedom { frame, free, parent, ..local }
+    MotionSubspace { frame, free, parent, ..local }
 }

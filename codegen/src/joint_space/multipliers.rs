@@ -2,7 +2,7 @@
 //! in polynomial normal form. There the gradients of a joint's rows are perpendicular unit vectors, and divisions vanish.
 
 use super::coordinates::Coordinates;
-use super::link_kinematics::Carriage;
+use super::link_kinematics::LinkKinematics;
 use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
@@ -12,7 +12,7 @@ use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Vec3, transposed};
 use crate::simplify::normal_form::normal_form;
 use crate::solve::articulated_body::Arm;
-use crate::solve::motion_subspace::{Freedom, Parent};
+use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use crate::solve::multipliers::imbalance;
 use gyro_model::Attachment;
 use std::array::from_fn;
@@ -21,36 +21,37 @@ use std::array::from_fn;
 pub fn of(
     system: &mut System,
     Textbook { kinematics, dynamics }: &Textbook,
-    Coordinates { layout, carriages, unit, .. }: &Coordinates,
+    Coordinates { layout, links, unit, .. }: &Coordinates,
 ) -> Vec<ExprId> {
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
-    let mut lacking: Vec<_> = (0..system.slots.len()).map(|slot| imbalance(system, dynamics, slot)).collect();
-    for (link, carriage) in layout.links.iter().zip(carriages).rev() {
-        let freedom = Freedom::of(system, kinematics, link.link);
-        let values = rotations(system, link.link.attachment, carriage);
-        let freedom = Freedom {
-            point: carriage.on_body,
-            parent: freedom.parent.map(|parent| Parent {
-                point: carriage.on_parent,
-                relative: carriage.rotation,
+    let mut lacking: Vec<_> =
+        (0..system.moving_bodies.len()).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
+    for (link, link_kinematics) in layout.links.iter().zip(links).rev() {
+        let subspace = MotionSubspace::of(system, kinematics, link.link);
+        let values = rotations(system, link.link.attachment, link_kinematics);
+        let subspace = MotionSubspace {
+            point: link_kinematics.on_body,
+            parent: subspace.parent.map(|parent| Parent {
+                point: link_kinematics.on_parent,
+                relative: link_kinematics.rotation,
                 ..parent
             }),
-            ..freedom
+            ..subspace
         };
-        let forced = on_manifold(system, &freedom.forced, carriage, &values, unit);
+        let forced = on_manifold(system, &subspace.forced, link_kinematics, &values, unit);
         let graph = &mut system.graph;
-        let at_joint = Arm::on_body(graph, &freedom).wrench(graph, &lacking[freedom.slot]);
-        let turned = graph.mat_vec(&carriage.rotation, &at_joint.rho);
-        for (row, forced) in freedom.rows.clone().zip(forced) {
+        let at_joint = Arm::on_body(graph, &subspace).wrench(graph, &lacking[subspace.moving_body]);
+        let turned = graph.mat_vec(&link_kinematics.rotation, &at_joint.rho);
+        for (row, forced) in subspace.rows.clone().zip(forced) {
             let (force, torque) =
                 (graph.dot(&forced.t, &at_joint.t), forced.rotation.dot(graph, &at_joint.rho, &turned));
             // M v̇ + Φᵀλ = f.
             let supplied = graph.add(force, torque);
             lambda[row] = graph.neg(supplied);
         }
-        if let Some(parent) = freedom.parent {
+        if let Some(parent) = subspace.parent {
             let carried = parent.wrench(graph, &at_joint);
-            lacking[parent.slot] = lacking[parent.slot].plus(graph, &carried);
+            lacking[parent.moving_body] = lacking[parent.moving_body].plus(graph, &carried);
         }
     }
     lambda
@@ -80,7 +81,7 @@ impl Rotation {
 fn on_manifold(
     system: &mut System,
     forced: &[SpatialVector],
-    carriage: &Carriage,
+    link_kinematics: &LinkKinematics,
     values: &Values,
     unit: &[Vec<ExprId>],
 ) -> Vec<Forced> {
@@ -89,7 +90,8 @@ fn on_manifold(
     let graph = &mut system.graph;
     let on_body = normal_form(graph, unit, &on_body);
     let (on_body, _) = on_body.as_chunks::<3>();
-    let on_parent: Vec<_> = on_body.iter().flat_map(|rho| graph.mat_vec(&carriage.rotation, rho)).collect();
+    let on_parent: Vec<_> =
+        on_body.iter().flat_map(|rho| graph.mat_vec(&link_kinematics.rotation, rho)).collect();
     let on_parent = normal_form(graph, unit, &on_parent);
     let (on_parent, _) = on_parent.as_chunks::<3>();
     let size = |graph: &Graph, rho: &Vec3| graph.reachable(rho).len();
@@ -104,18 +106,23 @@ fn on_manifold(
 }
 
 /// The body's rotation relative to what carries it, by joint coordinates.
-fn rotations(system: &mut System, attachment: Attachment, carriage: &Carriage) -> Values {
-    let slot = carriage.slot;
+fn rotations(system: &mut System, attachment: Attachment, link_kinematics: &LinkKinematics) -> Values {
+    let moving_body = link_kinematics.moving_body;
     let Attachment::Joint { joint, parent, reversed } = attachment else {
-        return matrix(&carriage.rotation, |row, column| Symbol::Rotation { slot, row, column });
+        return matrix(&link_kinematics.rotation, |row, column| Symbol::Rotation {
+            moving_body,
+            row,
+            column,
+        });
     };
-    if system.slot_of(parent).is_some() {
-        let relative = if reversed { transposed(&carriage.rotation) } else { carriage.rotation };
+    if system.moving_body_of(parent).is_some() {
+        let rotation = link_kinematics.rotation;
+        let relative = if reversed { transposed(&rotation) } else { rotation };
         return matrix(&relative, |row, column| Symbol::Relative { joint, row, column });
     }
     let a = system.poses[parent].a;
-    let a = system.graph.mat_mul(&a, &carriage.rotation);
-    matrix(&a, |row, column| Symbol::Rotation { slot, row, column })
+    let a = system.graph.mat_mul(&a, &link_kinematics.rotation);
+    matrix(&a, |row, column| Symbol::Rotation { moving_body, row, column })
 }
 
 fn matrix(m: &[Vec3; 3], symbol: impl Fn(usize, usize) -> Symbol) -> Values {

@@ -2,27 +2,26 @@
 //!
 //! First each function is rewritten so that more does: factors that depend on parameters alone move together through
 //! products and sums, `p (q x + y r)` to `(p q) x + (p r) y`, wherever that saves an operation. Then the largest such
-//! expressions become numbers that the mechanism carries, [`Symbol::SetUp`].
+//! expressions become numbers that the mechanism carries, [`Symbol::ParameterSetup`].
 
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
 use rustc_hash::FxHashMap as HashMap;
 
-/// Takes out of functions that are called in every step what depends on parameters alone: the values of [`Symbol::SetUp`].
+/// Takes out of functions that are called in every step what depends on parameters alone: the values of [`Symbol::ParameterSetup`].
 pub fn separate<'r>(
     graph: &mut Graph,
     functions: impl IntoIterator<Item = &'r mut Vec<ExprId>>,
 ) -> Vec<ExprId> {
-    let mut set_up =
-        SetUp { graph, places: HashMap::default(), values: Vec::new(), memo: HashMap::default() };
+    let mut setup = Setup { graph, places: HashMap::default(), values: Vec::new(), memo: HashMap::default() };
     for roots in functions {
-        if set_up.graph.reachable(roots).iter().any(|&id| set_up.graph.is_settled(id)) {
-            *roots = Gathering::of(set_up.graph, roots);
-            *roots = roots.iter().map(|&root| set_up.without(root)).collect();
+        if setup.graph.reachable(roots).iter().any(|&id| setup.graph.is_settled(id)) {
+            *roots = Gathering::of(setup.graph, roots);
+            *roots = roots.iter().map(|&root| setup.without(root)).collect();
         }
     }
-    set_up.values
+    setup.values
 }
 
 /// Moves what depends on parameters alone together.
@@ -129,14 +128,14 @@ impl<'g> Gathering<'g> {
 }
 
 /// What was taken out so far.
-struct SetUp<'g> {
+struct Setup<'g> {
     graph: &'g mut Graph,
     places: HashMap<ExprId, usize>,
     values: Vec<ExprId>,
     memo: HashMap<ExprId, ExprId>,
 }
 
-impl SetUp<'_> {
+impl Setup<'_> {
     /// The expression with numbers in place of what depends on parameters alone.
     fn without(&mut self, root: ExprId) -> ExprId {
         for id in self
@@ -169,7 +168,7 @@ impl SetUp<'_> {
                 if place == next {
                     self.values.push(id);
                 }
-                self.graph.symbol(Symbol::SetUp(place))
+                self.graph.symbol(Symbol::ParameterSetup(place))
             }
         }
     }

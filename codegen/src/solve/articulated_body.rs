@@ -10,7 +10,7 @@ use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3, transposed};
-use crate::solve::motion_subspace::{Freedom, Parent};
+use crate::solve::motion_subspace::{MotionSubspace, Parent};
 
 /// The frames in which an elimination works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,14 +24,14 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Of each slot.
+    /// Of each moving_body.
     pub fn frames(self, system: &System) -> Vec<Frames> {
         let of = |&body: &usize| match self {
             Self::Mixed => Frames { t: UNIT3, rho: UNIT3 },
             Self::Global => Frames { t: UNIT3, rho: system.poses[body].a },
             Self::Own => Frames { t: transposed(&system.poses[body].a), rho: UNIT3 },
         };
-        system.slots.iter().map(of).collect()
+        system.moving_bodies.iter().map(of).collect()
     }
 }
 
@@ -60,14 +60,14 @@ impl Frames {
 pub struct EliminatedTree {
     /// Root first.
     pub joints: Vec<EliminatedJoint>,
-    /// Of each slot.
+    /// Of each moving_body.
     frames: Vec<Frames>,
 }
 
 /// What sets a tree in motion.
 #[derive(Debug)]
 pub struct Excitation {
-    /// On the mass centre of each slot: minus the applied wrench.
+    /// On the mass centre of each moving_body: minus the applied wrench.
     pub bias: Vec<SpatialVector>,
     /// On each joint, root first: the acceleration forced upon it.
     pub forced: Vec<SpatialVector>,
@@ -78,7 +78,7 @@ pub struct Excitation {
 /// How a tree moves.
 #[derive(Debug)]
 pub struct Response {
-    /// The acceleration of each slot's mass centre.
+    /// The acceleration of each moving_body's mass centre.
     pub motions: Vec<SpatialVector>,
     /// For each joint, root first: how fast each of its free twists accelerates.
     pub rates: Vec<Vec<ExprId>>,
@@ -86,9 +86,9 @@ pub struct Response {
 
 impl Excitation {
     /// Of nothing.
-    pub fn none(n_slots: usize, n_joints: usize) -> Self {
+    pub fn none(n_moving_bodies: usize, n_joints: usize) -> Self {
         Self {
-            bias: vec![SpatialVector::ZERO; n_slots],
+            bias: vec![SpatialVector::ZERO; n_moving_bodies],
             forced: vec![SpatialVector::ZERO; n_joints],
             along: vec![Vec::new(); n_joints],
         }
@@ -96,27 +96,27 @@ impl Excitation {
 }
 
 impl EliminatedTree {
-    pub fn n_slots(&self) -> usize {
+    pub fn n_moving_bodies(&self) -> usize {
         self.frames.len()
     }
 
     /// The links come root first.
-    pub fn new(system: &mut System, freedoms: Vec<Freedom>, basis: Basis) -> Self {
+    pub fn new(system: &mut System, subspaces: Vec<MotionSubspace>, basis: Basis) -> Self {
         let frames = basis.frames(system);
-        let rigid = |(slot, frames): (usize, &Frames)| {
-            Inertia::rigid(system, slot).turned(&mut system.graph, &frames.rho)
+        let rigid = |(moving_body, frames): (usize, &Frames)| {
+            Inertia::rigid(system, moving_body).turned(&mut system.graph, &frames.rho)
         };
         let mut bodies: Vec<_> = frames.iter().enumerate().map(rigid).collect();
         let mut joints = Vec::new();
-        for freedom in freedoms.into_iter().rev() {
-            let parent = freedom.parent;
-            let joint = EliminatedJoint::new(system, freedom, &bodies);
+        for subspace in subspaces.into_iter().rev() {
+            let parent = subspace.parent;
+            let joint = EliminatedJoint::new(system, subspace, &bodies);
             if let Some(parent) = parent {
                 let graph = &mut system.graph;
                 let load = joint.rest.on_parent(graph, &parent);
                 let arm = Arm::on_parent(graph, &parent);
                 let load = load.seen_through(graph, &arm);
-                bodies[parent.slot].add(graph, &load);
+                bodies[parent.moving_body].add(graph, &load);
             }
             joints.push(joint);
         }
@@ -132,16 +132,16 @@ impl EliminatedTree {
         }
         let mut loads = Vec::new();
         for ((joint, forced), along) in self.joints.iter().zip(forced).zip(along).rev() {
-            let (own, on_parent) = joint.yield_to(graph, &bias[joint.freedom.slot], forced, along);
+            let (own, on_parent) = joint.yield_to(graph, &bias[joint.subspace.moving_body], forced, along);
             loads.push(own);
-            if let Some(parent) = joint.freedom.parent {
-                bias[parent.slot] = bias[parent.slot].plus(graph, &on_parent);
+            if let Some(parent) = joint.subspace.parent {
+                bias[parent.moving_body] = bias[parent.moving_body].plus(graph, &on_parent);
             }
         }
         let mut response = Response { motions: vec![SpatialVector::ZERO; bias.len()], rates: Vec::new() };
         for ((joint, forced), loads) in self.joints.iter().zip(forced).zip(loads.iter().rev()) {
             let (motion, rates) = joint.motion(graph, forced, loads, &response.motions);
-            response.motions[joint.freedom.slot] = motion;
+            response.motions[joint.subspace.moving_body] = motion;
             response.rates.push(rates);
         }
         for (motion, frames) in response.motions.iter_mut().zip(&self.frames) {
@@ -162,8 +162,8 @@ pub struct Arm {
 
 impl Arm {
     /// Known at the joint point, wanted at the mass centre.
-    pub fn on_body(graph: &mut Graph, freedom: &Freedom) -> Self {
-        Self::new(graph, &freedom.frame, &freedom.point)
+    pub fn on_body(graph: &mut Graph, subspace: &MotionSubspace) -> Self {
+        Self::new(graph, &subspace.frame, &subspace.point)
     }
 
     /// Known at the parent's mass centre, wanted at the joint point.
@@ -228,8 +228,8 @@ pub struct Inertia {
 
 impl Inertia {
     /// The body alone, at its mass centre.
-    pub fn rigid(system: &mut System, slot: usize) -> Self {
-        let (mass, angular) = (system.mass(slot), system.inertia(slot));
+    pub fn rigid(system: &mut System, moving_body: usize) -> Self {
+        let (mass, angular) = (system.mass(moving_body), system.inertia(moving_body));
         Self { mass, linear: [ZERO3; 3], coupling: [ZERO3; 3], angular }
     }
 
@@ -298,7 +298,7 @@ impl Inertia {
 /// A body's joint after the elimination of its free twists.
 #[derive(Debug)]
 pub struct EliminatedJoint {
-    pub freedom: Freedom,
+    pub subspace: MotionSubspace,
     /// For each free twist, in the order of elimination.
     steps: Vec<Step>,
     /// What is left, at the joint point.
@@ -347,12 +347,12 @@ impl Component {
 }
 
 impl EliminatedJoint {
-    fn new(system: &mut System, freedom: Freedom, bodies: &[Inertia]) -> Self {
+    fn new(system: &mut System, subspace: MotionSubspace, bodies: &[Inertia]) -> Self {
         let graph = &mut system.graph;
-        let arm = Arm::on_body(graph, &freedom);
-        let mut rest = bodies[freedom.slot].seen_through(graph, &arm);
+        let arm = Arm::on_body(graph, &subspace);
+        let mut rest = bodies[subspace.moving_body].seen_through(graph, &arm);
         let mut steps = Vec::new();
-        for twist in &freedom.free {
+        for twist in &subspace.free {
             let resistance = rest.times(graph, twist);
             let pivot = twist.dot(graph, &resistance);
             let (component, inverse) = (Component::of(twist), graph.recip(pivot));
@@ -360,7 +360,7 @@ impl EliminatedJoint {
             rest = step.eliminate(graph, &rest);
             steps.push(step);
         }
-        Self { freedom, steps, rest }
+        Self { subspace, steps, rest }
     }
 
     /// The load that each free twist yields to, and the bias that is left for the parent's mass centre.
@@ -371,7 +371,7 @@ impl EliminatedJoint {
         forced: &SpatialVector,
         along: &[ExprId],
     ) -> (Vec<ExprId>, SpatialVector) {
-        let arm = Arm::on_body(graph, &self.freedom);
+        let arm = Arm::on_body(graph, &self.subspace);
         let mut bias = arm.wrench(graph, bias);
         let mut loads = Vec::new();
         for (k, step) in self.steps.iter().enumerate() {
@@ -385,7 +385,7 @@ impl EliminatedJoint {
             }
             loads.push(load);
         }
-        let Some(parent) = self.freedom.parent else { return (loads, SpatialVector::ZERO) };
+        let Some(parent) = self.subspace.parent else { return (loads, SpatialVector::ZERO) };
         let inertial = self.rest.times(graph, forced);
         bias = bias.plus(graph, &inertial);
         (loads, parent.wrench(graph, &bias))
@@ -400,8 +400,8 @@ impl EliminatedJoint {
         motions: &[SpatialVector],
     ) -> (SpatialVector, Vec<ExprId>) {
         let mut motion = *forced;
-        if let Some(parent) = self.freedom.parent {
-            let carried = parent.twist(graph, &motions[parent.slot]);
+        if let Some(parent) = self.subspace.parent {
+            let carried = parent.twist(graph, &motions[parent.moving_body]);
             motion = motion.plus(graph, &carried);
         }
         let mut rates = Vec::new();
@@ -409,7 +409,7 @@ impl EliminatedJoint {
             rates.push(step.release(graph, &mut motion, *load));
         }
         rates.reverse();
-        let arm = Arm::on_body(graph, &self.freedom);
+        let arm = Arm::on_body(graph, &self.subspace);
         (arm.twist(graph, &motion), rates)
     }
 }

@@ -18,7 +18,7 @@ use gyro_model::{JointKind, Support};
 /// ẇ_j = Ω̇ + w_i × w_j + ẇ_i
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Steering {
+pub struct AxisBias {
     /// Whether the joint point is held too.
     pub holds_point: bool,
     /// Whether the first body is at rest.
@@ -31,7 +31,7 @@ pub struct Steering {
     second: [Vec3; 2],
 }
 
-impl Steering {
+impl AxisBias {
     /// Only what holds the second body to the first is steered.
     pub fn of(system: &mut System, joint: &JointFrames, reversed: bool) -> Option<Self> {
         let has_axis = matches!(joint.kind, JointKind::Revolute | JointKind::Cylindrical | JointKind::Planar);
@@ -39,7 +39,7 @@ impl Steering {
             return None;
         }
         let (i, j) = (system.poses[joint.first.body], system.poses[joint.second.body]);
-        let is_driven = system.slot_of(joint.first.body).is_none();
+        let is_driven = system.moving_body_of(joint.first.body).is_none();
         let prescribed = if is_driven { time_derivative(system, &i.w) } else { ZERO3 };
         let holds_point = joint.kind == JointKind::Revolute;
         Some(Self {

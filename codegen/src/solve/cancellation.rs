@@ -24,10 +24,10 @@ const UNLIKE: f64 = 1e3;
 const LIKE: f64 = 10.0;
 
 /// Whether digits are at stake: whether masses or moments of inertia are parameters, or unlike.
-pub fn are_at_stake(system: &mut System) -> bool {
+pub fn may_matter(system: &mut System) -> bool {
     let (mut masses, mut moments, mut about_joints) = (Vec::new(), Vec::new(), Vec::new());
-    for (slot, body) in system.slots.clone().into_iter().enumerate() {
-        let (mass, inertia) = (system.mass(slot), system.inertia(slot));
+    for (moving_body, body) in system.moving_bodies.clone().into_iter().enumerate() {
+        let (mass, inertia) = (system.mass(moving_body), system.inertia(moving_body));
         let constant = |id: ExprId| system.graph.as_constant(id).map(|constant| constant.to_f64());
         let own: Option<Vec<_>> = (0..3).map(|k| constant(inertia[k][k])).collect();
         let Some((mass, own)) = constant(mass).zip(own) else { return true };
@@ -80,7 +80,7 @@ impl Trials {
                     _ => {}
                 }
             }
-            (0..system.slots.len()).for_each(|slot| to_length_one(&mut values, slot));
+            (0..system.moving_bodies.len()).for_each(|moving_body| to_length_one(&mut values, moving_body));
             values.values_mut().for_each(|value| *value = f64::from(shortened(*value)));
             values
         };
@@ -88,7 +88,7 @@ impl Trials {
     }
 
     /// Whether a way of writing some expressions keeps the digits that another is known to keep.
-    pub fn keep_digits(&self, graph: &Graph, way: &[ExprId], keeping: &[ExprId]) -> bool {
+    pub fn is_accurate(&self, graph: &Graph, way: &[ExprId], keeping: &[ExprId]) -> bool {
         self.states.iter().all(|state| {
             let [error, least] = [way, keeping].map(|roots| {
                 let exact = evaluate(graph, roots, |symbol| state[&symbol]);
@@ -122,9 +122,9 @@ fn inertial_parameters(system: &System) -> BTreeSet<usize> {
     numbers.filter_map(index).collect()
 }
 
-/// Makes the Euler parameters of a slot a unit vector.
-fn to_length_one(values: &mut HashMap<Symbol, f64>, slot: usize) {
-    let p = [0, 1, 2, 3].map(|k| Symbol::Euler { slot, k });
+/// Makes the Euler parameters of a moving_body a unit vector.
+fn to_length_one(values: &mut HashMap<Symbol, f64>, moving_body: usize) {
+    let p = [0, 1, 2, 3].map(|k| Symbol::Euler { moving_body, k });
     let square: f64 = p.iter().filter_map(|symbol| values.get(symbol)).map(|x| x * x).sum();
     for symbol in p {
         if let Some(x) = values.get_mut(&symbol) {
@@ -145,7 +145,7 @@ mod tests {
 
     fn at_stake(page: &str) -> bool {
         let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
-        are_at_stake(&mut System::new(&model))
+        may_matter(&mut System::new(&model))
     }
 
     #[test]
@@ -170,7 +170,7 @@ mod tests {
         let square = graph.mul(moment, moment);
         let product = graph.div(square, moment);
         let trials = Trials::draw(&system, &[difference, product, moment], &BTreeSet::new());
-        assert!(!trials.keep_digits(&system.graph, &[difference], &[moment]));
-        assert!(trials.keep_digits(&system.graph, &[product], &[moment]));
+        assert!(!trials.is_accurate(&system.graph, &[difference], &[moment]));
+        assert!(trials.is_accurate(&system.graph, &[product], &[moment]));
     }
 }

@@ -12,9 +12,9 @@ use crate::expr::symbol::Symbol;
 use crate::solve::Solution;
 use crate::solve::articulated_body::{Basis, EliminatedTree, Excitation};
 use crate::solve::cancellation::{self, Trials};
-use crate::solve::gram_schmidt::{self, OrthogonalTree};
+use crate::solve::gram_schmidt::{self, GramSchmidtTree};
 use crate::solve::loop_closure;
-use crate::solve::motion_subspace::Freedom;
+use crate::solve::motion_subspace::MotionSubspace;
 use crate::solve::multipliers;
 use crate::solve::reduced_mass_matrix::ReducedTree;
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,44 +25,45 @@ const MAX_REDUCED: usize = 4;
 /// The trees of a mechanism, ready to be solved.
 #[derive(Debug)]
 pub struct ForwardDynamics {
-    freedoms: Vec<Freedom>,
+    subspaces: Vec<MotionSubspace>,
     /// In each basis that is tried.
     eliminated: Vec<EliminatedTree>,
     /// Of small open trees.
     reduced: Option<ReducedTree>,
     /// In each basis that is tried, where digits are at stake.
-    orthogonal: Vec<OrthogonalTree>,
+    gram_schmidt: Vec<GramSchmidtTree>,
     /// The rows that no joint of the trees owns.
-    closing: Vec<usize>,
+    loop_rows: Vec<usize>,
 }
 
 impl ForwardDynamics {
     pub fn of(system: &mut System, kinematics: &Kinematics) -> Self {
         let links = system.tree.links.clone();
-        let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
-        let closing = system.closing_rows();
-        let mut eliminated = vec![EliminatedTree::new(system, freedoms.clone(), Basis::Mixed)];
+        let subspaces: Vec<_> =
+            links.iter().map(|&link| MotionSubspace::of(system, kinematics, link)).collect();
+        let loop_rows = system.loop_closure_rows();
+        let mut eliminated = vec![EliminatedTree::new(system, subspaces.clone(), Basis::Mixed)];
         // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
-        let (mut reduced, mut orthogonal) = (None, Vec::new());
-        if closing.is_empty() {
+        let (mut reduced, mut gram_schmidt) = (None, Vec::new());
+        if loop_rows.is_empty() {
             let in_global_frame: Vec<_> =
-                freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+                subspaces.iter().map(|subspace| subspace.in_global_frame(system)).collect();
             let in_own_frames: Vec<_> =
-                freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
-            let n_rates: usize = freedoms.iter().map(|freedom| freedom.free.len()).sum();
-            if (2..=gram_schmidt::MAX_RATES).contains(&rates_of_largest(&freedoms))
-                && cancellation::are_at_stake(system)
+                subspaces.iter().map(|subspace| subspace.in_own_frames(system)).collect();
+            let n_rates: usize = subspaces.iter().map(|subspace| subspace.free.len()).sum();
+            if (2..=gram_schmidt::MAX_RATES).contains(&rates_of_largest(&subspaces))
+                && cancellation::may_matter(system)
             {
-                orthogonal.push(OrthogonalTree::new(system, freedoms.clone(), Basis::Mixed));
-                orthogonal.push(OrthogonalTree::new(system, in_own_frames.clone(), Basis::Own));
+                gram_schmidt.push(GramSchmidtTree::new(system, subspaces.clone(), Basis::Mixed));
+                gram_schmidt.push(GramSchmidtTree::new(system, in_own_frames.clone(), Basis::Own));
             }
             if n_rates <= MAX_REDUCED {
-                reduced = Some(ReducedTree::new(system, in_global_frame.clone(), &freedoms));
+                reduced = Some(ReducedTree::new(system, in_global_frame.clone(), &subspaces));
             }
             eliminated.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
             eliminated.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
         }
-        Self { freedoms, eliminated, reduced, orthogonal, closing }
+        Self { subspaces, eliminated, reduced, gram_schmidt, loop_rows }
     }
 
     /// Solves eq. (17).
@@ -71,37 +72,43 @@ impl ForwardDynamics {
         let candidates = self.candidates(system, kinematics, dynamics);
         let admitted = candidates.admitted(system);
         let solved = cheapest(&system.graph, admitted);
-        Solution { solved, lambda: multipliers::of(system, kinematics, dynamics, &self.freedoms) }
+        Solution { solved, lambda: multipliers::of(system, kinematics, dynamics, &self.subspaces) }
     }
 
     fn candidates(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Candidates {
         let of_eliminated = |tree: &EliminatedTree| {
-            let freedoms = tree.joints.iter().map(|joint| &joint.freedom);
-            let excitation = Excitation::by_forces(system, dynamics, freedoms);
+            let subspaces = tree.joints.iter().map(|joint| &joint.subspace);
+            let excitation = Excitation::by_forces(system, dynamics, subspaces);
             let free = tree.respond(&mut system.graph, &excitation).motions;
-            let rows = (&self.closing[..], &kinematics.gamma[..]);
-            let (motions, closing) = loop_closure::close(&mut system.graph, kinematics, tree, rows, free);
-            listed(&motions).into_iter().chain(closing).collect()
+            let rows = (&self.loop_rows[..], &kinematics.gamma[..]);
+            let (motions, multipliers) = loop_closure::close(&mut system.graph, kinematics, tree, rows, free);
+            listed(&motions).into_iter().chain(multipliers).collect()
         };
         let eliminated = self.eliminated.iter().map(of_eliminated).collect();
         let reduced = self.reduced.as_ref().map(|tree| listed(&tree.accelerations(system, dynamics)));
-        let of_orthogonal = |tree: &OrthogonalTree| {
-            let excitation = Excitation::by_forces(system, dynamics, &tree.freedoms);
+        let of_gram_schmidt = |tree: &GramSchmidtTree| {
+            let excitation = Excitation::by_forces(system, dynamics, &tree.subspaces);
             listed(&tree.respond(&mut system.graph, &excitation).motions)
         };
-        Candidates { eliminated, reduced, orthogonal: self.orthogonal.iter().map(of_orthogonal).collect() }
+        Candidates {
+            eliminated,
+            reduced,
+            gram_schmidt: self.gram_schmidt.iter().map(of_gram_schmidt).collect(),
+        }
     }
 
-    /// The smallest (δr, δπ') of each slot, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
+    /// The smallest (δr, δπ') of each moving_body, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
     /// and with these changes for γ.
     pub fn projection(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
         let changes: Vec<_> =
             (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
         let projected = self.eliminated.iter().map(|tree| {
-            let forced = tree.joints.iter().map(|joint| joint.freedom.forced_by(graph, &changes)).collect();
-            let excitation = Excitation { forced, ..Excitation::none(tree.n_slots(), tree.joints.len()) };
+            let forced = tree.joints.iter().map(|joint| joint.subspace.forced_by(graph, &changes)).collect();
+            let excitation =
+                Excitation { forced, ..Excitation::none(tree.n_moving_bodies(), tree.joints.len()) };
             let free = tree.respond(graph, &excitation).motions;
-            let (motions, _) = loop_closure::close(graph, kinematics, tree, (&self.closing, &changes), free);
+            let (motions, _) =
+                loop_closure::close(graph, kinematics, tree, (&self.loop_rows, &changes), free);
             listed(&motions)
         });
         let mut projected: Vec<_> = projected.collect();
@@ -117,17 +124,17 @@ struct Candidates {
     /// Through the reduced mass matrix.
     reduced: Option<Vec<ExprId>>,
     /// By Gram–Schmidt, in each basis; none unless cancellation may matter.
-    orthogonal: Vec<Vec<ExprId>>,
+    gram_schmidt: Vec<Vec<ExprId>>,
 }
 
 impl Candidates {
     /// Those that are accurate enough to be taken if they are the cheapest.
     fn admitted(self, system: &mut System) -> Vec<Vec<ExprId>> {
-        let Self { eliminated, reduced, orthogonal } = self;
-        if let Some(keeping) = orthogonal.first() {
+        let Self { eliminated, reduced, gram_schmidt } = self;
+        if let Some(keeping) = gram_schmidt.first() {
             let others = eliminated.into_iter().chain(reduced).collect();
-            let mut admitted = keeping_digits(system, others, keeping);
-            admitted.extend(orthogonal);
+            let mut admitted = accurate(system, others, keeping);
+            admitted.extend(gram_schmidt);
             return admitted;
         }
         // Elimination keeps more digits where a body spins fast: they are worth a quarter of the operations.
@@ -143,15 +150,17 @@ impl Candidates {
 }
 
 impl Excitation {
-    /// The applied forces and the rows of the joints, whose freedoms come root first.
+    /// The applied forces and the rows of the joints, whose subspaces come root first.
     fn by_forces<'f>(
         system: &mut System,
         dynamics: &Dynamics,
-        freedoms: impl IntoIterator<Item = &'f Freedom>,
+        subspaces: impl IntoIterator<Item = &'f MotionSubspace>,
     ) -> Self {
-        let n_slots = system.slots.len();
-        let forced: Vec<_> = freedoms.into_iter().map(|freedom| freedom.bias).collect();
-        let bias = (0..n_slots).map(|slot| dynamics.minus_applied_force(&mut system.graph, slot)).collect();
+        let n_moving_bodies = system.moving_bodies.len();
+        let forced: Vec<_> = subspaces.into_iter().map(|subspace| subspace.bias).collect();
+        let bias = (0..n_moving_bodies)
+            .map(|moving_body| dynamics.minus_applied_force(&mut system.graph, moving_body))
+            .collect();
         let along = vec![Vec::new(); forced.len()];
         Self { bias, forced, along }
     }
@@ -177,7 +186,7 @@ fn cheapest(graph: &Graph, forms: Vec<Vec<ExprId>>) -> Vec<ExprId> {
 }
 
 /// Those forms of the accelerations of an open tree that keep the digits that `keeping` is known to keep.
-fn keeping_digits(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprId]) -> Vec<Vec<ExprId>> {
+fn accurate(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprId]) -> Vec<Vec<ExprId>> {
     let mut expansion = Expansion::new(&system.definitions);
     let keeping = expansion.all(&mut system.graph, keeping);
     let expanded: Vec<_> = forms.iter().map(|form| expansion.all(&mut system.graph, form)).collect();
@@ -185,12 +194,12 @@ fn keeping_digits(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprI
     let trials = Trials::draw(system, &all, &BTreeSet::new());
     let forms = forms.into_iter().zip(expanded);
     forms
-        .filter(|(_, form)| trials.keep_digits(&system.graph, form, &keeping))
+        .filter(|(_, form)| trials.is_accurate(&system.graph, form, &keeping))
         .map(|(form, _)| form)
         .collect()
 }
 
-/// The components of the motions of all slots.
+/// The components of the motions of all moving_bodies.
 fn listed(motions: &[SpatialVector]) -> Vec<ExprId> {
     motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect()
 }
@@ -199,25 +208,10 @@ fn listed(motions: &[SpatialVector]) -> Vec<ExprId> {
 mod tests {
     use super::*;
     use crate::expr::definitions::Expansion;
-    use crate::expr::evaluate::{evaluate, sample};
+    use crate::expr::evaluate::{evaluate, random_state};
 
     /// A thousand operations on numbers of order one, and a solve.
     const ROUNDING: f64 = 1e-9;
-
-    /// A state anyhow, but with unit Euler parameters, and positive parameters.
-    fn state(seed: u64) -> impl Fn(Symbol) -> f64 {
-        move |symbol| {
-            let value = sample(seed);
-            match symbol {
-                Symbol::Euler { slot, .. } => {
-                    let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { slot, k }));
-                    value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
-                }
-                Symbol::Parameter(_) => value(symbol).abs(),
-                _ => value(symbol),
-            }
-        }
-    }
 
     /// Through the reduced mass matrix, by elimination and by orthogonal motions, in every basis, the accelerations are the same.
     fn check(page: &str) {
@@ -228,18 +222,18 @@ mod tests {
         let trees = ForwardDynamics::of(&mut system, &kinematics);
         let mut forms = Vec::new();
         for tree in &trees.eliminated {
-            let freedoms = tree.joints.iter().map(|joint| &joint.freedom);
-            let excitation = Excitation::by_forces(&mut system, &dynamics, freedoms);
+            let subspaces = tree.joints.iter().map(|joint| &joint.subspace);
+            let excitation = Excitation::by_forces(&mut system, &dynamics, subspaces);
             forms.push(listed(&tree.respond(&mut system.graph, &excitation).motions));
         }
         for basis in [Basis::Mixed, Basis::Own] {
-            let freedoms = trees.freedoms.iter().map(|freedom| match basis {
-                Basis::Own => freedom.in_own_frames(&mut system),
-                _ => freedom.clone(),
+            let subspaces = trees.subspaces.iter().map(|subspace| match basis {
+                Basis::Own => subspace.in_own_frames(&mut system),
+                _ => subspace.clone(),
             });
-            let freedoms = freedoms.collect();
-            let tree = OrthogonalTree::new(&mut system, freedoms, basis);
-            let excitation = Excitation::by_forces(&mut system, &dynamics, &tree.freedoms);
+            let subspaces = subspaces.collect();
+            let tree = GramSchmidtTree::new(&mut system, subspaces, basis);
+            let excitation = Excitation::by_forces(&mut system, &dynamics, &tree.subspaces);
             forms.push(listed(&tree.respond(&mut system.graph, &excitation).motions));
         }
         let reduced = trees.reduced.as_ref().expect("few rates");
@@ -248,7 +242,7 @@ mod tests {
         let forms: Vec<_> = forms.iter().map(|form| expansion.all(&mut system.graph, form)).collect();
         for seed in 0..10 {
             let values: Vec<_> =
-                forms.iter().map(|form| evaluate(&system.graph, form, state(seed))).collect();
+                forms.iter().map(|form| evaluate(&system.graph, form, random_state(seed))).collect();
             let size = values[0].iter().fold(0.0, |size: f64, x| size.max(x.abs()));
             for (a, b) in values.iter().flat_map(|other| values[0].iter().zip(other)) {
                 assert!((a - b).abs() <= ROUNDING * size, "{a} {b} of {size}");

@@ -10,7 +10,7 @@ use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
 use crate::solve::articulated_body::{Arm, Basis, Excitation, Frames, Inertia, Response};
-use crate::solve::motion_subspace::Freedom;
+use crate::solve::motion_subspace::MotionSubspace;
 use std::collections::BTreeMap;
 
 /// With more rates elimination takes fewer operations: its number grows linearly, here with the third power.
@@ -18,12 +18,12 @@ pub const MAX_RATES: usize = 8;
 
 /// A small open tree whose free twists are orthogonal.
 #[derive(Debug)]
-pub struct OrthogonalTree {
+pub struct GramSchmidtTree {
     /// Root first.
-    pub freedoms: Vec<Freedom>,
-    /// Of each slot.
+    pub subspaces: Vec<MotionSubspace>,
+    /// Of each moving_body.
     frames: Vec<Frames>,
-    /// Of each slot.
+    /// Of each moving_body.
     bodies: Vec<Inertia>,
     /// One for each free twist, root first.
     columns: Vec<Column>,
@@ -32,7 +32,7 @@ pub struct OrthogonalTree {
 /// How a rate moves the mass centres while those further from the root yield.
 #[derive(Debug)]
 struct Column {
-    /// Of each slot that it moves.
+    /// Of each moving_body that it moves.
     parts: BTreeMap<usize, Part>,
     /// Of what the motion takes along itself.
     inverse: ExprId,
@@ -47,13 +47,14 @@ struct Part {
     wrench: SpatialVector,
 }
 
-impl OrthogonalTree {
+impl GramSchmidtTree {
     /// The links come root first. The basis has rotations in the bodies' own frames: there their inertias are constants.
-    pub fn new(system: &mut System, freedoms: Vec<Freedom>, basis: Basis) -> Self {
+    pub fn new(system: &mut System, subspaces: Vec<MotionSubspace>, basis: Basis) -> Self {
         let frames = basis.frames(system);
-        let bodies: Vec<_> = (0..system.slots.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+        let bodies: Vec<_> =
+            (0..system.moving_bodies.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
-        let motions = motions_at_unit_rates(graph, &freedoms);
+        let motions = motions_at_unit_rates(graph, &subspaces);
         let mut columns: BTreeMap<usize, Column> = BTreeMap::new();
         for (rate, mut motion) in motions.into_iter().enumerate().rev() {
             let mut yielding = Vec::new();
@@ -65,13 +66,13 @@ impl OrthogonalTree {
             }
             columns.insert(rate, Column::new(graph, &bodies, &motion, yielding));
         }
-        Self { freedoms, frames, bodies, columns: columns.into_values().collect() }
+        Self { subspaces, frames, bodies, columns: columns.into_values().collect() }
     }
 
     pub fn respond(&self, graph: &mut Graph, excitation: &Excitation) -> Response {
         let Excitation { bias, forced, along } = excitation;
         let at_rest: Vec<_> =
-            self.freedoms.iter().map(|freedom| vec![Graph::ZERO; freedom.free.len()]).collect();
+            self.subspaces.iter().map(|subspace| vec![Graph::ZERO; subspace.free.len()]).collect();
         let unforced = self.motions(graph, forced, &at_rest);
         let bias = bias.iter().zip(&self.frames).map(|(bias, frames)| frames.enter(graph, bias));
         let bias: Vec<_> = bias.collect();
@@ -105,7 +106,7 @@ impl OrthogonalTree {
         Response { motions, rates }
     }
 
-    /// Of the mass centre of each slot, if the rates of each joint change like this.
+    /// Of the mass centre of each moving_body, if the rates of each joint change like this.
     fn motions(
         &self,
         graph: &mut Graph,
@@ -113,36 +114,43 @@ impl OrthogonalTree {
         rates: &[Vec<ExprId>],
     ) -> Vec<SpatialVector> {
         let mut motions = vec![SpatialVector::ZERO; self.bodies.len()];
-        for ((freedom, forced), rates) in self.freedoms.iter().zip(forced).zip(rates) {
+        for ((subspace, forced), rates) in self.subspaces.iter().zip(forced).zip(rates) {
             let mut motion = *forced;
-            if let Some(parent) = freedom.parent {
-                let carried = parent.twist(graph, &motions[parent.slot]);
+            if let Some(parent) = subspace.parent {
+                let carried = parent.twist(graph, &motions[parent.moving_body]);
                 motion = motion.plus(graph, &carried);
             }
-            for (twist, &rate) in freedom.free.iter().zip(rates) {
+            for (twist, &rate) in subspace.free.iter().zip(rates) {
                 let own = twist.scaled(graph, rate);
                 motion = motion.plus(graph, &own);
             }
-            motions[freedom.slot] = Arm::on_body(graph, freedom).twist(graph, &motion);
+            motions[subspace.moving_body] = Arm::on_body(graph, subspace).twist(graph, &motion);
         }
         motions
     }
 }
 
-/// Of each rate how it moves the mass centres of the slots, root first.
-fn motions_at_unit_rates(graph: &mut Graph, freedoms: &[Freedom]) -> Vec<BTreeMap<usize, SpatialVector>> {
+/// Of each rate how it moves the mass centres of the moving_bodies, root first.
+fn motions_at_unit_rates(
+    graph: &mut Graph,
+    subspaces: &[MotionSubspace],
+) -> Vec<BTreeMap<usize, SpatialVector>> {
     let mut motions: Vec<BTreeMap<usize, SpatialVector>> = Vec::new();
-    for freedom in freedoms {
-        let arm = Arm::on_body(graph, freedom);
+    for subspace in subspaces {
+        let arm = Arm::on_body(graph, subspace);
         for motion in &mut motions {
-            let carried = freedom.parent.and_then(|parent| Some((parent, *motion.get(&parent.slot)?)));
+            let carried =
+                subspace.parent.and_then(|parent| Some((parent, *motion.get(&parent.moving_body)?)));
             if let Some((parent, of_parent)) = carried {
                 let at_joint = parent.twist(graph, &of_parent);
-                motion.insert(freedom.slot, arm.twist(graph, &at_joint));
+                motion.insert(subspace.moving_body, arm.twist(graph, &at_joint));
             }
         }
         motions.extend(
-            freedom.free.iter().map(|twist| BTreeMap::from([(freedom.slot, arm.twist(graph, twist))])),
+            subspace
+                .free
+                .iter()
+                .map(|twist| BTreeMap::from([(subspace.moving_body, arm.twist(graph, twist))])),
         );
     }
     motions
@@ -155,8 +163,8 @@ impl Column {
         motion: &BTreeMap<usize, SpatialVector>,
         yielding: Vec<(usize, ExprId)>,
     ) -> Self {
-        let part = |(&slot, &motion): (&usize, &SpatialVector)| {
-            (slot, Part { motion, wrench: bodies[slot].times(graph, &motion) })
+        let part = |(&moving_body, &motion): (&usize, &SpatialVector)| {
+            (moving_body, Part { motion, wrench: bodies[moving_body].times(graph, &motion) })
         };
         let parts: BTreeMap<_, _> = motion.iter().map(part).collect();
         let resistance = parts.values().fold(Graph::ZERO, |sum, part| {
@@ -169,15 +177,15 @@ impl Column {
     /// Makes a motion orthogonal to this one; returns how much of this one was in it.
     fn yield_to(&self, graph: &mut Graph, motion: &mut BTreeMap<usize, SpatialVector>) -> ExprId {
         let mut taken = Graph::ZERO;
-        for (slot, part) in &self.parts {
-            if let Some(motion) = motion.get(slot) {
+        for (moving_body, part) in &self.parts {
+            if let Some(motion) = motion.get(moving_body) {
                 let along = motion.dot(graph, &part.wrench);
                 taken = graph.add(taken, along);
             }
         }
         let share = graph.mul(taken, self.inverse);
-        for (slot, part) in &self.parts {
-            if let Some(motion) = motion.get_mut(slot) {
+        for (moving_body, part) in &self.parts {
+            if let Some(motion) = motion.get_mut(moving_body) {
                 let yielded = part.motion.scaled(graph, share).negated(graph);
                 *motion = motion.plus(graph, &yielded);
             }
@@ -187,14 +195,14 @@ impl Column {
 
     /// How fast the motion accelerates under the wrenches and a force along it; the wrenches are left with what it does not take.
     fn taken_from(&self, graph: &mut Graph, wrenches: &mut [SpatialVector], force: ExprId) -> ExprId {
-        let driving = self.parts.iter().fold(force, |sum, (&slot, part)| {
-            let along = part.motion.dot(graph, &wrenches[slot]);
+        let driving = self.parts.iter().fold(force, |sum, (&moving_body, part)| {
+            let along = part.motion.dot(graph, &wrenches[moving_body]);
             graph.add(sum, along)
         });
         let rate = graph.mul(driving, self.inverse);
-        for (&slot, part) in &self.parts {
+        for (&moving_body, part) in &self.parts {
             let taken = part.wrench.scaled(graph, rate).negated(graph);
-            wrenches[slot] = wrenches[slot].plus(graph, &taken);
+            wrenches[moving_body] = wrenches[moving_body].plus(graph, &taken);
         }
         rate
     }

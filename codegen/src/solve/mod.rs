@@ -22,9 +22,9 @@ use forward_dynamics::ForwardDynamics;
 /// The solution of eq. (17), in symbols that are yet to be expanded.
 #[derive(Debug)]
 pub struct Solution {
-    /// (s̈, ẇ') of each slot, then the multipliers of the rows that close loops or couple joints, those that no joint of the tree owns.
+    /// (s̈, ẇ') of each moving_body, then the multipliers of the rows that close loops or couple joints, those that no joint of the tree owns.
     pub solved: Vec<ExprId>,
-    /// The multiplier of each row, in terms of known accelerations and closing multipliers.
+    /// The multiplier of each row, in terms of known accelerations and loop multipliers.
     pub lambda: Vec<ExprId>,
 }
 
@@ -35,7 +35,7 @@ impl Solution {
         forward_dynamics: &ForwardDynamics,
         elimination: Elimination,
     ) -> Self {
-        if elimination == Elimination::Saddle && system.closing_rows().is_empty() {
+        if elimination == Elimination::Saddle && system.loop_closure_rows().is_empty() {
             saddle::solve(system, textbook)
         } else {
             forward_dynamics.solve(system, textbook)

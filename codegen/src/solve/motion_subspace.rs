@@ -11,14 +11,14 @@ use crate::expr::differentiate::Derivative;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3};
-use crate::solve::axis_bias::Steering;
+use crate::solve::axis_bias::AxisBias;
 use gyro_model::{Attachment, JointCoordinate, JointKind, Link, RowOwner};
 use std::ops::Range;
 
 /// A body, what holds it, and how it may move relative to that.
 #[derive(Clone, Debug)]
-pub struct Freedom {
-    pub slot: usize,
+pub struct MotionSubspace {
+    pub moving_body: usize,
     /// The body nearer to the root, if it has coordinates too.
     pub parent: Option<Parent>,
     /// The joint point as the body meets it, in the body's frame; its mass centre where no joint holds it.
@@ -34,13 +34,13 @@ pub struct Freedom {
     /// The acceleration that the rows force upon the body, its parent at rest: γ times the right inverse.
     pub bias: SpatialVector,
     /// The short way to its rotation.
-    pub steering: Option<Steering>,
+    pub axis_bias: Option<AxisBias>,
 }
 
 /// The parent's end of a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Parent {
-    pub slot: usize,
+    pub moving_body: usize,
     /// The joint point as the parent meets it, in the parent's frame.
     pub point: Vec3,
     /// `A_parentᵀ A_body`.
@@ -61,51 +61,67 @@ struct Restraint {
     turning: Vec<Vec3>,
 }
 
-impl Freedom {
+impl MotionSubspace {
     pub fn of(system: &mut System, kinematics: &Kinematics, link: Link) -> Self {
-        let slot = system.slot_of(link.body).expect("links have coordinates");
+        let moving_body = system.moving_body_of(link.body).expect("links have coordinates");
         match link.attachment {
-            Attachment::Free => Self::whole(system, slot),
-            Attachment::Constrained => Self::held(system, kinematics, link.body, slot),
+            Attachment::Free => Self::whole(system, moving_body),
+            Attachment::Constrained => Self::held(system, kinematics, link.body, moving_body),
             Attachment::Joint { joint, reversed, .. } => {
-                Self::carried(system, kinematics, slot, joint, reversed)
+                Self::carried(system, kinematics, moving_body, joint, reversed)
             }
         }
     }
 
     /// In a tree that has no rows, all vectors in the bodies' own frames.
-    pub fn of_tree(slot: usize, parent: Option<Parent>, point: Vec3, free: Vec<SpatialVector>) -> Self {
+    pub fn of_tree(
+        moving_body: usize,
+        parent: Option<Parent>,
+        point: Vec3,
+        free: Vec<SpatialVector>,
+    ) -> Self {
         let (frame, bias) = (UNIT3, SpatialVector::ZERO);
-        Self { slot, parent, point, frame, free, rows: 0..0, forced: Vec::new(), bias, steering: None }
+        Self {
+            moving_body,
+            parent,
+            point,
+            frame,
+            free,
+            rows: 0..0,
+            forced: Vec::new(),
+            bias,
+            axis_bias: None,
+        }
     }
 
     /// Nothing holds the body.
-    fn whole(system: &System, slot: usize) -> Self {
+    fn whole(system: &System, moving_body: usize) -> Self {
         let translations = UNIT3.map(|t| SpatialVector { t, rho: ZERO3 });
         let rotations = UNIT3.map(|rho| SpatialVector { t: ZERO3, rho });
         let free = translations.into_iter().chain(rotations).collect();
-        let frame = system.poses[system.slots[slot]].a;
-        Self { frame, ..Self::of_tree(slot, None, ZERO3, free) }
+        let frame = system.poses[system.moving_bodies[moving_body]].a;
+        Self { frame, ..Self::of_tree(moving_body, None, ZERO3, free) }
     }
 
     /// The body's own six rows hold it.
-    fn held(system: &mut System, kinematics: &Kinematics, body: usize, slot: usize) -> Self {
+    fn held(system: &mut System, kinematics: &Kinematics, body: usize, moving_body: usize) -> Self {
         let rows = system.model.rows_of(RowOwner::Body(body));
-        let gradients: Vec<_> = rows.clone().skip(3).map(|row| kinematics.rotation(row, slot)).collect();
+        let gradients: Vec<_> =
+            rows.clone().skip(3).map(|row| kinematics.rotation(row, moving_body)).collect();
         let rotations = right_inverse(&mut system.graph, &gradients, &[]);
         let translations = UNIT3.map(|t| SpatialVector { t, rho: ZERO3 });
         let rotations = rotations.into_iter().map(|rho| SpatialVector { t: ZERO3, rho });
         let forced: Vec<_> = translations.into_iter().chain(rotations).collect();
         let frame = system.poses[body].a;
         let bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
-        Self { frame, rows, forced, bias, ..Self::of_tree(slot, None, ZERO3, Vec::new()) }
+        Self { frame, rows, forced, bias, ..Self::of_tree(moving_body, None, ZERO3, Vec::new()) }
     }
 
     /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the root.
     fn carried(
         system: &mut System,
         kinematics: &Kinematics,
-        slot: usize,
+        moving_body: usize,
         index: usize,
         reversed: bool,
     ) -> Self {
@@ -114,12 +130,13 @@ impl Freedom {
         let restraint = Restraint::of(system, &joint, reversed);
         let sign = system.graph.integer(if reversed { -1 } else { 1 });
         let n_held = restraint.held.len();
-        let gradients: Vec<_> = rows.clone().skip(n_held).map(|row| kinematics.rotation(row, slot)).collect();
+        let gradients: Vec<_> =
+            rows.clone().skip(n_held).map(|row| kinematics.rotation(row, moving_body)).collect();
         let rotations = right_inverse(&mut system.graph, &gradients, &restraint.turning);
         let held =
             restraint.held.iter().map(|t| SpatialVector { t: system.graph.scale_vec(sign, t), rho: ZERO3 });
         let held: Vec<_> = held.collect();
-        let advance = Advance::of(system, &joint, index, slot, held.last());
+        let advance = Advance::of(system, &joint, index, moving_body, held.last());
         let turn = |system: &mut System, rho: Vec3| advance.follow(&mut system.graph, rho);
         let turning: Vec<_> = restraint.turning.iter().map(|&rho| turn(system, rho)).collect();
         let rotations: Vec<_> = rotations.into_iter().map(|rho| turn(system, rho)).collect();
@@ -128,22 +145,22 @@ impl Freedom {
         let sliding = restraint.sliding.into_iter().map(|t| SpatialVector { t, rho: ZERO3 });
         let forced: Vec<_> = held.into_iter().chain(rotations).collect();
         let mut bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
-        let is_open = system.closing_rows().is_empty();
-        let steering = if is_open { Steering::of(system, &joint, reversed) } else { None };
-        if let Some(steering) = &steering {
+        let is_open = system.loop_closure_rows().is_empty();
+        let axis_bias = if is_open { AxisBias::of(system, &joint, reversed) } else { None };
+        if let Some(axis_bias) = &axis_bias {
             let back = [0, 1, 2].map(|column| joint.relative.map(|row| row[column]));
-            bias.rho = steering.angular_acceleration(&mut system.graph, &back, &UNIT3);
+            bias.rho = axis_bias.angular_acceleration(&mut system.graph, &back, &UNIT3);
         }
         Self {
-            slot,
+            moving_body,
             parent: Parent::of(system, &joint, reversed, parent_point),
             point,
-            frame: system.poses[system.slots[slot]].a,
+            frame: system.poses[system.moving_bodies[moving_body]].a,
             free: sliding.chain(turning).collect(),
             rows,
             forced,
             bias,
-            steering,
+            axis_bias,
         }
     }
 }
@@ -154,7 +171,7 @@ fn accelerated(graph: &mut Graph, gamma: &[ExprId], forced: &[SpatialVector]) ->
     parts.iter().fold(SpatialVector::ZERO, |sum, part| sum.plus(graph, part))
 }
 
-impl Freedom {
+impl MotionSubspace {
     /// What the rows force upon the body, its parent at rest, if these are the changes of all rows.
     pub fn forced_by(&self, graph: &mut Graph, changes: &[ExprId]) -> SpatialVector {
         accelerated(graph, &changes[self.rows.clone()], &self.forced)
@@ -162,8 +179,9 @@ impl Freedom {
 
     /// The same between the mass centres, all vectors in the global frame.
     pub fn in_global_frame(&self, system: &mut System) -> Self {
-        let frame_of = |slot: usize| system.poses[system.slots[slot]].a;
-        let (a, of_parent) = (frame_of(self.slot), self.parent.map(|parent| frame_of(parent.slot)));
+        let frame_of = |moving_body: usize| system.poses[system.moving_bodies[moving_body]].a;
+        let (a, of_parent) =
+            (frame_of(self.moving_body), self.parent.map(|parent| frame_of(parent.moving_body)));
         let graph = &mut system.graph;
         let arm = graph.mat_vec(&a, &self.point);
         let turned = |graph: &mut Graph, twist: &SpatialVector| SpatialVector {
@@ -182,41 +200,41 @@ impl Freedom {
             twists.collect()
         });
         let mut bias = turned(graph, &self.bias);
-        if let Some(steering) = &self.steering {
-            bias.rho = steering.angular_acceleration(graph, &steering.frame_of_first, &a);
+        if let Some(axis_bias) = &self.axis_bias {
+            bias.rho = axis_bias.angular_acceleration(graph, &axis_bias.frame_of_first, &a);
         }
-        if let Some(((steering, parent), of_parent)) = self.held_point().zip(of_parent) {
+        if let Some(((axis_bias, parent), of_parent)) = self.held_point().zip(of_parent) {
             let arm_of_parent = graph.mat_vec(&of_parent, &parent.point);
-            bias.t = steering.acceleration_of_point(graph, (&of_parent, &arm_of_parent), (&a, &arm));
+            bias.t = axis_bias.acceleration_of_point(graph, (&of_parent, &arm_of_parent), (&a, &arm));
         }
         let bias = moved(graph, bias);
         let parent = self.parent.zip(of_parent).map(|(parent, a)| {
             let point = graph.mat_vec(&a, &parent.point);
             let point = graph.sub_vec(&point, &arm);
-            Parent { slot: parent.slot, point, relative: UNIT3, frame: UNIT3, carried: UNIT3 }
+            Parent { moving_body: parent.moving_body, point, relative: UNIT3, frame: UNIT3, carried: UNIT3 }
         });
         Self { parent, point: ZERO3, frame: UNIT3, free, forced, bias, ..self.clone() }
     }
 }
 
-impl Freedom {
+impl MotionSubspace {
     /// For a joint that holds an axis and a point of it to a parent with coordinates.
-    fn held_point(&self) -> Option<(&Steering, &Parent)> {
-        let steering = self.steering.as_ref().filter(|steering| steering.holds_point)?;
-        Some((steering, self.parent.as_ref()?))
+    fn held_point(&self) -> Option<(&AxisBias, &Parent)> {
+        let axis_bias = self.axis_bias.as_ref().filter(|axis_bias| axis_bias.holds_point)?;
+        Some((axis_bias, self.parent.as_ref()?))
     }
 
     /// The same with all vectors in the bodies' own frames.
     pub fn in_own_frames(&self, system: &mut System) -> Self {
-        let a = system.poses[system.slots[self.slot]].a;
+        let a = system.poses[system.moving_bodies[self.moving_body]].a;
         let graph = &mut system.graph;
         let mut turned =
             |twist: &SpatialVector| SpatialVector { t: graph.transposed_vec(&a, &twist.t), rho: twist.rho };
         let [free, forced] =
             [&self.free, &self.forced].map(|twists| twists.iter().map(&mut turned).collect());
         let mut bias = turned(&self.bias);
-        if let Some((steering, parent)) = self.held_point() {
-            let (at_first, at_second) = steering.centripetal(graph, &parent.point, &self.point);
+        if let Some((axis_bias, parent)) = self.held_point() {
+            let (at_first, at_second) = axis_bias.centripetal(graph, &parent.point, &self.point);
             let at_first = graph.transposed_vec(&parent.relative, &at_first);
             bias.t = graph.sub_vec(&at_first, &at_second);
         }
@@ -277,7 +295,7 @@ impl Advance {
         system: &mut System,
         joint: &JointFrames,
         index: usize,
-        slot: usize,
+        moving_body: usize,
         held: Option<&SpatialVector>,
     ) -> Self {
         if joint.kind != JointKind::Screw {
@@ -285,7 +303,7 @@ impl Advance {
         }
         let angle = joint_coordinate::value(system, JointCoordinate { joint: index, coordinate: 0 });
         let gradient = std::array::from_fn(|k| {
-            let rotation = system.unit_direction(slot, 3 + k);
+            let rotation = system.unit_direction(moving_body, 3 + k);
             let rate = Derivative::new(&system.definitions, rotation).of(&mut system.graph, angle);
             system.graph.mul(joint.lead, rate)
         });
@@ -304,9 +322,9 @@ impl Parent {
         let end = if reversed { &joint.second } else { &joint.first };
         let turned = |column: usize| joint.relative.map(|row| row[column]);
         let relative = if reversed { [0, 1, 2].map(turned) } else { joint.relative };
-        system.slot_of(end.body).map(|slot| {
+        system.moving_body_of(end.body).map(|moving_body| {
             let frame = system.poses[end.body].a;
-            Self { slot, point, relative, frame, carried: UNIT3 }
+            Self { moving_body, point, relative, frame, carried: UNIT3 }
         })
     }
 }
@@ -342,8 +360,7 @@ fn scaled(graph: &mut Graph, divisor: ExprId, vectors: &[Vec3]) -> Vec<Vec3> {
 mod tests {
     use super::*;
     use crate::expr::definitions::Expansion;
-    use crate::expr::evaluate::{evaluate, sample};
-    use crate::expr::symbol::Symbol;
+    use crate::expr::evaluate::{evaluate, random_state};
     use crate::solve::articulated_body::Arm;
 
     /// Products of a dozen numbers of order one.
@@ -362,20 +379,6 @@ mod tests {
         )
     }
 
-    /// A state anyhow, but with unit Euler parameters.
-    fn state(seed: u64) -> impl Fn(Symbol) -> f64 {
-        move |symbol| {
-            let value = sample(seed);
-            match symbol {
-                Symbol::Euler { slot, .. } => {
-                    let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { slot, k }));
-                    value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
-                }
-                _ => value(symbol),
-            }
-        }
-    }
-
     /// Free twists leave every row unchanged, each forced twist changes its own row alone, whatever the state.
     fn check(kind: &str, reversed: bool) {
         let text = page(kind, reversed);
@@ -383,14 +386,14 @@ mod tests {
         let mut system = System::new(&model);
         let kinematics = Kinematics::derive(&mut system);
         let link = system.tree.links.iter().copied().find(|link| link.body == 1).expect("b hangs on a");
-        let freedom = Freedom::of(&mut system, &kinematics, link);
-        assert_eq!(freedom.free.len() + freedom.forced.len(), 6, "{kind}");
-        let arm = Arm::on_body(&mut system.graph, &freedom);
+        let subspace = MotionSubspace::of(&mut system, &kinematics, link);
+        assert_eq!(subspace.free.len() + subspace.forced.len(), 6, "{kind}");
+        let arm = Arm::on_body(&mut system.graph, &subspace);
         let mut changes = Vec::new();
-        for twist in freedom.free.iter().chain(&freedom.forced) {
+        for twist in subspace.free.iter().chain(&subspace.forced) {
             let centre = arm.twist(&mut system.graph, twist);
-            for row in freedom.rows.clone() {
-                let columns = &kinematics.phi_pi[row][6 * freedom.slot..6 * freedom.slot + 6];
+            for row in subspace.rows.clone() {
+                let columns = &kinematics.phi_pi[row][6 * subspace.moving_body..6 * subspace.moving_body + 6];
                 let gradient = SpatialVector {
                     t: [columns[0], columns[1], columns[2]],
                     rho: [columns[3], columns[4], columns[5]],
@@ -400,10 +403,10 @@ mod tests {
         }
         let changes = Expansion::new(&system.definitions).all(&mut system.graph, &changes);
         for seed in 0..10 {
-            let values = evaluate(&system.graph, &changes, state(seed));
+            let values = evaluate(&system.graph, &changes, random_state(seed));
             for (index, value) in values.into_iter().enumerate() {
-                let (twist, row) = (index / freedom.rows.len(), index % freedom.rows.len());
-                let expected = if twist == freedom.free.len() + row { 1.0 } else { 0.0 };
+                let (twist, row) = (index / subspace.rows.len(), index % subspace.rows.len());
+                let expected = if twist == subspace.free.len() + row { 1.0 } else { 0.0 };
                 assert!(
                     (value - expected).abs() <= ROUNDING,
                     "{kind} {reversed} twist {twist} row {row}: {value}"

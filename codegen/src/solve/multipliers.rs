@@ -8,48 +8,49 @@ use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
 use crate::solve::articulated_body::{Arm, Inertia};
 use crate::solve::loop_closure::gradient;
-use crate::solve::motion_subspace::Freedom;
+use crate::solve::motion_subspace::MotionSubspace;
 use std::array::from_fn;
 
-/// The multiplier of each row, in terms of known accelerations and closing multipliers.
+/// The multiplier of each row, in terms of known accelerations and loop multipliers.
 pub fn of(
     system: &mut System,
     kinematics: &Kinematics,
     dynamics: &Dynamics,
-    freedoms: &[Freedom],
+    subspaces: &[MotionSubspace],
 ) -> Vec<ExprId> {
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
-    let mut lacking: Vec<_> = (0..system.slots.len()).map(|slot| imbalance(system, dynamics, slot)).collect();
-    for (place, row) in system.closing_rows().into_iter().enumerate() {
-        lambda[row] = system.graph.symbol(Symbol::Closing(place));
+    let mut lacking: Vec<_> =
+        (0..system.moving_bodies.len()).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
+    for (place, row) in system.loop_closure_rows().into_iter().enumerate() {
+        lambda[row] = system.graph.symbol(Symbol::LoopMultiplier(place));
         for (lacking, taken) in lacking.iter_mut().zip(gradient(kinematics, row)) {
             let taken = taken.scaled(&mut system.graph, lambda[row]);
             *lacking = lacking.plus(&mut system.graph, &taken);
         }
     }
-    for freedom in freedoms.iter().rev() {
+    for subspace in subspaces.iter().rev() {
         let graph = &mut system.graph;
-        let arm = Arm::on_body(graph, freedom);
-        let at_joint = arm.wrench(graph, &lacking[freedom.slot]);
-        for (row, forced) in freedom.rows.clone().zip(&freedom.forced) {
+        let arm = Arm::on_body(graph, subspace);
+        let at_joint = arm.wrench(graph, &lacking[subspace.moving_body]);
+        for (row, forced) in subspace.rows.clone().zip(&subspace.forced) {
             // M v̇ + Φᵀλ = f.
             let supplied = forced.dot(graph, &at_joint);
             lambda[row] = graph.neg(supplied);
         }
-        if let Some(parent) = freedom.parent {
+        if let Some(parent) = subspace.parent {
             let carried = parent.wrench(graph, &at_joint);
-            lacking[parent.slot] = lacking[parent.slot].plus(graph, &carried);
+            lacking[parent.moving_body] = lacking[parent.moving_body].plus(graph, &carried);
         }
     }
     lambda
 }
 
 /// `M v̇ − f` of one body, v̇ known.
-pub fn imbalance(system: &mut System, dynamics: &Dynamics, slot: usize) -> SpatialVector {
-    let mut component = |k| system.graph.symbol(Symbol::Acceleration { slot, k });
+pub fn imbalance(system: &mut System, dynamics: &Dynamics, moving_body: usize) -> SpatialVector {
+    let mut component = |k| system.graph.symbol(Symbol::Acceleration { moving_body, k });
     let motion = SpatialVector { t: from_fn(&mut component), rho: from_fn(|k| component(3 + k)) };
     let (inertia, bias) =
-        (Inertia::rigid(system, slot), dynamics.minus_applied_force(&mut system.graph, slot));
+        (Inertia::rigid(system, moving_body), dynamics.minus_applied_force(&mut system.graph, moving_body));
     let inertial = inertia.times(&mut system.graph, &motion);
     inertial.plus(&mut system.graph, &bias)
 }

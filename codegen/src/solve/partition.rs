@@ -13,7 +13,7 @@ use crate::expr::definitions::{Expansion, Values};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, Vec3, Vec4, ZERO3};
-use crate::solve::motion_subspace::{Freedom, right_inverse};
+use crate::solve::motion_subspace::{MotionSubspace, right_inverse};
 use gyro_model::{Attachment, JointKind, Link};
 use std::array::from_fn;
 
@@ -22,9 +22,9 @@ use std::array::from_fn;
 pub struct Partition {
     /// For each chart the vector whose largest component is the special Euler parameter: see `gyro_sim::charts`.
     pub chart_vectors: Vec<Vec4>,
-    /// Positions (r, p) of each slot after one Newton step.
+    /// Positions (r, p) of each moving_body after one Newton step.
     pub positions: Vec<ExprId>,
-    /// Velocities (s, w') of each slot that satisfy eq. (19).
+    /// Velocities (s, w') of each moving_body that satisfy eq. (19).
     pub velocities: Vec<ExprId>,
 }
 
@@ -45,7 +45,7 @@ impl Partition {
                 )
             }
         };
-        system.tree.links.iter().all(|link| covered(link.attachment)) && system.closing_rows().is_empty()
+        system.tree.links.iter().all(|link| covered(link.attachment)) && system.loop_closure_rows().is_empty()
     }
 
     fn derive(system: &mut System, kinematics: &Kinematics) -> Self {
@@ -54,21 +54,23 @@ impl Partition {
         for link in links {
             blocks.push(Block::new(system, kinematics, link, blocks.len()));
         }
-        let n_slots = system.slots.len();
+        let n_moving_bodies = system.moving_bodies.len();
         let (mut positions, mut velocities) = (Values::default(), Values::default());
         for block in &blocks {
             block.correct_positions(system, kinematics, &mut positions);
             block.solve_velocities(system, kinematics, &mut velocities);
         }
-        let position =
-            |slot, k| if k < 3 { Symbol::Position { slot, k } } else { Symbol::Euler { slot, k: k - 3 } };
-        let velocity =
-            |slot, k| if k < 3 { Symbol::Velocity { slot, k } } else { Symbol::Spin { slot, k: k - 3 } };
+        let position = |moving_body, k| {
+            if k < 3 { Symbol::Position { moving_body, k } } else { Symbol::Euler { moving_body, k: k - 3 } }
+        };
+        let velocity = |moving_body, k| {
+            if k < 3 { Symbol::Velocity { moving_body, k } } else { Symbol::Spin { moving_body, k: k - 3 } }
+        };
         let charted = blocks.iter().filter(|block| block.chart.is_some());
         Self {
             chart_vectors: charted.map(|block| block.chart_vector(system)).collect(),
-            positions: (0..7 * n_slots).map(|k| positions[&position(k / 7, k % 7)]).collect(),
-            velocities: (0..6 * n_slots).map(|k| velocities[&velocity(k / 6, k % 6)]).collect(),
+            positions: (0..7 * n_moving_bodies).map(|k| positions[&position(k / 7, k % 7)]).collect(),
+            velocities: (0..6 * n_moving_bodies).map(|k| velocities[&velocity(k / 6, k % 6)]).collect(),
         }
     }
 }
@@ -76,24 +78,24 @@ impl Partition {
 /// One body with what holds it.
 #[derive(Debug)]
 struct Block {
-    slot: usize,
+    moving_body: usize,
     attachment: Attachment,
-    freedom: Freedom,
+    subspace: MotionSubspace,
     /// The chart, as symbols.
     chart: Option<Vec4>,
 }
 
 impl Block {
     fn new(system: &mut System, kinematics: &Kinematics, link: Link, index: usize) -> Self {
-        let freedom = Freedom::of(system, kinematics, link);
+        let subspace = MotionSubspace::of(system, kinematics, link);
         let earlier = &system.tree.links[..index];
         let chart = earlier.iter().filter(|l| needs_chart(system, l.attachment)).count();
         let graph = &mut system.graph;
         let symbols = from_fn(|k| graph.symbol(Symbol::Chart { chart, k }));
         Self {
-            slot: freedom.slot,
+            moving_body: subspace.moving_body,
             attachment: link.attachment,
-            freedom,
+            subspace,
             chart: needs_chart(system, link.attachment).then_some(symbols),
         }
     }
@@ -107,7 +109,7 @@ impl Block {
 
     /// Revolute: the tangent G(p)ᵀ h'; otherwise the normal p.
     fn chart_vector(&self, system: &mut System) -> Vec4 {
-        let p = system.poses[system.slots[self.slot]].p;
+        let p = system.poses[system.moving_bodies[self.moving_body]].p;
         match (self.attachment, self.joint_kind(system)) {
             (Attachment::Joint { joint, reversed, .. }, Some(JointKind::Revolute)) => {
                 let frames = system.joints[joint];
@@ -121,11 +123,11 @@ impl Block {
 
     /// One Newton step: adds this body's corrected r and p to those of the bodies nearer to the root.
     fn correct_positions(&self, system: &mut System, kinematics: &Kinematics, corrected: &mut Values) {
-        let slot = self.slot;
-        let pose = system.poses[system.slots[slot]];
+        let moving_body = self.moving_body;
+        let pose = system.poses[system.moving_bodies[moving_body]];
         let (r, p) = match (self.attachment, self.joint_kind(system)) {
             (Attachment::Constrained, _) => {
-                let given = system.fixed_pose(system.slots[slot]);
+                let given = system.fixed_pose(system.moving_bodies[moving_body]);
                 (given.r, given.p)
             }
             (_, Some(JointKind::Revolute | JointKind::Fixed)) => {
@@ -133,30 +135,31 @@ impl Block {
             }
             _ => {
                 let chart = self.chart.expect("free and spherical orientations have a chart");
-                let r = if self.freedom.rows.is_empty() { pose.r } else { ZERO3 };
+                let r = if self.subspace.rows.is_empty() { pose.r } else { ZERO3 };
                 (r, normalise_along(&mut system.graph, &pose.p, &chart))
             }
         };
-        corrected.extend((0..4).map(|k| (Symbol::Euler { slot, k }, p[k])));
-        corrected.extend((0..3).map(|k| (Symbol::Position { slot, k }, r[k])));
-        if !self.freedom.rows.is_empty() {
+        corrected.extend((0..4).map(|k| (Symbol::Euler { moving_body, k }, p[k])));
+        corrected.extend((0..3).map(|k| (Symbol::Position { moving_body, k }, r[k])));
+        if !self.subspace.rows.is_empty() {
             // The point rows are r plus or minus a rotation's arm: with p corrected they give r in closed form.
             let residual = self.point_rows(system, &kinematics.phi, corrected);
             let r = system.graph.sub_vec(&r, &residual);
-            corrected.extend((0..3).map(|k| (Symbol::Position { slot, k }, r[k])));
+            corrected.extend((0..3).map(|k| (Symbol::Position { moving_body, k }, r[k])));
         }
     }
 
     /// The body's corrected p from its dot-1 rows and its chart.
     fn correct_rotation(&self, system: &mut System, kinematics: &Kinematics, corrected: &Values) -> Vec4 {
-        let p = system.poses[system.slots[self.slot]].p;
+        let p = system.poses[system.moving_bodies[self.moving_body]].p;
         let unit = unit_step(&mut system.graph, &p);
         let mut values = corrected.clone();
-        values.extend((0..4).map(|k| (Symbol::Euler { slot: self.slot, k }, unit[k])));
+        values.extend((0..4).map(|k| (Symbol::Euler { moving_body: self.moving_body, k }, unit[k])));
         let (mut jacobian, mut residuals) = (Vec::new(), Vec::new());
         let mut expansion = Expansion::with_values(&system.definitions, values);
-        for row in self.freedom.rows.clone().skip(3) {
-            jacobian.push(kinematics.rotation(row, self.slot).map(|e| expansion.of(&mut system.graph, e)));
+        for row in self.subspace.rows.clone().skip(3) {
+            jacobian
+                .push(kinematics.rotation(row, self.moving_body).map(|e| expansion.of(&mut system.graph, e)));
             residuals.push(expansion.of(&mut system.graph, kinematics.phi[row]));
         }
         let graph = &mut system.graph;
@@ -174,18 +177,18 @@ impl Block {
 
     /// Adds this body's s and w' to those of the bodies nearer to the root.
     fn solve_velocities(&self, system: &mut System, kinematics: &Kinematics, solved: &mut Values) {
-        let slot = self.slot;
+        let moving_body = self.moving_body;
         let w = self.solve_spin(system, kinematics, solved);
-        solved.extend((0..3).map(|k| (Symbol::Spin { slot, k }, w[k])));
+        solved.extend((0..3).map(|k| (Symbol::Spin { moving_body, k }, w[k])));
         let s = match self.attachment {
-            Attachment::Free => system.poses[system.slots[slot]].s,
+            Attachment::Free => system.poses[system.moving_bodies[moving_body]].s,
             Attachment::Constrained | Attachment::Joint { .. } => ZERO3,
         };
-        solved.extend((0..3).map(|k| (Symbol::Velocity { slot, k }, s[k])));
-        if !self.freedom.rows.is_empty() {
+        solved.extend((0..3).map(|k| (Symbol::Velocity { moving_body, k }, s[k])));
+        if !self.subspace.rows.is_empty() {
             let residual = self.point_rows(system, &kinematics.velocity_residual, solved);
             let s = system.graph.sub_vec(&s, &residual);
-            solved.extend((0..3).map(|k| (Symbol::Velocity { slot, k }, s[k])));
+            solved.extend((0..3).map(|k| (Symbol::Velocity { moving_body, k }, s[k])));
         }
     }
 
@@ -196,7 +199,7 @@ impl Block {
                 self.constrained_spin(system, kinematics, solved)
             }
             // Three components of ṗ are independent, and pᵀṗ = 0 holds for every w': it keeps its integrated value.
-            _ => system.poses[system.slots[self.slot]].w,
+            _ => system.poses[system.moving_bodies[self.moving_body]].w,
         }
     }
 
@@ -205,8 +208,8 @@ impl Block {
     fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
         let directions = self.directions(system, kinematics);
         let mut expansion = Expansion::with_values(&system.definitions, solved.clone());
-        let mut w = system.poses[system.slots[self.slot]].w;
-        for (row, direction) in self.freedom.rows.clone().skip(3).zip(directions) {
+        let mut w = system.poses[system.moving_bodies[self.moving_body]].w;
+        for (row, direction) in self.subspace.rows.clone().skip(3).zip(directions) {
             let residual = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
             let direction = direction.map(|e| expansion.of(&mut system.graph, e));
             let change = system.graph.scale_vec(residual, &direction);
@@ -220,18 +223,18 @@ impl Block {
     fn directions(&self, system: &mut System, kinematics: &Kinematics) -> Vec<Vec3> {
         match (self.attachment, self.joint_kind(system)) {
             (Attachment::Joint { joint, reversed: true, .. }, Some(JointKind::Revolute)) => {
-                let rows = self.freedom.rows.clone().skip(3);
-                let gradients: Vec<_> = rows.map(|row| kinematics.rotation(row, self.slot)).collect();
+                let rows = self.subspace.rows.clone().skip(3);
+                let gradients: Vec<_> = rows.map(|row| kinematics.rotation(row, self.moving_body)).collect();
                 right_inverse(&mut system.graph, &gradients, &[system.joints[joint].first.h])
             }
-            _ => self.freedom.forced.iter().skip(3).map(|forced| forced.rho).collect(),
+            _ => self.subspace.forced.iter().skip(3).map(|forced| forced.rho).collect(),
         }
     }
 
     /// The joint's point rows of Φ or Φ̇ at the given values, with the sign that this body's own r or s has in them.
     fn point_rows(&self, system: &mut System, rows: &[ExprId], values: &Values) -> Vec3 {
         let mut expansion = Expansion::with_values(&system.definitions, values.clone());
-        let rows = from_fn(|k| expansion.of(&mut system.graph, rows[self.freedom.rows.start + k]));
+        let rows = from_fn(|k| expansion.of(&mut system.graph, rows[self.subspace.rows.start + k]));
         let reversed = matches!(self.attachment, Attachment::Joint { reversed: true, .. });
         if reversed { system.graph.neg_vec(&rows) } else { rows }
     }
@@ -273,7 +276,7 @@ fn as_vec3(rows: &[ExprId]) -> Vec3 {
     rows.try_into().expect("dot-1 rows and chart make three rows")
 }
 
-/// Whether a slot's attachment leaves its orientation partly free, so that it needs a chart.
+/// Whether a moving_body's attachment leaves its orientation partly free, so that it needs a chart.
 fn needs_chart(system: &System, attachment: Attachment) -> bool {
     match attachment {
         Attachment::Free => true,

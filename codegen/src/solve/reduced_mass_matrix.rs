@@ -7,7 +7,7 @@ use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3};
 use crate::solve::ldl::Elimination;
-use crate::solve::motion_subspace::Freedom;
+use crate::solve::motion_subspace::MotionSubspace;
 use std::collections::BTreeMap;
 
 /// A body alone. What its inertia has in all directions alike need not be turned.
@@ -34,12 +34,12 @@ struct HeldPoint {
 #[derive(Debug)]
 pub struct ReducedTree {
     /// In the global frame, root first.
-    freedoms: Vec<Freedom>,
+    subspaces: Vec<MotionSubspace>,
     /// Of those of them that hold a joint point to a body at rest or with coordinates.
     held: Vec<Option<HeldPoint>>,
-    /// Of each slot.
+    /// Of each moving_body.
     bodies: Vec<Body>,
-    /// Of each slot how it moves at unit rates of those free twists that move it.
+    /// Of each moving_body how it moves at unit rates of those free twists that move it.
     columns: Vec<Vec<(usize, SpatialVector)>>,
     /// Lower triangle.
     matrix: BTreeMap<(usize, usize), ExprId>,
@@ -47,24 +47,26 @@ pub struct ReducedTree {
 }
 
 impl ReducedTree {
-    /// `own` are the same freedoms with rotations in the bodies' own frames.
-    pub fn new(system: &mut System, freedoms: Vec<Freedom>, own: &[Freedom]) -> Self {
-        let bodies: Vec<_> = (0..system.slots.len()).map(|slot| Body::of(system, slot)).collect();
+    /// `own` are the same subspaces with rotations in the bodies' own frames.
+    pub fn new(system: &mut System, subspaces: Vec<MotionSubspace>, own: &[MotionSubspace]) -> Self {
+        let bodies: Vec<_> =
+            (0..system.moving_bodies.len()).map(|moving_body| Body::of(system, moving_body)).collect();
         let graph = &mut system.graph;
         let mut columns: Vec<Vec<(usize, SpatialVector)>> = vec![Vec::new(); bodies.len()];
         let mut axes = Vec::new();
-        for (freedom, own) in freedoms.iter().zip(own) {
-            let carried = freedom.parent.map_or_else(Vec::new, |parent| {
-                let of_parent = columns[parent.slot].iter();
+        for (subspace, own) in subspaces.iter().zip(own) {
+            let carried = subspace.parent.map_or_else(Vec::new, |parent| {
+                let of_parent = columns[parent.moving_body].iter();
                 of_parent.map(|(rate, twist)| (*rate, parent.twist(graph, twist))).collect()
             });
             let first = axes.len();
-            let free = freedom.free.iter().enumerate().map(|(k, twist)| (first + k, *twist));
-            columns[freedom.slot] = carried.into_iter().chain(free).collect();
+            let free = subspace.free.iter().enumerate().map(|(k, twist)| (first + k, *twist));
+            columns[subspace.moving_body] = carried.into_iter().chain(free).collect();
             axes.extend(own.free.iter().map(|twist| twist.rho));
         }
         let held = own.iter().map(|own| HeldPoint::of(graph, &bodies, own)).collect();
-        let mut tree = Self { freedoms, held, bodies, columns, matrix: BTreeMap::new(), n_rates: axes.len() };
+        let mut tree =
+            Self { subspaces, held, bodies, columns, matrix: BTreeMap::new(), n_rates: axes.len() };
         tree.matrix = tree.mass_matrix(graph, &axes);
         tree
     }
@@ -107,7 +109,7 @@ impl ReducedTree {
     /// The accelerations of eq. (17).
     pub fn accelerations(&self, system: &mut System, dynamics: &Dynamics) -> Vec<SpatialVector> {
         let bias: Vec<_> = (0..self.bodies.len())
-            .map(|slot| dynamics.minus_applied_force(&mut system.graph, slot))
+            .map(|moving_body| dynamics.minus_applied_force(&mut system.graph, moving_body))
             .collect();
         let motions = self.unforced(&mut system.graph);
         self.respond(&mut system.graph, &bias, motions)
@@ -118,26 +120,26 @@ impl ReducedTree {
     fn unforced(&self, graph: &mut Graph) -> Vec<SpatialVector> {
         let mut motions = vec![SpatialVector::ZERO; self.bodies.len()];
         let mut of_points = vec![[ZERO3; 3]; self.bodies.len()];
-        for (freedom, held) in self.freedoms.iter().zip(&self.held) {
-            let of_parent = freedom.parent.map(|parent| motions[parent.slot]);
+        for (subspace, held) in self.subspaces.iter().zip(&self.held) {
+            let of_parent = subspace.parent.map(|parent| motions[parent.moving_body]);
             let rho = of_parent
-                .map_or(freedom.bias.rho, |of_parent| graph.add_vec(&of_parent.rho, &freedom.bias.rho));
-            let body = &self.bodies[freedom.slot];
+                .map_or(subspace.bias.rho, |of_parent| graph.add_vec(&of_parent.rho, &subspace.bias.rho));
+            let body = &self.bodies[subspace.moving_body];
             let w = graph.mat_vec(&body.a, &body.w);
             let of_point = graph.relative_acceleration(&w, &rho);
             let t = match held {
                 Some(HeldPoint { on_body, on_parent }) => {
                     let centre = graph.mat_vec(&of_point, on_body);
-                    let point = freedom.parent.zip(*on_parent).map_or(ZERO3, |(parent, arm)| {
-                        let of_arm = graph.mat_vec(&of_points[parent.slot], &arm);
-                        graph.add_vec(&motions[parent.slot].t, &of_arm)
+                    let point = subspace.parent.zip(*on_parent).map_or(ZERO3, |(parent, arm)| {
+                        let of_arm = graph.mat_vec(&of_points[parent.moving_body], &arm);
+                        graph.add_vec(&motions[parent.moving_body].t, &of_arm)
                     });
                     graph.sub_vec(&point, &centre)
                 }
-                None => freedom.on_parent(graph, &motions, &freedom.bias).t,
+                None => subspace.on_parent(graph, &motions, &subspace.bias).t,
             };
-            motions[freedom.slot] = SpatialVector { t, rho };
-            of_points[freedom.slot] = of_point;
+            motions[subspace.moving_body] = SpatialVector { t, rho };
+            of_points[subspace.moving_body] = of_point;
         }
         motions
     }
@@ -145,9 +147,9 @@ impl ReducedTree {
     /// The smallest motions that change the rows as given.
     pub fn project(&self, graph: &mut Graph, changes: &[ExprId]) -> Vec<SpatialVector> {
         let mut motions = vec![SpatialVector::ZERO; self.bodies.len()];
-        for freedom in &self.freedoms {
-            let forced = freedom.forced_by(graph, changes);
-            motions[freedom.slot] = freedom.on_parent(graph, &motions, &forced);
+        for subspace in &self.subspaces {
+            let forced = subspace.forced_by(graph, changes);
+            motions[subspace.moving_body] = subspace.on_parent(graph, &motions, &forced);
         }
         self.respond(graph, &vec![SpatialVector::ZERO; self.bodies.len()], motions)
     }
@@ -164,17 +166,17 @@ impl ReducedTree {
             .collect();
         let mut rhs = vec![Graph::ZERO; self.n_rates];
         let mut last = self.n_rates;
-        for freedom in self.freedoms.iter().rev() {
-            let wrench = taken[freedom.slot];
-            let first = last - freedom.free.len();
-            for (rhs, twist) in rhs[first..last].iter_mut().zip(&freedom.free) {
+        for subspace in self.subspaces.iter().rev() {
+            let wrench = taken[subspace.moving_body];
+            let first = last - subspace.free.len();
+            for (rhs, twist) in rhs[first..last].iter_mut().zip(&subspace.free) {
                 let resisted = twist.dot(graph, &wrench);
                 *rhs = graph.neg(resisted);
             }
             last = first;
-            if let Some(parent) = freedom.parent {
+            if let Some(parent) = subspace.parent {
                 let carried = parent.wrench(graph, &wrench);
-                taken[parent.slot] = taken[parent.slot].plus(graph, &carried);
+                taken[parent.moving_body] = taken[parent.moving_body].plus(graph, &carried);
             }
         }
         let mut elimination = Elimination::new(self.matrix.clone(), rhs);
@@ -194,7 +196,7 @@ impl ReducedTree {
     }
 }
 
-impl Freedom {
+impl MotionSubspace {
     /// What its parent carries over to it, and what is forced upon it.
     fn on_parent(
         &self,
@@ -202,28 +204,31 @@ impl Freedom {
         motions: &[SpatialVector],
         forced: &SpatialVector,
     ) -> SpatialVector {
-        let carried = self.parent.map(|parent| parent.twist(graph, &motions[parent.slot]));
+        let carried = self.parent.map(|parent| parent.twist(graph, &motions[parent.moving_body]));
         carried.map_or(*forced, |carried| carried.plus(graph, forced))
     }
 }
 
 impl HeldPoint {
     /// `own` has its points in the frames of its bodies.
-    fn of(graph: &mut Graph, bodies: &[Body], own: &Freedom) -> Option<Self> {
-        let steering = own.steering.as_ref().filter(|steering| steering.holds_point)?;
-        if own.parent.is_none() && !steering.first_rests {
+    fn of(graph: &mut Graph, bodies: &[Body], own: &MotionSubspace) -> Option<Self> {
+        let axis_bias = own.axis_bias.as_ref().filter(|axis_bias| axis_bias.holds_point)?;
+        if own.parent.is_none() && !axis_bias.first_rests {
             return None;
         }
-        let on_body = graph.mat_vec(&bodies[own.slot].a, &own.point);
-        let on_parent = own.parent.map(|parent| graph.mat_vec(&bodies[parent.slot].a, &parent.point));
+        let on_body = graph.mat_vec(&bodies[own.moving_body].a, &own.point);
+        let on_parent = own.parent.map(|parent| graph.mat_vec(&bodies[parent.moving_body].a, &parent.point));
         Some(Self { on_body, on_parent })
     }
 }
 
 impl Body {
-    fn of(system: &mut System, slot: usize) -> Self {
-        let (mass, inertia, pose) =
-            (system.mass(slot), system.inertia(slot), system.poses[system.slots[slot]]);
+    fn of(system: &mut System, moving_body: usize) -> Self {
+        let (mass, inertia, pose) = (
+            system.mass(moving_body),
+            system.inertia(moving_body),
+            system.poses[system.moving_bodies[moving_body]],
+        );
         let often = |k: &usize| (0..3).filter(|&l| inertia[l][l] == inertia[*k][*k]).count();
         let most = (0..3).rev().max_by_key(often).expect("three moments");
         let even = inertia[most][most];

@@ -100,28 +100,28 @@ impl Saddle {
 struct Place {
     /// Distance from the leaves in the order of elimination: children come before parents.
     from_leaf: usize,
-    slot: usize,
+    moving_body: usize,
     is_multiplier: bool,
     is_rotation: bool,
 }
 
 impl Place {
     fn of(system: &System, unknown: usize) -> Self {
-        let n_velocities = 6 * system.slots.len();
-        let (slot, is_multiplier, is_rotation) = if unknown < n_velocities {
+        let n_velocities = 6 * system.moving_bodies.len();
+        let (moving_body, is_multiplier, is_rotation) = if unknown < n_velocities {
             (unknown / 6, false, unknown % 6 >= 3)
         } else {
             let row = system.model.rows()[unknown - n_velocities];
-            (child_slot(system, row.owner), true, row.unit == gyro_model::RowUnit::Pure)
+            (child_body(system, row.owner), true, row.unit == gyro_model::RowUnit::Pure)
         };
-        let link = system.tree.links.iter().position(|link| link.body == system.slots[slot]);
-        let from_leaf = system.tree.links.len() - link.expect("every slot is a link of the tree");
-        Self { from_leaf, slot, is_multiplier, is_rotation }
+        let link = system.tree.links.iter().position(|link| link.body == system.moving_bodies[moving_body]);
+        let from_leaf = system.tree.links.len() - link.expect("every moving_body is a link of the tree");
+        Self { from_leaf, moving_body, is_multiplier, is_rotation }
     }
 }
 
-/// The slot of the body that hangs on a row: the child of its joint.
-fn child_slot(system: &System, owner: RowOwner) -> usize {
+/// The moving_body of the body that hangs on a row: the child of its joint.
+fn child_body(system: &System, owner: RowOwner) -> usize {
     let hangs_on = |attachment: Attachment| match owner {
         RowOwner::Joint(index) => matches!(attachment, Attachment::Joint { joint, .. } if joint == index),
         _ => false,
@@ -133,14 +133,15 @@ fn child_slot(system: &System, owner: RowOwner) -> usize {
             link.expect("every joint of a tree leads to a body").body
         }
     };
-    system.slot_of(body).expect("a body with rows has coordinates")
+    system.moving_body_of(body).expect("a body with rows has coordinates")
 }
 
 /// The next pivot among those that the safe-order rule admits.
 fn choose(elimination: &Elimination, places: &[Place], remaining: &[usize], preference: Preference) -> usize {
     let safe = |unknown: usize| {
         let place = places[unknown];
-        let waits = |&other: &usize| !places[other].is_multiplier && places[other].slot == place.slot;
+        let waits =
+            |&other: &usize| !places[other].is_multiplier && places[other].moving_body == place.moving_body;
         !place.is_multiplier || !remaining.iter().any(waits)
     };
     let key = |unknown: usize| {
@@ -170,7 +171,7 @@ mod tests {
     fn every_order_recomposes_the_system() {
         let model = gyro_model::read("gyroscope.toml", PAGE).expect("the page is good");
         let mut system = System::new(&model);
-        let n = 6 * system.slots.len();
+        let n = 6 * system.moving_bodies.len();
         let n_rows = model.rows().len();
         let mut symbol = |k: usize| system.graph.symbol(Symbol::Parameter(k));
         let mut mass_matrix = vec![vec![Graph::ZERO; n]; n];
@@ -208,7 +209,7 @@ mod tests {
     fn no_multiplier_comes_before_the_velocities_of_its_child() {
         let model = gyro_model::read("gyroscope.toml", PAGE).expect("the page is good");
         let system = System::new(&model);
-        let (n, n_rows) = (6 * system.slots.len(), model.rows().len());
+        let (n, n_rows) = (6 * system.moving_bodies.len(), model.rows().len());
         let places: Vec<_> = (0..n + n_rows).map(|unknown| Place::of(&system, unknown)).collect();
         let elimination = Elimination::new(BTreeMap::new(), Vec::new());
         for preference in PREFERENCES {
@@ -217,7 +218,8 @@ mod tests {
                 let pivot = choose(&elimination, &places, &remaining, preference);
                 remaining.retain(|&unknown| unknown != pivot);
                 let child = |unknown: &usize| {
-                    !places[*unknown].is_multiplier && places[*unknown].slot == places[pivot].slot
+                    !places[*unknown].is_multiplier
+                        && places[*unknown].moving_body == places[pivot].moving_body
                 };
                 assert!(
                     !places[pivot].is_multiplier || !remaining.iter().any(child),

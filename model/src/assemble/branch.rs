@@ -20,14 +20,18 @@ pub(super) fn check(
         let name = model.joints[joint].name.clone();
         return Err(AssemblyError::Flipped { joint, name, direction });
     }
-    let turned = |slot: usize| {
+    let turned = |moving_body: usize| {
         let p = |at: &Configuration| {
-            let q = &at.q[7 * slot + 3..7 * slot + 7];
+            let q = &at.q[7 * moving_body + 3..7 * moving_body + 7];
             Quaternion([q[0], q[1], q[2], q[3]])
         };
         rotation_vector(p(guess).conjugate() * p(closed)).iter().map(|x| x * x).sum::<f64>().sqrt()
     };
-    let farthest = model.coordinate_bodies().into_iter().enumerate().map(|(slot, body)| (turned(slot), body));
+    let farthest = model
+        .coordinate_bodies()
+        .into_iter()
+        .enumerate()
+        .map(|(moving_body, body)| (turned(moving_body), body));
     match farthest.max_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((turned, body)) if turned > QUARTER_TURN => Err(AssemblyError::Jump {
             body,

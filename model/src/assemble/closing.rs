@@ -202,9 +202,9 @@ fn settled(
 /// The states of all bodies, of which those with coordinates are given.
 fn states_of(model: &Model, all: &[State], q: &[f64], v: &[f64]) -> Vec<State> {
     let mut states = all.to_vec();
-    for (slot, body) in model.coordinate_bodies().into_iter().enumerate() {
-        let [x, y, z, a, b, c, d] = std::array::from_fn(|k| q[7 * slot + k]);
-        let [s, w] = [0, 3].map(|at| Vector::from(std::array::from_fn(|k| v[6 * slot + at + k])));
+    for (moving_body, body) in model.coordinate_bodies().into_iter().enumerate() {
+        let [x, y, z, a, b, c, d] = std::array::from_fn(|k| q[7 * moving_body + k]);
+        let [s, w] = [0, 3].map(|at| Vector::from(std::array::from_fn(|k| v[6 * moving_body + at + k])));
         states[body] = State { r: Vector::from([x, y, z]), p: Quaternion([a, b, c, d]), s, w };
     }
     states

@@ -95,17 +95,18 @@ fn given(model: &Model, kinematics: &Kinematics, guesses: &[Guess], at: &Configu
 
 /// The angular velocities that the page gives bodies which are not free to have any.
 fn spins(model: &Model) -> Rates {
-    let slots = model.coordinate_bodies();
-    let wanted = slots.iter().enumerate().filter(|(_, body)| model.bodies[**body].support == Support::Moving);
+    let moving_bodies = model.coordinate_bodies();
+    let wanted =
+        moving_bodies.iter().enumerate().filter(|(_, body)| model.bodies[**body].support == Support::Moving);
     let wanted: Vec<(usize, usize, [f64; 3])> = wanted
-        .filter_map(|(slot, &body)| {
+        .filter_map(|(moving_body, &body)| {
             let w = model.bodies[body].angular_velocity.as_ref()?;
-            Some((slot, body, model.values(w)))
+            Some((moving_body, body, model.values(w)))
         })
         .collect();
-    let mut matrix = DMatrix::zeros(3 * wanted.len(), 6 * slots.len());
-    for (k, (slot, ..)) in wanted.iter().enumerate() {
-        matrix.view_mut((3 * k, 6 * slot + 3), (3, 3)).fill_with_identity();
+    let mut matrix = DMatrix::zeros(3 * wanted.len(), 6 * moving_bodies.len());
+    for (k, (moving_body, ..)) in wanted.iter().enumerate() {
+        matrix.view_mut((3 * k, 6 * moving_body + 3), (3, 3)).fill_with_identity();
     }
     let right = DVector::from_vec(wanted.iter().flat_map(|(.., w)| *w).collect());
     let owners = wanted.iter().flat_map(|(_, body, _)| [(RowOwner::Body(*body), RowUnit::Pure); 3]).collect();

@@ -31,15 +31,15 @@ impl Kinematics {
     pub(crate) fn gradients(&self, equations: &[Equation], q: &[f64], near: &[Vec<f64>]) -> DMatrix<f64> {
         let still: Vec<Pose<Dual64>> = self.poses(q).iter().map(without_time).collect();
         let n_rows = equations.iter().map(|equation| self.units_of(equation).len()).sum();
-        let mut gradients = DMatrix::zeros(n_rows, 6 * self.n_slots);
+        let mut gradients = DMatrix::zeros(n_rows, 6 * self.n_moving_bodies);
         let (mut poses, mut first_row) = (still.clone(), 0);
         for equation in equations {
             for body in self.bodies_of(equation) {
-                let Place::Slot { slot, .. } = self.places[body] else { continue };
+                let Place::Slot { moving_body, .. } = self.places[body] else { continue };
                 for direction in 0..6 {
                     poses[body] = still[body].varied(direction);
                     for (row, value) in self.rows_of(equation, &poses, near).into_iter().enumerate() {
-                        gradients[(first_row + row, 6 * slot + direction)] = value.eps;
+                        gradients[(first_row + row, 6 * moving_body + direction)] = value.eps;
                     }
                 }
                 poses[body] = still[body];

@@ -59,14 +59,14 @@ pub struct Kinematics {
     couplers: Vec<CouplerNumbers>,
     drivers: Vec<DriverNumbers>,
     places: Vec<Place>,
-    n_slots: usize,
+    n_moving_bodies: usize,
 }
 
 /// Where a body's pose comes from.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// From this slot of the coordinates. A constrained body is held at the pose.
-    Slot { slot: usize, held: Option<Pose<f64>> },
+    /// From this moving_body of the coordinates. A constrained body is held at the pose.
+    Slot { moving_body: usize, held: Option<Pose<f64>> },
     /// Fixed or driven: the pose with its derivative in time.
     Folded(Pose<Dual64>),
 }
@@ -89,13 +89,13 @@ struct DriverNumbers {
 impl Kinematics {
     /// The kinematics at a time, with the model's parameters as they are.
     pub fn at(model: &Model, t: f64) -> Self {
-        let mut slots = 0..;
+        let mut moving_bodies = 0..;
         let places = model.bodies.iter().enumerate().map(|(index, body)| match body.support {
             Support::Fixed | Support::Driven => Place::Folded(folded(model, index, t)),
             support => {
                 let given = || Pose::new(model.values(&body.position), body.given_orientation(model).0);
                 let held = (support == Support::Constrained).then(given);
-                Place::Slot { slot: slots.next().expect("endless"), held }
+                Place::Slot { moving_body: moving_bodies.next().expect("endless"), held }
             }
         });
         let places: Vec<Place> = places.collect();
@@ -109,7 +109,7 @@ impl Kinematics {
                 .iter()
                 .map(|d| DriverNumbers { coordinate: d.coordinate, value: d.motion.at(model, time) })
                 .collect(),
-            n_slots: model.coordinate_bodies().len(),
+            n_moving_bodies: model.coordinate_bodies().len(),
             places,
         }
     }
@@ -172,8 +172,8 @@ impl Kinematics {
     pub(crate) fn poses(&self, q: &[f64]) -> Vec<Pose<Dual64>> {
         let pose = |place: &Place| match *place {
             Place::Folded(pose) => pose,
-            Place::Slot { slot, .. } => {
-                let [x, y, z, a, b, c, d] = std::array::from_fn(|k| q[7 * slot + k]);
+            Place::Slot { moving_body, .. } => {
+                let [x, y, z, a, b, c, d] = std::array::from_fn(|k| q[7 * moving_body + k]);
                 Pose::still([x, y, z], [a, b, c, d])
             }
         };

@@ -10,7 +10,7 @@ impl Kinematics {
     /// it; angles with all their turns; what is prescribed.
     pub(crate) fn sizes(&self, equations: &[Equation], q: &[f64], near: &[Vec<f64>]) -> DVector<f64> {
         let of_body = |pose: &[f64]| [pose[0].abs(), pose[1].abs(), pose[2].abs(), 1.0, 1.0, 1.0];
-        let units = DVector::from_iterator(6 * self.n_slots, q.chunks_exact(7).flat_map(of_body));
+        let units = DVector::from_iterator(6 * self.n_moving_bodies, q.chunks_exact(7).flat_map(of_body));
         let terms = equations.iter().flat_map(|equation| {
             let mut terms = vec![0.0; self.units_of(equation).len()];
             let (row, size) = self.numbers_in(equation, near);

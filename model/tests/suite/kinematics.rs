@@ -35,23 +35,23 @@ fn poses(model: &Model) -> Vec<(Vec<f64>, Vec<Vec<f64>>)> {
 
 /// q moved along one of the directions (r, π') body after body: `p ∘ exp(½ π')`.
 fn varied(q: &[f64], direction: usize, by: f64) -> Vec<f64> {
-    let (slot, k) = (direction / 6, direction % 6);
+    let (moving_body, k) = (direction / 6, direction % 6);
     let mut q = q.to_vec();
     if k < 3 {
-        q[7 * slot + k] += by;
+        q[7 * moving_body + k] += by;
         return q;
     }
     let (sin, cos) = (0.5 * by).sin_cos();
     let mut turn = [cos, 0.0, 0.0, 0.0];
     turn[k - 2] = sin;
-    let ([a, b, c, d], [w, x, y, z]) = (std::array::from_fn(|e| q[7 * slot + 3 + e]), turn);
+    let ([a, b, c, d], [w, x, y, z]) = (std::array::from_fn(|e| q[7 * moving_body + 3 + e]), turn);
     let p = [
         a * w - b * x - c * y - d * z,
         a * x + b * w + c * z - d * y,
         a * y - b * z + c * w + d * x,
         a * z + b * y - c * x + d * w,
     ];
-    q[7 * slot + 3..7 * slot + 7].copy_from_slice(&p);
+    q[7 * moving_body + 3..7 * moving_body + 7].copy_from_slice(&p);
     q
 }
 

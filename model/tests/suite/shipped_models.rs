@@ -100,10 +100,10 @@ fn moving_bases_carry_the_gyroscope_from_rest_in_the_base() {
         assert_eq!(model(stem).rows().len(), 15);
         // The rings turn with the base, the rotor 100 rad/s faster about its x axis.
         let v = start(stem).v;
-        for (slot, spin) in [(0, 0.0), (1, 0.0), (2, 100.0)] {
+        for (moving_body, spin) in [(0, 0.0), (1, 0.0), (2, 100.0)] {
             for (k, base) in base.into_iter().enumerate() {
                 let expected = base + if k == 0 { spin } else { 0.0 };
-                assert!((v[6 * slot + 3 + k] - expected).abs() <= 1e-13, "{stem} {v:?}");
+                assert!((v[6 * moving_body + 3 + k] - expected).abs() <= 1e-13, "{stem} {v:?}");
             }
         }
     }
@@ -207,10 +207,14 @@ fn all_joints_has_every_kind_and_starts_where_its_points_were_chosen() {
         [0.4, 0.8, 0.6],
         [0.9, 0.7, 0.3],
     ];
-    for (slot, position) in positions.into_iter().enumerate() {
+    for (moving_body, position) in positions.into_iter().enumerate() {
         let expected = position.into_iter().chain([1.0, 0.0, 0.0, 0.0]);
-        for (q, expected) in start.q[7 * slot..7 * slot + 7].iter().zip(expected) {
-            assert!((q - expected).abs() <= 1e-14, "body {slot}: {:?}", &start.q[7 * slot..7 * slot + 7]);
+        for (q, expected) in start.q[7 * moving_body..7 * moving_body + 7].iter().zip(expected) {
+            assert!(
+                (q - expected).abs() <= 1e-14,
+                "body {moving_body}: {:?}",
+                &start.q[7 * moving_body..7 * moving_body + 7]
+            );
         }
     }
 }

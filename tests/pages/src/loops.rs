@@ -132,7 +132,7 @@ impl Page {
 /// Where the bodies are at the start.
 pub fn places(model: &Model) -> Vec<Place> {
     let start = model.assemble().unwrap_or_else(|error| panic!("{}: {error}", model.name));
-    let mut slots = start.q.chunks_exact(7);
+    let mut moving_bodies = start.q.chunks_exact(7);
     let of = |body: &gyro_model::Body| match body.support {
         Support::Fixed => Place {
             position: body.position.each_ref().map(exact),
@@ -143,7 +143,7 @@ pub fn places(model: &Model) -> Vec<Place> {
             Place { position: at.r.0, orientation: at.p.0 }
         }
         _ => {
-            let q = slots.next().expect("seven numbers a body");
+            let q = moving_bodies.next().expect("seven numbers a body");
             Place { position: [q[0], q[1], q[2]], orientation: [q[3], q[4], q[5], q[6]] }
         }
     };

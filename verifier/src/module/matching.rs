@@ -24,7 +24,7 @@ pub struct Matched {
     /// Numbers by name, where the expected text has `INT_name`: the same number everywhere.
     pub numbers: BTreeMap<String, usize>,
     /// The documentation of the file, a line each.
-    pub sheet: Vec<String>,
+    pub data_sheet: Vec<String>,
     /// All other documentation, with its line.
     pub docs: Vec<(usize, String)>,
     arguments: Vec<String>,
@@ -145,7 +145,7 @@ impl Matched {
             let Some(TokenTree::Group(attribute)) = ahead.next() else { return };
             let Some(text) = documentation(&attribute) else { return };
             if is_of_file {
-                self.sheet.push(text.trim().to_owned());
+                self.data_sheet.push(text.trim().to_owned());
             } else {
                 self.docs.push((sign.span().start().line, text.clone()));
                 self.doc = text;

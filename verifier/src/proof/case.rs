@@ -57,7 +57,9 @@ impl<'a> Case<'a> {
             model,
             module,
             point: point(model, tape),
-            factors: (0..model.coordinate_bodies().len()).map(|slot| read(Source::Factor(slot))).collect(),
+            factors: (0..model.coordinate_bodies().len())
+                .map(|moving_body| read(Source::Factor(moving_body)))
+                .collect(),
             changes: (0..model.rows().len()).map(|row| read(Source::Change(row))).collect(),
             motion: (0..6 * model.coordinate_bodies().len()).map(|k| read(Source::Motion(k))).collect(),
             charts: charts.map(|chart| [0, 1, 2, 3].map(|k| read(Source::Chart(chart, k)))).collect(),
@@ -112,7 +114,7 @@ impl<'a> Case<'a> {
             Source::Change(row) => changes[row],
             Source::Joint(k) => joints[k],
             Source::Chart(chart, k) => self.charts[chart][k],
-            Source::Factor(slot) => self.factors[slot],
+            Source::Factor(moving_body) => self.factors[moving_body],
             Source::Motion(k) => self.motion[k],
             Source::Before(k) => self.before[k],
             source => *point.given(source).expect("the rest is the point's"),

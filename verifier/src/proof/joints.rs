@@ -103,8 +103,8 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 Reading::Orientation(numbers) => (numbers.to_vec(), [x, u].concat()),
                 _ => return None,
             },
-            Freedom::Body { slot } => {
-                let found = [maximal.position(slot), maximal.velocity(case.model, slot)];
+            Freedom::Body { moving_body } => {
+                let found = [maximal.position(moving_body), maximal.velocity(case.model, moving_body)];
                 (found.concat(), [x, u].concat())
             }
         };
@@ -154,8 +154,8 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 Reading::Orientation(numbers) => numbers.to_vec(),
                 _ => return None,
             },
-            Freedom::Body { slot } => {
-                [case.point.position(slot), case.point.velocity(case.model, slot)].concat()
+            Freedom::Body { moving_body } => {
+                [case.point.position(moving_body), case.point.velocity(case.model, moving_body)].concat()
             }
         };
         residuals.extend(differences(&all, &expected));

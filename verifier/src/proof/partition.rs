@@ -29,7 +29,7 @@ enum Hold {
 /// A body with coordinates.
 #[derive(Clone, Copy, Debug)]
 struct Held {
-    slot: usize,
+    moving_body: usize,
     hold: Hold,
     /// Place of its chart, where it has one.
     chart: usize,
@@ -61,7 +61,7 @@ impl Held {
 
 /// The bodies from root to leaf; `None` where charts cannot serve.
 fn bodies<'a>(case: &Case<'a>) -> Option<Vec<Held>> {
-    let (slots, mut chart) = (case.model.coordinate_bodies(), 0);
+    let (moving_bodies, mut chart) = (case.model.coordinate_bodies(), 0);
     let hold = |link: &Link| match link.attachment {
         Attachment::Free => Some(Hold::Free),
         Attachment::Constrained => Some(Hold::Constrained),
@@ -74,7 +74,11 @@ fn bodies<'a>(case: &Case<'a>) -> Option<Vec<Held>> {
     };
     let mut held = Vec::new();
     for link in &Tree::of(case.model).links {
-        let body = Held { slot: slots.iter().position(|&b| b == link.body)?, hold: hold(link)?, chart };
+        let body = Held {
+            moving_body: moving_bodies.iter().position(|&b| b == link.body)?,
+            hold: hold(link)?,
+            chart,
+        };
         chart += usize::from(body.has_chart());
         held.push(body);
     }
@@ -93,7 +97,7 @@ pub fn chart_vectors<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let mut residuals = Vec::new();
     for body in bodies.iter().filter(|body| body.has_chart()) {
         let vector = &vectors[4 * body.chart..4 * body.chart + 4];
-        let p = euler(&case.point, body.slot);
+        let p = euler(&case.point, body.moving_body);
         let expected = body.axis(case).map_or_else(|| p.to_vec(), |axis| turning(p, &axis).to_vec());
         residuals.extend(across(vector, &expected));
         // One, unless the vector is zero everywhere: then it is no number.
@@ -156,7 +160,7 @@ fn lengths<'a>(
     start: &Point<Term<'a>>,
     moved: &Point<Term<'a>>,
 ) -> Vec<Term<'a>> {
-    let (p, corrected) = (euler(start, body.slot), euler(moved, body.slot));
+    let (p, corrected) = (euler(start, body.moving_body), euler(moved, body.moving_body));
     let number = |n| Term::integer(start.context, n);
     let square = dot(p, p);
     let chart = |vector: &[Term<'a>]| dot(&case.charts[body.chart], vector);
@@ -186,11 +190,11 @@ fn held_position<'a>(
     start: &Point<Term<'a>>,
     moved: &Point<Term<'a>>,
 ) -> Vec<Term<'a>> {
-    let (before, after) = (start.position(body.slot), moved.position(body.slot));
+    let (before, after) = (start.position(body.moving_body), moved.position(body.moving_body));
     match body.hold {
         Hold::Free => differences(&before[..3], &after[..3]),
         Hold::Constrained => {
-            let given = given_pose(case, body.slot);
+            let given = given_pose(case, body.moving_body);
             differences(after, &given)
         }
         _ => Vec::new(),
@@ -198,8 +202,8 @@ fn held_position<'a>(
 }
 
 /// The page's pose of a constrained body, Euler parameters of unit length with `e0` not negative.
-fn given_pose<'a>(case: &Case<'a>, slot: usize) -> Vec<Term<'a>> {
-    let body = &case.model.bodies[case.model.coordinate_bodies()[slot]];
+fn given_pose<'a>(case: &Case<'a>, moving_body: usize) -> Vec<Term<'a>> {
+    let body = &case.model.bodies[case.model.coordinate_bodies()[moving_body]];
     debug_assert_eq!(body.support, Support::Constrained, "only these are given");
     let exact = body.orientation.each_ref().map(|e| case.model.exact(e));
     let square = exact.iter().map(|e| e * e).sum();
@@ -219,9 +223,9 @@ fn linearised_rows<'a>(
     moved: &Point<Term<'a>>,
 ) -> Option<Vec<Term<'a>>> {
     let (Hold::Revolute { joint, .. } | Hold::Fixed { joint }) = body.hold else { return Some(Vec::new()) };
-    let before = euler(&case.point, body.slot);
-    let change = differences(euler(moved, body.slot), before);
-    let rows = textbook.linearised(RowOwner::Joint(joint), body.slot, before, &change)?;
+    let before = euler(&case.point, body.moving_body);
+    let change = differences(euler(moved, body.moving_body), before);
+    let rows = textbook.linearised(RowOwner::Joint(joint), body.moving_body, before, &change)?;
     Some(rows.into_iter().skip(3).collect())
 }
 
@@ -236,7 +240,7 @@ pub fn solve_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     residuals.extend(kept(0..positions));
     residuals.extend(kept(velocities.end..moved.state.len()));
     for body in bodies {
-        let start = velocities.start + 6 * body.slot;
+        let start = velocities.start + 6 * body.moving_body;
         match body.hold {
             Hold::Free => residuals.extend(kept(start..start + 6)),
             Hold::Spherical { .. } => residuals.extend(kept(start + 3..start + 6)),
@@ -250,8 +254,8 @@ pub fn solve_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
-fn euler<'p, 'a>(point: &'p Point<Term<'a>>, slot: usize) -> &'p [Term<'a>] {
-    &point.position(slot)[3..]
+fn euler<'p, 'a>(point: &'p Point<Term<'a>>, moving_body: usize) -> &'p [Term<'a>] {
+    &point.position(moving_body)[3..]
 }
 
 pub(super) fn dot<F: Field>(a: &[F], b: &[F]) -> F {

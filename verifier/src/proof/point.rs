@@ -30,7 +30,7 @@ impl<F: Field> Draw<F> {
     pub fn read(&self, source: Source) -> F {
         match source {
             Source::Chart(chart, k) => self.charts[chart][k].clone(),
-            Source::Factor(slot) => self.factors[slot].clone(),
+            Source::Factor(moving_body) => self.factors[moving_body].clone(),
             Source::Change(row) => self.changes[row].clone(),
             Source::Motion(k) => self.motion[k].clone(),
             Source::Joint(k) => self.joints[0][k].clone(),
@@ -129,8 +129,8 @@ pub(super) fn degree(model: &Model, module: &Module, source: Source) -> Degree {
 /// The point with the Euler parameters of each body made longer by a factor of its own.
 pub(super) fn stretched<F: Field>(point: &Point<F>, factors: &[F]) -> Point<F> {
     let mut stretched = point.clone();
-    for (slot, factor) in factors.iter().enumerate() {
-        for e in &mut stretched.state[7 * slot + 3..7 * slot + 7] {
+    for (moving_body, factor) in factors.iter().enumerate() {
+        for e in &mut stretched.state[7 * moving_body + 3..7 * moving_body + 7] {
             *e = e.mul(factor);
         }
     }

@@ -72,7 +72,7 @@ fn sample(
     [random, of_joints, of_rows]: &mut [ChaCha8Rng; 3],
 ) -> Sample {
     let n = model.coordinate_bodies().len();
-    let euler: Vec<usize> = (0..n).map(|slot| 7 * slot + 3).collect();
+    let euler: Vec<usize> = (0..n).map(|moving_body| 7 * moving_body + 3).collect();
     let raw = raw(kind, &module.start, &euler, 7 * n..13 * n, random);
     let (rates, euler_of_joints) = module.joints.as_ref().map_or_else(
         || (0..0, Vec::new()),

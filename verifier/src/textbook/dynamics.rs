@@ -11,16 +11,16 @@ use gyro_model::Support;
 impl<F: Field> Evaluation<'_, F> {
     /// `diag(M, J')` of eq. (17), (s̈, ẇ') body after body.
     pub fn mass_matrix(&self) -> Sparse<F> {
-        let size = 6 * self.textbook.slots.len();
+        let size = 6 * self.textbook.moving_bodies.len();
         let mut matrix = Sparse::new(size, size);
-        for (slot, &body) in self.textbook.slots.iter().enumerate() {
+        for (moving_body, &body) in self.textbook.moving_bodies.iter().enumerate() {
             let (mass, inertia) = (self.mass(body), self.inertia(body));
             for row in 0..3 {
-                let (of_place, of_turning) = (6 * slot + row, 6 * slot + 3 + row);
+                let (of_place, of_turning) = (6 * moving_body + row, 6 * moving_body + 3 + row);
                 matrix.rows[of_place].insert(of_place, mass.value.clone());
                 for column in 0..3 {
                     matrix.rows[of_turning]
-                        .insert(6 * slot + 3 + column, inertia.0[row][column].value.clone());
+                        .insert(6 * moving_body + 3 + column, inertia.0[row][column].value.clone());
                 }
             }
         }
@@ -31,7 +31,7 @@ impl<F: Field> Evaluation<'_, F> {
     pub fn applied_force(&self) -> Option<Vec<F>> {
         let (loads, gravity) = (self.forces()?.loads, self.gravity());
         let mut applied = Vec::new();
-        for &body in &self.textbook.slots {
+        for &body in &self.textbook.moving_bodies {
             let w = &self.moving[body].w;
             let force = gravity.times(&self.mass(body)) + &loads[body].force;
             let torque = loads[body].torque.clone() - w.cross(&self.inertia(body).apply(w));
@@ -44,7 +44,7 @@ impl<F: Field> Evaluation<'_, F> {
     pub fn energy(&self) -> Option<[F; 2]> {
         let (mut twice_kinetic, mut potential) = (self.scope.zero.clone(), self.forces()?.potential);
         let gravity = self.gravity();
-        for &body in &self.textbook.slots {
+        for &body in &self.textbook.moving_bodies {
             let (mass, Moving { pose, s, w }) = (self.mass(body), &self.moving[body]);
             twice_kinetic = twice_kinetic + &mass * s.dot(s) + w.dot(&self.inertia(body).apply(w));
             potential = potential - mass * gravity.dot(&pose.r);
@@ -65,8 +65,9 @@ impl<F: Field> Evaluation<'_, F> {
     /// `−λᵀν = −λᵀ(Φ_r s + Φ_π' w') = v·(M v̇ − f)`.
     pub fn power_of_motion(&self, accelerations: &[F]) -> Option<[F; 2]> {
         let imbalance = self.imbalance(accelerations)?;
-        let slots = 0..self.textbook.slots.len();
-        let velocities = slots.flat_map(|slot| self.scope.point.velocity(self.textbook.model, slot));
+        let moving_bodies = 0..self.textbook.moving_bodies.len();
+        let velocities =
+            moving_bodies.flat_map(|moving_body| self.scope.point.velocity(self.textbook.model, moving_body));
         self.powers(self.dot(velocities, &imbalance))
     }
 

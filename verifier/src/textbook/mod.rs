@@ -41,7 +41,7 @@ use std::ops::Range;
 pub struct Textbook<'m> {
     model: &'m Model,
     /// Bodies with coordinates.
-    slots: Vec<usize>,
+    moving_bodies: Vec<usize>,
     /// Of each body its place among them.
     slot_of_body: Vec<Option<usize>>,
     /// [`Model::rows`], owner after owner.
@@ -80,14 +80,17 @@ pub struct Evaluation<'a, F: Field> {
 impl<'m> Textbook<'m> {
     /// Reads a model.
     pub fn new(model: &'m Model) -> Self {
-        let (slots, blocks) = (model.coordinate_bodies(), blocks(model));
+        let (moving_bodies, blocks) = (model.coordinate_bodies(), blocks(model));
         let mut slot_of_body = vec![None; model.bodies.len()];
-        slots.iter().enumerate().for_each(|(slot, &body)| slot_of_body[body] = Some(slot));
+        moving_bodies
+            .iter()
+            .enumerate()
+            .for_each(|(moving_body, &body)| slot_of_body[body] = Some(moving_body));
         let mut blocks_of_body = vec![Vec::new(); model.bodies.len()];
         for (index, block) in blocks.iter().enumerate() {
             bodies_of(model, block.owner).into_iter().for_each(|body| blocks_of_body[body].push(index));
         }
-        Self { model, slots, slot_of_body, blocks, blocks_of_body, turns: model.turn_references() }
+        Self { model, moving_bodies, slot_of_body, blocks, blocks_of_body, turns: model.turn_references() }
     }
 
     fn n_rows(&self) -> usize {
@@ -114,7 +117,7 @@ impl<'m> Textbook<'m> {
     fn prescribed<F: Field>(&self, scope: &Scope<'_, F>) -> Option<Vec<Option<Pose<F>>>> {
         let t = jet::Jet::moving(scope.point.t.clone(), scope.one.value.clone());
         let bodies = self.model.bodies.iter().enumerate();
-        let poses = bodies.map(|(index, body)| match (self.slot_of(index), &body.motion) {
+        let poses = bodies.map(|(index, body)| match (self.moving_body_of(index), &body.motion) {
             (Some(_), _) => Some(None),
             (None, Some(motion)) => scope.driven(body, motion, &t).map(Some),
             (None, None) => scope.given(body).map(Some),
@@ -122,7 +125,7 @@ impl<'m> Textbook<'m> {
         poses.collect()
     }
 
-    fn slot_of(&self, body: usize) -> Option<usize> {
+    fn moving_body_of(&self, body: usize) -> Option<usize> {
         self.slot_of_body[body]
     }
 }

@@ -65,7 +65,7 @@ impl<F: Field> Evaluation<'_, F> {
     pub fn position_rates(&self) -> Vec<F> {
         let poses = self.poses(Path::Motion);
         let rate = |x: &Jet<F>| x.rate.clone().unwrap_or_else(|| self.scope.zero.value.clone());
-        let moving = self.textbook.slots.iter().map(|&body| &poses[body]);
+        let moving = self.textbook.moving_bodies.iter().map(|&body| &poses[body]);
         moving.flat_map(|pose| pose.r.0.iter().chain(&pose.p).map(rate).collect::<Vec<F>>()).collect()
     }
 
@@ -127,13 +127,13 @@ impl<F: Field> Evaluation<'_, F> {
     fn reaction(&self, joint: usize, lambda: &[F]) -> Option<[Vector<F>; 2]> {
         let frames = &self.joints[joint];
         let (i, j) = (frames.first.body, frames.second.body);
-        let (force, torque, body) = match (self.textbook.slot_of(i), self.textbook.slot_of(j)) {
-            (_, Some(slot)) => {
-                let [force, torque] = self.taken(joint, slot, lambda)?;
+        let (force, torque, body) = match (self.textbook.moving_body_of(i), self.textbook.moving_body_of(j)) {
+            (_, Some(moving_body)) => {
+                let [force, torque] = self.taken(joint, moving_body, lambda)?;
                 (-force, -torque, j)
             }
-            (Some(slot), None) => {
-                let [force, torque] = self.taken(joint, slot, lambda)?;
+            (Some(moving_body), None) => {
+                let [force, torque] = self.taken(joint, moving_body, lambda)?;
                 (force, torque, i)
             }
             (None, None) => (self.scope.no_vector(), self.scope.no_vector(), j),
@@ -146,13 +146,13 @@ impl<F: Field> Evaluation<'_, F> {
         Some([in_frame(force), in_frame(torque)])
     }
 
-    /// `Φ_rᵀλ` and `Φ_π'ᵀλ` of a joint's rows for one slot.
-    fn taken(&self, joint: usize, slot: usize, lambda: &[F]) -> Option<[Vector<F>; 2]> {
+    /// `Φ_rᵀλ` and `Φ_π'ᵀλ` of a joint's rows for one moving_body.
+    fn taken(&self, joint: usize, moving_body: usize, lambda: &[F]) -> Option<[Vector<F>; 2]> {
         let phi_pi = self.phi_pi()?;
         let rows = self.textbook.model.rows_of(RowOwner::Joint(joint));
         let column = |k: usize| {
             rows.clone().fold(self.scope.zero.clone(), |sum, row| {
-                let entry = phi_pi.rows[row].get(&(6 * slot + k));
+                let entry = phi_pi.rows[row].get(&(6 * moving_body + k));
                 entry.map_or(sum.clone(), |entry| sum + Jet::constant(entry.mul(&lambda[row])))
             })
         };

@@ -12,10 +12,10 @@ use std::array::from_fn;
 pub enum Path {
     /// Nothing.
     Rest,
-    /// One of (r, p) of a slot, at unit rate.
-    Coordinate { slot: usize, k: usize },
-    /// One of (r, π') of a slot, at unit rate: `ṗ = ½ Gᵀ π̇'`, so that `Φ_π' = ½ Φ_p Gᵀ`.
-    Virtual { slot: usize, k: usize },
+    /// One of (r, p) of a moving_body, at unit rate.
+    Coordinate { moving_body: usize, k: usize },
+    /// One of (r, π') of a moving_body, at unit rate: `ṗ = ½ Gᵀ π̇'`, so that `Φ_π' = ½ Φ_p Gᵀ`.
+    Virtual { moving_body: usize, k: usize },
     /// Time, while bodies with coordinates rest.
     Time,
     /// Time and all bodies, at constant s and w'.
@@ -93,28 +93,28 @@ impl<F: Field> Evaluation<'_, F> {
     }
 
     pub(super) fn pose(&self, body: usize, path: Path) -> Pose<F> {
-        match (self.textbook.slot_of(body), &self.prescribed[body]) {
-            (Some(slot), _) => self.pose_of_slot(slot, path),
+        match (self.textbook.moving_body_of(body), &self.prescribed[body]) {
+            (Some(moving_body), _) => self.pose_of_slot(moving_body, path),
             (None, Some(pose)) if path.moves_time() => pose.clone(),
             (None, Some(pose)) => pose.frozen(),
             (None, None) => unreachable!("a body without coordinates has a prescribed pose"),
         }
     }
 
-    fn pose_of_slot(&self, slot: usize, path: Path) -> Pose<F> {
-        let values = self.scope.point.position(slot);
+    fn pose_of_slot(&self, moving_body: usize, path: Path) -> Pose<F> {
+        let values = self.scope.point.position(moving_body);
         let mut r = Vector(from_fn(|k| Jet::constant(values[k].clone())));
         let mut p: Euler<F> = from_fn(|k| Jet::constant(values[3 + k].clone()));
         let one = self.scope.one.value.clone();
         match path {
-            Path::Coordinate { slot: moved, k } if moved == slot => {
+            Path::Coordinate { moving_body: moved, k } if moved == moving_body => {
                 if k < 3 {
                     r.0[k].rate = Some(one)
                 } else {
                     p[k - 3].rate = Some(one)
                 }
             }
-            Path::Virtual { slot: moved, k } if moved == slot => {
+            Path::Virtual { moving_body: moved, k } if moved == moving_body => {
                 if k < 3 {
                     r.0[k].rate = Some(one);
                 } else {
@@ -124,7 +124,7 @@ impl<F: Field> Evaluation<'_, F> {
                 }
             }
             Path::Motion => {
-                let (s, w) = self.velocities_of_slot(slot);
+                let (s, w) = self.velocities_of_slot(moving_body);
                 r = Vector(from_fn(|k| Jet::moving(r.0[k].value.clone(), s.0[k].value.clone())));
                 p = self.turning(&p, &w);
             }
@@ -144,9 +144,9 @@ impl<F: Field> Evaluation<'_, F> {
         })
     }
 
-    /// (s, w') of the body in a slot.
-    pub(super) fn velocities_of_slot(&self, slot: usize) -> (Vector<F>, Vector<F>) {
-        let values = self.scope.point.velocity(self.textbook.model, slot);
+    /// (s, w') of the body in a moving_body.
+    pub(super) fn velocities_of_slot(&self, moving_body: usize) -> (Vector<F>, Vector<F>) {
+        let values = self.scope.point.velocity(self.textbook.model, moving_body);
         let part = |from: usize| Vector(from_fn(|k| Jet::constant(values[from + k].clone())));
         (part(0), part(3))
     }
@@ -154,20 +154,21 @@ impl<F: Field> Evaluation<'_, F> {
     /// Pose and velocities of a body; of one without coordinates by `s = ṙ` and `w̃' = Aᵀ Ȧ`.
     pub(super) fn moving(&self, body: usize) -> Moving<F> {
         let pose = self.pose(body, Path::Time);
-        let (s, w) = match self.textbook.slot_of(body) {
-            Some(slot) => self.velocities_of_slot(slot),
+        let (s, w) = match self.textbook.moving_body_of(body) {
+            Some(moving_body) => self.velocities_of_slot(moving_body),
             None => (self.rate(&pose.r), self.turning_rate(&pose)),
         };
         let frozen = |v: Vector<F>| Vector(v.0.map(|x| x.frozen()));
         Moving { pose: pose.frozen(), s: frozen(s), w: frozen(w) }
     }
 
-    /// Accelerations of a body: given ones of a body with coordinates, `(s̈, ẇ')` slot after slot.
+    /// Accelerations of a body: given ones of a body with coordinates, `(s̈, ẇ')` moving_body after moving_body.
     pub(super) fn acceleration(&self, body: usize, given: &[F]) -> Acceleration<F> {
         let zero = &self.scope.zero.value;
         let rate_of = |v: Vector<F>| Vector(v.0.map(|x| x.derivative(zero).frozen()));
-        if let Some(slot) = self.textbook.slot_of(body) {
-            let part = |from: usize| Vector(from_fn(|k| Jet::constant(given[6 * slot + from + k].clone())));
+        if let Some(moving_body) = self.textbook.moving_body_of(body) {
+            let part =
+                |from: usize| Vector(from_fn(|k| Jet::constant(given[6 * moving_body + from + k].clone())));
             return Acceleration { s: part(0), w: part(3) };
         }
         let pose = self.pose(body, Path::Time);

@@ -18,13 +18,15 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// Φ_q, normalisations included; columns (r, p) body after body.
     pub fn phi_q(&self) -> Option<Sparse<F>> {
-        let (n_rows, slots) = (self.textbook.n_rows(), &self.textbook.slots);
-        let mut matrix = self.derivatives(n_rows + slots.len(), 7, |slot, k| Path::Coordinate { slot, k })?;
-        for (slot, &body) in slots.iter().enumerate() {
+        let (n_rows, moving_bodies) = (self.textbook.n_rows(), &self.textbook.moving_bodies);
+        let mut matrix = self.derivatives(n_rows + moving_bodies.len(), 7, |moving_body, k| {
+            Path::Coordinate { moving_body, k }
+        })?;
+        for (moving_body, &body) in moving_bodies.iter().enumerate() {
             for k in 3..7 {
-                let pose = self.pose(body, Path::Coordinate { slot, k });
+                let pose = self.pose(body, Path::Coordinate { moving_body, k });
                 if let Some(rate) = self.normalisation(&pose).rate {
-                    matrix.rows[n_rows + slot].insert(7 * slot + k, rate);
+                    matrix.rows[n_rows + moving_body].insert(7 * moving_body + k, rate);
                 }
             }
         }
@@ -33,27 +35,27 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// (Φ_r, Φ_π'), `Φ_π' = ½ Φ_p Gᵀ`; columns (r, π') body after body.
     pub fn phi_pi(&self) -> Option<Sparse<F>> {
-        self.derivatives(self.textbook.n_rows(), 6, |slot, k| Path::Virtual { slot, k })
+        self.derivatives(self.textbook.n_rows(), 6, |moving_body, k| Path::Virtual { moving_body, k })
     }
 
-    /// The derivatives of the joint rows along some paths of each slot. A row in which a body does not occur does not change with it.
+    /// The derivatives of the joint rows along some paths of each moving_body. A row in which a body does not occur does not change with it.
     fn derivatives(
         &self,
         n_rows: usize,
         paths: usize,
         path: impl Fn(usize, usize) -> Path,
     ) -> Option<Sparse<F>> {
-        let mut matrix = Sparse::new(n_rows, paths * self.textbook.slots.len());
+        let mut matrix = Sparse::new(n_rows, paths * self.textbook.moving_bodies.len());
         let mut poses = self.still.clone();
-        for (slot, &body) in self.textbook.slots.iter().enumerate() {
+        for (moving_body, &body) in self.textbook.moving_bodies.iter().enumerate() {
             for k in 0..paths {
-                let path = path(slot, k);
+                let path = path(moving_body, k);
                 poses[body] = self.pose(body, path);
                 for block in &self.textbook.blocks_of_body[body] {
                     let block = &self.textbook.blocks[*block];
                     for (row, jet) in block.rows.clone().zip(self.rows_of(block, path, &poses)?) {
                         if let Some(rate) = jet.rate {
-                            matrix.rows[row].insert(paths * slot + k, rate);
+                            matrix.rows[row].insert(paths * moving_body + k, rate);
                         }
                     }
                 }
@@ -63,14 +65,14 @@ impl<F: Field> Evaluation<'_, F> {
         Some(matrix)
     }
 
-    /// Φ of an owner's rows to first order in a change of the Euler parameters of a slot from other ones: `Φ + Φ_p δ`.
-    pub fn linearised(&self, owner: RowOwner, slot: usize, p: &[F], change: &[F]) -> Option<Vec<F>> {
-        let body = self.textbook.slots[slot];
+    /// Φ of an owner's rows to first order in a change of the Euler parameters of a moving_body from other ones: `Φ + Φ_p δ`.
+    pub fn linearised(&self, owner: RowOwner, moving_body: usize, p: &[F], change: &[F]) -> Option<Vec<F>> {
+        let body = self.textbook.moving_bodies[moving_body];
         let mut poses = self.still.clone();
         let p: Euler<F> = from_fn(|k| Jet::moving(p[k].clone(), change[k].clone()));
         poses[body] = Pose { r: poses[body].r.clone(), a: self.scope.rotation(&p), p };
         let block = self.textbook.blocks.iter().find(|block| block.owner == owner)?;
-        let rows = self.rows_of(block, Path::Coordinate { slot, k: 3 }, &poses)?;
+        let rows = self.rows_of(block, Path::Coordinate { moving_body, k: 3 }, &poses)?;
         let sum = |row: Jet<F>| row.rate.map_or_else(|| row.value.clone(), |rate| row.value.add(&rate));
         Some(rows.into_iter().map(sum).collect())
     }
@@ -119,9 +121,9 @@ impl<F: Field> Evaluation<'_, F> {
         Some(rows.into_iter().zip(&block.is_kept).filter(|(_, kept)| **kept).map(|(row, _)| row).collect())
     }
 
-    /// `pᵀp − 1` of each slot, eq. (12).
+    /// `pᵀp − 1` of each moving_body, eq. (12).
     fn normalisations(&self, path: Path) -> Vec<Jet<F>> {
-        let bodies = self.textbook.slots.iter();
+        let bodies = self.textbook.moving_bodies.iter();
         bodies.map(|&body| self.normalisation(&self.pose(body, path))).collect()
     }
 

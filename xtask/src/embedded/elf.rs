@@ -1,7 +1,7 @@
 //! Of a firmware's ELF file: sizes of sections, symbols, and the stack that each function takes.
 
 use gyro_cli::failure::Failure;
-use gyro_cli::programs::said;
+use gyro_cli::programs::io_failure;
 use object::elf::FileHeader32;
 use object::read::elf::ElfFile;
 use object::{Bytes, LittleEndian, Object, ObjectSection, ObjectSymbol, U32Bytes};
@@ -18,7 +18,7 @@ pub(crate) struct Elf {
 
 impl Elf {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
-        let data = fs::read(path).map_err(|e| said(path, &e))?;
+        let data = fs::read(path).map_err(|e| io_failure(path, &e))?;
         Self::parse(&data).map_err(|e| Failure::Run(format!("{}: {e}", path.display())))
     }
 

@@ -4,7 +4,7 @@ use super::process::within;
 use super::target;
 use super::tools::Tools;
 use gyro_cli::failure::Failure;
-use gyro_cli::programs::said;
+use gyro_cli::programs::io_failure;
 use gyro_cli::progress::Spinner;
 use std::fs;
 use std::path::PathBuf;
@@ -99,7 +99,7 @@ fn kept(chip: Chip, name: String) -> Result<Program, Failure> {
     let folder = target().join(chip.cpu());
     let path = folder.join(&name);
     let built = target().join("target").join(TRIPLE).join("release").join(&name);
-    fs::create_dir_all(&folder).and_then(|()| fs::copy(&built, &path)).map_err(|e| said(&built, &e))?;
+    fs::create_dir_all(&folder).and_then(|()| fs::copy(&built, &path)).map_err(|e| io_failure(&built, &e))?;
     Ok(Program { name, path })
 }
 

@@ -7,7 +7,7 @@ use super::process::within;
 use super::tools::Tools;
 use super::{folder, proof, say, target};
 use gyro_cli::failure::Failure;
-use gyro_cli::programs::{output, said};
+use gyro_cli::programs::{output, io_failure};
 use gyro_cli::progress::Spinner;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub(crate) fn check(tools: &Tools, expected: &Expected) -> Result<Sizes, Failure
     let module = wasm(tools)?;
     same("WebAssembly without imports", expected, &node(tools, &module)?)?;
     drop(spinner);
-    let wasm = fs::metadata(&module).map_err(|e| said(&module, &e))?.len();
+    let wasm = fs::metadata(&module).map_err(|e| io_failure(&module, &e))?.len();
     Ok(Sizes { c: super::elf::Elf::read(&program.path)?.size(".text"), wasm })
 }
 

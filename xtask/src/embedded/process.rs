@@ -9,14 +9,14 @@ use std::time::{Duration, Instant};
 /// Runs a command for at most so long; whether it succeeded, and what it wrote on both streams.
 pub(crate) fn within(limit: Duration, command: &mut Command) -> Result<(bool, String), Failure> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let said = |e: std::io::Error| Failure::Run(format!("{name}: {e}"));
+    let failure = |e: std::io::Error| Failure::Run(format!("{name}: {e}"));
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(said)?;
+    let mut child = command.spawn().map_err(failure)?;
     let readers = [
         reader(child.stdout.take().expect("standard output is piped")),
         reader(child.stderr.take().expect("standard error is piped")),
     ];
-    let status = wait(limit, &mut child).map_err(said)?;
+    let status = wait(limit, &mut child).map_err(failure)?;
     let text: String = readers.into_iter().filter_map(|reader| reader.join().ok()).collect();
     match status {
         Some(status) => Ok((status.success(), text)),

@@ -3,7 +3,7 @@
 use super::folder;
 use gyro_cli::failure::Failure;
 use gyro_cli::places::listing;
-use gyro_cli::programs::said;
+use gyro_cli::programs::io_failure;
 use gyro_cli::{files, generate};
 use std::fs;
 
@@ -15,7 +15,7 @@ pub(crate) fn generate() -> Result<(), Failure> {
     let mut pages = listing(&folder().join("models"))?;
     pages.push(files::root().join("models").join(OF_THE_GALLERY));
     let generated = folder().join("scenes").join("generated");
-    fs::create_dir_all(&generated).map_err(|e| said(&generated, &e))?;
+    fs::create_dir_all(&generated).map_err(|e| io_failure(&generated, &e))?;
     for module in generate::modules(&pages, false) {
         let module = module?;
         files::write(&generated.join(&module.name).with_extension("rs"), &module.as_item())?;

@@ -12,13 +12,15 @@ impl ModuleWriter<'_> {
     pub fn equations(&self) -> TokenStream {
         let name = ident(self.type_name);
         let e = self.equations;
-        let [n_velocities, n_closing, n_phi_q, n_phi_pi] =
-            [e.n_velocities(), e.n_closing(), e.phi_q.len(), e.phi_pi.len()].map(index);
+        let [n_velocities, n_loop_multipliers, n_phi_q, n_phi_pi] =
+            [e.n_velocities(), e.n_loop_multipliers(), e.phi_q.len(), e.phi_pi.len()].map(index);
         let n_solved = index(e.solved.roots.len());
-        let rest = if e.n_closing() == 0 {
+        let rest = if e.n_loop_multipliers() == 0 {
             " (s̈, ẇ') of each body.".to_owned()
         } else {
-            format!(" (s̈, ẇ') of each body, then {n_closing} multipliers of the rows that close loops.")
+            format!(
+                " (s̈, ẇ') of each body, then {n_loop_multipliers} multipliers of the rows that close loops."
+            )
         };
         let (phi_q_pattern, phi_pi_pattern) = (pattern(&e.phi_q), pattern(&e.phi_pi));
         let filling = [
@@ -82,7 +84,7 @@ impl ModuleWriter<'_> {
         let (name, accelerations) = (ident(kernel.name()), ident(accelerations));
         self.function("Writes λ", self.kernels.roots(kernel), |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
-            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
+            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::LoopMultiplier(_));
             let argument =
                 ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
             quote! {

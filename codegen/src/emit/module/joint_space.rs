@@ -150,7 +150,7 @@ impl ModuleWriter<'_> {
     }
 
     fn to_maximal(&self, work_at: usize) -> TokenStream {
-        let n_state = 13 * self.equations.n_slots();
+        let n_state = 13 * self.equations.n_moving_bodies();
         let work = self.equations.power.is_some().then(|| index(work_at));
         let work = work.map(|at| quote! { x[#at], });
         let out = quote! { y: &mut Self::State };
@@ -172,7 +172,7 @@ impl ModuleWriter<'_> {
     }
 
     fn to_joints(&self, n: usize) -> TokenStream {
-        let work = self.equations.power.is_some().then(|| index(13 * self.equations.n_slots()));
+        let work = self.equations.power.is_some().then(|| index(13 * self.equations.n_moving_bodies()));
         let places: Vec<_> = (0..n).map(index).collect();
         let at = index(n);
         let work = work.map(|work| quote! { x[#at] = y[#work]; });

@@ -67,7 +67,7 @@ impl ModuleWriter<'_> {
     /// Names, rows and sizes.
     fn description(&self) -> TokenStream {
         let e = self.equations;
-        let bodies = self.slots().into_iter().map(|body| &e.model.bodies[body].name);
+        let bodies = self.moving_bodies().into_iter().map(|body| &e.model.bodies[body].name);
         let joints = e.model.joints.iter().map(|joint| {
             let (name, coordinates) = (&joint.name, coordinates(joint.kind));
             quote! { gyro_sim::JointInfo { name: #name, coordinates: &[#(gyro_sim::Coordinate::#coordinates),*] } }
@@ -77,7 +77,10 @@ impl ModuleWriter<'_> {
             let (owner, index) = match row.owner {
                 RowOwner::Body(body) => (
                     "Body",
-                    self.slots().iter().position(|&b| b == body).expect("a held body has coordinates"),
+                    self.moving_bodies()
+                        .iter()
+                        .position(|&b| b == body)
+                        .expect("a held body has coordinates"),
                 ),
                 RowOwner::Joint(joint) => ("Joint", joint),
                 RowOwner::Coupler(coupler) => ("Coupler", coupler),

@@ -12,7 +12,7 @@ mod variables;
 mod writer;
 
 use self::writer::ModuleWriter;
-use crate::emit::data_sheet::Sheet;
+use crate::emit::data_sheet::DataSheet;
 use crate::emit::literals::Literals;
 use crate::equations::Equations;
 use crate::kernels::Kernels;
@@ -33,11 +33,11 @@ pub fn type_name(module_name: &str) -> String {
     if ["Self", "T", "Parameters"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
-/// The text of a module, the exact constants of its literals and its data sheet.
+/// The text of a module, the exact constants of its literals and its data data_sheet.
 pub struct Text {
     pub code: String,
     pub constants: String,
-    pub sheet: Sheet,
+    pub data_sheet: DataSheet,
 }
 
 /// Writes the files.
@@ -50,12 +50,12 @@ pub fn write(
     let literals = Literals::default();
     let module = ModuleWriter { equations, type_name, kernels, literals };
     let tokens = module.tokens(start);
-    let sheet = Sheet::of(equations, &module.kernels);
+    let data_sheet = DataSheet::of(equations, &module.kernels);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);
-    let code = format!("{}\n{text}", sheet.head(file_name));
-    Text { code, constants, sheet }
+    let code = format!("{}\n{text}", data_sheet.head(file_name));
+    Text { code, constants, data_sheet }
 }
 
 impl ModuleWriter<'_> {

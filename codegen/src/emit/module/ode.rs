@@ -57,7 +57,7 @@ impl ModuleWriter<'_> {
     }
 
     fn derivative_with(&self, name: &TokenStream, what: &str, solve: &TokenStream) -> TokenStream {
-        let n_positions = 7 * self.equations.n_slots();
+        let n_positions = 7 * self.equations.n_moving_bodies();
         self.function(what, self.kernels.roots(Kernel::Derivative), |body, _, _| {
             let (statements, (positions, rest)) = (&body.statements, body.values.split_at(n_positions));
             let places = (0..self.equations.n_velocities()).map(index);

@@ -17,7 +17,7 @@ impl ModuleWriter<'_> {
     fn by_pivoting(&self) -> TokenStream {
         let name = ident(self.type_name);
         let [n_constraints, n_positions] =
-            [self.equations.phi.len(), 7 * self.equations.n_slots()].map(index);
+            [self.equations.phi.len(), 7 * self.equations.n_moving_bodies()].map(index);
         // Trees have no singular poses.
         let clearance = self.equations.joint_space.is_none().then(|| {
             quote! {
@@ -85,7 +85,7 @@ impl ModuleWriter<'_> {
             "solve_velocities_on",
             "Solves eq. (19) for the dependent velocities",
             self.kernels.roots(Kernel::SolveVelocities),
-            7 * self.equations.n_slots(),
+            7 * self.equations.n_moving_bodies(),
         );
         quote! {
             /// The solves of the partition, for the charts that are given as unit vectors.

@@ -41,7 +41,7 @@ impl ModuleWriter<'_> {
         }
         self.function("Writes the outputs", roots, |body, t, y| {
             let (statements, values) = (&body.statements, &body.values);
-            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::Closing(_));
+            let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::LoopMultiplier(_));
             let (t, y, solved) = if body.symbols.iter().any(known) {
                 let n = index(self.equations.solved.roots.len());
                 let solved = quote! {

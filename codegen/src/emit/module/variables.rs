@@ -10,22 +10,26 @@ use quote::quote;
 impl Variables for ModuleWriter<'_> {
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
         const AXES: [&str; 3] = ["x", "y", "z"];
-        let positions = 7 * self.equations.n_slots();
-        let body = |slot: usize| &self.equations.model.bodies[self.slots()[slot]].name;
+        let positions = 7 * self.equations.n_moving_bodies();
+        let body = |moving_body: usize| &self.equations.model.bodies[self.moving_bodies()[moving_body]].name;
         let bound = |name: String, buffer: &str, at: usize| {
             let (name, buffer, at) = (ident(&name), ident(buffer), index(at));
             (quote! { #name }, Some(quote! { #buffer[#at] }))
         };
-        let velocity = |slot: usize, k: usize| positions + 6 * slot + k;
+        let velocity = |moving_body: usize, k: usize| positions + 6 * moving_body + k;
         match symbol {
             Symbol::Time => (quote! { t }, None),
-            Symbol::Position { slot, k } => bound(format!("{}_r{}", body(slot), AXES[k]), "y", 7 * slot + k),
-            Symbol::Euler { slot, k } => bound(format!("{}_e{k}", body(slot)), "y", 7 * slot + 3 + k),
-            Symbol::Velocity { slot, k } => {
-                bound(format!("{}_s{}", body(slot), AXES[k]), "y", velocity(slot, k))
+            Symbol::Position { moving_body, k } => {
+                bound(format!("{}_r{}", body(moving_body), AXES[k]), "y", 7 * moving_body + k)
             }
-            Symbol::Spin { slot, k } => {
-                bound(format!("{}_w{}", body(slot), AXES[k]), "y", velocity(slot, k + 3))
+            Symbol::Euler { moving_body, k } => {
+                bound(format!("{}_e{k}", body(moving_body)), "y", 7 * moving_body + 3 + k)
+            }
+            Symbol::Velocity { moving_body, k } => {
+                bound(format!("{}_s{}", body(moving_body), AXES[k]), "y", velocity(moving_body, k))
+            }
+            Symbol::Spin { moving_body, k } => {
+                bound(format!("{}_w{}", body(moving_body), AXES[k]), "y", velocity(moving_body, k + 3))
             }
             Symbol::Chart { chart, k } => {
                 let (name, chart, k) = (ident(&format!("chart{chart}_{k}")), index(chart), index(k));
@@ -35,7 +39,7 @@ impl Variables for ModuleWriter<'_> {
                 let name = ident(&self.equations.model.parameters[parameter].name);
                 (quote! { self.parameters.#name }, None)
             }
-            Symbol::SetUp(place) => {
+            Symbol::ParameterSetup(place) => {
                 let place = index(place);
                 (quote! { self.derived[#place] }, None)
             }
@@ -45,17 +49,21 @@ impl Variables for ModuleWriter<'_> {
             }
             Symbol::Turn(turn) => {
                 let work = usize::from(self.equations.power.is_some());
-                bound(format!("turn{turn}"), "y", 13 * self.equations.n_slots() + work + turn)
+                bound(format!("turn{turn}"), "y", 13 * self.equations.n_moving_bodies() + work + turn)
             }
             Symbol::Table { table, order } => {
                 let (name, order) = (ident(&format!("table{table}")), index(order));
                 (quote! { #name[#order] }, None)
             }
-            Symbol::Acceleration { slot, k } => {
+            Symbol::Acceleration { moving_body, k } => {
                 let kind = if k < 3 { "ds" } else { "dw" };
-                bound(format!("{}_{kind}{}", body(slot), AXES[k % 3]), "accelerations", 6 * slot + k)
+                bound(
+                    format!("{}_{kind}{}", body(moving_body), AXES[k % 3]),
+                    "accelerations",
+                    6 * moving_body + k,
+                )
             }
-            Symbol::Closing(row) => {
+            Symbol::LoopMultiplier(row) => {
                 bound(format!("closing{row}"), "accelerations", self.equations.n_velocities() + row)
             }
             Symbol::Change(row) => bound(format!("row{row}"), "rows", row),

@@ -37,7 +37,7 @@ pub struct ModuleWriter<'a> {
 }
 
 impl ModuleWriter<'_> {
-    pub fn slots(&self) -> Vec<usize> {
+    pub fn moving_bodies(&self) -> Vec<usize> {
         self.equations.model.coordinate_bodies()
     }
 

@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-12;
 fn phi_q_is_the_derivative_of_phi() {
     for_each_state(|what, textbook, point| {
         let phi_q = dense(&at(textbook, point).phi_q().expect("Φ_q"));
-        for column in 0..7 * textbook.slots.len() {
+        for column in 0..7 * textbook.moving_bodies.len() {
             let quotient = derivative(STEP, |step| {
                 let mut moved = point.clone();
                 moved.state[column] += step;
@@ -38,14 +38,18 @@ fn phi_pi_is_half_phi_p_g_transposed() {
         let (phi_q, phi_pi) =
             (at(textbook, point).phi_q().expect("Φ_q"), at(textbook, point).phi_pi().expect("Φ_π'"));
         let (phi_q, phi_pi) = (dense(&phi_q), dense(&phi_pi));
-        for slot in 0..textbook.slots.len() {
-            let [e0, e1, e2, e3] = [3, 4, 5, 6].map(|k| point.state[7 * slot + k]);
+        for moving_body in 0..textbook.moving_bodies.len() {
+            let [e0, e1, e2, e3] = [3, 4, 5, 6].map(|k| point.state[7 * moving_body + k]);
             let g = [[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]];
             for (by_q, by_pi) in phi_q.iter().zip(&phi_pi) {
-                let by_p = &by_q[7 * slot + 3..7 * slot + 7];
+                let by_p = &by_q[7 * moving_body + 3..7 * moving_body + 7];
                 let turned = g.map(|row| 0.5 * dot(by_p, &row));
-                assert_close(what, &by_pi[6 * slot + 3..6 * slot + 6], &turned, ROUNDING);
-                assert_eq!(by_pi[6 * slot..6 * slot + 3], by_q[7 * slot..7 * slot + 3], "{what}");
+                assert_close(what, &by_pi[6 * moving_body + 3..6 * moving_body + 6], &turned, ROUNDING);
+                assert_eq!(
+                    by_pi[6 * moving_body..6 * moving_body + 3],
+                    by_q[7 * moving_body..7 * moving_body + 3],
+                    "{what}"
+                );
             }
         }
     });
@@ -70,7 +74,7 @@ fn nu_is_minus_the_derivative_of_phi_in_time() {
 #[test]
 fn the_velocity_residual_is_what_eq_18_says() {
     for_each_state(|what, textbook, point| {
-        let (evaluation, n) = (at(textbook, point), textbook.slots.len());
+        let (evaluation, n) = (at(textbook, point), textbook.moving_bodies.len());
         let velocities = &point.state[7 * n..13 * n];
         let rows = dense(&evaluation.phi_pi().expect("Φ_π'")).into_iter().zip(evaluation.nu().expect("ν"));
         let expected: Vec<f64> = rows.map(|(row, nu)| dot(&row, velocities) - nu).collect();
@@ -82,7 +86,7 @@ fn the_velocity_residual_is_what_eq_18_says() {
 #[test]
 fn gamma_is_what_the_second_derivative_of_phi_leaves() {
     for_each_state(|what, textbook, point| {
-        let (evaluation, n) = (at(textbook, point), textbook.slots.len());
+        let (evaluation, n) = (at(textbook, point), textbook.moving_bodies.len());
         let accelerations: Vec<f64> = (0..6 * n).map(|k| (k as f64).sin()).collect();
         // The turn references stay: they are constants in derivatives of Φ.
         let references = 13 * n..point.state.len();
@@ -101,7 +105,7 @@ fn gamma_is_what_the_second_derivative_of_phi_leaves() {
 #[test]
 fn the_model_says_the_same_of_phi_phi_pi_and_nu() {
     for_each_state(|what, textbook, point| {
-        let (model, evaluation, n) = (textbook.model, at(textbook, point), textbook.slots.len());
+        let (model, evaluation, n) = (textbook.model, at(textbook, point), textbook.moving_bodies.len());
         let kinematics = Kinematics::at(model, point.t);
         let q = &point.state[..7 * n];
         let mut near: Vec<Vec<f64>> =
@@ -160,7 +164,7 @@ fn relative_orientations_turn_as_read() {
     let textbook = Textbook::new(&model);
     let point = random_point(&textbook, 1);
     let read = |dt: f64| {
-        let moved = later(&textbook, &point, &vec![0.0; 6 * textbook.slots.len()], dt);
+        let moved = later(&textbook, &point, &vec![0.0; 6 * textbook.moving_bodies.len()], dt);
         let readings = at(&textbook, &moved).readings().expect("readings");
         let of_ball = readings.into_iter().find_map(|reading| match reading {
             Reading::Orientation(values) => Some(values.to_vec()),
@@ -212,15 +216,15 @@ fn driven_bodies_move_as_the_model_says() {
 #[test]
 fn position_rates_are_eqs_14_and_16() {
     for_each_state(|what, textbook, point| {
-        let (rates, n) = (at(textbook, point).position_rates(), textbook.slots.len());
-        for slot in 0..n {
-            let velocity = &point.state[7 * n + 6 * slot..7 * n + 6 * slot + 6];
-            let [e0, e1, e2, e3] = [3, 4, 5, 6].map(|k| point.state[7 * slot + k]);
+        let (rates, n) = (at(textbook, point).position_rates(), textbook.moving_bodies.len());
+        for moving_body in 0..n {
+            let velocity = &point.state[7 * n + 6 * moving_body..7 * n + 6 * moving_body + 6];
+            let [e0, e1, e2, e3] = [3, 4, 5, 6].map(|k| point.state[7 * moving_body + k]);
             let g = [[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]];
-            let w = g.map(|row| 2.0 * dot(&row, &rates[7 * slot + 3..7 * slot + 7]));
-            assert_close(what, &rates[7 * slot..7 * slot + 3], &velocity[..3], ROUNDING);
+            let w = g.map(|row| 2.0 * dot(&row, &rates[7 * moving_body + 3..7 * moving_body + 7]));
+            assert_close(what, &rates[7 * moving_body..7 * moving_body + 3], &velocity[..3], ROUNDING);
             assert_close(what, &w, &velocity[3..], ROUNDING);
-            let along = dot(&[e0, e1, e2, e3], &rates[7 * slot + 3..7 * slot + 7]);
+            let along = dot(&[e0, e1, e2, e3], &rates[7 * moving_body + 3..7 * moving_body + 7]);
             assert_close(what, &[along], &[0.0], ROUNDING);
         }
         let mut state = point.state.clone();

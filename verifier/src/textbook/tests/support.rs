@@ -82,12 +82,12 @@ pub fn random_point(textbook: &Textbook, seed: u64) -> Point<f64> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut signed = |size: f64| size * random.random_range(-1.0..1.0);
     let start = model.assemble().expect("a start");
-    let (n, size) = (textbook.slots.len(), model.size());
+    let (n, size) = (textbook.moving_bodies.len(), model.size());
     let mut state = [start.q.clone(), start.v.clone()].concat();
-    for slot in 0..n {
-        state[7 * slot..7 * slot + 3].iter_mut().for_each(|r| *r += signed(0.1 * size));
-        state[7 * slot + 3..7 * slot + 7].iter_mut().for_each(|e| *e += signed(0.1));
-        let velocities = &mut state[7 * n + 6 * slot..7 * n + 6 * slot + 6];
+    for moving_body in 0..n {
+        state[7 * moving_body..7 * moving_body + 3].iter_mut().for_each(|r| *r += signed(0.1 * size));
+        state[7 * moving_body + 3..7 * moving_body + 7].iter_mut().for_each(|e| *e += signed(0.1));
+        let velocities = &mut state[7 * n + 6 * moving_body..7 * n + 6 * moving_body + 6];
         velocities[..3].iter_mut().for_each(|s| *s += signed(size));
         velocities[3..].iter_mut().for_each(|w| *w += signed(1.0));
     }
@@ -102,8 +102,8 @@ pub fn random_point(textbook: &Textbook, seed: u64) -> Point<f64> {
 }
 
 pub fn normalise(state: &mut [f64], n_bodies: usize) {
-    for slot in 0..n_bodies {
-        let p = &mut state[7 * slot + 3..7 * slot + 7];
+    for moving_body in 0..n_bodies {
+        let p = &mut state[7 * moving_body + 3..7 * moving_body + 7];
         let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
         p.iter_mut().for_each(|e| *e /= length);
     }
@@ -111,7 +111,7 @@ pub fn normalise(state: &mut [f64], n_bodies: usize) {
 
 /// Moves a point to the nearest that satisfies Φ = 0 and Φ_r s + Φ_π' w' = ν: Newton steps of least length.
 fn project(textbook: &Textbook, point: &mut Point<f64>) {
-    let n = textbook.slots.len();
+    let n = textbook.moving_bodies.len();
     for _ in 0..20 {
         let (phi, phi_q) = (at(textbook, point).phi().expect("Φ"), at(textbook, point).phi_q().expect("Φ_q"));
         least_change(&dense(&phi_q), &phi).iter().zip(&mut point.state).for_each(|(change, q)| *q -= change);
@@ -204,7 +204,7 @@ pub fn derivative(step: f64, f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 /// The point a time later on the way that the point's own motion takes, to second order.
 pub fn later(textbook: &Textbook, point: &Point<f64>, accelerations: &[f64], dt: f64) -> Point<f64> {
     let evaluation = at(textbook, point);
-    let n = textbook.slots.len();
+    let n = textbook.moving_bodies.len();
     let rates = [evaluation.position_rates(), accelerations.to_vec()].concat();
     let mut later = point.clone();
     later.state.iter_mut().zip(&rates).for_each(|(y, rate)| *y += dt * rate);

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// A folder of pages.
 #[derive(Clone, Debug)]
-pub struct Shelf(PathBuf);
+pub struct FixtureFolder(PathBuf);
 
 /// Does something with the generated mechanism of every page, shipped or not.
 pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
@@ -105,7 +105,7 @@ pub fn generated(page: &str) -> Engine {
         "two-four-bars" => Engine::new(own::two_four_bars::TwoFourBars::default()),
         "universal" => Engine::new(own::universal::Universal::default()),
         "weld" => Engine::new(own::weld::Weld::default()),
-        _ => panic!("{page}.toml has no line in tests/support/shelves.rs: add it"),
+        _ => panic!("{page}.toml has no line in tests/support/fixtures.rs: add it"),
     }
 }
 
@@ -228,11 +228,11 @@ pub fn dense(model: &Model) -> Engine {
 }
 
 /// Where pages are: the shipped ones, then those for tests.
-pub fn shelves() -> [Shelf; 2] {
-    ["models", "tests/models"].map(|folder| Shelf(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)))
+pub fn fixture_folders() -> [FixtureFolder; 2] {
+    ["models", "tests/models"].map(|folder| FixtureFolder(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)))
 }
 
-impl Shelf {
+impl FixtureFolder {
     /// Its pages in the order of their names, without extension.
     pub fn pages(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.0).expect("the folder is part of the project");
@@ -248,7 +248,7 @@ impl Shelf {
 
 /// All pages, those for tests last.
 pub fn pages() -> Vec<String> {
-    shelves().iter().flat_map(Shelf::pages).collect()
+    fixture_folders().iter().flat_map(FixtureFolder::pages).collect()
 }
 
 /// The text of a page.
@@ -280,7 +280,7 @@ fn file_name(page: &str) -> String {
 }
 
 fn path(page: &str) -> PathBuf {
-    let paths = shelves().map(|shelf| shelf.0.join(file_name(page)));
+    let paths = fixture_folders().map(|folder| folder.0.join(file_name(page)));
     let found = paths.into_iter().find(|path| path.exists());
     found.unwrap_or_else(|| panic!("there is no page {page}.toml"))
 }

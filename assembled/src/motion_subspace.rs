@@ -17,7 +17,7 @@ pub(crate) struct Attitude<T> {
 
 /// The rotation that a joint leaves free, solved for.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Freedom<T> {
+pub(crate) enum MotionSubspace<T> {
     /// None.
     None,
     /// About an axis: `θ̈ = drive − load · (acceleration of the parent at the joint)`, where θ̈'s own inertia is `own`.
@@ -33,7 +33,7 @@ impl<T: Number> Attitude<T> {
     }
 }
 
-impl<T: Number> Freedom<T> {
+impl<T: Number> MotionSubspace<T> {
     /// Solves `inertia (a + axis θ̈) = force` along the axis, which has no linear part.
     pub(crate) fn about(axis: Vector3<T>, inertia: &Inertia<T>, force: &Spatial<T>) -> Self {
         let (linear, angular) = (inertia.coupling * axis, inertia.angular * axis);

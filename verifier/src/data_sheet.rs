@@ -109,7 +109,7 @@ pub fn proof(module: &Module) -> Option<Vec<String>> {
 /// The lines before the rows of functions, these rows, and the lines after them.
 fn lines(module: &Module) -> (Vec<String>, Vec<String>, Vec<String>) {
     let is_row = |line: &&String| line.starts_with('|');
-    let sheet = &module.sheet;
+    let sheet = &module.data_sheet;
     // Two rows are the table's head.
     let first = sheet.iter().position(|line| is_row(&line)).map_or(sheet.len(), |first| first + 2);
     let (head, rest) = sheet.split_at(first.min(sheet.len()));
@@ -119,9 +119,9 @@ fn lines(module: &Module) -> (Vec<String>, Vec<String>, Vec<String>) {
 }
 
 fn expected_head(model: &Model, module: &Module) -> Vec<String> {
-    let slots = model.coordinate_bodies();
-    let bodies: Vec<&str> = slots.iter().map(|&body| model.bodies[body].name.as_str()).collect();
-    let (n, rows) = (slots.len(), model.rows().len());
+    let moving_bodies = model.coordinate_bodies();
+    let bodies: Vec<&str> = moving_bodies.iter().map(|&body| model.bodies[body].name.as_str()).collect();
+    let (n, rows) = (moving_bodies.len(), model.rows().len());
     let mut lines = vec![
         format!("The mechanism `{}`.", model.name),
         String::new(),

@@ -2,9 +2,9 @@
 
 /// A module's text.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sheet(pub(crate) &'static str);
+pub(crate) struct DataSheet(pub(crate) &'static str);
 
-impl Sheet {
+impl DataSheet {
     /// The operations of some functions together, as the sheet counts them.
     ///
     /// # Panics
@@ -34,7 +34,7 @@ mod tests {
 
     #[test]
     fn totals_are_added_up() {
-        let sheet = Sheet(
+        let sheet = DataSheet(
             "//! | function | computes | + − | total |\n//! |---|---|---|---|\n//! | phi | Φ | 1 | 3 |\n//! | nu | ν | 2 | 40 |\n",
         );
         assert_eq!(sheet.flops(&["phi"]), 3);

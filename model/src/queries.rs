@@ -1,0 +1,270 @@
+//! What can be asked of a model: units, rows, sizes, and the model with other parameters.
+
+use crate::{
+    CoordinateKind, Force, ForceKind, JointCoordinate, JointKind, Model, Number, Rational, RedundantRow, Row,
+    RowOwner, RowUnit, Support, analyse, to_f64,
+};
+use std::ops::Range;
+
+impl Support {
+    /// Whether the body has coordinates of its own.
+    pub fn has_coordinates(self) -> bool {
+        !matches!(self, Self::Fixed | Self::Driven)
+    }
+}
+
+impl JointKind {
+    /// Units of the joint's rows, in their order: see [`Model::rows`].
+    pub fn row_units(self) -> &'static [RowUnit] {
+        use RowUnit::{Length, Pure};
+        match self {
+            Self::Revolute => &[Length, Length, Length, Pure, Pure],
+            Self::Spherical => &[Length, Length, Length],
+            Self::Fixed => &[Length, Length, Length, Pure, Pure, Pure],
+            Self::Universal => &[Length, Length, Length, Pure],
+            Self::Cylindrical => &[Length, Length, Pure, Pure],
+            Self::Prismatic => &[Length, Length, Pure, Pure, Pure],
+            Self::Planar => &[Length, Pure, Pure],
+            Self::Screw => &[Length, Length, Length, Pure, Pure],
+            Self::PointOnLine => &[Length, Length],
+            Self::Rod => &[Length],
+        }
+    }
+
+    /// What the joint's rows are, in their order, as messages write them.
+    pub fn row_symbols(self) -> &'static [&'static str] {
+        match self {
+            Self::Revolute => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j"],
+            Self::Spherical => &["d x", "d y", "d z"],
+            Self::Fixed => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
+            Self::Universal => &["d x", "d y", "d z", "h_i.h_j"],
+            Self::Cylindrical => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j"],
+            Self::Prismatic => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
+            Self::Planar => &["h_i.d", "f_i.h_j", "g_i.h_j"],
+            Self::Screw => &["f_i.d", "g_i.d", "h_i.d - lead * angle", "f_i.h_j", "g_i.h_j"],
+            Self::PointOnLine => &["f_i.d", "g_i.d"],
+            Self::Rod => &["(d.d / length - length) / 2"],
+        }
+    }
+
+    /// The joint's scalar coordinates. A spherical joint has an orientation instead; fixed joints and rods have none.
+    pub fn coordinates(self) -> &'static [CoordinateKind] {
+        use CoordinateKind::{Angle, Displacement, FirstAngle, SecondAngle, X, Y};
+        match self {
+            Self::Revolute | Self::Screw => &[Angle],
+            Self::Spherical | Self::Fixed | Self::Rod => &[],
+            Self::Universal => &[FirstAngle, SecondAngle],
+            Self::Cylindrical => &[Angle, Displacement],
+            Self::Prismatic | Self::PointOnLine => &[Displacement],
+            Self::Planar => &[X, Y, Angle],
+        }
+    }
+
+    /// Whether the joint can carry a body in a tree: all but a rod.
+    pub fn carries(self) -> bool {
+        self != Self::Rod
+    }
+
+    /// Whether the joint carries a body and its coordinates say how the body is turned.
+    pub(crate) fn turns(self) -> bool {
+        self.carries() && self != Self::PointOnLine
+    }
+}
+
+impl Model {
+    /// The value of a number of the page with the model's parameters as they are.
+    pub fn exact(&self, number: &Number) -> Rational {
+        match number {
+            Number::Exact(value) => value.clone(),
+            Number::Parameter { index, negated: false } => self.parameters[*index].value.clone(),
+            Number::Parameter { index, negated: true } => -self.parameters[*index].value.clone(),
+            Number::Input { index, negated: false } => self.inputs[*index].value.clone(),
+            Number::Input { index, negated: true } => -self.inputs[*index].value.clone(),
+        }
+    }
+
+    /// The same, rounded to the nearest `f64`.
+    pub fn value(&self, number: &Number) -> f64 {
+        to_f64(&self.exact(number))
+    }
+
+    /// A vector of numbers, rounded.
+    pub fn values<const N: usize>(&self, numbers: &[Number; N]) -> [f64; N] {
+        std::array::from_fn(|k| self.value(&numbers[k]))
+    }
+
+    /// Indices of the bodies that have coordinates, in the order of the page: moving_body `s` of the generalised coordinates
+    /// is body `coordinate_bodies()[s]`, with `q[7s..7s + 7] = (r, p)` and velocities `v[6s..6s + 6] = (s, w')`.
+    pub fn coordinate_bodies(&self) -> Vec<usize> {
+        (0..self.bodies.len()).filter(|&b| self.bodies[b].support.has_coordinates()).collect()
+    }
+
+    /// The constraint rows in their order, paper eq. (11), redundant ones left out, without the Euler-parameter
+    /// normalisations (which follow, one for each coordinate body): constrained bodies, joints, couplers, drivers.
+    ///
+    /// A constrained body has three position rows `r - r0` and three orientation rows, the vector part of `p0* p`. With
+    /// (f, g, h) the joint frame on a body (unit zero direction, `g = h × f`, unit axis) and `d` from the first body's joint point to the
+    /// second's, both in the global frame, joints have
+    /// - revolute, spherical, fixed, universal: `d` (three components, eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute, fixed; eqs.
+    ///   (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
+    /// - cylindrical, prismatic, screw: `f_i·d`, `g_i·d`; `h_i·d − lead · angle` (screw); `f_i·h_j`, `g_i·h_j`; `f_i·g_j` (prismatic);
+    /// - planar: `h_i·d`, `f_i·h_j`, `g_i·h_j`;
+    /// - point on line: `f_i·d`, `g_i·d`;
+    /// - rod: `½ (d·d / length − length)`.
+    ///
+    /// A coupler has `second − ratio · first − offset`, a driver `coordinate − motion(t)`.
+    pub fn rows(&self) -> Vec<Row> {
+        let all = self.all_rows();
+        all.into_iter().filter(|row| !self.redundant.iter().any(|dropped| dropped.row == *row)).collect()
+    }
+
+    /// The same with the redundant rows.
+    pub fn all_rows(&self) -> Vec<Row> {
+        use RowUnit::{Length, Pure};
+        let mut rows = Vec::new();
+        let mut own = |owner, units: &[RowUnit]| {
+            rows.extend(units.iter().enumerate().map(|(index, &unit)| Row { owner, index, unit }));
+        };
+        for (index, body) in self.bodies.iter().enumerate() {
+            if body.support == Support::Constrained {
+                own(RowOwner::Body(index), &[Length, Length, Length, Pure, Pure, Pure]);
+            }
+        }
+        for (index, joint) in self.joints.iter().enumerate() {
+            own(RowOwner::Joint(index), joint.kind.row_units());
+        }
+        for (index, coupler) in self.couplers.iter().enumerate() {
+            own(RowOwner::Coupler(index), &[self.coordinate_unit(coupler.second)]);
+        }
+        for (index, driver) in self.drivers.iter().enumerate() {
+            own(RowOwner::Driver(index), &[self.coordinate_unit(driver.coordinate)]);
+        }
+        rows
+    }
+
+    /// What a joint coordinate is.
+    pub fn coordinate_kind(&self, coordinate: JointCoordinate) -> CoordinateKind {
+        self.joints[coordinate.joint].kind.coordinates()[coordinate.coordinate]
+    }
+
+    fn coordinate_unit(&self, coordinate: JointCoordinate) -> RowUnit {
+        if self.coordinate_kind(coordinate).is_angle() { RowUnit::Pure } else { RowUnit::Length }
+    }
+
+    /// The rows of one joint, coupler, driver or body among [`Model::rows`].
+    pub fn rows_of(&self, owner: RowOwner) -> Range<usize> {
+        let rows = self.rows();
+        let start = rows.iter().position(|r| r.owner == owner).unwrap_or(rows.len());
+        start..start + rows.iter().filter(|r| r.owner == owner).count()
+    }
+
+    /// The angles on whose continuous value something acts (springs, stops, couplers, drivers, screws), without repetition, in
+    /// order of joint and coordinate. The state holds one number for each after the work: the *turn reference*, whose
+    /// derivative is the angle's rate, so that it never strays by half a turn; the continuous angle is
+    /// `reference + atan2(S cos reference − C sin reference, C cos reference + S sin reference)` with `atan2(S, C)` the
+    /// principal angle.
+    pub fn turn_references(&self) -> Vec<JointCoordinate> {
+        let mut used = Vec::new();
+        for force in &self.forces {
+            if let ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } = force.kind {
+                used.push(on);
+            }
+        }
+        used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));
+        used.extend(self.drivers.iter().map(|d| d.coordinate));
+        let screws = self.joints.iter().enumerate().filter(|(_, j)| j.kind == JointKind::Screw);
+        used.extend(screws.map(|(joint, _)| JointCoordinate { joint, coordinate: 0 }));
+        used.retain(|&c| self.coordinate_kind(c).is_angle());
+        used.sort_by_key(|c| (c.joint, c.coordinate));
+        used.dedup();
+        used
+    }
+
+    /// Whether anything moves by prescription, so that time enters the equations and drivers do work.
+    pub fn is_driven(&self) -> bool {
+        !self.drivers.is_empty() || self.bodies.iter().any(|b| b.support == Support::Driven)
+    }
+
+    /// A length typical of the mechanism, m, by which violations of length rows are divided: the largest distance of a
+    /// joint point from its body's mass centre, or radius of gyration of a body with coordinates.
+    pub fn size(&self) -> f64 {
+        let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let points =
+            self.joints.iter().flat_map(|j| [&j.first.point, &j.second.point]).map(|p| norm(self.values(p)));
+        let gyration = self.bodies.iter().filter(|b| b.support.has_coordinates()).map(|b| {
+            let [xx, yy, zz, ..] = self.values(&b.inertia);
+            (xx.max(yy).max(zz) / self.value(&b.mass)).sqrt()
+        });
+        let size = points.chain(gyration).fold(0.0, f64::max);
+        if size > 0.0 { size } else { 1.0 }
+    }
+
+    /// Whether something does work that the energy does not account for: friction, dampers, stops, motors, loads, drivers.
+    ///
+    /// Such a model carries the work done so far as one more element of its state, after positions and velocities, unless the
+    /// page asks to leave it out (`count_work = false`).
+    pub fn has_work(&self) -> bool {
+        self.counts_work && self.is_worked_on()
+    }
+
+    /// Whether something does work that the energy does not account for, counted or not.
+    pub fn is_worked_on(&self) -> bool {
+        let does_work = |force: &Force| match &force.kind {
+            ForceKind::Spring { .. } => false,
+            ForceKind::Link { damping, .. } => !damping.is_zero(),
+            ForceKind::Damper { .. }
+            | ForceKind::Coulomb { .. }
+            | ForceKind::Stop { .. }
+            | ForceKind::Motor { .. }
+            | ForceKind::Load { .. } => true,
+        };
+        self.is_driven()
+            || self.joints.iter().any(|j| !j.friction.is_zero())
+            || self.forces.iter().any(does_work)
+    }
+
+    /// The rows that are dropped shape the formulas: other parameters must leave them as they are.
+    fn keeps_redundant_rows(&self) -> Result<(), String> {
+        let found = analyse(self).map_err(|error| error.to_string())?;
+        let rows = |redundant: &[RedundantRow]| redundant.iter().map(|r| r.row).collect::<Vec<Row>>();
+        if rows(&found.redundant) == rows(&self.redundant) {
+            return Ok(());
+        }
+        let (now, before) = (found.redundant.len(), self.redundant.len());
+        Err(format!(
+            "with these parameters other constraint rows are redundant ({now} in place of {before}): write the numbers \
+             into the page"
+        ))
+    }
+
+    /// Whether an input may have this value.
+    ///
+    /// # Errors
+    /// The message says what the value makes unphysical.
+    pub fn check_input(&self, index: usize, value: &Rational) -> Result<(), String> {
+        let mut model = self.clone();
+        if let Some(input) = model.inputs.get_mut(index) {
+            input.value = value.clone();
+        }
+        crate::validate::physical(&model).map_or(Ok(()), Err)
+    }
+
+    /// The same model with parameters set anew. Start over from the page's start: assemble it again.
+    ///
+    /// # Errors
+    /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical, or says
+    /// that a mechanism with loops cannot be assembled or that other rows have become redundant.
+    pub fn with_parameters(&self, settings: &[(String, Rational)]) -> Result<Self, String> {
+        let mut model = self.clone();
+        for (name, value) in settings {
+            let Some(parameter) = model.parameters.iter_mut().find(|p| p.name == *name) else {
+                return Err(crate::parse::unknown_parameter(self, name));
+            };
+            parameter.value = value.clone();
+        }
+        if let Some(problem) = crate::validate::physical(&model) {
+            return Err(problem);
+        }
+        model.keeps_redundant_rows().map(|()| model)
+    }
+}
