@@ -223,7 +223,8 @@ fn body_accelerations(model: &Model, y: &[f64], dy: &[f64]) -> Vec<Vector> {
     let mut accelerations = vec![Vector::zeros(); model.bodies.len()];
     for (moving_body, &body) in moving_bodies.iter().enumerate() {
         let at = 7 * moving_bodies.len() + 6 * moving_body + 3;
-        accelerations[body] = orientation(y, moving_body).rotate(Vector::from([dy[at], dy[at + 1], dy[at + 2]]));
+        accelerations[body] =
+            orientation(y, moving_body).rotate(Vector::from([dy[at], dy[at + 1], dy[at + 2]]));
     }
     accelerations
 }

@@ -12,7 +12,9 @@ use std::time::Duration;
 /// beside it, and writes the samples to standard output as they come.
 ///
 /// The exit code says whether the last run was complete; the last line of its answer says why not.
-pub fn main<M: Partition<Scalar: Real> + 'static, K: MotionBuilder<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
+pub fn main<M: Partition<Scalar: Real> + 'static, K: MotionBuilder<M>>(
+    build: impl Fn(&[f64]) -> (M, K),
+) -> ExitCode {
     answer_all(|request, output| {
         let (mut mechanism, builder) = build(&request.parameters);
         answer(&mut mechanism, &builder, request, output)

@@ -23,6 +23,10 @@ type AsTree<T> = for<'a> fn(&'a dyn Erased<T>) -> Option<&'a dyn ErasedTree<T>>;
 #[derive(Debug)]
 pub struct Duals<T = f64>(Option<Box<dyn ErasedDuals<T>>>);
 
+/// A choice of independent coordinates of any mechanism.
+#[derive(Debug)]
+pub struct Choice(Box<dyn ErasedChoice>);
+
 impl<T: Real + 'static> Engine<T> {
     /// The same mechanism, its type forgotten.
     pub fn new<M>(mechanism: M) -> Self
@@ -54,7 +58,7 @@ impl<T: Real + 'static> Engine<T> {
     }
 
     /// All that motions of it can be begun with, as a program of its own would have it.
-    pub fn builder(&self, duals: Duals<T>) -> Box<dyn MotionBuilder<Self>> {
+    pub fn kit(&self, duals: Duals<T>) -> Box<dyn MotionBuilder<Self>> {
         if self.is_tree() { Box::new(TreeWithJacobian(duals)) } else { Box::new(WithDuals(duals)) }
     }
 

@@ -8,11 +8,9 @@ mod joints;
 mod partition;
 mod point;
 mod residuals;
-mod statements;
 
 pub(crate) use case::point as point_of_terms;
 
 pub use claim::Claim;
 pub use compare::Needless;
-pub use decide::{Decider, Verdict, prime};
-pub use statements::Statements;
+pub use decide::{Decider, Statements, Verdict, prime};

@@ -5,7 +5,7 @@ use crate::lanes;
 use crate::scaling;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
-use gyro_cli::programs::{built, folder, output, io_failure, three};
+use gyro_cli::programs::{built, folder, io_failure, output, three};
 use gyro_cli::progress::Spinner;
 use std::fmt::Write as _;
 use std::fs;

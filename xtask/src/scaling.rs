@@ -4,7 +4,7 @@ use gyro_cli::chain;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
 use gyro_cli::machine_code::{self, SYMBOLS};
-use gyro_cli::programs::{cargo, folder, output, io_failure, three};
+use gyro_cli::programs::{cargo, folder, io_failure, output, three};
 use gyro_cli::progress::Spinner;
 use gyro_codegen::Kernel;
 use std::fmt::Write as _;

@@ -167,12 +167,12 @@ impl Excitation {
 }
 
 /// The number of rates of the largest tree.
-fn rates_of_largest(freedoms: &[Freedom]) -> usize {
+fn rates_of_largest(subspaces: &[MotionSubspace]) -> usize {
     let (mut roots, mut rates) = (BTreeMap::new(), BTreeMap::<usize, usize>::new());
-    for freedom in freedoms {
-        let root = freedom.parent.map_or(freedom.slot, |parent| roots[&parent.slot]);
-        roots.insert(freedom.slot, root);
-        *rates.entry(root).or_default() += freedom.free.len();
+    for subspace in subspaces {
+        let root = subspace.parent.map_or(subspace.moving_body, |parent| roots[&parent.moving_body]);
+        roots.insert(subspace.moving_body, root);
+        *rates.entry(root).or_default() += subspace.free.len();
     }
     rates.into_values().max().unwrap_or(0)
 }

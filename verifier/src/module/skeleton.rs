@@ -3,20 +3,20 @@
 //! Function bodies are left open as `{ HOLE_name }`, counts that depend on formulas as `INT_name`, and arguments that a body may
 //! leave unread as `ANY_name`.
 
-mod definition;
-mod mechanism;
-mod partition;
-mod pieces;
-
-pub use mechanism::{n_readings, n_state};
-pub use partition::Choice;
-
 use crate::joints::JointLayout;
-use definition::{constants, definition, setter};
-use gyro_model::{Model, Spline};
-use mechanism::{mechanism, ode};
-use partition::partition;
-use pieces::{buffers, fillings, lines, lookup, name_lookup};
+use gyro_model::{
+    CoordinateKind, JointKind, Model, Number, Parameter, ParameterRule, RowOwner, RowUnit, Spline, to_f64,
+};
+use std::fmt::Display;
+
+/// How the coordinate partition is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// One special Euler parameter for each joint.
+    Charts,
+    /// Full pivoting at run time.
+    Pivoting,
+}
 
 /// What the description leaves to choice.
 #[derive(Clone, Copy, Debug)]

@@ -8,13 +8,14 @@
 //! that is not decides against it only where all roots exist; if there are too many to find such a point, floats of
 //! 384 bits decide. Roots of parameters alone are never too many: they are few for each joint, and joints are drawn one by one.
 
+use super::case::Case;
 use super::claim::Claim;
 use super::point::{self, Draw};
 use crate::atoms::{Drawn, Elementary, Formal, HALVINGS};
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
 use crate::interpreter::DivisionByZero;
 use crate::module::Module;
-use crate::program::{Id, Node};
+use crate::program::{Function, Id, Node, Source};
 use crate::seed::Seed;
 use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
@@ -26,6 +27,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, HashSet};
 use std::f64::consts::LOG10_2;
+
+/// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.
+const PRIMES: usize = 64;
+
+/// Points more than there are roots, until roots are thought to exclude each other: one of 2^8 primes is passed over in vain.
+const MORE_POINTS: usize = 8;
 
 /// How a claim was decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +70,16 @@ const DRAWS: u64 = 256;
 
 /// Draws at most this often where something divides by zero: at a random point only what is zero everywhere is zero.
 const DRAWS_BY_ZERO: usize = 3;
+
+/// Claims about a module written down, each as its residuals.
+#[derive(Debug)]
+pub struct Statements<'a> {
+    model: &'a Model,
+    module: &'a Module,
+    formulas: Formulas,
+    /// `None` of a claim whose textbook side divides by the number zero.
+    claims: Vec<Option<Vec<Id>>>,
+}
 
 /// The way to a point at which all roots exist. Those of parameters are found one group after the other, as many as there are: parameters
 /// whose roots all exist stay as they are.
@@ -557,4 +574,15 @@ const ROUNDING_LOG2: f64 = 1e-3;
 /// The number of bits that the roots take, if they are too many.
 pub fn prime<const L: usize>(model: &Model, module: &Module, seed: impl Into<Seed>) -> Result<Prime<L>, u64> {
     Statements::new(model, module, &Claim::all(module)).prime(seed.into())
+}
+
+/// The number with small primes taken once: it has the same prime factors.
+fn radical(mut number: BigUint) -> BigUint {
+    for factor in 2..1000_u32 {
+        let square = BigUint::from(factor * factor);
+        while (&number % &square).to_u32() == Some(0) {
+            number /= factor;
+        }
+    }
+    number
 }

@@ -7,7 +7,7 @@ use super::process::within;
 use super::tools::Tools;
 use super::{folder, proof, say, target};
 use gyro_cli::failure::Failure;
-use gyro_cli::programs::{output, io_failure};
+use gyro_cli::programs::{io_failure, output};
 use gyro_cli::progress::Spinner;
 use std::fs;
 use std::path::{Path, PathBuf};
