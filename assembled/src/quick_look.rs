@@ -18,8 +18,8 @@ pub enum Form {
 }
 
 impl Form {
-    /// The better form for a model, on the constraints or off them: the careful one where it [applies](Careful::supports), the dense one
-    /// otherwise.
+    /// The better form for a model, on the constraints or off them: the careful one where it
+    /// [applies](Careful::supports), the dense one otherwise.
     pub fn for_model(model: &Model) -> Self {
         if Careful::<f64>::supports(model).is_ok() { Self::Careful } else { Self::Dense }
     }
@@ -54,8 +54,8 @@ impl fmt::Display for QuickLookError {
 
 impl std::error::Error for QuickLookError {}
 
-/// Runs the twin of a model to a schedule; `tell` hears of samples and progress. [`Form::for_model`] picks the form that
-/// suits a model.
+/// Runs the twin of a model to a schedule; `tell` hears of samples and progress. [`Form::for_model`] picks the form
+/// that suits a model.
 ///
 /// # Errors
 /// [`QuickLookError`]; the samples up to a failure have been told.

@@ -1,7 +1,8 @@
 //! How the command line and the program that it compiles speak with each other: lines of words and numbers.
 //!
 //! Numbers are printed with as many digits as it takes to read the same number back. The command line writes a
-//! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output, and waits for the next.
+//! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output, and
+//! waits for the next.
 
 use crate::motion::Linear;
 use crate::{Approach, BodySample, Forecast, Input, JointSample, Sample, Settings, Start, Summary, Timing};

@@ -148,7 +148,8 @@ fn of_the_readme(language: &str) -> Vec<String> {
     page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
 }
 
-/// The page, the manifest, the build script and the lines of Rust that README.md shows make a package that builds and runs.
+/// The page, the manifest, the build script and the lines of Rust that README.md shows make a package that builds and
+/// runs.
 #[test]
 fn the_readme_s_example_builds_and_runs() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme");

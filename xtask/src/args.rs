@@ -60,8 +60,8 @@ pub(crate) struct GenerateArgs {
 
 /// Prove generated modules against the textbook
 ///
-/// Parses the module of each model back from its file and decides, by identity testing over a prime field, whether every
-/// function computes what the textbook says. See docs/verification.md.
+/// Parses the module of each model back from its file and decides, by identity testing over a prime field, whether
+/// every function computes what the textbook says. See docs/verification.md.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask verify                            every module of the workspace
@@ -74,8 +74,8 @@ pub(crate) struct VerifyArgs {
     /// Measure rounding instead: errors of generated code and of both forms of the twin, against 384 bits
     #[arg(long, conflicts_with_all = ["quick", "json"])]
     pub(crate) rounding: bool,
-    /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random configurations of ten kinds
-    /// are compared with 384 bits, beside the dense twin
+    /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random
+    /// configurations of ten kinds are compared with 384 bits, beside the dense twin
     #[arg(long, value_name = "CONFIGURATIONS", num_args = 0..=1, default_missing_value = "1000", conflicts_with_all = ["rounding", "quick", "json"])]
     pub(crate) stability: Option<NonZeroUsize>,
     /// One point for each claim instead of two
@@ -91,8 +91,9 @@ pub(crate) struct VerifyArgs {
 
 /// Show what is generated from a model, what is left out, and what each element of the model costs
 ///
-/// Prints coordinates, equations and degrees of freedom; of each function the operations before and after each pass and the bytes of
-/// machine code; and the operations of the same model without one of its elements, or with more parameters. Writes no module.
+/// Prints coordinates, equations and degrees of freedom; of each function the operations before and after each pass and
+/// the bytes of machine code; and the operations of the same model without one of its elements, or with more
+/// parameters. Writes no module.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask inspect models/gyroscope.toml
@@ -112,8 +113,8 @@ pub(crate) struct InspectArgs {
 
 /// Simulate a model
 ///
-/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own table `simulation` says. Of an option
-/// that is given twice the last one counts. All times are in seconds.
+/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own table `simulation` says.
+/// Of an option that is given twice the last one counts. All times are in seconds.
 #[derive(Clone, Debug, Args)]
 #[command(
     args_override_self = true,
@@ -154,23 +155,26 @@ pub(crate) struct SimulateArgs {
     /// Error tolerated in each step, relative and absolute: steps are then as long as it allows
     #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
-    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code only)
+    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code
+    /// only)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
     pub(crate) coordinates: Coordinates,
-    /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the page's]
+    /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
+    /// page's]
     #[arg(long, value_name = "NAME", value_parser = correction)]
     pub(crate) correction: Option<Correction>,
     /// When they are corrected: steps=K or violation=SIZE [default: --correct-every; every step with --tolerance]
     #[arg(long, value_name = "WHEN", value_parser = when, overrides_with = "correct_every")]
     pub(crate) correct_when: Option<When>,
-    /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more than an hour
-    /// are made only with a budget
+    /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more
+    /// than an hour are made only with a budget
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) budget: Option<u64>,
     /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
-    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and eigenvalues. Trees only
+    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and
+    /// eigenvalues. Trees only
     #[arg(long, value_name = "S", value_parser = seconds_or_none, allow_hyphen_values = true, conflicts_with = "t_end")]
     pub(crate) linearize: Option<f64>,
     /// Number type of the run
@@ -182,9 +186,9 @@ pub(crate) struct SimulateArgs {
     /// Value of one of the model's parameters; may be given several times. The start is assembled anew
     #[arg(long, value_name = "PARAMETER=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, Rational)>,
-    /// What one of the model's inputs is, once for each input: a number, or a CSV file with two columns, time and value.
-    /// Between rows the value is linear, beyond them it is held; each step has the value at its start. Other inputs keep the
-    /// page's value
+    /// What one of the model's inputs is, once for each input: a number, or a CSV file with two columns, time and
+    /// value. Between rows the value is linear, beyond them it is held; each step has the value at its start. Other
+    /// inputs keep the page's value
     #[arg(long, value_name = "NAME=FILE.csv|NUMBER", value_parser = feed)]
     pub(crate) input: Vec<(String, Feed)>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
@@ -193,7 +197,8 @@ pub(crate) struct SimulateArgs {
     /// Folder for the CSV file and the plots [default: out/NAME; none with --json]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files with all samples
+    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files
+    /// with all samples
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -202,8 +207,8 @@ pub(crate) struct SimulateArgs {
 pub(crate) enum Engine {
     /// Generated code, compiled for the purpose
     Generated,
-    /// The runtime-assembled twin, as a careful engineer would make it where the model allows (trees of revolute, spherical and
-    /// fixed joints): starts at once
+    /// The runtime-assembled twin, as a careful engineer would make it where the model allows (trees of revolute,
+    /// spherical and fixed joints): starts at once
     Assembled,
     /// The twin in the paper's plain dense form
     Dense,
@@ -256,8 +261,8 @@ impl From<MethodName> for Method {
 
 /// Write the model page of a URDF robot
 ///
-/// Says what of the robot has no counterpart on the page. Link frames become body frames at the mass centres; links without
-/// mass are merged with what they are fixed to.
+/// Says what of the robot has no counterpart on the page. Link frames become body frames at the mass centres; links
+/// without mass are merged with what they are fixed to.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask import arm.urdf                    writes arm.toml beside it
@@ -280,9 +285,9 @@ pub(crate) struct ImportArgs {
 
 /// Measure generated code and write the tables of docs/performance.md
 ///
-/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the twin, in turns in one process; counts
-/// instructions where valgrind is installed; generates, compiles and runs chains of more and more bodies. All of it optimised. Takes
-/// several minutes; leave the machine alone meanwhile.
+/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the twin, in turns in one
+/// process; counts instructions where valgrind is installed; generates, compiles and runs chains of more and more
+/// bodies. All of it optimised. Takes several minutes; leave the machine alone meanwhile.
 #[derive(Debug, Args)]
 pub(crate) struct PerformanceArgs {
     /// The page whose tables are to be replaced [default: docs/performance.md]
@@ -298,9 +303,9 @@ pub(crate) struct PerformanceArgs {
 
 /// Report error against run time, drift and stability of scenes
 ///
-/// Runs each scene by every integrator, correction, coordinates and precision and by the twins, counts errors from a reference solution of
-/// its own, and writes a page for each scene as Markdown and as one HTML file, figures, raw data as CSV and an index. All of it
-/// takes about twenty minutes; leave the machine alone meanwhile.
+/// Runs each scene by every integrator, correction, coordinates and precision and by the twins, counts errors from a
+/// reference solution of its own, and writes a page for each scene as Markdown and as one HTML file, figures, raw data
+/// as CSV and an index. All of it takes about twenty minutes; leave the machine alone meanwhile.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask report                             every model in models/, to docs/report
@@ -321,9 +326,9 @@ pub(crate) struct ReportArgs {
 
 /// Run the firmware and write docs/embedded.md
 ///
-/// Builds the firmware in embedded/ for a Cortex-M7 and a Cortex-M4F, runs it under QEMU, compares every bit with the same runs on this
-/// machine, proves by the linker that nothing panics or allocates, and writes the tables of docs/embedded.md anew. The tools come
-/// from embedded/setup.sh; nothing is fetched here.
+/// Builds the firmware in embedded/ for a Cortex-M7 and a Cortex-M4F, runs it under QEMU, compares every bit with the
+/// same runs on this machine, proves by the linker that nothing panics or allocates, and writes the tables of
+/// docs/embedded.md anew. The tools come from embedded/setup.sh; nothing is fetched here.
 #[derive(Debug, Args)]
 pub(crate) struct EmbeddedArgs {
     /// The page whose tables are to be replaced [default: docs/embedded.md]

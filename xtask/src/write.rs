@@ -1,8 +1,8 @@
 //! Writing files: whole or not at all, and never over anything but what this tool has written itself.
 //!
-//! A file that is in the way is replaced only if it is known for the tool's own: by the place it is in, by how it begins, or by the record
-//! that is kept in its folder of what was written there. No input of the run is replaced under any of its names, be it a link, a
-//! relative path or other capitals.
+//! A file that is in the way is replaced only if it is known for the tool's own: by the place it is in, by how it
+//! begins, or by the record that is kept in its folder of what was written there. No input of the run is replaced under
+//! any of its names, be it a link, a relative path or other capitals.
 
 use crate::failure::Failure;
 use std::fs::{self, OpenOptions};
@@ -13,7 +13,8 @@ use std::sync::{Mutex, PoisonError};
 /// How a file that is to be replaced is known for the tool's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Known {
-    /// By its place: in the workspace, where nobody else writes, or named by the user as the page to be brought up to date.
+    /// By its place: in the workspace, where nobody else writes, or named by the user as the page to be brought up to
+    /// date.
     Place,
     /// By how its text begins.
     Mark(&'static str),
@@ -74,7 +75,8 @@ fn is_own(path: &Path, known: Known) -> bool {
 
 /// Writes a file unless it has this text already. Returns whether it was written.
 ///
-/// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need be.
+/// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need
+/// be.
 pub(crate) fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
     check(path, known)?;
     if holds(path, text) {
@@ -141,7 +143,8 @@ fn record(path: &Path, text: &str) -> io::Result<()> {
     OpenOptions::new().create(true).append(true).open(record_of(path))?.write_all(line.as_bytes())
 }
 
-/// Length, digest (FNV-1a) and name of a file: enough to see that it was changed, not proof against whoever wants to deceive.
+/// Length, digest (FNV-1a) and name of a file: enough to see that it was changed, not proof against whoever wants to
+/// deceive.
 fn line(path: &Path, text: &[u8]) -> String {
     let digest = text.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)

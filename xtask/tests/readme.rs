@@ -80,8 +80,8 @@ fn files_are_there(page: &str, command: &[String]) {
     }
 }
 
-/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long ones but that
-/// they exist.
+/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long
+/// ones but that they exist.
 fn run(command: &[String], folder: &Path) -> Output {
     let mut args: Vec<String> = command[2..].to_vec();
     if let Some(at) = args.iter().position(|word| word == "--out") {

@@ -47,13 +47,13 @@ pub trait MotionBuilder<M: Partition + Ports> {
     fn offers(&self) -> Offers {
         Offers { joint_space: false, derivatives: false, projection: false, ..Offers::ALL }
     }
-    /// The work of the applied forces over the mechanism's size and of their moments over a radian, J: what energies are rounded
-    /// against. Zero where the forces are not at hand.
+    /// The work of the applied forces over the mechanism's size and of their moments over a radian, J: what energies
+    /// are rounded against. Zero where the forces are not at hand.
     fn work_scale(&self, _mechanism: &M, _t: f64, _y: &M::State) -> f64 {
         0.0
     }
-    /// The smallest pivot of the constraint Jacobian by full pivoting, lengths in units of the mechanism's size; `None` where the
-    /// Jacobian is not at hand. It vanishes in singular poses.
+    /// The smallest pivot of the constraint Jacobian by full pivoting, lengths in units of the mechanism's size; `None`
+    /// where the Jacobian is not at hand. It vanishes in singular poses.
     fn smallest_pivot(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<f64> {
         None
     }

@@ -23,7 +23,8 @@ where
     out.as_ref().iter().map(|number| number.slopes[0]).collect()
 }
 
-/// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after joint.
+/// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
+/// joint.
 pub(super) fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
     let mut x = mechanism.joint_start();
     let coordinates = (0..mechanism.n_joints()).flat_map(|joint| mechanism.joint(joint).coordinates);
@@ -87,8 +88,8 @@ impl<M: Mechanism> Maximal for Exact<'_, M> {
 
 pub(super) type Derivative<M> = dyn Fn(&M, <M as Ode>::Scalar, &<M as Ode>::State, &mut <M as Ode>::State);
 
-/// Maximal coordinates: one of the right-hand sides that a mechanism has there. Boxed, like corrections, so that integrators are not
-/// compiled anew for each.
+/// Maximal coordinates: one of the right-hand sides that a mechanism has there. Boxed, like corrections, so that
+/// integrators are not compiled anew for each.
 pub(super) struct Slopes<M: Mechanism>(pub(super) Box<Derivative<M>>);
 
 impl<M: Mechanism> Slopes<M> {

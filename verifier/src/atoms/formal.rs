@@ -8,7 +8,8 @@ use gyro_model::Spline;
 #[derive(Clone, Copy, Debug)]
 pub struct Formal;
 
-/// A point of the unit circle is `u¹⁶` of a rationally parametrised `u`; multiples that are met before it count up to 32.
+/// A point of the unit circle is `u¹⁶` of a rationally parametrised `u`; multiples that are met before it count up to
+/// 32.
 const CIRCLE: f64 = 1024.0;
 
 impl Atoms<Degree> for Formal {
@@ -28,7 +29,8 @@ impl Atoms<Degree> for Formal {
         Degree::polynomial(1.0)
     }
 
-    /// The root of a quotient is of half its degrees; they are counted whole. Where there is none, a variable stands for it.
+    /// The root of a quotient is of half its degrees; they are counted whole. Where there is none, a variable stands
+    /// for it.
     fn sqrt(&self, x: &Degree) -> Degree {
         Degree { numerator_log2: x.numerator_log2.max(0.0), ..*x }
     }

@@ -1,4 +1,5 @@
-//! Claims about a module written down as formulas: primes at which their roots exist, degrees, and whether residuals are zero.
+//! Claims about a module written down as formulas: primes at which their roots exist, degrees, and whether residuals
+//! are zero.
 
 use super::case::Case;
 use super::claim::Claim;
@@ -20,7 +21,8 @@ use rand_chacha::ChaCha8Rng;
 /// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.
 const PRIMES: usize = 64;
 
-/// Points more than there are roots, until roots are thought to exclude each other: one of 2^8 primes is passed over in vain.
+/// Points more than there are roots, until roots are thought to exclude each other: one of 2^8 primes is passed over in
+/// vain.
 const MORE_POINTS: usize = 8;
 
 /// More than all roundings of the logarithms of degrees can make.
@@ -48,8 +50,8 @@ impl<'a> Statements<'a> {
         Self { model, module, formulas: tape.finish(), claims }
     }
 
-    /// A prime for which all constants have their roots: the largest known Mersenne prime that there is room for if it is one, else
-    /// a random one of all the bits that there is room for.
+    /// A prime for which all constants have their roots: the largest known Mersenne prime that there is room for if it
+    /// is one, else a random one of all the bits that there is room for.
     ///
     /// # Errors
     /// The number of bits that the roots take, if they are too many.
@@ -73,9 +75,9 @@ impl<'a> Statements<'a> {
         }
     }
 
-    /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half angles between joint frames
-    /// that are skew to each other, and roots of parameters can exist together: nothing is known of these beforehand. The last prime if none
-    /// has them.
+    /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half
+    /// angles between joint frames that are skew to each other, and roots of parameters can exist together: nothing is
+    /// known of these beforehand. The last prime if none has them.
     fn with_nested_roots<const L: usize>(
         &self,
         seed: Seed,
@@ -94,10 +96,12 @@ impl<'a> Statements<'a> {
         Some(prime)
     }
 
-    /// Whether roots of constants and parameters can exist at one point. Say 26 is no square: then of x and 26 x one is none either, whatever x is.
+    /// Whether roots of constants and parameters can exist at one point. Say 26 is no square: then of x and 26 x one is
+    /// none either, whatever x is.
     ///
-    /// Of a product of numbers it can be told whether it is a square if it can of each: which roots are missed at points, as vectors modulo two,
-    /// differ by sums of some vectors. If nothing missed is no such sum away from what was missed, some roots exclude each other.
+    /// Of a product of numbers it can be told whether it is a square if it can of each: which roots are missed at
+    /// points, as vectors modulo two, differ by sums of some vectors. If nothing missed is no such sum away from what
+    /// was missed, some roots exclude each other.
     fn can_all_exist<const L: usize>(&self, prime: &Prime<L>, seed: Seed, roots: &[(Id, Id)]) -> bool {
         let needed = self.formulas.reach(roots.iter().map(|&(root, _)| root));
         let mut random = seed.numbers(0);
@@ -127,10 +131,10 @@ impl<'a> Statements<'a> {
         })
     }
 
-    /// For each claim the logarithm to base two of the degree that decides it: of the numerator of any residual, of all denominators on
-    /// the way, and of whatever makes two atoms one by accident. Each root doubles it (the norm of `f + g √x` is `f² − g² x`), and
-    /// as it exists at half of the points or is drawn, there are twice as many ways for an accident. `None` if the formulas
-    /// divide by what is zero everywhere.
+    /// For each claim the logarithm to base two of the degree that decides it: of the numerator of any residual, of all
+    /// denominators on the way, and of whatever makes two atoms one by accident. Each root doubles it (the norm of `f +
+    /// g √x` is `f² − g² x`), and as it exists at half of the points or is drawn, there are twice as many ways for an
+    /// accident. `None` if the formulas divide by what is zero everywhere.
     pub fn degrees_log2(&self) -> Vec<Option<f64>> {
         let all = vec![true; self.formulas.program.nodes.len()];
         let degrees = self

@@ -10,7 +10,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// The name is that of something which programs around a mechanism use. A disc on a shaft that a motor turns, J = 0.5 kg·m², with a sledge that slides on a table beside it.
+/// The name is that of something which programs around a mechanism use. A disc on a shaft that a motor turns, J = 0.5
+/// kg·m², with a sledge that slides on a table beside it.
 pub(crate) const MOTOR: &str = r#"format = 1
 name = "tree_with_jacobian"
 [simulation]
@@ -222,7 +223,8 @@ fn tables_and_inputs_are_files() {
     refused(&simulate(&folder, &[&[page.as_str()], &input[..]].concat()), "a pipe or a device");
 }
 
-/// What was fed in is in the table beside what came of it, and the object says what its numbers are and where the table is.
+/// What was fed in is in the table beside what came of it, and the object says what its numbers are and where the table
+/// is.
 #[test]
 fn the_table_has_the_inputs_and_the_object_names_components_and_files() {
     let folder = Folder::new("inputs");

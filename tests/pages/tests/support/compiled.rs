@@ -1,4 +1,5 @@
-//! Many random pages compiled by rustc into one program and run, beside the forms of the assembled twin by the same solvers.
+//! Many random pages compiled by rustc into one program and run, beside the forms of the assembled twin by the same
+//! solvers.
 
 #[path = "runs.rs"]
 mod runs;
@@ -13,7 +14,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What the ends of runs may differ by, in terms of what changes of the start by a unit in the last place do, or of roundings of each step.
+/// What the ends of runs may differ by, in terms of what changes of the start by a unit in the last place do, or of
+/// roundings of each step.
 const ALLOWED: f64 = 16.0;
 
 /// How often the twin is run anew from starts that differ by a rounding.
@@ -123,7 +125,8 @@ fn of_page(seed: u64, model: &Model, lines: &[Vec<&str>]) -> Found {
     found
 }
 
-/// A form's ends, what moving the start by a rounding does to each, and how far apart its corrections lead: as far as the method is off.
+/// A form's ends, what moving the start by a rounding does to each, and how far apart its corrections lead: as far as
+/// the method is off.
 fn twin<M: Partition<Scalar = f64, State = Vec<f64>> + Projection>(form: M) -> (Ends, Vec<f64>, f64) {
     let start = Ode::start(&form);
     let ends = maximal(&form, &start);
