@@ -1,7 +1,8 @@
 //! Packs of lanes against as many scalar runs, in turns in one process: `cargo bench --bench lanes`.
 //!
-//! Prints one line for each pair, its cells separated by tabs: what, pack, ns of the scalar runs, ns of the pack, how many times as fast it is.
-//! Packs gain only with the registers of the machine: `cargo xtask performance` sets `-C target-cpu=native` for this program.
+//! Prints one line for each pair, its cells separated by tabs: what, pack, ns of the scalar runs, ns of the pack, how
+//! many times as fast it is. Packs gain only with the registers of the machine: `cargo xtask performance` sets `-C
+//! target-cpu=native` for this program.
 
 use gyro_benches::{Clock, interleaved, lanes};
 use std::io::{Write, stdout};

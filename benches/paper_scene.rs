@@ -1,7 +1,7 @@
 //! The paper's scene in one run of criterion: the floor, generated code, and the forms of the runtime-assembled twin.
 //!
-//! All sides do the same work on the same state, in the same build, warmed up by criterion. Trust ratios, not nanoseconds, and rather
-//! those of `cargo bench --bench performance`, which measures in turns.
+//! All sides do the same work on the same state, in the same build, warmed up by criterion. Trust ratios, not
+//! nanoseconds, and rather those of `cargo bench --bench performance`, which measures in turns.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gyro_benches::{Kernel, Scene, kernels, runs};

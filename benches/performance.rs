@@ -1,9 +1,9 @@
 //! The paper's scene, all kernels in turns in one process: `cargo bench --bench performance`.
 //!
-//! Prints one line for each kernel, its cells separated by tabs: what, who, flops, ns, ratio to the floor. `cargo xtask performance`
-//! makes the tables of docs/performance.md of it. With `--count` nothing is timed: each kernel is called [`CALLS`] times within a
-//! function that callgrind can be told, in the order of the lines. With `--generate` it turns the page on standard input into a module on
-//! standard output, optimised as all of this is.
+//! Prints one line for each kernel, its cells separated by tabs: what, who, flops, ns, ratio to the floor. `cargo xtask
+//! performance` makes the tables of docs/performance.md of it. With `--count` nothing is timed: each kernel is called
+//! [`CALLS`] times within a function that callgrind can be told, in the order of the lines. With `--generate` it turns
+//! the page on standard input into a module on standard output, optimised as all of this is.
 
 use gyro_benches::{Clock, Kernel, Scene, counted, interleaved, kernels, runs};
 use std::io::{IsTerminal, Read, Write, stderr, stdin, stdout};

@@ -126,7 +126,8 @@ fn nearer_to_identity(p: Vector4<f64>) -> Vector4<f64> {
     if first < 0.0 { -p } else { p }
 }
 
-/// A frame turned further about one of its own axes u: `w' = Rᵀ w'₀ + u θ̇` and its derivative, with `Ṙᵀ v = −u × Rᵀ v θ̇`.
+/// A frame turned further about one of its own axes u: `w' = Rᵀ w'₀ + u θ̇` and its derivative, with `Ṙᵀ v = −u × Rᵀ v
+/// θ̇`.
 fn turned(motion: &Moving<f64>, u: &Vector3<f64>, [angle, rate, second]: &[f64; 3]) -> Moving<f64> {
     let (sin, cos) = (0.5 * angle).sin_cos();
     let turn = Vector4::new(cos, u.x * sin, u.y * sin, u.z * sin);

@@ -12,8 +12,8 @@ pub enum BuildError {
     Unsupported(Unsupported),
 }
 
-/// What keeps a model from the careful form, which does trees of revolute, spherical and fixed joints, or from the recursive one,
-/// which does trees of all joints.
+/// What keeps a model from the careful form, which does trees of revolute, spherical and fixed joints, or from the
+/// recursive one, which does trees of all joints.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unsupported {
     /// A joint of another kind, by its name.

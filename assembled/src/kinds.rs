@@ -25,8 +25,8 @@ pub(crate) enum Primitive {
     Distance,
 }
 
-/// The rows of a kind of joint, in the order of [`gyro_model::Model::rows`]. To the displacement `h_i·d` of a screw comes what
-/// its angle advances it by.
+/// The rows of a kind of joint, in the order of [`gyro_model::Model::rows`]. To the displacement `h_i·d` of a screw
+/// comes what its angle advances it by.
 pub(crate) fn primitives(kind: JointKind) -> &'static [Primitive] {
     use Axis::{F, G, H};
     use Primitive::{Distance, Dot1, Dot2, Point};

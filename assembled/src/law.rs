@@ -20,8 +20,8 @@ pub(crate) enum Law<T> {
     Damper { damping: Amount<T> },
     /// `−level tanh(ẋ / rate)`.
     Coulomb { level: Amount<T>, rate: Amount<T> },
-    /// With z the depth beyond the limit: `∓stiffness ρ(z) − damping σ(z) ẋ`, where `ρ(z) = ½ (z + √(z² + softness²))` and
-    /// `σ(z) = ½ (1 + z / √(z² + softness²))`.
+    /// With z the depth beyond the limit: `∓stiffness ρ(z) − damping σ(z) ẋ`, where `ρ(z) = ½ (z + √(z² + softness²))`
+    /// and `σ(z) = ½ (1 + z / √(z² + softness²))`.
     Stop { limit: Amount<T>, side: StopSide, stiffness: Amount<T>, damping: Amount<T>, softness: Amount<T> },
     /// Given.
     Motor { value: Amount<T> },
@@ -85,7 +85,8 @@ impl<T: Number> Law<T> {
 mod tests {
     use super::*;
 
-    /// By hand from [`gyro_model::ForceKind`], at a coordinate and a rate; a depth of 4 and a softness of 3 have a root of 5.
+    /// By hand from [`gyro_model::ForceKind`], at a coordinate and a rate; a depth of 4 and a softness of 3 have a root
+    /// of 5.
     #[test]
     fn laws_are_as_the_page_means_them() {
         let of = Amount::Constant;

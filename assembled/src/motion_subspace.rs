@@ -86,8 +86,8 @@ impl<T: Number> MotionSubspace<T> {
 /// What the dot-1 rows determine of `ω̇_j − ω̇_i`; along a revolute's axis, where they determine nothing, anything.
 ///
 /// Seen from the first body, a row `a·b = 0` with a fixed there asks `a·(α × b + Ω × (Ω × b)) = 0` of the relative
-/// acceleration α, where Ω = ω_j − ω_i, and `ω̇_j − ω̇_i = ω_i × Ω + α`. A revolute has a = f_i, g_i and b = h_j; as f_i, g_i
-/// and h_i are orthonormal, with `k = Ω × (Ω × h_j)` both rows hold for `α = k × h_i / (h_i·h_j)`.
+/// acceleration α, where Ω = ω_j − ω_i, and `ω̇_j − ω̇_i = ω_i × Ω + α`. A revolute has a = f_i, g_i and b = h_j; as
+/// f_i, g_i and h_i are orthonormal, with `k = Ω × (Ω × h_j)` both rows hold for `α = k × h_i / (h_i·h_j)`.
 pub(crate) fn rotation_bias<T: Number>(
     (bearing, joint): (Bearing, &Joint<T>),
     i: &Attitude<T>,

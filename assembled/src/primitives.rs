@@ -1,7 +1,7 @@
 //! The textbook's constraint primitives. Haug (1989), sections 9.4 and 11.2.
 //!
-//! A primitive is a scalar made of the joint's points and frames on its two bodies. Typed by hand for each are its value with
-//! two time derivatives, and its derivative with respect to the bodies' r and p or π'.
+//! A primitive is a scalar made of the joint's points and frames on its two bodies. Typed by hand for each are its
+//! value with two time derivatives, and its derivative with respect to the bodies' r and p or π'.
 
 use crate::joint::Joint;
 use crate::kinds::Primitive;
@@ -10,8 +10,8 @@ use crate::number::{Number, number};
 use nalgebra::{RowVector3, SMatrix, Vector3};
 use std::ops::Range;
 
-/// How a vector fixed in a body changes along a direction when the body turns: `∂(xᵀ A a')` with respect to p (N = 4) or π'
-/// (N = 3).
+/// How a vector fixed in a body changes along a direction when the body turns: `∂(xᵀ A a')` with respect to p (N = 4)
+/// or π' (N = 3).
 pub(crate) type Turning<T, const N: usize> = fn(&Motion<T>, &Vector3<T>, &Vector3<T>) -> SMatrix<T, 1, N>;
 
 /// The derivative of a scalar with respect to one body's r and to its p or π'.
@@ -29,7 +29,8 @@ impl<T: Number, const N: usize> Pull<T, N> {
         Self { r_columns: self.r_columns.clone(), r: self.r * factor, turn: self.turn * factor }
     }
 
-    /// Calls the sink with column and value of each entry that is not zero by structure, of a body with this moving_body.
+    /// Calls the sink with column and value of each entry that is not zero by structure, of a body with this
+    /// moving_body.
     pub(crate) fn walk(&self, moving_body: usize, mut sink: impl FnMut(usize, T)) {
         let first_column = (3 + N) * moving_body;
         self.r_columns.clone().for_each(|k| sink(first_column + k, self.r[k]));
@@ -56,7 +57,8 @@ fn hull(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
 }
 
 impl Primitive {
-    /// Value, first and second time derivative, where bodies with coordinates have no acceleration: minus the last is γ.
+    /// Value, first and second time derivative, where bodies with coordinates have no acceleration: minus the last is
+    /// γ.
     pub(crate) fn jet<T: Number>(self, joint: &Joint<T>, [i, j]: &[Motion<T>; 2]) -> [T; 3] {
         let (first, second) = (&joint.first, &joint.second);
         let d = || j.point(&second.point).minus(&i.point(&first.point));

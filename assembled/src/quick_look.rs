@@ -18,8 +18,8 @@ pub enum Form {
 }
 
 impl Form {
-    /// The better form for a model, on the constraints or off them: the careful one where it [applies](Careful::supports), the dense one
-    /// otherwise.
+    /// The better form for a model, on the constraints or off them: the careful one where it
+    /// [applies](Careful::supports), the dense one otherwise.
     pub fn for_model(model: &Model) -> Self {
         if Careful::<f64>::supports(model).is_ok() { Self::Careful } else { Self::Dense }
     }

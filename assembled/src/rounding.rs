@@ -21,8 +21,8 @@ impl<T: Number> Lowered<T> {
         });
     }
 
-    /// Whether no row exceeds the rounding of what it adds up: a unit, its terms and what is prescribed, and each coordinate as far as
-    /// the row changes with it.
+    /// Whether no row exceeds the rounding of what it adds up: a unit, its terms and what is prescribed, and each
+    /// coordinate as far as the row changes with it.
     pub(crate) fn is_met(&self, at: Moment<'_, T>, phi: &[T]) -> bool {
         let mut sizes: Vec<T> = phi.iter().map(|_| T::one()).collect();
         for (size, row) in sizes.iter_mut().zip(&self.row_infos) {

@@ -1,7 +1,7 @@
 //! What a joint leaves free, as screws, and six-vectors about a point common to all bodies.
 //!
-//! A six-vector is `(linear, angular)`: of a motion the velocity of the body's point that is just at the common point, and ω; of
-//! a force its resultant, and its moment about the common point.
+//! A six-vector is `(linear, angular)`: of a motion the velocity of the body's point that is just at the common point,
+//! and ω; of a force its resultant, and its moment about the common point.
 
 use crate::joint::Joint;
 use crate::kinds::Axis;
@@ -22,8 +22,8 @@ pub(crate) enum End {
     Second,
 }
 
-/// A relative motion that a joint leaves free: a rotation about an axis through the second body's joint point, a displacement
-/// along it, or both at a fixed ratio.
+/// A relative motion that a joint leaves free: a rotation about an axis through the second body's joint point, a
+/// displacement along it, or both at a fixed ratio.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Screw<T> {
     /// In which body the axis is fixed.
@@ -37,8 +37,8 @@ pub(crate) struct Screw<T> {
 }
 
 impl<T: Number> Screw<T> {
-    /// All screws of a joint, each orthogonal to those that are alike. Those fixed in the first body come before those fixed in the
-    /// second.
+    /// All screws of a joint, each orthogonal to those that are alike. Those fixed in the first body come before those
+    /// fixed in the second.
     pub(crate) fn all(joint: &Joint<T>, lead: T) -> Vec<Self> {
         use Axis::{F, G, H};
         let (zero, one) = (number(0.0), number(1.0));

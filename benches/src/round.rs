@@ -17,7 +17,8 @@ pub struct Figure {
 pub enum Clock {
     /// That of the day, exact: for slices so short that few are interrupted.
     Wall,
-    /// What the processor has spent on this thread, exact to a few milliseconds, where the system tells; else that of the day.
+    /// What the processor has spent on this thread, exact to a few milliseconds, where the system tells; else that of
+    /// the day.
     Processor,
 }
 
@@ -38,8 +39,8 @@ fn processor_ns() -> Option<f64> {
     text.split_whitespace().next()?.parse().ok()
 }
 
-/// Measures all kernels in turns, each for about `slice` in each of `rounds`; `tell` hears which round begins. A first round warms
-/// up and decides how often each is called in a slice.
+/// Measures all kernels in turns, each for about `slice` in each of `rounds`; `tell` hears which round begins. A first
+/// round warms up and decides how often each is called in a slice.
 ///
 /// # Panics
 /// If there is no kernel.
@@ -65,7 +66,8 @@ pub fn interleaved(
     samples.iter().map(figure).collect()
 }
 
-/// Tries at each number of calls: an interruption must not pass for a slow kernel, which would be called too seldom to stay warm.
+/// Tries at each number of calls: an interruption must not pass for a slow kernel, which would be called too seldom to
+/// stay warm.
 const TRIES: u32 = 5;
 
 /// How many calls take this long; at least one.

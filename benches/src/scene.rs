@@ -158,8 +158,8 @@ fn accelerations<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State, from: 
     out.as_ref()[from..from + 18].to_vec()
 }
 
-/// The accelerations of the joints from those of the bodies: α̈ is the outer ring's about y, β̈ the inner ring's about z, and the
-/// rotor's about x is φ̈ with the derivative of α̇ s.
+/// The accelerations of the joints from those of the bodies: α̈ is the outer ring's about y, β̈ the inner ring's about
+/// z, and the rotor's about x is φ̈ with the derivative of α̇ s.
 fn agree(who: &str, joints: &[f64; 6], expected: [f64; 3], bodies: &[f64]) {
     let (s, c) = joints[1].sin_cos();
     let (alpha, beta) = (bodies[4], bodies[11]);

@@ -40,7 +40,8 @@ pub(crate) enum NoFit {
 /// Angles that change by less, rad, are at rest: corrections and rounding are of this order.
 const STILL: f64 = 1e-11;
 
-/// A line that leaves less than this part of the range says it all: what remains of a free spin is a second-order ripple.
+/// A line that leaves less than this part of the range says it all: what remains of a free spin is a second-order
+/// ripple.
 const STRAIGHT: f64 = 1e-6;
 
 /// Rows of a fit for five unknowns that can be told from chance.

@@ -1,4 +1,5 @@
-//! The folder that a run writes to: found out before the run whether it can be used, and left as it was if nothing is written.
+//! The folder that a run writes to: found out before the run whether it can be used, and left as it was if nothing is
+//! written.
 
 use crate::failure::Failure;
 use std::fs;

@@ -144,8 +144,9 @@ fn write(outputs: &Outputs) -> Result<(), Failure> {
     if outputs.to_do.is_empty() { Ok(()) } else { Err(Failure::Run(outputs.to_do.join("\n"))) }
 }
 
-/// Refuses to replace what somebody else wrote, or what this run reads. A module is known by its first line. A file of constants has no
-/// room for one: it is known by the generated module beside it and by being just such a file, line for line.
+/// Refuses to replace what somebody else wrote, or what this run reads. A module is known by its first line. A file of
+/// constants has no room for one: it is known by the generated module beside it and by being just such a file, line for
+/// line.
 fn spare_what_is_not_generated(output: &Output) -> Result<(), Failure> {
     let path = &output.path;
     if output.text.starts_with(MARK) {

@@ -58,7 +58,8 @@ fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     rows(&text)
 }
 
-/// The rows of a table of times and values. A first line without numbers is a header; lines that start with `#` are comments.
+/// The rows of a table of times and values. A first line without numbers is a header; lines that start with `#` are
+/// comments.
 fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
     let mut table = csv::ReaderBuilder::new()
         .has_headers(false)

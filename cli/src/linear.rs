@@ -1,9 +1,10 @@
-//! Linear theory of any tree of revolute joints: the motion linearised about the angles and the fast rates of its start.
+//! Linear theory of any tree of revolute joints: the motion linearised about the angles and the fast rates of its
+//! start.
 //!
 //! With `x` the departure of joint angles and rates from there, `ẋ = f₀ + A x`; `f₀` and `A` are taken from the
-//! runtime-assembled twin, `A` by central differences of sixth order. At the start `x` holds the slow rates: a gyroscope
-//! that is kicked departs from its spin. The response follows from the matrix exponential of `[A f₀; 0 0]`. Nothing here
-//! knows what the mechanism is.
+//! runtime-assembled twin, `A` by central differences of sixth order. At the start `x` holds the slow rates: a
+//! gyroscope that is kicked departs from its spin. The response follows from the matrix exponential of `[A f₀; 0 0]`.
+//! Nothing here knows what the mechanism is.
 
 use gyro_assembled::Careful;
 use gyro_model::{
@@ -43,14 +44,14 @@ const HOLDS: f64 = 0.1;
 /// Times at which that is looked at, evenly spread over the run.
 const CHECKS: usize = 16;
 
-/// Step of the differences: rad for angles, rad/s for rates. Accelerations are quadratic in the rates, so there the step
-/// is free; for angles the truncation, about h⁶/140, and the rounding, 1e-14/h, are both below 1e-12.
+/// Step of the differences: rad for angles, rad/s for rates. Accelerations are quadratic in the rates, so there the
+/// step is free; for angles the truncation, about h⁶/140, and the rounding, 1e-14/h, are both below 1e-12.
 const ANGLE_STEP: f64 = 0.01;
 const RATE_STEP: f64 = 1.0;
 
 impl Linear {
-    /// Whether this theory is about such models at all: bodies on revolute, spherical and fixed joints, with viscous friction
-    /// and gravity and nothing else.
+    /// Whether this theory is about such models at all: bodies on revolute, spherical and fixed joints, with viscous
+    /// friction and gravity and nothing else.
     pub(crate) fn is_about(model: &Model) -> bool {
         let kinds = [JointKind::Revolute, JointKind::Spherical, JointKind::Fixed];
         model.forces.is_empty()
@@ -124,8 +125,8 @@ impl Linear {
         Ok(())
     }
 
-    /// Compares the linear accelerations with the twin's where the linear motion has gone. An angle that nothing depends
-    /// on may turn without end.
+    /// Compares the linear accelerations with the twin's where the linear motion has gone. An angle that nothing
+    /// depends on may turn without end.
     fn refuse_curvature(&self, model: &Model, departures: &[DVector<f64>]) -> Result<(), String> {
         let (system, n) = (System { model, joints: &self.joints }, self.joints.len());
         let (mut scale, mut error) = (self.f0.rows(n, n).amax(), 0.0_f64);

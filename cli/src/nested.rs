@@ -48,8 +48,8 @@ pub(crate) fn program(page: &Model, module: &Module, precision: Precision) -> Re
     Ok(package.program_file())
 }
 
-/// Compiles the twin, optimised, into a program that takes the path of a page, the name of a form and of a precision and answers
-/// requests; returns where it is.
+/// Compiles the twin, optimised, into a program that takes the path of a page, the name of a form and of a precision
+/// and answers requests; returns where it is.
 pub(crate) fn twin() -> Result<PathBuf, Failure> {
     let package = Package::twin();
     build(&package)?;
@@ -115,8 +115,8 @@ impl Package {
     }
 }
 
-/// The program's own lines. What the module implements decides with what motions can be begun. Nothing is imported: a mechanism may have
-/// the name of anything.
+/// The program's own lines. What the module implements decides with what motions can be begun. Nothing is imported: a
+/// mechanism may have the name of anything.
 fn main(module: &Module, precision: Precision) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let has = |text: String| module.code.contains(&text);

@@ -110,7 +110,8 @@ pub fn deriving(model: &Model) -> Spinner {
 /// Bodies of a model of which this is said.
 const LARGE: usize = 64;
 
-/// What a body takes, measured on chains of revolute joints with skewed axes: 1.2 GB for 100, 2.4 GB for 200; 500 free bodies take 1.7 GB.
+/// What a body takes, measured on chains of revolute joints with skewed axes: 1.2 GB for 100, 2.4 GB for 200; 500 free
+/// bodies take 1.7 GB.
 const GIGABYTES: f64 = 0.012;
 
 /// Says what is under way, until what is returned is dropped.

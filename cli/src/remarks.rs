@@ -8,7 +8,8 @@ use std::io::Write as _;
 /// Remarks of one kind that are made of a page.
 const MOST: usize = 10;
 
-/// Says on standard error what of a page is nearly exact, and which rows were dropped; refuses the page if that is to be an error.
+/// Says on standard error what of a page is nearly exact, and which rows were dropped; refuses the page if that is to
+/// be an error.
 pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Result<(), Failure> {
     model.nearly_exact.iter().take(MOST).for_each(|words| note(&format!("{page}: {words}")));
     let lines: Vec<String> = model.redundant.iter().map(|row| describe(model, row)).collect();

@@ -1,4 +1,5 @@
-//! `cargo xtask verify --rounding`: what generated code and both forms of the twin lose by rounding, on the same states.
+//! `cargo xtask verify --rounding`: what generated code and both forms of the twin lose by rounding, on the same
+//! states.
 
 use crate::failure::Failure;
 use gyro_assembled::{Careful, Dense};
@@ -154,7 +155,8 @@ fn counterpart(function: &str) -> &str {
     if function == "joint_accelerations_at" { "corrected_accelerations" } else { function }
 }
 
-/// What a twin gives for a function of the module; `None` if its results have no meaning of their own, or the twin has no such function.
+/// What a twin gives for a function of the module; `None` if its results have no meaning of their own, or the twin has
+/// no such function.
 fn computed<M>(module: &Module, twin: &M, function: &str, reference: &Reference<'_>) -> Option<Vec<f64>>
 where
     M: Equations<Scalar = f64>,

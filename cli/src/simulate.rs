@@ -159,7 +159,8 @@ fn remove_plots(scene: &Scene, folder: &Path) {
     plot::NAMES.iter().for_each(|name| write::remove(&plot_path(&scene.model.name, name, folder)));
 }
 
-/// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie them.
+/// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie
+/// them.
 fn keep_what_there_is(scene: &Scene, samples: &[Sample], folder: Option<&Path>, failure: Failure) -> Failure {
     let (Failure::Run(words), Some(folder), Some(last)) = (&failure, folder, samples.last()) else {
         return failure;

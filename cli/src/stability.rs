@@ -1,4 +1,5 @@
-//! `cargo xtask verify --stability`: how much the solves of trees lose on extreme configurations, beside the dense twin.
+//! `cargo xtask verify --stability`: how much the solves of trees lose on extreme configurations, beside the dense
+//! twin.
 
 use crate::failure::Failure;
 use crate::progress::Spinner;
@@ -59,7 +60,8 @@ const KINDS: [(Kind, &str); 10] = [
     (Kind::Everything, "all of it"),
 ];
 
-/// The whole report in Markdown; without pages, of the paper's gyroscope and of a chain of four bodies with skewed axes.
+/// The whole report in Markdown; without pages, of the paper's gyroscope and of a chain of four bodies with skewed
+/// axes.
 pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String, Failure> {
     let mut text = HEAD.to_owned();
     for model in models(pages)? {

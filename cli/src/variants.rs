@@ -89,7 +89,8 @@ impl Changes<'_> {
         }
     }
 
-    /// Numbers become parameters: those that are not zero, so that what the model is built like stays; of the geometry all, too.
+    /// Numbers become parameters: those that are not zero, so that what the model is built like stays; of the geometry
+    /// all, too.
     fn with_free_numbers(&mut self) {
         self.add("with free masses and inertias".to_owned(), |model| {
             let bodies = model.bodies.iter_mut().filter(|body| body.support.has_coordinates());

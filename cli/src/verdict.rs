@@ -1,8 +1,8 @@
 //! `simulate --verify`: how far a run can be trusted.
 //!
-//! A companion run of the same scene, by finer means and where there are some by other ones, says how large the error of each joint
-//! coordinate is: the largest difference over all samples. It is held against the size of the motion, and so is the energy's drift
-//! ([`gyro_runner::judge`]).
+//! A companion run of the same scene, by finer means and where there are some by other ones, says how large the error
+//! of each joint coordinate is: the largest difference over all samples. It is held against the size of the motion, and
+//! so is the energy's drift ([`gyro_runner::judge`]).
 
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
@@ -43,8 +43,8 @@ pub(crate) struct Outcome {
     pub(crate) stopped: Option<(f64, Vec<f64>)>,
 }
 
-/// Judges a run. `run` makes companions: one whose own energy balance is open, or whose joints come apart, is taken only where there is
-/// no better one.
+/// Judges a run. `run` makes companions: one whose own energy balance is open, or whose joints come apart, is taken
+/// only where there is no better one.
 ///
 /// # Errors
 /// No companion came to its end.
@@ -172,7 +172,8 @@ fn until(judgement: &Judgement) -> String {
     }
 }
 
-/// Why the command ends with a status of its own, if it does: by the verdict, or, without one, by what the run tells itself.
+/// Why the command ends with a status of its own, if it does: by the verdict, or, without one, by what the run tells
+/// itself.
 pub(crate) fn worthless(scene: &Scene, outcome: &Outcome, verdict: Option<&Verdict>) -> Option<Failure> {
     let reason = match verdict {
         Some(verdict) => {

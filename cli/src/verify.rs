@@ -76,8 +76,8 @@ fn say(text: &str) -> Result<(), Failure> {
     io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::Run(format!("standard output: {e}")))
 }
 
-/// Proves a module that was just made, for the commands that make one. What is refuted is refused; what is undecided is right as far as
-/// anybody knows, and said.
+/// Proves a module that was just made, for the commands that make one. What is refuted is refused; what is undecided is
+/// right as far as anybody knows, and said.
 pub(crate) fn verify_quickly(model: &Model, module: &Module) -> Result<(), Failure> {
     let spinner = Spinner::new(format!("proving {}", module.name));
     let report = verify(model, &module.code, &module.constants, Depth::Quick);

@@ -1,8 +1,8 @@
 //! Writing files: whole or not at all, and never over anything but what this tool has written itself.
 //!
-//! A file that is in the way is replaced only if it is known for the tool's own: by the place it is in, by how it begins, or by the record
-//! that is kept in its folder of what was written there. No input of the run is replaced under any of its names, be it a link, a
-//! relative path or other capitals.
+//! A file that is in the way is replaced only if it is known for the tool's own: by the place it is in, by how it
+//! begins, or by the record that is kept in its folder of what was written there. No input of the run is replaced under
+//! any of its names, be it a link, a relative path or other capitals.
 
 use crate::failure::Failure;
 use std::fs::{self, OpenOptions};

@@ -268,7 +268,8 @@ fn nothing_is_overwritten_or_written_for_a_bad_robot() {
     assert!(!folder.0.join("bad.toml").exists());
 }
 
-/// Where all bodies stand as an independent forward kinematics has it, and how they accelerate as Pinocchio 3 has it (free-flyer root, ABA).
+/// Where all bodies stand as an independent forward kinematics has it, and how they accelerate as Pinocchio 3 has it
+/// (free-flyer root, ABA).
 #[test]
 fn a_trunk_that_floats() {
     let folder = Folder::new("walker");

@@ -1,5 +1,6 @@
-//! The kernels: the functions of a generated module that compute something. One table says of each its name, what it computes, when it
-//! exists and where its expressions come from; everything else goes by the variants of [`Kernel`], never by the text of a name.
+//! The kernels: the functions of a generated module that compute something. One table says of each its name, what it
+//! computes, when it exists and where its expressions come from; everything else goes by the variants of [`Kernel`],
+//! never by the text of a name.
 
 use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
@@ -155,7 +156,8 @@ impl Kernels {
         Self(chosen.filter(|(_, chosen)| !chosen.roots.is_empty()).collect())
     }
 
-    /// The passes after all choices: over each kernel by itself, then over all together, from which [`Kernel::ParameterSetup`] results.
+    /// The passes after all choices: over each kernel by itself, then over all together, from which
+    /// [`Kernel::ParameterSetup`] results.
     pub fn finish(&mut self, graph: &mut Graph, passes: FinalPasses) {
         for chosen in self.0.values_mut() {
             chosen.roots = passes.applied(graph, &chosen.roots);
@@ -228,7 +230,8 @@ mod tests {
         page
     }
 
-    /// Torque times rate: a product and a sum for each motor, and one product more where the force is yet to be computed.
+    /// Torque times rate: a product and a sum for each motor, and one product more where the force is yet to be
+    /// computed.
     #[test]
     fn power_is_read_from_joint_coordinates() {
         const MOTOR: &str = "kind = \"motor\"\nvalue = \"u\"";
@@ -247,7 +250,8 @@ mod tests {
         check(&[("revolute", "friction"), ("spherical", "friction")], alone + 9);
     }
 
-    /// The paper's scene costs about what an analyst's pencil reaches: 17 operations for the joint accelerations, in benches/.
+    /// The paper's scene costs about what an analyst's pencil reaches: 17 operations for the joint accelerations, in
+    /// benches/.
     #[test]
     fn nothing_is_computed_that_the_paper_s_scene_does_not_need() {
         let page = include_str!("../../models/gyroscope.toml");

@@ -71,7 +71,8 @@ impl Diagnostics {
         &self.mistakes
     }
 
-    /// The mistakes as plain text for a terminal or a log, each with its `file:line:column`: the first thirty, and how many more there are.
+    /// The mistakes as plain text for a terminal or a log, each with its `file:line:column`: the first thirty, and how
+    /// many more there are.
     pub fn render(&self) -> String {
         self.render_with(Buffer::no_color())
     }

@@ -1,7 +1,8 @@
 //! Directions as pages write them: settled to a bounded number of digits, and compared with what may have been meant.
 //!
-//! Only the direction of an axis, a zero direction or Euler parameters counts, and formulas are derived from it exactly: what is written
-//! with a hundred digits, or a component of 1e-76, would go through every product of the derivation.
+//! Only the direction of an axis, a zero direction or Euler parameters counts, and formulas are derived from it
+//! exactly: what is written with a hundred digits, or a component of 1e-76, would go through every product of the
+//! derivation.
 
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
@@ -11,7 +12,8 @@ use crate::{Model, Motion, Number, Rational, to_f64};
 /// Decimal digits of a direction's largest component that count: twice what an `f64` has.
 const DIGITS: i32 = 32;
 
-/// A component smaller than this part of the largest may be a zero that somebody computed: an angle of 1.5708 is off by 4e-6.
+/// A component smaller than this part of the largest may be a zero that somebody computed: an angle of 1.5708 is off by
+/// 4e-6.
 const NEARLY_ZERO: f64 = 1e-5;
 
 /// An angle as near as this to a right one, rad, may be a right one that somebody rounded, as 1.571 is.
@@ -20,7 +22,8 @@ const NEARLY_RIGHT: f64 = 1e-3;
 /// An angle as near as this to a right one, rad, is a right one to all digits that there are.
 const RIGHT: f64 = 1e-14;
 
-/// Rounds all directions of a model that is being read to [`DIGITS`] digits; what they nearly were is kept in [`Model::nearly_exact`].
+/// Rounds all directions of a model that is being read to [`DIGITS`] digits; what they nearly were is kept in
+/// [`Model::nearly_exact`].
 pub(crate) fn settle(model: &mut Model) {
     model.nearly_exact = remarks(model);
     for end in model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]) {
@@ -141,7 +144,8 @@ fn only(direction: &[Number; 3]) -> Option<usize> {
     others.next().filter(|_| others.next().is_none())
 }
 
-/// Euler parameters of right angles about coordinate directions, where they are nearly met: all components that are not zero are of one size.
+/// Euler parameters of right angles about coordinate directions, where they are nearly met: all components that are not
+/// zero are of one size.
 fn orientation(written: &[Number; 4]) -> Option<[Number; 4]> {
     let exact: Vec<&Rational> = written.iter().map(exact).collect::<Option<_>>()?;
     let largest = exact.iter().map(|x| x.abs()).max()?;

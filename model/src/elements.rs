@@ -11,8 +11,8 @@ pub struct JointCoordinate {
     pub coordinate: usize,
 }
 
-/// What a scalar coordinate of a joint is. With (f, g, h) the joint frames and d from the first joint point to the second:
-/// every angle is continuous over turns where something acts on it.
+/// What a scalar coordinate of a joint is. With (f, g, h) the joint frames and d from the first joint point to the
+/// second: every angle is continuous over turns where something acts on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CoordinateKind {
     /// From the first body's f to the second's about h: `atan2(g_i·f_j, f_i·f_j)`, rad.
@@ -84,10 +84,11 @@ pub struct Force {
     pub kind: ForceKind,
 }
 
-/// The kinds of force. A force `F(x, ẋ)` *along a joint coordinate* x acts on the second body and as `−F` on the first: of an
-/// angle it is the torque `F h_j` on the second body and `−F h_i` on the first, each body's own joint axis (universal: both
-/// about `h_i` for the first angle and about `h_j` for the second); of a displacement along u (h_i, f_i or g_i) the force `F u` at the
-/// second body's joint point, and `−F u` on the first body *at the same point of space*.
+/// The kinds of force. A force `F(x, ẋ)` *along a joint coordinate* x acts on the second body and as `−F` on the first:
+/// of an angle it is the torque `F h_j` on the second body and `−F h_i` on the first, each body's own joint axis
+/// (universal: both about `h_i` for the first angle and about `h_j` for the second); of a displacement along u (h_i,
+/// f_i or g_i) the force `F u` at the second body's joint point, and `−F u` on the first body *at the same point of
+/// space*.
 #[derive(Clone, Debug)]
 pub enum ForceKind {
     /// `F = −stiffness (x − free)`: linear spring, conservative. Acts on the continuous angle.
@@ -115,9 +116,10 @@ pub enum ForceKind {
         /// Rate at which friction reaches tanh(1) of its level, rad/s or m/s.
         rate: Number,
     },
-    /// An end stop: `F = −stiffness ρ(x − limit) − damping σ(x − limit) ẋ` for an upper limit, and mirrored for a lower one, with
-    /// the smooth ramp `ρ(z) = ½ (z + √(z² + softness²))` and its slope `σ(z) = ½ (1 + z / √(z² + softness²))`. A lower limit
-    /// has `F = stiffness ρ(limit − x) − damping σ(limit − x) ẋ`. Counted as non-conservative.
+    /// An end stop: `F = −stiffness ρ(x − limit) − damping σ(x − limit) ẋ` for an upper limit, and mirrored for a lower
+    /// one, with the smooth ramp `ρ(z) = ½ (z + √(z² + softness²))` and its slope `σ(z) = ½ (1 + z / √(z² +
+    /// softness²))`. A lower limit has `F = stiffness ρ(limit − x) − damping σ(limit − x) ẋ`. Counted as
+    /// non-conservative.
     Stop {
         /// Where it acts.
         on: JointCoordinate,
@@ -139,8 +141,9 @@ pub enum ForceKind {
         /// N·m or N.
         value: Number,
     },
-    /// Between two points of two bodies: the force `−stiffness (l − free_length) − damping l̇` along the line from the first point to
-    /// the second, on the second body; l the distance, which must not vanish. The spring is conservative.
+    /// Between two points of two bodies: the force `−stiffness (l − free_length) − damping l̇` along the line from the
+    /// first point to the second, on the second body; l the distance, which must not vanish. The spring is
+    /// conservative.
     Link {
         /// Index of the first body, and the point in its frame, m.
         first: (usize, [Number; 3]),
@@ -219,16 +222,17 @@ pub enum OutputKind {
         /// Point in its frame, m.
         point: [Number; 3],
     },
-    /// What an inertial sensor reads: specific force `Aᵀ(r̈ − g)` (m/s²) at a point and angular rate w' (rad/s), both in the
-    /// body's frame.
+    /// What an inertial sensor reads: specific force `Aᵀ(r̈ − g)` (m/s²) at a point and angular rate w' (rad/s), both
+    /// in the body's frame.
     Inertial {
         /// Index of the body.
         body: usize,
         /// Point in its frame, m.
         point: [Number; 3],
     },
-    /// Constraint force (N) and torque about the second body's joint point (N·m) that a joint exerts on its second body, both
-    /// in the first body's joint frame (f, g, h). Friction, springs, motors and drivers in the joint are not part of it.
+    /// Constraint force (N) and torque about the second body's joint point (N·m) that a joint exerts on its second
+    /// body, both in the first body's joint frame (f, g, h). Friction, springs, motors and drivers in the joint are not
+    /// part of it.
     Reaction {
         /// Index of the joint.
         joint: usize,

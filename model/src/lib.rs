@@ -67,8 +67,8 @@ pub struct Model {
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].
     pub counts_work: bool,
-    /// What the page writes nearly, but not exactly, as a coordinate direction or a right angle, and what to write if that is meant: a
-    /// sentence for each. Formulas are shorter where it is.
+    /// What the page writes nearly, but not exactly, as a coordinate direction or a right angle, and what to write if
+    /// that is meant: a sentence for each. Formulas are shorter where it is.
     pub nearly_exact: Vec<String>,
     /// How the page asks to be simulated.
     pub simulation: Simulation,
@@ -96,7 +96,8 @@ pub struct Body {
     pub inertia: [Number; 6],
     /// Position of the mass centre in the global frame, m: of fixed bodies, and the start of free ones.
     pub position: [Number; 3],
-    /// Euler parameters `(e0, e1, e2, e3)`, not necessarily of unit length: of fixed bodies, and the start of free ones.
+    /// Euler parameters `(e0, e1, e2, e3)`, not necessarily of unit length: of fixed bodies, and the start of free
+    /// ones.
     pub orientation: [Number; 4],
     /// Start of a free body: velocity of the mass centre in the global frame, m/s.
     pub velocity: [Number; 3],
@@ -187,8 +188,8 @@ pub struct JointEnd {
 pub struct JointStartSpec {
     /// For each of the joint's scalar coordinates its value where the page gives one: rad (may exceed a turn) or m.
     pub position: Vec<Option<Number>>,
-    /// One number for each scalar coordinate; spherical: the second body's angular velocity relative to the first in the
-    /// second body's frame.
+    /// One number for each scalar coordinate; spherical: the second body's angular velocity relative to the first in
+    /// the second body's frame.
     pub rate: Option<Vec<Number>>,
     /// Spherical: Euler parameters of the second body's frame in the first's, of any length.
     pub orientation: Option<[Number; 4]>,

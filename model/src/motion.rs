@@ -27,11 +27,12 @@ pub enum Motion {
     Table(Spline),
 }
 
-/// A body's whole motion, prescribed: it has no coordinates, its pose is folded into the formulas as a function of time.
+/// A body's whole motion, prescribed: it has no coordinates, its pose is folded into the formulas as a function of
+/// time.
 ///
-/// With the body's own `position` and `orientation` as `r0` and `A0`: `r(t) = r0 + translation(t)` in the global frame and
-/// `A(t) = A0 · R(axis_1, angle_1(t)) · R(axis_2, angle_2(t)) ⋯`, each rotation about an axis of the frame that the ones
-/// before it have turned (intrinsic).
+/// With the body's own `position` and `orientation` as `r0` and `A0`: `r(t) = r0 + translation(t)` in the global frame
+/// and `A(t) = A0 · R(axis_1, angle_1(t)) · R(axis_2, angle_2(t)) ⋯`, each rotation about an axis of the frame that the
+/// ones before it have turned (intrinsic).
 #[derive(Clone, Debug)]
 pub struct BodyMotion {
     /// Displacement of the mass centre, m, global frame.

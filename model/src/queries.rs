@@ -93,8 +93,9 @@ impl Model {
         std::array::from_fn(|k| self.value(&numbers[k]))
     }
 
-    /// Indices of the bodies that have coordinates, in the order of the page: moving_body `s` of the generalised coordinates
-    /// is body `coordinate_bodies()[s]`, with `q[7s..7s + 7] = (r, p)` and velocities `v[6s..6s + 6] = (s, w')`.
+    /// Indices of the bodies that have coordinates, in the order of the page: moving_body `s` of the generalised
+    /// coordinates is body `coordinate_bodies()[s]`, with `q[7s..7s + 7] = (r, p)` and velocities `v[6s..6s + 6] = (s,
+    /// w')`.
     pub fn coordinate_bodies(&self) -> Vec<usize> {
         (0..self.bodies.len()).filter(|&b| self.bodies[b].support.has_coordinates()).collect()
     }
@@ -103,11 +104,12 @@ impl Model {
     /// normalisations (which follow, one for each coordinate body): constrained bodies, joints, couplers, drivers.
     ///
     /// A constrained body has three position rows `r - r0` and three orientation rows, the vector part of `p0* p`. With
-    /// (f, g, h) the joint frame on a body (unit zero direction, `g = h × f`, unit axis) and `d` from the first body's joint point to the
-    /// second's, both in the global frame, joints have
-    /// - revolute, spherical, fixed, universal: `d` (three components, eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute, fixed; eqs.
-    ///   (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
-    /// - cylindrical, prismatic, screw: `f_i·d`, `g_i·d`; `h_i·d − lead · angle` (screw); `f_i·h_j`, `g_i·h_j`; `f_i·g_j` (prismatic);
+    /// (f, g, h) the joint frame on a body (unit zero direction, `g = h × f`, unit axis) and `d` from the first body's
+    /// joint point to the second's, both in the global frame, joints have
+    /// - revolute, spherical, fixed, universal: `d` (three components, eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute,
+    ///   fixed; eqs. (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
+    /// - cylindrical, prismatic, screw: `f_i·d`, `g_i·d`; `h_i·d − lead · angle` (screw); `f_i·h_j`, `g_i·h_j`;
+    ///   `f_i·g_j` (prismatic);
     /// - planar: `h_i·d`, `f_i·h_j`, `g_i·h_j`;
     /// - point on line: `f_i·d`, `g_i·d`;
     /// - rod: `½ (d·d / length − length)`.
@@ -158,11 +160,11 @@ impl Model {
         start..start + rows.iter().filter(|r| r.owner == owner).count()
     }
 
-    /// The angles on whose continuous value something acts (springs, stops, couplers, drivers, screws), without repetition, in
-    /// order of joint and coordinate. The state holds one number for each after the work: the *turn reference*, whose
-    /// derivative is the angle's rate, so that it never strays by half a turn; the continuous angle is
-    /// `reference + atan2(S cos reference − C sin reference, C cos reference + S sin reference)` with `atan2(S, C)` the
-    /// principal angle.
+    /// The angles on whose continuous value something acts (springs, stops, couplers, drivers, screws), without
+    /// repetition, in order of joint and coordinate. The state holds one number for each after the work: the *turn
+    /// reference*, whose derivative is the angle's rate, so that it never strays by half a turn; the continuous angle
+    /// is `reference + atan2(S cos reference − C sin reference, C cos reference + S sin reference)` with `atan2(S, C)`
+    /// the principal angle.
     pub fn turn_references(&self) -> Vec<JointCoordinate> {
         let mut used = Vec::new();
         for force in &self.forces {
@@ -199,10 +201,11 @@ impl Model {
         if size > 0.0 { size } else { 1.0 }
     }
 
-    /// Whether something does work that the energy does not account for: friction, dampers, stops, motors, loads, drivers.
+    /// Whether something does work that the energy does not account for: friction, dampers, stops, motors, loads,
+    /// drivers.
     ///
-    /// Such a model carries the work done so far as one more element of its state, after positions and velocities, unless the
-    /// page asks to leave it out (`count_work = false`).
+    /// Such a model carries the work done so far as one more element of its state, after positions and velocities,
+    /// unless the page asks to leave it out (`count_work = false`).
     pub fn has_work(&self) -> bool {
         self.counts_work && self.is_worked_on()
     }
@@ -252,8 +255,8 @@ impl Model {
     /// The same model with parameters set anew. Start over from the page's start: assemble it again.
     ///
     /// # Errors
-    /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical, or says
-    /// that a mechanism with loops cannot be assembled or that other rows have become redundant.
+    /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical,
+    /// or says that a mechanism with loops cannot be assembled or that other rows have become redundant.
     pub fn with_parameters(&self, settings: &[(String, Rational)]) -> Result<Self, String> {
         let mut model = self.clone();
         for (name, value) in settings {

@@ -4,16 +4,16 @@ use num_dual::Dual2_64;
 
 use crate::kinematics::Scalar;
 
-/// Natural cubic spline through given points: twice continuously differentiable, also where it goes on as a straight line
-/// before the first and after the last point (its second derivative is zero there).
+/// Natural cubic spline through given points: twice continuously differentiable, also where it goes on as a straight
+/// line before the first and after the last point (its second derivative is zero there).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     /// Where the table was read, for messages and documentation.
     pub source: String,
     /// Times of the points, ascending, s. At least two.
     pub knots: Vec<f64>,
-    /// For each interval between knots `[c0, c1, c2, c3]`: value `c0 + c1 u + c2 u² + c3 u³`, `u` from the interval's first
-    /// knot. The straight lines beyond the ends are not listed.
+    /// For each interval between knots `[c0, c1, c2, c3]`: value `c0 + c1 u + c2 u² + c3 u³`, `u` from the interval's
+    /// first knot. The straight lines beyond the ends are not listed.
     pub pieces: Vec<[f64; 4]>,
 }
 

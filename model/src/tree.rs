@@ -45,15 +45,15 @@ pub struct Tree {
 impl Tree {
     /// Walks the joints breadth first from the roots; bodies and joints are met in the order of the page.
     ///
-    /// Joints that do not say how a body is turned come last: only where the walk ends before every body is reached does it go
-    /// on over the first point on a line of the page that leads to another body, and only where there is none from the
-    /// first body that a rod ties to one that is reached.
+    /// Joints that do not say how a body is turned come last: only where the walk ends before every body is reached
+    /// does it go on over the first point on a line of the page that leads to another body, and only where there is
+    /// none from the first body that a rod ties to one that is reached.
     pub fn of(model: &Model) -> Self {
         Self::along(model, |joint| u8::from(!model.joints[joint].kind.turns()))
     }
 
-    /// The same with another order of the joints: those of rank zero are walked breadth first; the others are followed one by one, lower
-    /// ranks first, only where none of a lower rank leads on.
+    /// The same with another order of the joints: those of rank zero are walked breadth first; the others are followed
+    /// one by one, lower ranks first, only where none of a lower rank leads on.
     pub(crate) fn along(model: &Model, rank: impl Fn(usize) -> u8) -> Self {
         let mut walk = Walk::of(model);
         for (body, support) in model.bodies.iter().map(|body| body.support).enumerate() {

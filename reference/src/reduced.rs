@@ -236,8 +236,8 @@ impl Precisely {
         state
     }
 
-    /// Where the motion comes back: the first time that it crosses the line through the start, at right angles to how it sets out, in
-    /// the same sense.
+    /// Where the motion comes back: the first time that it crosses the line through the start, at right angles to how
+    /// it sets out, in the same sense.
     fn cycle(&self) -> Cycle {
         assert!(
             self.forces.iter().all(|force| force.energy(self.start[1]).is_some()),

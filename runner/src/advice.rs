@@ -196,8 +196,8 @@ impl Plan<'_> {
         self.is_single().then(|| Advice::to(Change::DoublePrecision))
     }
 
-    /// What to try where stability limits the steps. The fastest rate that they have met may be that at which Euler parameters turn,
-    /// or rounding's: the linearised motion in joint coordinates, where there is one, tells.
+    /// What to try where stability limits the steps. The fastest rate that they have met may be that at which Euler
+    /// parameters turn, or rounding's: the linearised motion in joint coordinates, where there is one, tells.
     fn unlimited(&self, met: &Statistics, fastest: Option<f64>) -> Option<Advice> {
         let is_of_motion = fastest.is_none_or(|rate| rate > TRUE_SHARE * met.fastest_rate);
         if is_of_motion {
@@ -212,7 +212,8 @@ impl Plan<'_> {
         can.then(|| Advice::to(Change::Coordinates(Coordinates::Joint)))
     }
 
-    /// What to try after an error; `fastest` is the fastest rate of the linearised motion there, 1/s, where it is known.
+    /// What to try after an error; `fastest` is the fastest rate of the linearised motion there, 1/s, where it is
+    /// known.
     pub fn after(&self, error: &Error, met: &Statistics, fastest: Option<f64>) -> Vec<Advice> {
         let advice: Vec<Advice> = match *error {
             Error::NotFinite { .. } if self.approach.tolerance.is_some() => {
@@ -240,8 +241,8 @@ impl Plan<'_> {
         }
     }
 
-    /// Error control looks ahead for singular poses and steps over them, and corrections keep drift from hiding which way goes on. A pose
-    /// that is not passed at one tolerance may be at another, where steps end elsewhere.
+    /// Error control looks ahead for singular poses and steps over them, and corrections keep drift from hiding which
+    /// way goes on. A pose that is not passed at one tolerance may be at another, where steps end elsewhere.
     pub(crate) fn over_poses(&self) -> Option<Advice> {
         let is_controlled = self.approach.tolerance.is_some() && self.is_corrected();
         let changes = [

@@ -14,11 +14,14 @@ pub struct Approach {
     pub coordinates: Coordinates,
     /// How constraints are kept.
     pub correction: Correction,
-    /// When; `None` stands for the interval of the [`Settings`](crate::Settings) at fixed steps and for every step under error control.
+    /// When; `None` stands for the interval of the [`Settings`](crate::Settings) at fixed steps and for every step
+    /// under error control.
     pub when: Option<When>,
-    /// Steps after which the run is given up; `None` for the solver's own under error control, and for any number of fixed steps.
+    /// Steps after which the run is given up; `None` for the solver's own under error control, and for any number of
+    /// fixed steps.
     pub budget: Option<u64>,
-    /// Seconds that fixed steps may take by their forecast; without a budget a longer run is refused. `None` for any time.
+    /// Seconds that fixed steps may take by their forecast; without a budget a longer run is refused. `None` for any
+    /// time.
     pub patience: Option<f64>,
     /// Whether pivots are to be looked at, and the motion to be linearised about where it ends.
     pub examine: bool,

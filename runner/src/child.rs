@@ -8,8 +8,8 @@ use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's parameters with the builder
-/// beside it, and writes the samples to standard output as they come.
+/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's
+/// parameters with the builder beside it, and writes the samples to standard output as they come.
 ///
 /// The exit code says whether the last run was complete; the last line of its answer says why not.
 pub fn main<M: Partition<Scalar: Real> + 'static, K: MotionBuilder<M>>(

@@ -22,7 +22,8 @@ pub struct Forecast {
     pub seconds: f64,
 }
 
-/// Tries the first steps of `motion`, which is of no use afterwards; `None` for a run of few steps, and for one that fails at once.
+/// Tries the first steps of `motion`, which is of no use afterwards; `None` for a run of few steps, and for one that
+/// fails at once.
 pub(crate) fn forecast<M: Mechanism>(
     mechanism: &M,
     mut motion: Box<dyn Motion<M>>,

@@ -1,8 +1,8 @@
 //! How good a run is: what it is worth beside a companion, and what its own balance says.
 //!
-//! An error is held against the size of the motion. For a grade of *good* every coordinate is held against its own motion, however small
-//! that is beside the others', and an angle against a radian at most; for *worthless* it has to be lost beyond doubt. What is
-//! between is usable as far as its errors say.
+//! An error is held against the size of the motion. For a grade of *good* every coordinate is held against its own
+//! motion, however small that is beside the others', and an angle against a radian at most; for *worthless* it has to
+//! be lost beyond doubt. What is between is usable as far as its errors say.
 
 use crate::companion::{Difference, departure, distance, gap, rate, size};
 use crate::{BodySample, JointSample, Sample, Summary};

@@ -2,8 +2,8 @@
 
 use gyro_sim::{Mechanism, Scalar};
 
-/// What one of the mechanism's inputs is over time: linear between the rows of a table, and held beyond its ends. A table of
-/// one row is a constant.
+/// What one of the mechanism's inputs is over time: linear between the rows of a table, and held beyond its ends. A
+/// table of one row is a constant.
 ///
 /// Each step of the integrator has the value at its own start, held over the step, as a sampled controller gives it; each
 /// sample has the value at its own time.

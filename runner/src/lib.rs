@@ -2,7 +2,8 @@
 //!
 //! [`run`] takes any [`gyro_sim::Partition`] from its start to the end of the run and hands out a [`Sample`] at each
 //! sample time. The command line calls it in its own process for the runtime-assembled twin; for generated code it
-//! compiles a small program around [`child::main`] and speaks with it in the words of [`protocol`]. [`time_by`] makes the same run for its time.
+//! compiles a small program around [`child::main`] and speaks with it in the words of [`protocol`]. [`time_by`] makes
+//! the same run for its time.
 //!
 //! ```text
 //! settings ─schedule─▶ segments ─run─▶ samples ─summary─▶ worst violations, energy drift

@@ -47,7 +47,8 @@ const ROUNDING_ULPS: f64 = 100.0;
 /// Steps at the limit of stability: of the fastest rate and the step, the product is larger than this for every method.
 const AT_LIMIT: f64 = 1.0;
 
-/// A share of steps at that limit which deserves a word, and the finest tolerance at which a method of order 4 is worth a try.
+/// A share of steps at that limit which deserves a word, and the finest tolerance at which a method of order 4 is worth
+/// a try.
 const STIFF_SHARE: f64 = 0.25;
 const ORDER_FOUR: f64 = 1e-6;
 
@@ -68,7 +69,8 @@ impl std::fmt::Display for Remark {
 }
 
 impl Plan<'_> {
-    /// What is to be said of a run and its judgement; `fastest` is the fastest rate of the linearised motion, 1/s, where it is known.
+    /// What is to be said of a run and its judgement; `fastest` is the fastest rate of the linearised motion, 1/s,
+    /// where it is known.
     pub fn remarks(&self, judged: &Judgement, summary: &Summary, fastest: Option<f64>) -> Vec<Remark> {
         let said = [
             self.on_errors(judged, summary),
@@ -160,7 +162,8 @@ impl Plan<'_> {
             met.limited_by_stability as f64 / met.accepted.max(1) as f64,
             self.settings.t_end / met.accepted.max(1) as f64,
         );
-        // The rates that steps have met may be rounding's: those of the linearised motion are not, and steps at a true limit are rejected.
+        // The rates that steps have met may be rounding's: those of the linearised motion are not, and steps at a true
+        // limit are rejected.
         let is_true = match fastest {
             Some(rate) => rate * mean > AT_LIMIT,
             None => 50 * met.rejected > met.accepted,

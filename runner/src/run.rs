@@ -56,10 +56,11 @@ const STEPS_BETWEEN_READINGS: u64 = 8;
 /// Time between two [`Event::Progress`].
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
-/// Runs a mechanism to a schedule by the paper's method, RK4 and coordinate partitioning, and hands what happens to `tell`.
+/// Runs a mechanism to a schedule by the paper's method, RK4 and coordinate partitioning, and hands what happens to
+/// `tell`.
 ///
-/// The first sample is the start as given, uncorrected. Where an input varies it is set anew before every step. An error of
-/// `tell` ends the run.
+/// The first sample is the start as given, uncorrected. Where an input varies it is set anew before every step. An
+/// error of `tell` ends the run.
 ///
 /// # Errors
 /// [`Failure::Run`] if a solver fails or the start does not fit the mechanism; [`Failure::Output`] from `tell`.
@@ -189,7 +190,8 @@ fn foretell<M: Partition<Scalar: Real> + 'static, F: FnMut(Event<'_>) -> io::Res
     }
 }
 
-/// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run, nor do steps under error control.
+/// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run, nor do steps under
+/// error control.
 pub fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
     let has_moments = approach.coordinates == Coordinates::Maximal
         && !matches!(approach.correction, Correction::None | Correction::Baumgarte(_))

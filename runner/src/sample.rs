@@ -29,8 +29,8 @@ pub struct Sample {
     pub chart_switches: u64,
 }
 
-/// A joint's coordinate and rate: continuous angles in rad, displacements in m, orientations as Euler parameters with the
-/// relative angular velocity in the second body's frame.
+/// A joint's coordinate and rate: continuous angles in rad, displacements in m, orientations as Euler parameters with
+/// the relative angular velocity in the second body's frame.
 pub type JointSample = JointCoordinate<f64>;
 
 /// Pose and velocity of a body: `(r, p)` and `(s, w')`.

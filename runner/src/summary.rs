@@ -22,7 +22,8 @@ pub struct Summary {
     pub run_time_s: f64,
     /// What the steps have cost and met.
     pub statistics: Statistics,
-    /// The smallest pivot of the constraint Jacobian at any sample; `None` if nobody asked, or the engine does not tell.
+    /// The smallest pivot of the constraint Jacobian at any sample; `None` if nobody asked, or the engine does not
+    /// tell.
     pub smallest_pivot: Option<f64>,
 }
 

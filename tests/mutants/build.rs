@@ -1,4 +1,5 @@
-//! Copies the generator's text and puts the faults of `faults.rs` into it, each behind a switch: one build serves them all.
+//! Copies the generator's text and puts the faults of `faults.rs` into it, each behind a switch: one build serves them
+//! all.
 
 use std::error::Error;
 use std::fs;

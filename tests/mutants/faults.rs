@@ -19,8 +19,8 @@ const fn fault(file: &'static str, page: &'static str, place: &'static str, wron
 #[allow(dead_code, reason = "the build script has no use for it")]
 const HARMLESS: &[(&str, &str)] = &[("self.expression(b,", "a + (b + c) is a + b + c")];
 
-/// Changes that do no harm and save time: factoring is given up early, and mechanisms with one or two rates have no Jacobian. File,
-/// place and what is there instead.
+/// Changes that do no harm and save time: factoring is given up early, and mechanisms with one or two rates have no
+/// Jacobian. File, place and what is there instead.
 #[allow(dead_code, reason = "only the build script changes texts")]
 const QUICKER: [(&str, &str, &str); 2] = [
     ("simplify/normal_form/mod.rs", "const MAX_STEPS: usize = 100_000;", "const MAX_STEPS: usize = 10_000;"),

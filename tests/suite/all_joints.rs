@@ -1,4 +1,5 @@
-//! Every kind of joint, force and output in one mechanism with loops, a coupler and a driver: generated code against the twin.
+//! Every kind of joint, force and output in one mechanism with loops, a coupler and a driver: generated code against
+//! the twin.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::{Model, to_f64};
@@ -9,8 +10,8 @@ use gyro_sim_suite::{Engine, Run, dense, fed, generated, model, simulate, worst}
 /// Long enough for all of it to move, at the page's step.
 const SETTINGS: Settings = Settings { t_end: 0.3, step: 1e-3, correct_every: Some(5e-3), sample_every: 0.03 };
 
-/// Coordinates (rad, m), rates, and outputs over their largest: the same algorithm on both sides, but for the order of sums and the
-/// choice of independent coordinates.
+/// Coordinates (rad, m), rates, and outputs over their largest: the same algorithm on both sides, but for the order of
+/// sums and the choice of independent coordinates.
 const AGREEMENT: f64 = 1e-9;
 
 /// Newton's method ends at a few roundings of one.
@@ -67,7 +68,8 @@ fn both_engines_move_alike() {
 
 #[test]
 fn parameters_change_the_mechanism() {
-    // Half the gear's ratio and a heavier puck: what the page says with other numbers, and the parameters of the generated type.
+    // Half the gear's ratio and a heavier puck: what the page says with other numbers, and the parameters of the
+    // generated type.
     let text = ["gear_ratio", "puck_mass"].map(str::to_owned);
     let [ratio, mass] = ["-0.25", "0.9"].map(|x| gyro_model::parse_decimal(x).unwrap());
     let [first, second] = text;

@@ -1,5 +1,5 @@
-//! Planar linkages drawn at random that pass a singular pose, in all kinds of runs: each goes on in the way that the motion does, or the
-//! pose is named. None is wrong in silence.
+//! Planar linkages drawn at random that pass a singular pose, in all kinds of runs: each goes on in the way that the
+//! motion does, or the pose is named. None is wrong in silence.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::poses::{HEAD, hinge, read, rod, rough};

@@ -5,8 +5,8 @@ use gyro_reference::{Gyroscope as Reference, Sample};
 use gyro_runner::Settings;
 use gyro_sim_suite::{Engine, PAPER, careful, coordinate, generated, model, simulate};
 
-/// Truncation dominates: at a tenth of these rounding shows, and at four times these the damping of the nutation, of the
-/// fifth order, is as large as its change of phase.
+/// Truncation dominates: at a tenth of these rounding shows, and at four times these the damping of the nutation, of
+/// the fifth order, is as large as its change of phase.
 const STEPS: [f64; 3] = [1e-3, 5e-4, 2.5e-4];
 
 /// Observed orders: what follows in the error is a step's turn, up to 0.1 rad, smaller.

@@ -66,8 +66,8 @@ pub fn expected(page: &str, settings: &Settings) -> Vec<JointRow> {
     scene(page).unwrap_or_else(|| panic!("{page} has no reference")).solve(&times)
 }
 
-/// The estimate of each coordinate's error as the command line makes it: by the first companion that comes to its end. `run`
-/// makes companions.
+/// The estimate of each coordinate's error as the command line makes it: by the first companion that comes to its end.
+/// `run` makes companions.
 pub fn estimate(
     samples: &[Sample],
     settings: &Settings,

@@ -1,5 +1,6 @@
-//! Extreme and stiff scenes over short spans against solutions in minimal coordinates: a pass through gimbal lock, stiff bearings,
-//! ratios of 1e12, a linkage through the pose with all bars in line; and starts and numbers that are wrong.
+//! Extreme and stiff scenes over short spans against solutions in minimal coordinates: a pass through gimbal lock,
+//! stiff bearings, ratios of 1e12, a linkage through the pose with all bars in line; and starts and numbers that are
+//! wrong.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_mechanisms as shipped;
@@ -112,8 +113,8 @@ fn extreme_scenes_by_the_partition() {
     }
 }
 
-/// RK4 in joint coordinates, and the partition as a program has it that knows its mechanism: between corrections it integrates by
-/// the short way that only corrected states have.
+/// RK4 in joint coordinates, and the partition as a program has it that knows its mechanism: between corrections it
+/// integrates by the short way that only corrected states have.
 fn check_compiled(extreme: &Extreme) {
     let Extreme { page, t_end, step, .. } = *extreme;
     let mechanism = &generated(page);
@@ -176,8 +177,8 @@ fn another_scene_does_not_pass() {
     assert!(errors(&found, &wrong)[0] > AGREEMENT);
 }
 
-/// Steps, s, for the linkage, and how far its joints may be off, rad: near the pose in line accelerations are quotients of small
-/// numbers, and short steps come nearer to it.
+/// Steps, s, for the linkage, and how far its joints may be off, rad: near the pose in line accelerations are quotients
+/// of small numbers, and short steps come nearer to it.
 const STEPS_IN_LINE: [(f64, f64); 3] = [(5e-3, 1e-5), (1e-3, 1e-6), (1e-4, 1e-4)];
 
 #[test]

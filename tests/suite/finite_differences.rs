@@ -2,8 +2,8 @@
 //!
 //! Along a line Φ is a polynomial of at most the fourth degree (each body's Euler parameters enter squared, at most two
 //! bodies in a product), and so is the velocity residual at constant velocities. The five-point formula is exact for
-//! those at any step: the tolerance below is for rounding alone. Angles that something acts on and prescribed motions are no
-//! polynomials; there the step is small and the formula's own error allowed for.
+//! those at any step: the tolerance below is for rounding alone. Angles that something acts on and prescribed motions
+//! are no polynomials; there the step is small and the formula's own error allowed for.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
@@ -29,15 +29,15 @@ struct Line {
 /// Polynomials.
 const EXACT: Line = Line { step: 0.25, tolerance: ROUNDING };
 
-/// Anything smooth: the formula's error is the fourth power of the step times a fifth derivative of order a hundred, the rounding
-/// 1e-16 over the step.
+/// Anything smooth: the formula's error is the fourth power of the step times a fifth derivative of order a hundred,
+/// the rounding 1e-16 over the step.
 const SMOOTH: Line = Line { step: 5e-4, tolerance: 1e-9 };
 
 /// The same where what is prescribed shakes ten times as fast as elsewhere: at 126 rad/s.
 const SHAKEN: Line = Line { step: 5e-5, tolerance: 1e-9 };
 
-/// The least length of (sine, cosine) of the angles between axes that are not parallel: an angle's derivatives grow with the
-/// powers of its inverse, and at zero there is no angle.
+/// The least length of (sine, cosine) of the angles between axes that are not parallel: an angle's derivatives grow
+/// with the powers of its inverse, and at zero there is no angle.
 const DEFINED: f64 = 0.7;
 
 /// Time, s.

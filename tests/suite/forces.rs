@@ -12,8 +12,8 @@ const MOTION: f64 = 1e-9;
 /// Work and energy, J, of order one to ten.
 const ENERGY: f64 = 1e-9;
 
-/// Dry friction turns round within a few milliseconds, and a stop throws a body back within a hundredth of a second: each step
-/// spans a larger part of that.
+/// Dry friction turns round within a few milliseconds, and a stop throws a body back within a hundredth of a second:
+/// each step spans a larger part of that.
 const SUDDEN: f64 = 1e-8;
 
 /// Coordinate and rate of a joint against a motion about one axis.
@@ -24,8 +24,8 @@ fn check_axis(what: &str, run: &Run, index: usize, allowed: f64, reference: &[Ax
     });
 }
 
-/// The page's disc reaches a hundred radians a second, and its Euler parameters turn half as fast: steps are shorter than
-/// it asks for.
+/// The page's disc reaches a hundred radians a second, and its Euler parameters turn half as fast: steps are shorter
+/// than it asks for.
 fn torsion() -> Run {
     let model = model("torsion");
     let settings = Settings { step: 5e-5, correct_every: Some(2.5e-4), ..as_paged(&model, 0.2) };

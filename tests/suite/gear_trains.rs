@@ -1,5 +1,5 @@
-//! Gear trains at random, started after up to a million radians: shafts, racks, screws, planets on carriers, motors, ratios of any sign and
-//! size. Their masses are balanced, so that each keeps its rate and the motion is known.
+//! Gear trains at random, started after up to a million radians: shafts, racks, screws, planets on carriers, motors,
+//! ratios of any sign and size. Their masses are balanced, so that each keeps its rate and the motion is known.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 

@@ -12,7 +12,8 @@ use nalgebra::{DMatrix, DVector};
 
 const STATES: usize = 20;
 
-/// Of the five-point formula. Its error is the fourth power of this times a fifth derivative; the accelerations have errors of 1e-11.
+/// Of the five-point formula. Its error is the fourth power of this times a fifth derivative; the accelerations have
+/// errors of 1e-11.
 const STEP: f64 = 2e-3;
 
 /// Relative to the largest derivative of a state.
@@ -159,8 +160,8 @@ fn jacobians_are_limits_of_the_twin_s_differences() {
     check("carried", &own::carried::Carried::default());
 }
 
-/// The disc's speed loses friction/inertia = 1.5 a second and gains 50 rad/s^2 for a newton metre. The work that motor and friction do
-/// is bookkeeping: it would be a third state and an eigenvalue 0 that the mechanism does not have.
+/// The disc's speed loses friction/inertia = 1.5 a second and gains 50 rad/s^2 for a newton metre. The work that motor
+/// and friction do is bookkeeping: it would be a third state and an eigenvalue 0 that the mechanism does not have.
 #[test]
 fn a_linearisation_has_the_mechanism_s_own_states_alone() {
     let model = model("motor");

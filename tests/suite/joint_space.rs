@@ -57,8 +57,9 @@ pub fn random_state<M: JointSpace<Scalar = f64>>(
 /// rad/s or m/s.
 const RATE: f64 = 3.0;
 
-/// Rounding of some hundred operations, relative to the largest number: of maps at most 4e-15 is seen, of accelerations 5e-13, of
-/// multipliers 4e-11 (the cylindrical joint), each with a factor of some twenty or more for states without luck.
+/// Rounding of some hundred operations, relative to the largest number: of maps at most 4e-15 is seen, of accelerations
+/// 5e-13, of multipliers 4e-11 (the cylindrical joint), each with a factor of some twenty or more for states without
+/// luck.
 const MAPS: f64 = 1e-13;
 const ACCELERATIONS: f64 = 1e-11;
 const MULTIPLIERS: f64 = 1e-9;

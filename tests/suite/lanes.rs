@@ -126,8 +126,8 @@ where
     (P::Scalar::COUNT - solver.failures().count(), switches)
 }
 
-/// Free and on joints of each kind, at rest and on a base that moves, with friction, with parameters: not every page, as each costs its
-/// compilation.
+/// Free and on joints of each kind, at rest and on a base that moves, with friction, with parameters: not every page,
+/// as each costs its compilation.
 macro_rules! each_tree {
     ($check:ident) => {{
         let trees = [

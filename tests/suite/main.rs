@@ -1,4 +1,5 @@
-//! The integration tests: one program, so that what they share is compiled once, and builds of other packages run beside the rest.
+//! The integration tests: one program, so that what they share is compiled once, and builds of other packages run
+//! beside the rest.
 
 mod all_joints;
 mod allocation;

@@ -1,5 +1,5 @@
-//! Singular poses, in which a linkage could go on in more ways than one: passed on the right way under error control, at coarse and fine
-//! tolerances alike, or named.
+//! Singular poses, in which a linkage could go on in more ways than one: passed on the right way under error control,
+//! at coarse and fine tolerances alike, or named.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
@@ -11,8 +11,8 @@ use gyro_sim_suite::{Duals, Engine, coordinate, dense, duals, generated, model, 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
-/// Errors of single steps add up over some ten poses, each of which is passed with an error of some ten tolerances, and a linkage that almost
-/// comes to rest upright enlarges them: so many tolerances are allowed.
+/// Errors of single steps add up over some ten poses, each of which is passed with an error of some ten tolerances, and
+/// a linkage that almost comes to rest upright enlarges them: so many tolerances are allowed.
 const ADDED_UP: f64 = 2e4;
 
 /// Rounding is enlarged near poses.
@@ -46,8 +46,8 @@ pub(crate) fn read(page: &str) -> Model {
     gyro_model::read("linkage.toml", page).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
-/// A row of parallelograms, benchmark A02 of the IFToMM technical committee for multibody dynamics (*N-four-bar mechanism*): bars of 1 m and
-/// 1 kg, thrown from upright. The first coupler may be longer or shorter by a little.
+/// A row of parallelograms, benchmark A02 of the IFToMM technical committee for multibody dynamics (*N-four-bar
+/// mechanism*): bars of 1 m and 1 kg, thrown from upright. The first coupler may be longer or shorter by a little.
 pub(crate) fn cells(n: usize, speed: f64, excess: f64) -> Model {
     let mut page = HEAD.to_owned();
     for k in 0..=n {
@@ -278,7 +278,8 @@ fn peaucelliers_linkage_passes_its_fold() {
         let (samples, outcome) = run(engine, &Projecting, (&page, 0.3), &approach);
         let summary = outcome.unwrap_or_else(|failure| panic!("{approach}: {failure}"));
         for sample in &samples {
-            // The end of `upper_out` draws the line at (1 - 0.4²)/0.7 m. Folded into one bar, the other way on, the two would swing about.
+            // The end of `upper_out` draws the line at (1 - 0.4²)/0.7 m. Folded into one bar, the other way on, the two
+            // would swing about.
             let [x, _, _, e0, _, _, e3] = sample.bodies[4].pose;
             let drawn = x + 0.2 * (e0 * e0 - e3 * e3);
             assert!((drawn - 1.2).abs() < 1e-6, "{approach}: at {} s the line is left: {drawn}", sample.t);

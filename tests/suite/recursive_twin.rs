@@ -85,7 +85,8 @@ fn accelerations_and_multipliers_are_those_of_the_dense_form() {
     assert!(largest > 0.0, "bit for bit the same: one is compared with itself");
 }
 
-/// The same joints with their ends exchanged: other mechanisms, as the first body of a joint is the one that leads, but trees too.
+/// The same joints with their ends exchanged: other mechanisms, as the first body of a joint is the one that leads, but
+/// trees too.
 fn reversed(model: &Model) -> Model {
     let mut model = model.clone();
     for joint in &mut model.joints {
@@ -136,8 +137,8 @@ fn solution<M: Equations<Scalar = f64, State = Vec<f64>>>(twin: &M, y: &Vec<f64>
     ]
 }
 
-/// What each kind of the solution may cancel below: products of rates, the same at an arm of the mechanism's size, and the largest
-/// force at such an arm.
+/// What each kind of the solution may cancel below: products of rates, the same at an arm of the mechanism's size, and
+/// the largest force at such an arm.
 fn scales(twin: &Dense<f64>, y: &[f64], solution: &[Vec<f64>; 5]) -> [f64; 5] {
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let velocities = &y[7 * twin.description().bodies.len()..13 * twin.description().bodies.len()];

@@ -1,4 +1,5 @@
-//! Every extreme scene, integrator, correction and tolerance: the right answer, or an error that says what, where and when.
+//! Every extreme scene, integrator, correction and tolerance: the right answer, or an error that says what, where and
+//! when.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
@@ -44,8 +45,8 @@ const SCENES: [Scene; 13] = [
 /// How far off a result may be in units of the tolerance.
 const TIMES: f64 = 10.0;
 
-/// Errors of single steps add up to no more than so many times what is allowed, but for a tolerance of one and where a mechanism may
-/// go on in two ways.
+/// Errors of single steps add up to no more than so many times what is allowed, but for a tolerance of one and where a
+/// mechanism may go on in two ways.
 const ADDED_UP: f64 = 30.0;
 
 /// Of all runs that begin at least so many end right.
@@ -220,7 +221,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Whether the estimate tells: that the errors are more than ten times the tolerance; of fixed steps, how large they are.
+    /// Whether the estimate tells: that the errors are more than ten times the tolerance; of fixed steps, how large
+    /// they are.
     fn known(
         &mut self,
         samples: &[Sample],
@@ -370,7 +372,8 @@ fn another_answer_is_not_right() {
     assert_eq!(reason("at t = 2 s the budget of 3 steps is used up", 1.0), None);
 }
 
-/// The end of a run may be no number of single precision: 0.01 is rounded down, and a clock that waits for it would wait for ever.
+/// The end of a run may be no number of single precision: 0.01 is rounded down, and a clock that waits for it would
+/// wait for ever.
 #[test]
 fn a_run_in_single_precision_is_timed_to_its_end() {
     let scene = Scene { page: "gyroscope", t_end: 0.01, step: 1e-4 };

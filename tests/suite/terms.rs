@@ -31,16 +31,17 @@ const AGREEMENT: f64 = 1e-12;
 /// The same where a linear system has been solved in between.
 const AGREEMENT_OF_SOLUTIONS: f64 = 1e-10;
 
-/// Roundings by which two solutions of a mechanism with loops may differ for each unit of the condition number of its rows: what
-/// a few dozen eliminations lose, and a universal joint in the tree whose axes come to be parallel. Trees that stay trees lose
-/// nothing.
+/// Roundings by which two solutions of a mechanism with loops may differ for each unit of the condition number of its
+/// rows: what a few dozen eliminations lose, and a universal joint in the tree whose axes come to be parallel. Trees
+/// that stay trees lose nothing.
 const ROUNDINGS: f64 = 1000.0;
 
 /// More than this no state may lose; it is ten times what any of these states loses.
 const LOST: f64 = 1e-8;
 
-/// Trees with bodies of very different masses or inertias, and what their states may lose, ten times what is seen: near gimbal lock
-/// only the lighter ones are left to take the motion up. (Twins lose more than generated code: `cargo xtask verify --rounding`.)
+/// Trees with bodies of very different masses or inertias, and what their states may lose, ten times what is seen: near
+/// gimbal lock only the lighter ones are left to take the motion up. (Twins lose more than generated code: `cargo xtask
+/// verify --rounding`.)
 const UNEVEN: [(&str, f64); 2] = [("gyroscope-heavy-rotor", 5e-7), ("gyroscope-light-rings", LOST)];
 
 /// The largest condition number of states that are looked at: a wrong formula is off by more than is lost then.
@@ -118,7 +119,8 @@ fn drawn(mechanism: &Engine, model: &Model, random: &mut Random) -> (Vec<f64>, f
     }
 }
 
-/// The condition number of `Φ_π' M⁻¹ Φ_π'ᵀ`, rows of lengths and pure rows scaled so that the largest element of the diagonal is one.
+/// The condition number of `Φ_π' M⁻¹ Φ_π'ᵀ`, rows of lengths and pure rows scaled so that the largest element of the
+/// diagonal is one.
 fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
     let rows = phi_pi(mechanism, T, &values.to_vec()).rows;
     let n_columns = 6 * mechanism.description().bodies.len();
@@ -168,8 +170,8 @@ fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     kinds.into_iter().map(|kind| Kind { agreement: AGREEMENT_OF_SOLUTIONS, ..kind }).collect()
 }
 
-/// The least motions that change lengths, and pure rows, by numbers anyhow. A displacement is as inexact as the rotations at an arm of the
-/// mechanism's size, and the other way round.
+/// The least motions that change lengths, and pure rows, by numbers anyhow. A displacement is as inexact as the
+/// rotations at an arm of the mechanism's size, and the other way round.
 fn projections(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
     let of_rows = |names: [&'static str; 2], is_length: bool| {
         let (mut rows, mut motion) = (mechanism.buffers().rows, mechanism.terms().velocities);
@@ -188,7 +190,8 @@ fn projections(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
     lengths.into_iter().chain(of_rows(["δr", "δπ'"], false)).collect()
 }
 
-/// Each output by itself, numbers of one unit together. A torque is as inexact as the forces at an arm of the mechanism's size.
+/// Each output by itself, numbers of one unit together. A torque is as inexact as the forces at an arm of the
+/// mechanism's size.
 fn outputs(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
     let mut out = mechanism.buffers().outputs;
     mechanism.outputs(T, y, &mut out);

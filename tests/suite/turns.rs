@@ -1,5 +1,5 @@
-//! Gears, driven shafts, differentials, planetary trains, racks and screws after ten thousand turns: a row is met when it is
-//! as small as the rounding of what it subtracts, and an angle of 1e5 rad is known to 1e-11.
+//! Gears, driven shafts, differentials, planetary trains, racks and screws after ten thousand turns: a row is met when
+//! it is as small as the rounding of what it subtracts, and an angle of 1e5 rad is known to 1e-11.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
@@ -22,8 +22,8 @@ const STEPS_PER_CORRECTION: f64 = 3.0;
 /// Of Baumgarte's stabilisation, parts of the speed.
 const RATE: f64 = 2.0;
 
-/// What turns may change of a motion, rad, m and their rates: at 1e5 rad an angle is known to 1.5e-11, which steps and corrections add up to this in
-/// a hundred turns.
+/// What turns may change of a motion, rad, m and their rates: at 1e5 rad an angle is known to 1.5e-11, which steps and
+/// corrections add up to this in a hundred turns.
 const TURNED: f64 = 1e-6;
 
 /// What the engines may differ by, which are on other independent coordinates: truncation of the steps in ten turns.
@@ -167,7 +167,8 @@ fn ten_thousand_turns_make_no_difference() {
     }
 }
 
-/// RK4 loses 1.3e-3 rad of an angle at 1.2 rad a step, and nothing of the integral of its rate: they are half a turn apart after 2400 steps.
+/// RK4 loses 1.3e-3 rad of an angle at 1.2 rad a step, and nothing of the integral of its rate: they are half a turn
+/// apart after 2400 steps.
 #[test]
 fn coarse_steps_lose_no_turn() {
     let train = &TRAINS[0];

@@ -1,5 +1,5 @@
-//! What runs are graded, held against the truth, and what their advice is worth when it is followed: over scenes, methods, steps and
-//! tolerances drawn at random, sensible ones and others.
+//! What runs are graded, held against the truth, and what their advice is worth when it is followed: over scenes,
+//! methods, steps and tolerances drawn at random, sensible ones and others.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
@@ -29,8 +29,8 @@ const RUNS_OF_TWINS: usize = 26;
 const MOST_STEPS_OF_TWINS: f64 = 400.0;
 const SEED: u64 = 17;
 
-/// A good run is off by no more than so much of the motion of each coordinate or of a radian, in the strict sense of the grade, ten
-/// times what it claims.
+/// A good run is off by no more than so much of the motion of each coordinate or of a radian, in the strict sense of
+/// the grade, ten times what it claims.
 const WRONG: f64 = 1e-2;
 
 /// A run that is right to so much of the motion is not worthless, but for one in fifty.
@@ -196,8 +196,8 @@ fn draw(random: &mut Random, (page, form): (&'static str, Form), is_tree: bool) 
     }
 }
 
-/// The largest error of a run in the strict sense of the grade: of a coordinate against its motion, an angle against a radian at most,
-/// and what hardly moves against a millionth of that.
+/// The largest error of a run in the strict sense of the grade: of a coordinate against its motion, an angle against a
+/// radian at most, and what hardly moves against a millionth of that.
 fn true_error(samples: &[Sample], rows: &[JointRow], size: f64) -> f64 {
     let [positions, rates] = deviations(samples, rows);
     let moved = motion(rows);
@@ -348,7 +348,8 @@ impl Trial {
         }
     }
 
-    /// After an error: following the advice again and again leads to the end, further on, or to an error without advice.
+    /// After an error: following the advice again and again leads to the end, further on, or to an error without
+    /// advice.
     fn follow_failure(&mut self, case: &Case, what: &str, failure: Failure) {
         let (mut case, mut failure) = (*case, failure);
         for _ in 0..FOLLOWED {

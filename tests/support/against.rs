@@ -9,8 +9,8 @@ pub fn times(run: &Run) -> Vec<f64> {
     run.samples.iter().map(|sample| sample.t).collect()
 }
 
-/// Compares lists of numbers, given what each sample shows and what it should, by its index and itself, and prints the largest
-/// difference.
+/// Compares lists of numbers, given what each sample shows and what it should, by its index and itself, and prints the
+/// largest difference.
 ///
 /// # Panics
 /// If any number differs by more than is allowed.

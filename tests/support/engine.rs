@@ -1,5 +1,5 @@
-//! Any mechanism behind one type: a mechanism is compiled once for each precision, and what runs and compares mechanisms once
-//! for all of them.
+//! Any mechanism behind one type: a mechanism is compiled once for each precision, and what runs and compares
+//! mechanisms once for all of them.
 
 use gyro_runner::motion::{COLUMNS, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{

@@ -109,8 +109,8 @@ pub fn generated(page: &str) -> Engine {
     }
 }
 
-/// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them, but not every
-/// page, as each costs its compilation.
+/// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them, but not
+/// every page, as each costs its compilation.
 pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
     vec![
         ("cam", Engine::new(own::cam::Cam::default())),

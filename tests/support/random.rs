@@ -46,8 +46,8 @@ impl Random {
 }
 
 /// A state with every joint row violated: mass centres anywhere within the mechanism's size of where they start, any
-/// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second; work and turn
-/// references up to one.
+/// orientations with |p| = 1, angular velocities up to `rate` rad/s and velocities up to `rate` sizes a second; work
+/// and turn references up to one.
 pub fn state(mechanism: &Engine, rate: f64, random: &mut Random) -> Vec<f64> {
     let (mut y, n_bodies, size) = (mechanism.start(), mechanism.description().bodies.len(), mechanism.size());
     let (positions, rest) = y.split_at_mut(7 * n_bodies);

@@ -1,4 +1,5 @@
-//! Lists what a module computes although it is zero or known before: `cargo run -p gyro-verifier --example needless -- models/gyroscope.toml`.
+//! Lists what a module computes although it is zero or known before: `cargo run -p gyro-verifier --example needless --
+//! models/gyroscope.toml`.
 
 #![allow(clippy::print_stdout, reason = "printing is what it is for")]
 

@@ -1,9 +1,9 @@
 //! The exact constants behind a module's literals: a text that the generator writes and nobody trusts.
 //!
-//! One line a literal: `0.1 = 1/10`, `-0.7071067811865475 = -1/2*sqrt(2)`. Where several numbers round to one literal, the line says
-//! which of its occurrences in the module's text stand for which: by `0.1 = 1/10, 100000000000000001/1000000000000000000 as 1*3 2`
-//! the first three stand for the first number, the fourth for the second. Each must round to its literal; whether it is the right
-//! number is seen when the identities hold.
+//! One line a literal: `0.1 = 1/10`, `-0.7071067811865475 = -1/2*sqrt(2)`. Where several numbers round to one literal,
+//! the line says which of its occurrences in the module's text stand for which: by `0.1 = 1/10,
+//! 100000000000000001/1000000000000000000 as 1*3 2` the first three stand for the first number, the fourth for the
+//! second. Each must round to its literal; whether it is the right number is seen when the identities hold.
 
 use crate::field::Constant;
 use crate::refusal::Refusal;
@@ -183,8 +183,8 @@ fn rounds(constant: &Constant) -> bool {
     double.are_nearest(constant) && rounds_to_single(constant)
 }
 
-/// Rounding twice, as the run time does, differs from rounding once where the literal lies between two `f32` exactly; the
-/// literal then decides. Numbers beyond the range of `f32` are of no use there and not checked.
+/// Rounding twice, as the run time does, differs from rounding once where the literal lies between two `f32` exactly;
+/// the literal then decides. Numbers beyond the range of `f32` are of no use there and not checked.
 #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
 fn rounds_to_single(constant: &Constant) -> bool {
     let single = constant.literal as f32;

@@ -1,7 +1,8 @@
 //! What identities do not show: `x w / w` is x, and not a number where w is zero.
 //!
-//! Every function is run in `f64` where a mechanism starts, rests, is stretched out and folded, spins fast or is torn apart. What is not finite there is a mistake,
-//! unless the textbook's is not either: where eq. (17) has no solution, where a link has no length.
+//! Every function is run in `f64` where a mechanism starts, rests, is stretched out and folded, spins fast or is torn
+//! apart. What is not finite there is a mistake, unless the textbook's is not either: where eq. (17) has no solution,
+//! where a link has no length.
 
 use crate::atoms::Elementary;
 use crate::interpreter::{self, Given};
@@ -15,7 +16,8 @@ use crate::tape::{Formulas, Tape, Term, Written};
 use crate::textbook::{Sparse, Textbook};
 use gyro_model::{Model, Row, RowOwner, RowUnit};
 
-/// Axes of a joint that is whole are off by less, as the dot-1 rows have it: by more than any that are torn by [`TORN`].
+/// Axes of a joint that is whole are off by less, as the dot-1 rows have it: by more than any that are torn by
+/// [`TORN`].
 const WHOLE: f64 = 0.2;
 
 /// Eq. (17), its rows and columns brought to size one, can be solved if no pivot is smaller than this.
@@ -46,9 +48,10 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
     problems
 }
 
-/// Whether a function solves for what the rows ask. Which unknown is taken from which row is decided for joints that are whole: where axes are torn a
-/// right angle apart, the solve of a tree divides by their cosine, though eq. (17) has a solution there. What is made of accelerations may have
-/// multipliers in it, which are solved for too: reactions, and the power of what is driven.
+/// Whether a function solves for what the rows ask. Which unknown is taken from which row is decided for joints that
+/// are whole: where axes are torn a right angle apart, the solve of a tree divides by their cosine, though eq. (17) has
+/// a solution there. What is made of accelerations may have multipliers in it, which are solved for too: reactions, and
+/// the power of what is driven.
 fn is_solve(module: &Module, function: &str) -> bool {
     let is_acceleration = |node: &Node| matches!(node, Node::Read(Source::Acceleration(_)));
     ["accelerations", "project", "newton_step", "solve_velocities"].contains(&function)
@@ -158,7 +161,8 @@ impl Dense {
         Self { formulas, entries, size, others, is_written }
     }
 
-    /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there; if asked for, whether joints are whole too.
+    /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there; if asked for, whether joints
+    /// are whole too.
     fn is_regular(&self, model: &Model, state: &[f64], must_be_whole: bool) -> bool {
         if !self.is_written || state.iter().any(|x| !x.is_finite()) {
             return false;
@@ -193,7 +197,8 @@ fn is_of_directions(row: Row) -> bool {
     row.unit == RowUnit::Pure && matches!(row.owner, RowOwner::Joint(_) | RowOwner::Body(_))
 }
 
-/// The smallest pivot of Gaussian elimination with full pivoting, of a symmetric matrix whose rows and columns are first brought to size one.
+/// The smallest pivot of Gaussian elimination with full pivoting, of a symmetric matrix whose rows and columns are
+/// first brought to size one.
 fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
     let n = matrix.len();
     for _ in 0..4 {

@@ -31,7 +31,8 @@ pub struct Place {
 pub enum Freedom {
     /// An angle or a displacement.
     Scalar(JointCoordinate),
-    /// Euler parameters of a joint's second body in the first's frame, with the angular velocity relative to the first in the second's.
+    /// Euler parameters of a joint's second body in the first's frame, with the angular velocity relative to the first
+    /// in the second's.
     Orientation {
         /// Index into [`Model::joints`].
         joint: usize,

@@ -1,10 +1,10 @@
 //! Proves generated mechanisms against the textbook.
 //!
 //! [`verify`] reads the text of a generated module and decides for each of its functions whether it computes what the
-//! description of the mechanism asks for. The text is parsed into straight-line [programs](program); everything around them must be as the
-//! [model](gyro_model::Model) determines it. Programs and [textbook](mod@textbook) formulas are evaluated at random [points](point)
-//! modulo a large prime: formulas that differ agree there with a probability that is bounded through their [degrees](field::Degree) and is
-//! far below 1e-30. The crate knows nothing of the generator.
+//! description of the mechanism asks for. The text is parsed into straight-line [programs](program); everything around
+//! them must be as the [model](gyro_model::Model) determines it. Programs and [textbook](mod@textbook) formulas are
+//! evaluated at random [points](point) modulo a large prime: formulas that differ agree there with a probability that
+//! is bounded through their [degrees](field::Degree) and is far below 1e-30. The crate knows nothing of the generator.
 //!
 //! ```
 //! # let page = r#"

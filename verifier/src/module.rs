@@ -28,7 +28,8 @@ pub struct Module {
     pub data_sheet: Vec<String>,
     /// The functions that compute something, by name, as they are written.
     pub written: BTreeMap<String, Program>,
-    /// What each of them computes from parameters, time and state: `set_up` is part of those that read what it computes.
+    /// What each of them computes from parameters, time and state: `set_up` is part of those that read what it
+    /// computes.
     pub programs: BTreeMap<String, Program>,
     /// What each function's documentation says of it.
     pub docs: BTreeMap<String, String>,

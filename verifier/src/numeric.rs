@@ -81,8 +81,8 @@ fn start_violates(model: &Model, module: &Module) -> Option<String> {
     violated(&phi, &tolerances.phi, "").or_else(|| violated(&rates, &tolerances.rates, ", its rate,"))
 }
 
-/// The start in joint coordinates must be the assembled one too: as turned, and leading to the same state but for the sign of
-/// Euler parameters.
+/// The start in joint coordinates must be the assembled one too: as turned, and leading to the same state but for the
+/// sign of Euler parameters.
 fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
     let (layout, assembled) = (module.joints.as_ref()?, model.assemble().ok()?);
     let precision = Precision::new();

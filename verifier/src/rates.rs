@@ -5,8 +5,8 @@ use crate::field::Field;
 use crate::program::{Function, Node, Program, Source};
 use gyro_model::Spline;
 
-/// The derivative of each node of a program, its nodes' values and the derivatives of what it reads being given; `None` where that is zero
-/// by structure.
+/// The derivative of each node of a program, its nodes' values and the derivatives of what it reads being given; `None`
+/// where that is zero by structure.
 ///
 /// Nothing if a second derivative of a table's curve would have to be differentiated.
 pub fn rates<F: Field>(

@@ -21,7 +21,8 @@ pub struct Report {
     pub mechanism: String,
     /// Bits of the prime.
     pub prime_bits: u64,
-    /// Whether the prime is the Mersenne prime of these bits; otherwise it was drawn so that the constants have their roots.
+    /// Whether the prime is the Mersenne prime of these bits; otherwise it was drawn so that the constants have their
+    /// roots.
     pub is_mersenne: bool,
     /// Points at which each claim was tested.
     pub points: u32,
@@ -33,7 +34,8 @@ pub struct Report {
     pub refusals: Vec<Refusal>,
     /// What is wrong with the start or the signs of readings.
     pub problems: Vec<String>,
-    /// What is not wrong but could be better: zeros that are stored, numbers that are computed twice or not used, or counted wrongly.
+    /// What is not wrong but could be better: zeros that are stored, numbers that are computed twice or not used, or
+    /// counted wrongly.
     pub flaws: Vec<String>,
     /// All divisions, with whether what they divide by is never zero.
     pub divisors: Vec<Divisor>,
@@ -114,7 +116,8 @@ impl Report {
             || self.findings.iter().any(Finding::is_refuted)
     }
 
-    /// The bound on the probability that any claim of the report is false, as a logarithm to base ten; zero where something is not proved.
+    /// The bound on the probability that any claim of the report is false, as a logarithm to base ten; zero where
+    /// something is not proved.
     pub fn error_log10(&self) -> f64 {
         if !self.is_right() {
             return 0.0;

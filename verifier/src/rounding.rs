@@ -1,9 +1,9 @@
 //! How much emitted code loses by rounding, measured against 384 bits.
 //!
-//! The reference of a state is the emitted program itself in 384 bits, with exact constants: an identity test has shown that it is the
-//! textbook. Both the code in `f64` and `f32` and any other implementation of the same functions are given the state rounded to their
-//! precision and are compared with that one reference, so what is measured is how far from the truth a user ends who has
-//! rounded once.
+//! The reference of a state is the emitted program itself in 384 bits, with exact constants: an identity test has shown
+//! that it is the textbook. Both the code in `f64` and `f32` and any other implementation of the same functions are
+//! given the state rounded to their precision and are compared with that one reference, so what is measured is how far
+//! from the truth a user ends who has rounded once.
 
 mod samples;
 mod trial;
@@ -79,8 +79,8 @@ pub fn references<'c>(
     samples.into_iter().filter_map(reference).collect()
 }
 
-/// Error of computed results in units in the last place (of a number of `digits` binary digits) of the largest result. `None` where all
-/// results are zero and computed exactly; infinite where a computed one is not a number.
+/// Error of computed results in units in the last place (of a number of `digits` binary digits) of the largest result.
+/// `None` where all results are zero and computed exactly; infinite where a computed one is not a number.
 pub fn error(reference: &[Real], computed: &[f64], digits: i32) -> Option<f64> {
     let largest = reference.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
     let differences = reference.iter().zip(computed).map(|(x, &y)| x.sub(&x.like(y)).to_f64().abs());

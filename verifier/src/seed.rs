@@ -6,8 +6,8 @@ use std::fmt;
 use std::num::ParseIntError;
 use std::str::FromStr;
 
-/// What random numbers are made of. How likely a false proof is, is said of a seed that nobody knew when the module was written: of one
-/// that was drawn afterwards.
+/// What random numbers are made of. How likely a false proof is, is said of a seed that nobody knew when the module was
+/// written: of one that was drawn afterwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seed {
     number: u128,

@@ -1,8 +1,9 @@
 //! Formulas written down instead of computed.
 //!
-//! The textbook runs over [`Term`]s, which only note what is done to them, and the module's programs are copied to the same [`Tape`].
-//! What comes of it is one straight-line program, the same for all points, and is then run over any field. Nothing that a
-//! module writes is simplified; of the textbook's own sums and products those with a zero or a one are left out.
+//! The textbook runs over [`Term`]s, which only note what is done to them, and the module's programs are copied to the
+//! same [`Tape`]. What comes of it is one straight-line program, the same for all points, and is then run over any
+//! field. Nothing that a module writes is simplified; of the textbook's own sums and products those with a zero or a
+//! one are left out.
 
 use crate::atoms::Atoms;
 use crate::field::{Constant, Field};
@@ -18,7 +19,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 /// What was written down.
 #[derive(Debug, Default)]
 pub struct Formulas {
-    /// Operands come before their users; no operation is there twice. Lines are those of the module, zero of the textbook.
+    /// Operands come before their users; no operation is there twice. Lines are those of the module, zero of the
+    /// textbook.
     pub program: Program,
     /// The numbers that [`Node::Constant`] names.
     pub constants: Vec<Constant>,
@@ -86,7 +88,8 @@ impl Tape {
         self.note(Node::Read(source), 0)
     }
 
-    /// The nodes of a program of a module, whose reads are given as terms. Accelerations, charts and states are what the terms say.
+    /// The nodes of a program of a module, whose reads are given as terms. Accelerations, charts and states are what
+    /// the terms say.
     pub fn copy<'t>(
         &'t self,
         program: &Program,

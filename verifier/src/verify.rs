@@ -30,9 +30,10 @@ impl Depth {
 
 /// Verifies a module's text, and the text of its exact constants, against the model that it claims to be of.
 ///
-/// Nothing of the module is believed: its text must be of the subset that the generator writes, everything in it but the
-/// formulas as the model determines it, and the formulas equal to the textbook's. The same module is tested in the same way each time: whoever
-/// knows that can write a wrong one that passes, by chance or otherwise, so that nobody's word need be taken use [`verify_at`].
+/// Nothing of the module is believed: its text must be of the subset that the generator writes, everything in it but
+/// the formulas as the model determines it, and the formulas equal to the textbook's. The same module is tested in the
+/// same way each time: whoever knows that can write a wrong one that passes, by chance or otherwise, so that nobody's
+/// word need be taken use [`verify_at`].
 pub fn verify(model: &Model, module: &str, constants: &str, depth: Depth) -> Report {
     verify_at(model, module, constants, depth, Seed::FIXED)
 }

@@ -22,9 +22,9 @@ pub(crate) enum Command {
 
 /// Measure generated code and write the tables of docs/performance.md
 ///
-/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the twin, in turns in one process; counts
-/// instructions where valgrind is installed; generates, compiles and runs chains of more and more bodies. All of it optimised. Takes
-/// several minutes; leave the machine alone meanwhile.
+/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the twin, in turns in one
+/// process; counts instructions where valgrind is installed; generates, compiles and runs chains of more and more
+/// bodies. All of it optimised. Takes several minutes; leave the machine alone meanwhile.
 #[derive(Debug, Args)]
 pub(crate) struct PerformanceArgs {
     /// The page whose tables are to be replaced [default: docs/performance.md]
@@ -40,9 +40,9 @@ pub(crate) struct PerformanceArgs {
 
 /// Run the firmware and write docs/embedded.md
 ///
-/// Builds the firmware in embedded/ for a Cortex-M7 and a Cortex-M4F, runs it under QEMU, compares every bit with the same runs on this
-/// machine, proves by the linker that nothing panics or allocates, and writes the tables of docs/embedded.md anew. The tools come
-/// from embedded/setup.sh; nothing is fetched here.
+/// Builds the firmware in embedded/ for a Cortex-M7 and a Cortex-M4F, runs it under QEMU, compares every bit with the
+/// same runs on this machine, proves by the linker that nothing panics or allocates, and writes the tables of
+/// docs/embedded.md anew. The tools come from embedded/setup.sh; nothing is fetched here.
 #[derive(Debug, Args)]
 pub(crate) struct EmbeddedArgs {
     /// The page whose tables are to be replaced [default: docs/embedded.md]

@@ -293,8 +293,8 @@ fn flops(module: &str) -> String {
     row.split('|').nth(6).unwrap_or_default().trim().to_owned()
 }
 
-/// CPU time of all children that have ended, s: on a shared machine the time of day says little. Zero where the system does not
-/// tell.
+/// CPU time of all children that have ended, s: on a shared machine the time of day says little. Zero where the system
+/// does not tell.
 fn children_cpu_s() -> f64 {
     /// Of the kernel's clock in user space, whatever its own is.
     const TICKS_A_SECOND: f64 = 100.0;

@@ -1,16 +1,18 @@
 //! The floor: the paper's scene derived by hand in minimal coordinates.
 //!
-//! The outer ring turns about Y by α, the inner ring about its Z by β, the rotor about its x by φ. In the inner ring's frame, with
-//! s = sin β and c = cos β, the inner ring turns at `(α̇ s, α̇ c, β̇)` and the rotor at `(σ, α̇ c, β̇)` with the spin
-//! `σ = α̇ s + φ̇`. The rotor's mass centre, on the spin axis at d, moves at `d (0, β̇, −α̇ c)` and stands `d s` above the gimbal centre.
-//! With moments I₁ of the outer and I₂ of the inner ring, A and B of the rotor along and across its axis and its mass m:
+//! The outer ring turns about Y by α, the inner ring about its Z by β, the rotor about its x by φ. In the inner ring's
+//! frame, with s = sin β and c = cos β, the inner ring turns at `(α̇ s, α̇ c, β̇)` and the rotor at `(σ, α̇ c, β̇)`
+//! with the spin `σ = α̇ s + φ̇`. The rotor's mass centre, on the spin axis at d, moves at `d (0, β̇, −α̇ c)` and
+//! stands `d s` above the gimbal centre. With moments I₁ of the outer and I₂ of the inner ring, A and B of the rotor
+//! along and across its axis and its mass m:
 //!
 //! ```text
 //! 2 T = (P + Q c²) α̇² + R β̇² + A σ²         P = I₁y + I₂x   Q = I₂y − I₂x + B + m d²
 //!   V = m g d s                             R = I₂z + B + m d²
 //! ```
 //!
-//! φ is cyclic and nothing acts along it: `d/dt (A σ) = 0`, so A σ counts as a constant in the other two of Lagrange's equations:
+//! φ is cyclic and nothing acts along it: `d/dt (A σ) = 0`, so A σ counts as a constant in the other two of Lagrange's
+//! equations:
 //!
 //! ```text
 //! (P + Q c²) α̈ = c β̇ (2 Q α̇ s − A σ)

@@ -1,5 +1,5 @@
-//! What run times are measured by: the paper's second, derived by hand, in the same process and the same moments, and the time that
-//! the processor has spent on it.
+//! What run times are measured by: the paper's second, derived by hand, in the same process and the same moments, and
+//! the time that the processor has spent on it.
 //!
 //! A ratio to it says the same on a quick machine and on a slow one.
 #![deny(missing_docs)]

@@ -27,7 +27,8 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// How often this thread allocates in two corrections with five steps of this length each and one evaluation of every term.
+/// How often this thread allocates in two corrections with five steps of this length each and one evaluation of every
+/// term.
 fn allocations<M>(mechanism: &M, step: f64) -> usize
 where
     M: Partition<Scalar = f64, State = Vec<f64>> + Equations,

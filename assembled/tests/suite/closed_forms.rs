@@ -11,8 +11,8 @@ fn torsion(t: f64) -> f64 {
     x0 * f64::exp(-d * t) * ((w * t).cos() + d / w * (w * t).sin())
 }
 
-/// The spring unwinds by six turns and a half and winds up again. At 90 rad/s the Euler parameters turn by 0.009 in a step, the fifth
-/// power of which makes 1e-9 of a turn in all.
+/// The spring unwinds by six turns and a half and winds up again. At 90 rad/s the Euler parameters turn by 0.009 in a
+/// step, the fifth power of which makes 1e-9 of a turn in all.
 fn check<M: Partition<Scalar = f64, State = Vec<f64>>>(mechanism: &M) {
     let mut y = mechanism.start();
     let mut turns = Turns::new(mechanism, 0.0, &y, &[torsion(0.0)]);

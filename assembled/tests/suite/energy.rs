@@ -1,4 +1,5 @@
-//! Energy less the work of what is not conservative stays constant: for every force alone, for drivers and driven bodies.
+//! Energy less the work of what is not conservative stays constant: for every force alone, for drivers and driven
+//! bodies.
 
 use crate::support::{Random, assert_close, dense, models, state_near, test_model};
 use gyro_assembled::Dense;
@@ -9,7 +10,8 @@ use gyro_sim::{Direct, Exact, Mechanism};
 const STEP: f64 = 1e-4;
 const STEPS: u32 = 200;
 
-/// What the error of the integrator may take: of the energy that has come and gone, and, where tops spin at 150 rad/s, of all.
+/// What the error of the integrator may take: of the energy that has come and gone, and, where tops spin at 150 rad/s,
+/// of all.
 const BALANCE: f64 = 1e-9;
 const SPIN: f64 = 1e-11;
 

@@ -14,8 +14,8 @@ const TIME: f64 = 0.3;
 /// Rounding of sums of a few products of order one.
 const ROUNDING: f64 = 1e-13;
 
-/// Step of the differences: at 17 rad/s their error of fourth order is below the rounding, which is 1e-10 of what is differentiated.
-/// Angles may be a few times as steep where joint frames are far apart.
+/// Step of the differences: at 17 rad/s their error of fourth order is below the rounding, which is 1e-10 of what is
+/// differentiated. Angles may be a few times as steep where joint frames are far apart.
 const STEP: f64 = 1e-5;
 const DIFFERENCE: f64 = 2e-9;
 

@@ -1,4 +1,5 @@
-//! Charts with panels side by side on logarithmic axes, as SVG written directly: points where they belong, text that stays text.
+//! Charts with panels side by side on logarithmic axes, as SVG written directly: points where they belong, text that
+//! stays text.
 
 use std::fmt::Write as _;
 

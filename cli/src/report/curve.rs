@@ -1,4 +1,5 @@
-//! What is compared: who computes, by which integrator, in which coordinates, with which correction and in which precision.
+//! What is compared: who computes, by which integrator, in which coordinates, with which correction and in which
+//! precision.
 
 use crate::args::{Engine, Precision};
 use gyro_runner::{Approach, Coordinates, Correction, Integrator, When};
@@ -45,8 +46,8 @@ pub(crate) struct Outcome {
     pub(crate) errors: Vec<f64>,
     /// Time of the processor as it was measured, s.
     pub(crate) measured: f64,
-    /// The same as it would have been had the machine been as quick as it was most of the time: the ratio in terms of the
-    /// hand-derived second's median.
+    /// The same as it would have been had the machine been as quick as it was most of the time: the ratio in terms of
+    /// the hand-derived second's median.
     pub(crate) seconds: f64,
     /// The same over that of the hand-derived second.
     pub(crate) ratio: f64,

@@ -12,7 +12,8 @@ use gyro_runner::{Correction, Integrator};
 pub(crate) struct Effort {
     /// Tolerances in each decade.
     pub(crate) per_decade: u32,
-    /// Fixed steps are divided by two this often between one and the next but one: two settings for each halving, or one.
+    /// Fixed steps are divided by two this often between one and the next but one: two settings for each halving, or
+    /// one.
     pub(crate) halvings: Halvings,
     /// A curve ends where a run takes longer, s.
     pub(crate) longest_run: f64,
@@ -80,7 +81,8 @@ pub(crate) fn twins(lab: &Lab) -> Vec<Engine> {
     twins
 }
 
-/// All points of a curve, by tolerance and by fixed step, from coarse to fine until runs take too long or rounding is reached.
+/// All points of a curve, by tolerance and by fixed step, from coarse to fine until runs take too long or rounding is
+/// reached.
 pub(crate) fn explore(lab: &mut Lab, truth: &Truth, curve: &Curve, effort: &Effort) -> Vec<Point> {
     let mut points = Vec::new();
     if curve.integrator != Integrator::Rk4 {

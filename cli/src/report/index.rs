@@ -1,5 +1,5 @@
-//! The index: a line for each scene, and all goals. It is kept as two tables of data, so that a report on one scene leaves the lines of
-//! others as they are.
+//! The index: a line for each scene, and all goals. It is kept as two tables of data, so that a report on one scene
+//! leaves the lines of others as they are.
 
 use super::best::{best, smallest_error};
 use super::curve::Point;

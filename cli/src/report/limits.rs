@@ -117,7 +117,8 @@ impl Knob {
         }
     }
 
-    /// How far it is turned either way, in decades: with slower rates other motions take over than those about the start.
+    /// How far it is turned either way, in decades: with slower rates other motions take over than those about the
+    /// start.
     pub(crate) fn decades(self) -> u32 {
         match self {
             Self::Damping(..) => 2,
@@ -259,8 +260,8 @@ pub(crate) fn search(guess: f64, mut is_stable: impl FnMut(f64) -> bool) -> Foun
     found
 }
 
-/// A run counts as unstable when it fails or when a rate exceeds the largest that it has in an accurate run this many times. What hardly
-/// turns there may turn as fast as this part of the fastest.
+/// A run counts as unstable when it fails or when a rate exceeds the largest that it has in an accurate run this many
+/// times. What hardly turns there may turn as fast as this part of the fastest.
 const BOUND: f64 = 10.0;
 const SLOW: f64 = 1e-4;
 

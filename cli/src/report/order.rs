@@ -10,8 +10,8 @@ pub(crate) struct Order {
     pub(crate) n_points: usize,
 }
 
-/// The slope of log error over log step by least squares, for errors within the window, at steps no shorter than that of the smallest
-/// error: shorter ones add up rounding. `None` with fewer than three.
+/// The slope of log error over log step by least squares, for errors within the window, at steps no shorter than that
+/// of the smallest error: shorter ones add up rounding. `None` with fewer than three.
 pub(crate) fn fit(errors: &[(f64, f64)]) -> Option<Order> {
     let (least, most) = WINDOW;
     let shortest = errors.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(h, _)| *h);

@@ -8,7 +8,8 @@ use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use gyro_runner::{Coordinates, Integrator};
 
-/// A page, the steps that Rodas may take for its second, the limit of RK4 by the literature, and how much dearer RK4 has to be there.
+/// A page, the steps that Rodas may take for its second, the limit of RK4 by the literature, and how much dearer RK4
+/// has to be there.
 const BEARINGS: [(&str, f64, f64, Option<f64>); 2] =
     [("gyroscope-stiff", 700.0, 2.267e-4, None), ("gyroscope-overdamped", 70.0, 1.682e-5, Some(80.0))];
 

@@ -77,7 +77,8 @@ impl Truth {
         Self { source, is_independent: floor == 0.0, floor, rows, names, is_judged, scale }
     }
 
-    /// The worst error of each coordinate over samples of a run that has ended at `t_end`; each falls on one of the times.
+    /// The worst error of each coordinate over samples of a run that has ended at `t_end`; each falls on one of the
+    /// times.
     pub(crate) fn errors(&self, samples: &[Sample], t_end: f64) -> Vec<f64> {
         let mut worst = vec![0.0_f64; self.names.len()];
         for sample in samples {

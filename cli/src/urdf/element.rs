@@ -72,8 +72,8 @@ impl Findings<'_> {
         Some(Vector3::new(x?, y?, z?))
     }
 
-    /// The pose of an `<origin>` among an element's children: `xyz`, and `rpy`, rotations about the fixed x, y and z axes in
-    /// this order.
+    /// The pose of an `<origin>` among an element's children: `xyz`, and `rpy`, rotations about the fixed x, y and z
+    /// axes in this order.
     pub(super) fn origin(&mut self, node: Node<'_, '_>) -> Option<IsometryMatrix3<f64>> {
         let Some(origin) = child(node, "origin") else { return Some(IsometryMatrix3::identity()) };
         let xyz = self.vector_or(origin, "xyz", [0.0; 3]);

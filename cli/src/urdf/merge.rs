@@ -1,5 +1,6 @@
-//! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to a root that does not float is ground.
-//! Where a link's inertia is no rigid body's (a point's, a rod's) all links that are fixed to one another there become one body.
+//! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to a root that
+//! does not float is ground. Where a link's inertia is no rigid body's (a point's, a rod's) all links that are fixed to
+//! one another there become one body.
 
 use super::robot::{Inertial, Joint, Kind, Link, Robot, unphysical};
 use nalgebra::{IsometryMatrix3, Matrix3, Translation3, Vector3};
@@ -141,7 +142,8 @@ struct Merging<'r> {
 }
 
 impl Merging<'_> {
-    /// Places the root: the ground, or a body with its own mass or that of what is fixed to it, its link's frame at the origin.
+    /// Places the root: the ground, or a body with its own mass or that of what is fixed to it, its link's frame at the
+    /// origin.
     fn place_root(&mut self, link: usize, at_origin: Place, file: &str) {
         self.places[link] = match self.root {
             Root::Fixed => {
@@ -203,8 +205,9 @@ impl Merging<'_> {
         Some((self.bodies.len() - 1, (pose * centre).inverse()))
     }
 
-    /// Mass and inertia of a body whose first link is `link`, in the frame of the link that it is named after: that link's alone, or, where
-    /// one of the links that are fixed to one another has an inertia that is none, those of all of them.
+    /// Mass and inertia of a body whose first link is `link`, in the frame of the link that it is named after: that
+    /// link's alone, or, where one of the links that are fixed to one another has an inertia that is none, those of all
+    /// of them.
     fn inertial(&mut self, link: usize, (massive, pose): (usize, IsometryMatrix3<f64>)) -> Option<Inertial> {
         let robot = self.robot;
         let mut parts = Vec::new();

@@ -41,8 +41,8 @@ pub(super) fn write(
     text
 }
 
-/// What became of the root. A fixed one has its frame where its link's is, a free one at its mass centre, so that the one cannot be
-/// made of the other by a word on the page.
+/// What became of the root. A fixed one has its frame where its link's is, a free one at its mass centre, so that the
+/// one cannot be made of the other by a word on the page.
 fn of_root(link: &Link, root: Root) -> String {
     let mass = if link.inertial.is_some() { ", its own mass left out" } else { "" };
     match root {

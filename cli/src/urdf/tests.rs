@@ -102,8 +102,8 @@ fn an_inertia_that_no_body_has_is_refused_with_a_cure() {
     }
 }
 
-/// A point of mass on an arm, and one more on it: together they are a body. What is fixed to the ground may have any inertia, and the axis of a
-/// fixed joint is nobody's.
+/// A point of mass on an arm, and one more on it: together they are a body. What is fixed to the ground may have any
+/// inertia, and the axis of a fixed joint is nobody's.
 #[test]
 fn links_that_are_no_bodies_alone_become_one_with_what_they_are_fixed_to() {
     let parts = link("tip", (2.0, [0.0; 3]), "fixed", "arm")
@@ -164,7 +164,8 @@ fn what_has_no_counterpart_is_listed() {
     assert!(page.contains("# Link frame: its frame is at [0.0, 0.0, 0.0] in the body's"), "{page}");
 }
 
-/// The advice of earlier versions, to write `free = true` on the page, was wrong: points on a fixed root are in its link's frame.
+/// The advice of earlier versions, to write `free = true` on the page, was wrong: points on a fixed root are in its
+/// link's frame.
 #[test]
 fn a_root_without_mass_cannot_float_and_a_fixed_one_is_not_called_free() {
     let found = convert("r.urdf", "r.urdf", &robot(JOINT), Root::Floating).unwrap_err();

@@ -1,5 +1,5 @@
-//! Φ(q, t): the textbook primitives and the joints made of them. Nothing else of a joint is written anywhere: Φ_q, ν and γ
-//! are derived from these rows.
+//! Φ(q, t): the textbook primitives and the joints made of them. Nothing else of a joint is written anywhere: Φ_q, ν
+//! and γ are derived from these rows.
 
 use crate::derive::frames::{JointFrames, dot1};
 use crate::derive::joint_coordinate;

@@ -17,7 +17,8 @@ pub struct Forces {
     pub potential: ExprId,
     /// Power of the forces that store none.
     pub power: ExprId,
-    /// The part of it that links and loads have: those that act between points of bodies, not along a joint's coordinates.
+    /// The part of it that links and loads have: those that act between points of bodies, not along a joint's
+    /// coordinates.
     pub power_at_points: ExprId,
 }
 

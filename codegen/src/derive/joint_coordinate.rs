@@ -1,4 +1,5 @@
-//! The scalar coordinates of joints: what they are, how fast they change, and what a force along them does to the bodies.
+//! The scalar coordinates of joints: what they are, how fast they change, and what a force along them does to the
+//! bodies.
 
 use crate::derive::frames::JointFrames;
 use crate::derive::system::System;

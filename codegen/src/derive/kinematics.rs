@@ -89,7 +89,8 @@ fn coordinate_directions(n_moving_bodies: usize) -> Vec<Direction> {
         .collect()
 }
 
-/// The derivatives of some rows along directions, equally many for each moving_body, of rows in which the moving_body occurs: others do not change.
+/// The derivatives of some rows along directions, equally many for each moving_body, of rows in which the moving_body
+/// occurs: others do not change.
 fn columns(
     system: &mut System,
     rows: &[ExprId],

@@ -37,8 +37,8 @@ pub fn raw_angle(system: &mut System, place: JointCoordinate, kind: CoordinateKi
     sine_and_cosine(&mut system.graph, kind, &joint, &relative)
 }
 
-/// `A_iᵀ A_j` times |p_i|² |p_j|²: a rotation in direction whatever the length of p, which direct integration loses. Only the
-/// ratio of an angle's sine and cosine matters.
+/// `A_iᵀ A_j` times |p_i|² |p_j|²: a rotation in direction whatever the length of p, which direct integration loses.
+/// Only the ratio of an angle's sine and cosine matters.
 fn direction_rotation(system: &mut System, joint: &JointFrames) -> Mat3 {
     let homogeneous = |system: &mut System, body: usize| match system.moving_body_of(body) {
         Some(_) => system.graph.homogeneous_rotation(&system.poses[body].p),

@@ -177,8 +177,8 @@ impl<'m> System<'m> {
         let (axis, zero) = (self.numbers(&end.axis), self.numbers(&end.zero));
         let point = self.numbers(&end.point);
         let graph = &mut self.graph;
-        // g ∥ h × z and f ∥ g × h, in products of the page's own numbers: of these, those that cancel are written alike, so a component
-        // that is zero whatever the parameters are is seen to be zero.
+        // g ∥ h × z and f ∥ g × h, in products of the page's own numbers: of these, those that cancel are written
+        // alike, so a component that is zero whatever the parameters are is seen to be zero.
         let normal = graph.cross(&axis, &zero);
         let across = graph.cross(&normal, &axis);
         let (f, h) = (graph.normalise(&across), graph.normalise(&axis));
@@ -192,13 +192,14 @@ impl<'m> System<'m> {
         End { body: end.body, point, f, g, h }
     }
 
-    /// What the symbols change by along a motion with the given velocities of each moving_body, paper eqs. (14) and (16):
-    /// `ṙ = s`, `ṗ = ½ Gᵀ w'`, `Ȧ = A w̃'` and, between bodies, `(A_iᵀA_j)˙ = A_iᵀA_j w̃'_j − w̃'_i A_iᵀA_j`.
+    /// What the symbols change by along a motion with the given velocities of each moving_body, paper eqs. (14) and
+    /// (16): `ṙ = s`, `ṗ = ½ Gᵀ w'`, `Ȧ = A w̃'` and, between bodies, `(A_iᵀA_j)˙ = A_iᵀA_j w̃'_j − w̃'_i A_iᵀA_j`.
     pub fn direction(&mut self, motion: &[(Vec3, Vec3)]) -> Direction {
         self.direction_of(motion, 0..self.moving_bodies.len(), 0..self.joints.len())
     }
 
-    /// No motion but a unit velocity or virtual rotation: column `k` of moving_body `moving_body`, of (r, π'). What does not change with it is not named.
+    /// No motion but a unit velocity or virtual rotation: column `k` of moving_body `moving_body`, of (r, π'). What
+    /// does not change with it is not named.
     pub fn unit_direction(&mut self, moving_body: usize, k: usize) -> Direction {
         let mut motion = vec![(ZERO3, ZERO3); self.moving_bodies.len()];
         motion[moving_body] = if k < 3 { (UNIT3[k], ZERO3) } else { (ZERO3, UNIT3[k - 3]) };
@@ -240,9 +241,10 @@ impl<'m> System<'m> {
         direction
     }
 
-    /// The direction of the motion itself, twice differentiable: rates of rotation matrices are symbols that have rules of
-    /// their own, `Ä = A w̃'w̃'` and `(A_iᵀA_j)¨ = A_iᵀA_j w̃'_jw̃'_j − 2 w̃'_i A_iᵀA_j w̃'_j + w̃'_iw̃'_i A_iᵀA_j` (terms in ẇ'
-    /// left out). That is the product rule; only the order of the products is chosen, so that w̃'w̃' is shared.
+    /// The direction of the motion itself, twice differentiable: rates of rotation matrices are symbols that have rules
+    /// of their own, `Ä = A w̃'w̃'` and `(A_iᵀA_j)¨ = A_iᵀA_j w̃'_jw̃'_j − 2 w̃'_i A_iᵀA_j w̃'_j + w̃'_iw̃'_i A_iᵀA_j`
+    /// (terms in ẇ' left out). That is the product rule; only the order of the products is chosen, so that w̃'w̃' is
+    /// shared.
     pub fn motion(&mut self) -> Direction {
         let motion = self.velocities();
         let first = self.direction(&motion);

@@ -1,5 +1,5 @@
-//! The data sheet of a generated module: sizes, what each function costs pass by pass, what was left out; and the head of the file,
-//! which shows of it what the verifier can see for itself.
+//! The data sheet of a generated module: sizes, what each function costs pass by pass, what was left out; and the head
+//! of the file, which shows of it what the verifier can see for itself.
 
 use crate::equations::Equations;
 use crate::expr::graph::Graph;
@@ -169,7 +169,8 @@ pub fn large(number: u64) -> String {
     }
 }
 
-/// A name of a file as it can stand in a line of comments: what ends a line, or turns the direction of writing, is escaped.
+/// A name of a file as it can stand in a line of comments: what ends a line, or turns the direction of writing, is
+/// escaped.
 pub fn printable(name: &str) -> String {
     let plain = |c: char| c.is_ascii_graphic() || c == ' ' || c.is_alphanumeric();
     name.chars().map(|c| if plain(c) { c.to_string() } else { c.escape_default().to_string() }).collect()

@@ -1,8 +1,8 @@
 //! Literals and the exact constants that they are rounded from.
 //!
-//! Different constants may round to one literal, so each occurrence of a literal knows its own. While a text is put together the
-//! place of a constant stands for its literal, as an integer: `k(3)`. When all of it is there, one walk in the order of the
-//! text writes the literals and notes which occurrence stands for what.
+//! Different constants may round to one literal, so each occurrence of a literal knows its own. While a text is put
+//! together the place of a constant stands for its literal, as an integer: `k(3)`. When all of it is there, one walk in
+//! the order of the text writes the literals and notes which occurrence stands for what.
 
 use crate::expr::constant::Constant;
 use proc_macro2::{Delimiter, Group, Literal, TokenStream, TokenTree};
@@ -76,8 +76,8 @@ impl Written<'_> {
         literal
     }
 
-    /// `0.1 = 1/10`, or `0.1 = 1/10, 1000000000000000000001/10000000000000000000000 as 1*3 2`: the first three occurrences stand for
-    /// the first number, the fourth for the second.
+    /// `0.1 = 1/10`, or `0.1 = 1/10, 1000000000000000000001/10000000000000000000000 as 1*3 2`: the first three
+    /// occurrences stand for the first number, the fourth for the second.
     fn line(&self, literal: &str, occurrences: &[usize]) -> String {
         let mut values: Vec<usize> = Vec::new();
         let mut runs: Vec<(usize, usize)> = Vec::new();

@@ -32,8 +32,8 @@ pub trait Variables {
 /// blocks that hand on what is still needed.
 const CHUNK: usize = 200;
 
-/// A function with more statements is cut into larger blocks that are compiled apart: LLVM's time grows with the square of a
-/// function's length.
+/// A function with more statements is cut into larger blocks that are compiled apart: LLVM's time grows with the square
+/// of a function's length.
 const LONG: usize = 1500;
 const PART: usize = 500;
 

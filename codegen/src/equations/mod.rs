@@ -1,4 +1,5 @@
-//! Everything that a module computes, as final expressions of one graph: of each quantity the form that was chosen, all symbols expanded.
+//! Everything that a module computes, as final expressions of one graph: of each quantity the form that was chosen, all
+//! symbols expanded.
 
 mod rotations;
 
@@ -92,8 +93,8 @@ pub struct Parts {
 }
 
 impl<'m> Equations<'m> {
-    /// Expands what was derived and solved, each function in the cheapest way. `solved` are the accelerations as they were chosen before:
-    /// the forms of joint coordinates are compared with them.
+    /// Expands what was derived and solved, each function in the cheapest way. `solved` are the accelerations as they
+    /// were chosen before: the forms of joint coordinates are compared with them.
     pub fn choose(
         system: System<'m>,
         mut rotations: Rotations<'_>,
@@ -170,8 +171,8 @@ impl<'m> Equations<'m> {
     }
 }
 
-/// The non-zeros of (Φ_r, Φ_π'), and how many are left out as they vanish: a product of two vectors of one body does not change as the body
-/// turns.
+/// The non-zeros of (Φ_r, Φ_π'), and how many are left out as they vanish: a product of two vectors of one body does
+/// not change as the body turns.
 fn virtual_jacobian(
     graph: &mut Graph,
     rotations: &mut Rotations<'_>,

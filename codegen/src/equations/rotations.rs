@@ -1,5 +1,5 @@
-//! The ways of writing rotation matrices, of which each function takes the cheapest: by Euler parameters or their doubles, of bodies or of one
-//! body relative to another.
+//! The ways of writing rotation matrices, of which each function takes the cheapest: by Euler parameters or their
+//! doubles, of bodies or of one body relative to another.
 
 use crate::derive::readings::relative_euler;
 use crate::derive::system::System;
@@ -9,8 +9,8 @@ use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, Vec4};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 
-/// With more bodies nearly all entries of rotation matrices are used, and 2p is the cheaper way to them: of ten bodies with parallel axes one function
-/// takes 3 operations of 1369 more, all others the same.
+/// With more bodies nearly all entries of rotation matrices are used, and 2p is the cheaper way to them: of ten bodies
+/// with parallel axes one function takes 3 operations of 1369 more, all others the same.
 const MAX_UNDOUBLED: usize = 8;
 
 /// A way of writing rotation matrices.
@@ -82,7 +82,8 @@ fn by_doubles(system: &mut System) -> Values {
     values
 }
 
-/// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
+/// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed
+/// anyhow.
 fn relative(system: &mut System, rotation: fn(&mut Graph, &Vec4) -> Mat3) -> Values {
     let mut values = Values::default();
     if !system.loop_closure_rows().is_empty() {

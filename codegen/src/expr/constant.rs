@@ -1,8 +1,9 @@
 //! Exact constants: a rational times the square root of a whole number.
 //!
-//! Every number of a model page is rational, and normalising an axis adds one square root, so products, quotients and like
-//! sums of these constants stay exact. Rounding happens once, at emission. The parts of a rough direction have hundreds of digits after a few
-//! products, and most of the time of a generation may go into bringing them to lowest terms: hence a library of numbers whose greatest common divisors are quick.
+//! Every number of a model page is rational, and normalising an axis adds one square root, so products, quotients and
+//! like sums of these constants stay exact. Rounding happens once, at emission. The parts of a rough direction have
+//! hundreds of digits after a few products, and most of the time of a generation may go into bringing them to lowest
+//! terms: hence a library of numbers whose greatest common divisors are quick.
 
 use dashu_base::{BitTest, Gcd, Sign, SquareRoot};
 use dashu_int::{IBig, UBig};
@@ -18,8 +19,8 @@ pub struct Constant {
     radicand: UBig,
 }
 
-/// Squares of primes up to this bound are taken out of a radicand. Two equal constants whose radicands differ by the square
-/// of a larger prime would merely not be recognised as equal.
+/// Squares of primes up to this bound are taken out of a radicand. Two equal constants whose radicands differ by the
+/// square of a larger prime would merely not be recognised as equal.
 const LARGEST_PRIME: u32 = 1000;
 
 impl Constant {

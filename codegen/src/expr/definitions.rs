@@ -1,8 +1,8 @@
 //! Named intermediate quantities, and the pass that replaces them by what they stand for.
 //!
-//! Rotation matrices stay symbols while Φ is built and differentiated, because their derivatives along a rotation have a
-//! rule of their own (`A' = A ẽ`); afterwards [`Definitions::expand`] puts in A(p) — of the state's p, or of a corrected
-//! one, so that a Jacobian derived once can be evaluated anywhere.
+//! Rotation matrices stay symbols while Φ is built and differentiated, because their derivatives along a rotation have
+//! a rule of their own (`A' = A ẽ`); afterwards [`Definitions::expand`] puts in A(p) — of the state's p, or of a
+//! corrected one, so that a Jacobian derived once can be evaluated anywhere.
 
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
@@ -40,7 +40,8 @@ impl Definitions {
 /// What symbols stand for.
 pub type Values = HashMap<Symbol, ExprId>;
 
-/// Replaces symbols: first by the values given here, which are final, else by their definitions, which are expanded in turn.
+/// Replaces symbols: first by the values given here, which are final, else by their definitions, which are expanded in
+/// turn.
 #[derive(Debug)]
 pub struct Expansion<'a> {
     definitions: &'a Definitions,

@@ -102,8 +102,8 @@ impl<'a> Derivative<'a> {
     }
 }
 
-/// The derivatives of one expression by some symbols, from the expression inwards: each operation on the way is met once, not once for each
-/// symbol. Every symbol is constant but these, and the tables that time moves.
+/// The derivatives of one expression by some symbols, from the expression inwards: each operation on the way is met
+/// once, not once for each symbol. Every symbol is constant but these, and the tables that time moves.
 pub fn gradient(graph: &mut Graph, root: ExprId, by: &[Symbol]) -> Vec<ExprId> {
     let mut slopes: HashMap<ExprId, ExprId> = HashMap::from_iter([(root, Graph::ONE)]);
     let mut of_symbols: HashMap<Symbol, ExprId> = HashMap::default();

@@ -1,8 +1,8 @@
 //! The expression graph: a hash-consed arena. Equal expressions are one node, so sharing is common-subexpression
 //! elimination, and one graph serves every function of a module.
 //!
-//! Constructors simplify: constants fold exactly, zeros and ones vanish, signs and constant factors move outwards, and the
-//! operands of commutative operations are ordered. An operand always has a smaller id than its expression.
+//! Constructors simplify: constants fold exactly, zeros and ones vanish, signs and constant factors move outwards, and
+//! the operands of commutative operations are ordered. An operand always has a smaller id than its expression.
 
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
@@ -100,7 +100,8 @@ impl Graph {
         if let Node::Constant(value) = self.node(id) { Some(value) } else { None }
     }
 
-    /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see `set_up`).
+    /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see
+    /// `set_up`).
     pub fn is_settled(&self, id: ExprId) -> bool {
         self.changes[id.0 as usize] == Changes::WithParameters
     }
@@ -110,8 +111,8 @@ impl Graph {
         self.changes[id.0 as usize] == Changes::WithState
     }
 
-    /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from the
-    /// roots completes them: what an expression needs comes shortly before it.
+    /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from
+    /// the roots completes them: what an expression needs comes shortly before it.
     pub fn reachable(&self, roots: &[ExprId]) -> Vec<ExprId> {
         self.reachable_beyond(roots, |_| false)
     }

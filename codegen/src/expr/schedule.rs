@@ -4,7 +4,8 @@ use crate::expr::graph::{ExprId, Graph, Node};
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::fmt;
 
-/// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
+/// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one
+/// division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
     /// Sums and differences.
@@ -62,8 +63,8 @@ impl fmt::Display for Operations {
     }
 }
 
-/// Operations on the way to a program, + − × ÷ together. Constants are folded and zeros and ones vanish as expressions are built:
-/// there is no pass before that.
+/// Operations on the way to a program, + − × ÷ together. Constants are folded and zeros and ones vanish as expressions
+/// are built: there is no pass before that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Passes {
     /// Every expression written out wherever it is used; the largest number if there are more.

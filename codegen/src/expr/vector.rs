@@ -134,7 +134,8 @@ impl Graph {
         })
     }
 
-    /// The same numbers for any p, by way of 2p: all of them take 24 operations instead of 31, few of them may take more.
+    /// The same numbers for any p, by way of 2p: all of them take 24 operations instead of 31, few of them may take
+    /// more.
     pub fn rotation_by_doubles(&mut self, p: &Vec4) -> Mat3 {
         let two = self.integer(2);
         let doubles = p.map(|e| self.mul(two, e));

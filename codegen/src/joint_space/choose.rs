@@ -78,7 +78,8 @@ impl JointSpace {
         let rates_of_rates: Vec<_> = (0..coordinates.layout.n_rates)
             .map(|rate| system.graph.symbol(Symbol::RateOfRate(rate)))
             .collect();
-        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form which is emitted.
+        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
+        // which is emitted.
         let differentiated =
             if coordinates.have_orientations() { &accelerations.roots } else { &candidates.shortest };
         let form = JointForm {
@@ -107,7 +108,8 @@ impl JointSpace {
     }
 }
 
-/// The forms of the bodies' accelerations at a corrected state: by each form of the rates' rates, or by `exact`, which hold at any state.
+/// The forms of the bodies' accelerations at a corrected state: by each form of the rates' rates, or by `exact`, which
+/// hold at any state.
 fn corrected(
     system: &mut System,
     coordinates: &Coordinates,

@@ -1,6 +1,8 @@
-//! The accelerations of the joint coordinates: by a recursion over the tree, or through its reduced mass matrix `Bᵀ M B`.
+//! The accelerations of the joint coordinates: by a recursion over the tree, or through its reduced mass matrix `Bᵀ M
+//! B`.
 //!
-//! Both work in the bodies' own frames, on what [`LinkKinematics`] says. Gravity enters as an acceleration of the ground.
+//! Both work in the bodies' own frames, on what [`LinkKinematics`] says. Gravity enters as an acceleration of the
+//! ground.
 
 use super::layout::Layout;
 use super::link_kinematics::{Bias, LinkKinematics};
@@ -23,8 +25,8 @@ use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use gyro_model::{Attachment, JointCoordinate};
 use std::collections::BTreeMap;
 
-/// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long to work
-/// out: they are not tried.
+/// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long
+/// to work out: they are not tried.
 pub const MAX_FACTORED: usize = 4;
 
 /// As the data sheet calls it.
@@ -60,7 +62,8 @@ fn summed_along(system: &mut System, layout: &Layout, parts: Vec<forces::Along>)
     along
 }
 
-/// The power of what acts along joint coordinates and stores no energy: force times rate, with nothing of where the bodies are.
+/// The power of what acts along joint coordinates and stores no energy: force times rate, with nothing of where the
+/// bodies are.
 pub fn power_along(system: &mut System, layout: &Layout) -> ExprId {
     let mut parts = forces::along_coordinates(system, &OfJoints(layout));
     parts.retain(|part| part.potential.is_none());
@@ -187,7 +190,8 @@ impl JointDynamics {
         columns.iter().map(solved).collect()
     }
 
-    /// The same by factoring the reduced mass matrix; forces in terms of joint coordinates and rates, as `in_joints` has the rest.
+    /// The same by factoring the reduced mass matrix; forces in terms of joint coordinates and rates, as `in_joints`
+    /// has the rest.
     pub fn factored_accelerations_of(
         &self,
         system: &mut System,
@@ -220,8 +224,8 @@ impl JointDynamics {
         all
     }
 
-    /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one rate takes along each rate nearer to the root, the inertia
-    /// beyond it moving as one body.
+    /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one rate takes along each rate nearer to the root, the
+    /// inertia beyond it moving as one body.
     fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
         let mut bodies: Vec<_> =
             (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
@@ -347,8 +351,8 @@ pub fn bias(system: &mut System, link_kinematics: &LinkKinematics, spins: &[Vec3
     link_kinematics.bias(&mut system.graph, &of_parent, &spins[link_kinematics.moving_body])
 }
 
-/// The acceleration of the joint point and the angular acceleration that a carrier without coordinates imposes, centripetal
-/// parts left out, less gravity; in the body's frame.
+/// The acceleration of the joint point and the angular acceleration that a carrier without coordinates imposes,
+/// centripetal parts left out, less gravity; in the body's frame.
 pub fn of_ground(system: &mut System, link_kinematics: &LinkKinematics, gravity: &Vec3) -> SpatialVector {
     let (linear, angular, a) = match link_kinematics.parent {
         Some(body) if system.moving_body_of(body).is_some() => return SpatialVector::ZERO,

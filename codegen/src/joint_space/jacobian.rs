@@ -6,8 +6,8 @@
 //! ∂u̇/∂z = M⁻¹ ∂r/∂z     (u̇ held)
 //! ```
 //!
-//! which differentiates no elimination and shares that of the accelerations. For small mechanisms what is solved may be shorter. Both are
-//! written out, from within and from without, and the cheapest is taken.
+//! which differentiates no elimination and shares that of the accelerations. For small mechanisms what is solved may be
+//! shorter. Both are written out, from within and from without, and the cheapest is taken.
 
 use super::coordinates::Coordinates;
 use super::dynamics::{JointDynamics, MAX_FACTORED, NORMAL_FORM};
@@ -21,8 +21,8 @@ use crate::expr::symbol::Symbol;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::normal_form;
 
-/// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 16500 operations for six rates and 29300 for eight, and as many lines:
-/// then a module is longer than it is worth.
+/// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 16500 operations for six rates and
+/// 29300 for eight, and as many lines: then a module is longer than it is worth.
 pub const MAX_RATES: usize = 8;
 
 /// The derivatives of f, row by row.
@@ -110,7 +110,8 @@ impl JointForm<'_> {
             [forward(graph, self.accelerations, variables), backward(graph, self.accelerations, variables)];
         let names = ["derivatives of u̇, from its leaves", "derivatives of u̇, from its roots"];
         let mut candidates: Vec<_> = names.map(str::to_owned).into_iter().zip(solved).collect();
-        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form which is emitted.
+        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
+        // which is emitted.
         if self.coordinates.layout.links.iter().any(|link| link.orientation.is_some()) {
             return candidates;
         }

@@ -22,8 +22,8 @@ pub struct LinkCoordinates {
     pub scalars: Vec<Scalar>,
     /// Free bodies: r, and its derivative.
     pub position: Option<Place>,
-    /// Spherical joints and points on a line: Euler parameters of the second body in the first's frame and the angular velocity
-    /// relative to the first, in the second's frame. Free bodies: p and w'.
+    /// Spherical joints and points on a line: Euler parameters of the second body in the first's frame and the angular
+    /// velocity relative to the first, in the second's frame. Free bodies: p and w'.
     pub orientation: Option<Place>,
 }
 

@@ -141,7 +141,8 @@ impl LinkKinematics {
         }
     }
 
-    /// Adds a free twist: a displacement in the first body's frame, a rotation of the second body relative to the first.
+    /// Adds a free twist: a displacement in the first body's frame, a rotation of the second body relative to the
+    /// first.
     fn add(&mut self, graph: &mut Graph, sliding: Vec3, turn: Turn, reversed: bool, rate: usize) {
         let (rho, about_first) = match turn {
             Turn::None => (ZERO3, false),

@@ -165,7 +165,8 @@ fn whole(graph: &mut Graph, x: usize) -> (ExprId, ExprId) {
     doubled(graph, half, Graph::ONE)
 }
 
-/// `2 s c / square` and `(c² − s²) / square`: near a right angle, where it vanishes, a cosine in factors keeps its digits.
+/// `2 s c / square` and `(c² − s²) / square`: near a right angle, where it vanishes, a cosine in factors keeps its
+/// digits.
 fn doubled(graph: &mut Graph, (sine, cosine): (ExprId, ExprId), square: ExprId) -> (ExprId, ExprId) {
     let two = graph.integer(2);
     let factor = graph.div(two, square);
@@ -175,8 +176,8 @@ fn doubled(graph: &mut Graph, (sine, cosine): (ExprId, ExprId), square: ExprId) 
     (graph.mul(twice, cosine), graph.div(product, square))
 }
 
-/// Euler parameters, up to a factor, of the second body in the first's frame where all angles are zero: of the four ways to read
-/// them off a rotation matrix the one farthest from a division by zero.
+/// Euler parameters, up to a factor, of the second body in the first's frame where all angles are zero: of the four
+/// ways to read them off a rotation matrix the one farthest from a division by zero.
 fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
     let r = at_zero(&mut system.graph, joint);
     let graph = &mut system.graph;
@@ -209,8 +210,8 @@ fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
     graph.scale_vec(inverse, &rows[largest])
 }
 
-/// Joint coordinates and rates in terms of a maximal state that satisfies the constraints. Of an angle on which nothing acts
-/// only the sine and cosine are given.
+/// Joint coordinates and rates in terms of a maximal state that satisfies the constraints. Of an angle on which nothing
+/// acts only the sine and cosine are given.
 pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
     let mut values = Values::default();
     for link in &layout.links {

@@ -1,10 +1,10 @@
 //! Trees in joint coordinates: the state-space form, and the short way to the maximal accelerations of a state that
 //! satisfies the constraints.
 //!
-//! `layout` orders the coordinates, `link_kinematics` says how a body moves on its carrier and `maps` leads to maximal coordinates and back:
-//! `coordinates` has all that is derived of them. `dynamics` solves for the rates' rates in several ways, which are the `candidates`, and
-//! `choose` takes the cheapest of those that are accurate, with what follows from it: `motions` of the bodies, `multipliers` and the
-//! `jacobian` of the joint form.
+//! `layout` orders the coordinates, `link_kinematics` says how a body moves on its carrier and `maps` leads to maximal
+//! coordinates and back: `coordinates` has all that is derived of them. `dynamics` solves for the rates' rates in
+//! several ways, which are the `candidates`, and `choose` takes the cheapest of those that are accurate, with what
+//! follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of the joint form.
 
 mod candidates;
 mod choose;

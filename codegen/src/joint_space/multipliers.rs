@@ -1,5 +1,6 @@
-//! λ at a state that satisfies the constraints: the balance of forces of `multipliers`, with what each row forces upon its body
-//! in polynomial normal form. There the gradients of a joint's rows are perpendicular unit vectors, and divisions vanish.
+//! λ at a state that satisfies the constraints: the balance of forces of `multipliers`, with what each row forces upon
+//! its body in polynomial normal form. There the gradients of a joint's rows are perpendicular unit vectors, and
+//! divisions vanish.
 
 use super::coordinates::Coordinates;
 use super::link_kinematics::LinkKinematics;

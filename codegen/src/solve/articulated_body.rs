@@ -1,10 +1,10 @@
-//! Elimination of the free twists of all joints, the null space of their rows: `Bᵀ M B` is never formed but factored body by body
-//! from the leaves to the roots (articulated bodies: Featherstone, *Rigid Body Dynamics Algorithms* (2008), section 7.3),
-//! here in maximal coordinates and for any state, also off the constraint manifold.
+//! Elimination of the free twists of all joints, the null space of their rows: `Bᵀ M B` is never formed but factored
+//! body by body from the leaves to the roots (articulated bodies: Featherstone, *Rigid Body Dynamics Algorithms*
+//! (2008), section 7.3), here in maximal coordinates and for any state, also off the constraint manifold.
 //!
-//! A body's acceleration is that of its parent's joint point carried over, plus its free twists, plus what its rows force
-//! upon it (γ times their right inverse). Its free twists are eliminated one by one; what is left of its inertia and
-//! force acts on the parent. No pivot can vanish: each is the inertia that resists a twist.
+//! A body's acceleration is that of its parent's joint point carried over, plus its free twists, plus what its rows
+//! force upon it (γ times their right inverse). Its free twists are eliminated one by one; what is left of its inertia
+//! and force acts on the parent. No pivot can vanish: each is the inertia that resists a twist.
 
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
@@ -151,8 +151,8 @@ impl EliminatedTree {
     }
 }
 
-/// The change of the reference point of a body's twist: `t_wanted = t_known + K ρ` with `K = ∓A s̃'`, A the frame of the
-/// translations.
+/// The change of the reference point of a body's twist: `t_wanted = t_known + K ρ` with `K = ∓A s̃'`, A the frame of
+/// the translations.
 #[derive(Clone, Copy, Debug)]
 pub struct Arm {
     k: Mat3,

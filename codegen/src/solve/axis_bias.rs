@@ -7,10 +7,11 @@ use crate::expr::graph::Graph;
 use crate::expr::vector::{Mat3, Vec3, ZERO3};
 use gyro_model::{JointKind, Support};
 
-/// What γ times the right inverse amounts to where the rows are those of a joint point and an axis, in a few operations.
+/// What γ times the right inverse amounts to where the rows are those of a joint point and an axis, in a few
+/// operations.
 ///
-/// The joint point of the second body has the acceleration of the first's. The axis of the second body, u, may only accelerate along that of the
-/// first, a, and its length does not change. With Ω = w_j − w_i, all vectors in one frame:
+/// The joint point of the second body has the acceleration of the first's. The axis of the second body, u, may only
+/// accelerate along that of the first, a, and its length does not change. With Ω = w_j − w_i, all vectors in one frame:
 ///
 /// ```text
 /// u̇ = Ω × u,   ü = Ω̇ × u + Ω × (Ω × u) = −(|u̇|² / a·u) a      (seen from the first body)
@@ -51,8 +52,8 @@ impl AxisBias {
         })
     }
 
-    /// The `r̈_j + ẇ_j × s_j − r̈_i − ẇ_i × s_i` that keeps the joint points together. Of either body the matrix that leads to the global frame,
-    /// and the arm in it.
+    /// The `r̈_j + ẇ_j × s_j − r̈_i − ẇ_i × s_i` that keeps the joint points together. Of either body the matrix that
+    /// leads to the global frame, and the arm in it.
     pub fn acceleration_of_point(
         &self,
         graph: &mut Graph,

@@ -1,6 +1,6 @@
-//! The rows that no joint of the tree owns: joints that close a loop, couplers, drivers. They are met by forces on the tree:
-//! with R_l the tree's response to a unit multiplier of row l, `Φ_k R_l λ_l = Φ_k v̇ − γ_k`, a small symmetric positive
-//! definite system.
+//! The rows that no joint of the tree owns: joints that close a loop, couplers, drivers. They are met by forces on the
+//! tree: with R_l the tree's response to a unit multiplier of row l, `Φ_k R_l λ_l = Φ_k v̇ − γ_k`, a small symmetric
+//! positive definite system.
 
 use crate::derive::kinematics::Kinematics;
 use crate::expr::graph::{ExprId, Graph};
@@ -15,7 +15,8 @@ pub fn gradient(kinematics: &Kinematics, row: usize) -> Vec<SpatialVector> {
     columns.map(|c| SpatialVector { t: [c[0], c[1], c[2]], rho: [c[3], c[4], c[5]] }).collect()
 }
 
-/// Corrects the motions of the free tree, so that these rows change as `rates` of all rows say; returns the multipliers too.
+/// Corrects the motions of the free tree, so that these rows change as `rates` of all rows say; returns the multipliers
+/// too.
 pub fn close(
     graph: &mut Graph,
     kinematics: &Kinematics,

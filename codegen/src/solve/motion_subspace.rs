@@ -1,7 +1,8 @@
 //! How a body may move relative to what holds it: the null space of its joint's rows, and their right inverse.
 //!
-//! Both are written down from the joint's axes, with no solve. They hold for every configuration, also off the constraint
-//! manifold: a dot-1 row with the vector h of one body is blind to rotations about h whatever the other vector is.
+//! Both are written down from the joint's axes, with no solve. They hold for every configuration, also off the
+//! constraint manifold: a dot-1 row with the vector h of one body is blind to rotations about h whatever the other
+//! vector is.
 
 use crate::derive::frames::{End, JointFrames};
 use crate::derive::joint_coordinate;
@@ -117,7 +118,8 @@ impl MotionSubspace {
         Self { frame, rows, forced, bias, ..Self::of_tree(moving_body, None, ZERO3, Vec::new()) }
     }
 
-    /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the root.
+    /// A joint holds the body. Its rows measure from the first body to the second, whichever of them is nearer to the
+    /// root.
     fn carried(
         system: &mut System,
         kinematics: &Kinematics,
@@ -259,8 +261,8 @@ impl Restraint {
         Self { held, sliding, turning: turning(&mut system.graph, joint, reversed) }
     }
 
-    /// Where rows are measured along the first body's directions, that body is touched at the second joint point: there a
-    /// rotation of the first body changes them as little as one of the second.
+    /// Where rows are measured along the first body's directions, that body is touched at the second joint point: there
+    /// a rotation of the first body changes them as little as one of the second.
     fn arm_of_first(&self, system: &mut System, joint: &JointFrames) -> Vec3 {
         match joint.kind {
             JointKind::Revolute | JointKind::Spherical | JointKind::Fixed | JointKind::Universal => {
@@ -271,8 +273,8 @@ impl Restraint {
     }
 }
 
-/// The rotations that are free, in the frame of the body further from the root. Rows with a vector of a body are blind to
-/// rotations about it.
+/// The rotations that are free, in the frame of the body further from the root. Rows with a vector of a body are blind
+/// to rotations about it.
 fn turning(graph: &mut Graph, joint: &JointFrames, reversed: bool) -> Vec<Vec3> {
     let second = if reversed { graph.mat_vec(&joint.relative, &joint.second.h) } else { joint.second.h };
     match joint.kind {

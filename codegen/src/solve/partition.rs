@@ -1,11 +1,12 @@
 //! The coordinate partition of a tree, unrolled: charts, one Newton step of the dependent positions, and the solve of
 //! eq. (19) for the dependent velocities.
 //!
-//! Both solves are block-triangular from root to leaf: once a body's parent is corrected, the body's own joint rows determine
-//! its dependent coordinates. The Jacobian of a block is the body's part of Φ_π', derived once and evaluated at the
-//! corrected parent and the body's own unit p by expansion. Of a revolute joint one Euler parameter is independent, so a third row holds it; of a
-//! spherical joint or a free body three are, so the fourth follows from the normalisation. The independent velocity of a
-//! revolute joint is the rate about its axis: holding a component of ṗ instead would let the parent's drift leak into a spin.
+//! Both solves are block-triangular from root to leaf: once a body's parent is corrected, the body's own joint rows
+//! determine its dependent coordinates. The Jacobian of a block is the body's part of Φ_π', derived once and evaluated
+//! at the corrected parent and the body's own unit p by expansion. Of a revolute joint one Euler parameter is
+//! independent, so a third row holds it; of a spherical joint or a free body three are, so the fourth follows from the
+//! normalisation. The independent velocity of a revolute joint is the rate about its axis: holding a component of ṗ
+//! instead would let the parent's drift leak into a spin.
 
 use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
@@ -34,7 +35,8 @@ impl Partition {
         Self::covers(system).then(|| Self::derive(system, kinematics))
     }
 
-    /// Whether charts cover the mechanism: trees of revolute, spherical and fixed joints, and nothing that closes a loop.
+    /// Whether charts cover the mechanism: trees of revolute, spherical and fixed joints, and nothing that closes a
+    /// loop.
     fn covers(system: &System) -> bool {
         let covered = |attachment: Attachment| match attachment {
             Attachment::Free | Attachment::Constrained => true,
@@ -203,8 +205,8 @@ impl Block {
         }
     }
 
-    /// w' changed so that the body's dot-1 rows hold. What is solved for is the change, across the free axis: the rate about
-    /// that axis is the independent velocity, and a large spin takes no part in the rounding.
+    /// w' changed so that the body's dot-1 rows hold. What is solved for is the change, across the free axis: the rate
+    /// about that axis is the independent velocity, and a large spin takes no part in the rounding.
     fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
         let directions = self.directions(system, kinematics);
         let mut expansion = Expansion::with_values(&system.definitions, solved.clone());
@@ -218,8 +220,8 @@ impl Block {
         w
     }
 
-    /// For each dot-1 row the rotation that changes it alone and is across the body's own axis. That of the null space is across the
-    /// second body's: off the constraints another one, if it is the first body that hangs on the joint.
+    /// For each dot-1 row the rotation that changes it alone and is across the body's own axis. That of the null space
+    /// is across the second body's: off the constraints another one, if it is the first body that hangs on the joint.
     fn directions(&self, system: &mut System, kinematics: &Kinematics) -> Vec<Vec3> {
         match (self.attachment, self.joint_kind(system)) {
             (Attachment::Joint { joint, reversed: true, .. }, Some(JointKind::Revolute)) => {

@@ -1,5 +1,5 @@
-//! The solve of eq. (17) for small trees through their reduced mass matrix `Bᵀ M B`, in the global frame: with few rates it is shorter than to
-//! eliminate body by body.
+//! The solve of eq. (17) for small trees through their reduced mass matrix `Bᵀ M B`, in the global frame: with few
+//! rates it is shorter than to eliminate body by body.
 
 use crate::derive::dynamics::Dynamics;
 use crate::derive::system::System;
@@ -115,8 +115,8 @@ impl ReducedTree {
         self.respond(&mut system.graph, &bias, motions)
     }
 
-    /// How each mass centre accelerates while no rate changes. What is fixed to a body at s from its mass centre accelerates by (w̃w̃ + ẇ̃) s more than
-    /// that: one matrix serves all joint points of a body.
+    /// How each mass centre accelerates while no rate changes. What is fixed to a body at s from its mass centre
+    /// accelerates by (w̃w̃ + ẇ̃) s more than that: one matrix serves all joint points of a body.
     fn unforced(&self, graph: &mut Graph) -> Vec<SpatialVector> {
         let mut motions = vec![SpatialVector::ZERO; self.bodies.len()];
         let mut of_points = vec![[ZERO3; 3]; self.bodies.len()];

@@ -1,5 +1,5 @@
-//! The solve of eq. (17) whole: an unrolled LDLᵀ factorisation of the saddle matrix, its order chosen here. It squares the
-//! condition of the joints' Jacobian, so `null_space` is preferred; this is what that is compared with.
+//! The solve of eq. (17) whole: an unrolled LDLᵀ factorisation of the saddle matrix, its order chosen here. It squares
+//! the condition of the joints' Jacobian, so `null_space` is preferred; this is what that is compared with.
 //!
 //! Without pivoting at run time the order must be safe by itself: *no multiplier before all six velocities of its child
 //! body*. Then every pivot is a composite inertia or minus a joint's effective inverse mass, never a mathematical zero.

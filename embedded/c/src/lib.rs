@@ -41,7 +41,8 @@ pub enum GimbalStatus {
     OutOfRange = 3,
     /// A number is not finite, a step not positive, or a parameter one that the mechanism cannot have.
     BadNumber = 4,
-    /// The state is no longer finite: the step is too large. From here on the gimbal fails until it is initialised anew.
+    /// The state is no longer finite: the step is too large. From here on the gimbal fails until it is initialised
+    /// anew.
     NotFinite = 5,
     /// The constraints cannot be met, likewise.
     NoConvergence = 6,
@@ -166,8 +167,8 @@ pub unsafe extern "C" fn gimbal_init(gimbal: *mut Gimbal) -> GimbalStatus {
     GimbalStatus::Ok
 }
 
-/// Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is refused with
-/// `BadNumber`, and the parameter keeps its value.
+/// Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is
+/// refused with `BadNumber`, and the parameter keeps its value.
 ///
 /// # Safety
 /// As for `gimbal_init`.

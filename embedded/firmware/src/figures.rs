@@ -1,7 +1,7 @@
 //! Counts instructions.
 //!
-//! QEMU is told to let a fixed virtual time pass for each instruction, so a timer counts them: 256 ns, of which the processor's clock of
-//! 25 MHz sees 6.4 ticks. These are instructions, not cycles.
+//! QEMU is told to let a fixed virtual time pass for each instruction, so a timer counts them: 256 ns, of which the
+//! processor's clock of 25 MHz sees 6.4 ticks. These are instructions, not cycles.
 
 use crate::{board, panic, print};
 use core::hint::black_box;

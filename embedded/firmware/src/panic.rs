@@ -1,5 +1,5 @@
-//! The proof that nothing panics: the panic handler calls a function that does not exist, so firmware in which it can be
-//! reached does not link.
+//! The proof that nothing panics: the panic handler calls a function that does not exist, so firmware in which it can
+//! be reached does not link.
 
 use core::panic::PanicInfo;
 

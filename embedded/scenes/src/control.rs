@@ -4,8 +4,9 @@ use gyro_sim::Real;
 
 /// Turns the inner ring at a demanded rate by a torque on the outer axis.
 ///
-/// A fast rotor of angular momentum H answers a torque with a rate at right angles to it, β̇ = τ / H, so integral action of the
-/// bandwidth ω turns the ring: τ = H ω ∫ (demand − β̇) dt − D α̇. Nothing else damps the nutation; D does.
+/// A fast rotor of angular momentum H answers a torque with a rate at right angles to it, β̇ = τ / H, so integral
+/// action of the bandwidth ω turns the ring: τ = H ω ∫ (demand − β̇) dt − D α̇. Nothing else damps the nutation; D
+/// does.
 #[derive(Clone, Copy, Debug)]
 pub struct RateControl<T> {
     gain: T,

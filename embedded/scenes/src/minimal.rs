@@ -1,7 +1,7 @@
 //! The paper's scene written by hand in minimal coordinates: what a specialist's firmware would hold.
 //!
-//! Lagrange's equations with the rotor's momentum along its axis as a constant; the derivation stands at the floor of the project's
-//! benches (`benches/src/floor.rs`), whose double this is for both precisions.
+//! Lagrange's equations with the rotor's momentum along its axis as a constant; the derivation stands at the floor of
+//! the project's benches (`benches/src/floor.rs`), whose double this is for both precisions.
 
 use gyro_sim::{Ode, Real};
 

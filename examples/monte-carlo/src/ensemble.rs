@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// The paper's step, s.
 pub(crate) const STEP: f64 = 1e-4;
 
-/// Steps from one sample to the next: 22 samples to each of the nutation's periods of 43 ms, whose peaks a line through them then
-/// misses by a hundredth.
+/// Steps from one sample to the next: 22 samples to each of the nutation's periods of 43 ms, whose peaks a line through
+/// them then misses by a hundredth.
 pub(crate) const STRIDE: u32 = 20;
 
 /// Samples of a second, its start included.

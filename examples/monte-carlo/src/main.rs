@@ -1,5 +1,5 @@
-//! How far apart do gyroscopes precess that were built to the same drawing? Each scenario is the paper's gyroscope with misalignments of its
-//! own, drawn within tolerances; eight run in the lanes of one pack, packs run on all cores.
+//! How far apart do gyroscopes precess that were built to the same drawing? Each scenario is the paper's gyroscope with
+//! misalignments of its own, drawn within tolerances; eight run in the lanes of one pack, packs run on all cores.
 //!
 //! ```console
 //! $ RUSTFLAGS="-C target-cpu=native" cargo run --release --package monte-carlo -- --count 10000

@@ -4,7 +4,8 @@ use gyro_mechanisms::gyroscope_misalignments::{GyroscopeMisalignments, Parameter
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// The rotor's joint is on the drawing's place, an eighth of a millimetre off centre, to within this much in each direction, m.
+/// The rotor's joint is on the drawing's place, an eighth of a millimetre off centre, to within this much in each
+/// direction, m.
 const JOINT: f64 = 2e-5;
 
 /// The rotor's mass centre is on its spin axis to within this much in each direction, m.

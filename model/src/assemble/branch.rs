@@ -8,8 +8,8 @@ use crate::{JointKind, Model, Quaternion};
 /// Rotation of a body from its guess, rad, beyond which another branch may have been meant.
 const QUARTER_TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Refuses axes and zero directions that point opposite ways, which the dot-1 rows cannot see, and bodies that are turned by
-/// more than a quarter turn.
+/// Refuses axes and zero directions that point opposite ways, which the dot-1 rows cannot see, and bodies that are
+/// turned by more than a quarter turn.
 pub(super) fn check(
     model: &Model,
     kinematics: &Kinematics,

@@ -9,8 +9,8 @@ use super::{JointStart, Move, Start, branch};
 use crate::kinematics::{Equation, Kinematics};
 use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, Tree, Vector};
 
-/// Starts that are tried around a guess from which the mechanism does not close: a guess may be so symmetric that no step
-/// leads away from it.
+/// Starts that are tried around a guess from which the mechanism does not close: a guess may be so symmetric that no
+/// step leads away from it.
 const ATTEMPTS: usize = 6;
 
 /// How far the first of them is from the guess, rad or parts of the size; the next ones are farther by as much.
@@ -30,9 +30,9 @@ pub(super) fn assemble(model: &Model) -> Result<Start, AssemblyError> {
     assembled(model, &guesses, &second).or(start)
 }
 
-/// The trees along which bodies may be guessed. What the page says of joints is heeded as far as it can be: joints that it tells nothing
-/// of close the loops. Which is the better guess of a body that only such joints and points on lines hold, the joint's zero or the
-/// body's own orientation, nothing tells.
+/// The trees along which bodies may be guessed. What the page says of joints is heeded as far as it can be: joints that
+/// it tells nothing of close the loops. Which is the better guess of a body that only such joints and points on lines
+/// hold, the joint's zero or the body's own orientation, nothing tells.
 fn trees(model: &Model, guesses: &[Guess]) -> [Tree; 2] {
     let ranked = |untold_turns: u8, untold_lines: u8| {
         Tree::along(model, |joint| match (model.joints[joint].kind.turns(), guesses[joint].is_told()) {
@@ -65,8 +65,8 @@ fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, Ass
     Ok(Start { q: at.q, v, joints, moved })
 }
 
-/// The guessed pose, with the turns of angles as they are guessed; a screw of which nothing is known is on the turn that
-/// its displacement tells.
+/// The guessed pose, with the turns of angles as they are guessed; a screw of which nothing is known is on the turn
+/// that its displacement tells.
 fn configuration(kinematics: &Kinematics, tree: &Tree, guesses: &[Guess], walk: &Walk<'_>) -> Configuration {
     let q = walk.layout().0;
     let mut near: Vec<Vec<f64>> = guesses.iter().map(|guess| guess.position.clone()).collect();
@@ -177,8 +177,8 @@ fn held(guesses: &[Guess]) -> Vec<Equation> {
     held
 }
 
-/// The joints' starts as the closed configuration has them, and the bodies there, to walk the trees once more: that meets
-/// the rows of their joints to rounding and gives velocities to begin with.
+/// The joints' starts as the closed configuration has them, and the bodies there, to walk the trees once more: that
+/// meets the rows of their joints to rounding and gives velocities to begin with.
 fn settled(
     model: &Model,
     tree: &Tree,

@@ -16,8 +16,8 @@ pub(super) struct Guess {
     pub(super) is_ball: bool,
     /// Whether the page gives guesses only.
     pub(super) is_rough: bool,
-    /// For each scalar coordinate (spherical: for each component of the relative angular velocity) its rate, where it is given
-    /// or driven.
+    /// For each scalar coordinate (spherical: for each component of the relative angular velocity) its rate, where it
+    /// is given or driven.
     pub(super) rate: Vec<Option<f64>>,
 }
 
@@ -42,8 +42,8 @@ impl Guess {
 
 /// The guesses of all joints.
 ///
-/// A driven coordinate starts where its driver is at t = 0; the page's value comes next; a coordinate that is coupled to a
-/// known one follows it; the rest is zero.
+/// A driven coordinate starts where its driver is at t = 0; the page's value comes next; a coordinate that is coupled
+/// to a known one follows it; the rest is zero.
 pub(super) fn guesses(model: &Model) -> Vec<Guess> {
     let mut guesses: Vec<Guess> = (0..model.joints.len()).map(|joint| of_page(model, joint)).collect();
     for driver in &model.drivers {
@@ -83,8 +83,8 @@ fn of_page(model: &Model, joint: usize) -> Guess {
     }
 }
 
-/// A coordinate of which nothing is known but that a coupler ties it to another; if nothing is known of that either, the
-/// first coordinate of the first such coupler is zero.
+/// A coordinate of which nothing is known but that a coupler ties it to another; if nothing is known of that either,
+/// the first coordinate of the first such coupler is zero.
 fn next_coupled(model: &Model, guesses: &[Guess]) -> Option<(JointCoordinate, f64)> {
     let known = |c: JointCoordinate| guesses[c.joint].source[c.coordinate] != Source::Unknown;
     let at = |c: JointCoordinate| guesses[c.joint].position[c.coordinate];

@@ -7,7 +7,8 @@ use crate::{ForceKind, Model, Quaternion, Vector};
 /// Points nearer than this part of the mechanism's size, or of their distance from the origin, coincide.
 const COINCIDENT: f64 = 1e-12;
 
-/// The part of a motion within which it may be taken for straight: ends that pass each other more narrowly come together.
+/// The part of a motion within which it may be taken for straight: ends that pass each other more narrowly come
+/// together.
 const STRAIGHT: f64 = 0.1;
 
 /// Refuses a start in which the two ends of a link coincide.
@@ -19,8 +20,8 @@ pub(super) fn check(model: &Model, start: &Start) -> Result<(), AssemblyError> {
 }
 
 impl Model {
-    /// The name of a link whose ends come together on the way from positions q, with velocities v, at time t through a step of length h: its
-    /// force has no direction there, and a run that comes to the point cannot go on.
+    /// The name of a link whose ends come together on the way from positions q, with velocities v, at time t through a
+    /// step of length h: its force has no direction there, and a run that comes to the point cannot go on.
     ///
     /// q and v are laid out as in [`Start`].
     pub fn closing_link(&self, t: f64, h: f64, q: &[f64], v: &[f64]) -> Option<&str> {

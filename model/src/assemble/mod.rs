@@ -62,19 +62,22 @@ pub struct Move {
 }
 
 impl Model {
-    /// Positions and velocities that satisfy Φ = 0 and Φ_q q̇ = ν at t = 0 to rounding, with the parameters as they are.
+    /// Positions and velocities that satisfy Φ = 0 and Φ_q q̇ = ν at t = 0 to rounding, with the parameters as they
+    /// are.
     ///
     /// Walks [`Tree`] from the roots: a joint's coordinates and rates (or the child's absolute angular velocity) place
     /// the child on its parent; driven coordinates start where their drivers are. Joint frames are exact up to one
     /// rounding. If the joints make open trees without couplers, this is all.
     ///
-    /// Otherwise that pose is a guess. It is moved by the least change (rotations in rad, lengths by [`Model::size`], both by the
-    /// root of [`crate::Body::assembly_weight`]) that satisfies all rows, redundant ones too, and keeps the coordinates that the
-    /// page gives and does not call rough. The same holds for the velocities, with all rates that the page gives.
+    /// Otherwise that pose is a guess. It is moved by the least change (rotations in rad, lengths by [`Model::size`],
+    /// both by the root of [`crate::Body::assembly_weight`]) that satisfies all rows, redundant ones too, and keeps the
+    /// coordinates that the page gives and does not call rough. The same holds for the velocities, with all rates that
+    /// the page gives.
     ///
     /// # Errors
-    /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a pose on the
-    /// wrong branch (opposite axes) or a quarter turn away from the guess; a link whose ends coincide; a start beyond `f64`.
+    /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a
+    /// pose on the wrong branch (opposite axes) or a quarter turn away from the guess; a link whose ends coincide; a
+    /// start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {
         let tree = Tree::of(self);
         if let Some(&body) = tree.unreached.first() {

@@ -44,7 +44,8 @@ const LARGEST_TURN: f64 = 0.2;
 /// Steps after which a projection has failed: rough guesses take some ten.
 const MAX_STEPS: usize = 200;
 
-/// The part of what it adds up that rounding leaves of an equation, at most: steps go on until then, if they still gain.
+/// The part of what it adds up that rounding leaves of an equation, at most: steps go on until then, if they still
+/// gain.
 const ROUNDING: f64 = 1e-14;
 
 impl Scales {

@@ -4,8 +4,9 @@ use super::Start;
 use crate::kinematics::{Equation, Kinematics};
 use crate::{Model, Row, RowOwner, RowUnit};
 
-/// A row of Φ, or of Φ_q q̇ − ν, of a start is met if it is this part or less of what it adds up: far above the rounding of an assembly
-/// in `f64`, which goes on until it gains no more digits, far below any number that one writes on purpose.
+/// A row of Φ, or of Φ_q q̇ − ν, of a start is met if it is this part or less of what it adds up: far above the
+/// rounding of an assembly in `f64`, which goes on until it gains no more digits, far below any number that one writes
+/// on purpose.
 pub const START_TOLERANCE: f64 = 1e-12;
 
 /// What a start may violate each of [`Model::rows`] by.
@@ -18,11 +19,12 @@ pub struct StartTolerances {
 }
 
 impl Model {
-    /// What a start may violate each of [`Model::rows`] by: [`START_TOLERANCE`] times the size of what the row adds up. An angle
-    /// of ten thousand turns is known less well than one of a few, and so is a joint that is far from the origin or moves fast.
+    /// What a start may violate each of [`Model::rows`] by: [`START_TOLERANCE`] times the size of what the row adds up.
+    /// An angle of ten thousand turns is known less well than one of a few, and so is a joint that is far from the
+    /// origin or moves fast.
     ///
-    /// Velocities of all bodies are projected together, so that the fastest counts for all rows; slower than 1 rad/s, or the mechanism's
-    /// [size](Model::size) a second, counts as that.
+    /// Velocities of all bodies are projected together, so that the fastest counts for all rows; slower than 1 rad/s,
+    /// or the mechanism's [size](Model::size) a second, counts as that.
     pub fn start_tolerances(&self, start: &Start) -> StartTolerances {
         let kinematics = Kinematics::at(self, 0.0);
         let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();

@@ -9,8 +9,8 @@ use super::projection::{Configuration, Scales, nearest_solution, scale_rows_and_
 use crate::kinematics::{Equation, Kinematics};
 use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, RowUnit, Support};
 
-/// What a rate that the page gives may be missed by, as a part of what its equation adds up: a page rounds its numbers. The rows of Φ
-/// are met to [`START_TOLERANCE`].
+/// What a rate that the page gives may be missed by, as a part of what its equation adds up: a page rounds its numbers.
+/// The rows of Φ are met to [`START_TOLERANCE`].
 const GIVEN_TOLERANCE: f64 = 1e-9;
 
 /// Linear equations among the velocities.

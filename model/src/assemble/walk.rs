@@ -172,8 +172,8 @@ impl<'m> Walk<'m> {
         reached
     }
 
-    /// The joint's rates, and the child's angular velocity relative to its parent in the child's frame: the given rates,
-    /// or those that come nearest to what is sought.
+    /// The joint's rates, and the child's angular velocity relative to its parent in the child's frame: the given
+    /// rates, or those that come nearest to what is sought.
     fn own_motion(&self, hanging: Hanging, step: Quaternion, sought: Option<Vector>) -> (Vec<f64>, Vector) {
         let (joint, given) = (&self.geometry[hanging.joint], &self.guesses[hanging.joint].rate);
         match joint.kind {
@@ -257,8 +257,8 @@ pub(super) fn relative(states: &[State], joint: &JointGeometry) -> Quaternion {
     (first.conjugate() * second).normalised()
 }
 
-/// The unit vector, in the child's frame, along which an angle's rate adds to the child's angular velocity; nothing for a
-/// displacement. The first body turns backwards, seen from the second.
+/// The unit vector, in the child's frame, along which an angle's rate adds to the child's angular velocity; nothing for
+/// a displacement. The first body turns backwards, seen from the second.
 fn turning_axis(
     joint: &JointGeometry,
     kind: CoordinateKind,

@@ -6,8 +6,8 @@ use super::{Equation, Kinematics};
 use crate::{JointCoordinate, JointKind, RowOwner};
 
 impl Kinematics {
-    /// For each scalar equation the size of what it adds up: positions and directions, each as far as the equation changes with
-    /// it; angles with all their turns; what is prescribed.
+    /// For each scalar equation the size of what it adds up: positions and directions, each as far as the equation
+    /// changes with it; angles with all their turns; what is prescribed.
     pub(crate) fn sizes(&self, equations: &[Equation], q: &[f64], near: &[Vec<f64>]) -> DVector<f64> {
         let of_body = |pose: &[f64]| [pose[0].abs(), pose[1].abs(), pose[2].abs(), 1.0, 1.0, 1.0];
         let units = DVector::from_iterator(6 * self.n_moving_bodies, q.chunks_exact(7).flat_map(of_body));

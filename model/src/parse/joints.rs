@@ -156,7 +156,8 @@ fn require_direction(
     reader.missing(section.place(key), words);
 }
 
-/// A coordinate direction for a key that is parallel to none of the others, which may be parameters or no directions at all.
+/// A coordinate direction for a key that is parallel to none of the others, which may be parameters or no directions at
+/// all.
 fn off(key: &str, others: &[&DeValue<'_>]) -> &'static str {
     let is_zero = |value: &DeValue<'_>| match value {
         DeValue::Integer(number) => number.as_str().trim_start_matches(['+', '-']) == "0",

@@ -64,7 +64,8 @@ pub fn read(file_name: &str, text: &str) -> Result<Model, Diagnostics> {
 
 /// Reads a page whose motions may be tables in files beside it.
 ///
-/// `load` gets the path of a table as the page writes it and returns the text of the CSV file, or why it cannot be read.
+/// `load` gets the path of a table as the page writes it and returns the text of the CSV file, or why it cannot be
+/// read.
 ///
 /// ```
 /// let page = r#"
@@ -119,8 +120,8 @@ pub(crate) fn unknown_parameter(model: &Model, name: &str) -> String {
     format!("unknown parameter `{name}`: {}", names::instead(name, &known))
 }
 
-/// What goes beyond the syntax. Places with a mistake of their own are not judged again. What can only be said of a good
-/// model, its start and its redundant rows, comes last.
+/// What goes beyond the syntax. Places with a mistake of their own are not judged again. What can only be said of a
+/// good model, its start and its redundant rows, comes last.
 fn check(reader: &mut Reader<'_>, model: &mut Model) {
     reader.add_problems(number_problems(model));
     if reader.names_are_broken() {

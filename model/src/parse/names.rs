@@ -11,7 +11,8 @@ const KEYWORDS: [&str; 51] = [
     "where", "while", "yield",
 ];
 
-/// Files and types are named by names, and a file's name must not be longer than some 255 characters, of which tools want some.
+/// Files and types are named by names, and a file's name must not be longer than some 255 characters, of which tools
+/// want some.
 pub(super) const MOST_CHARACTERS: usize = 100;
 
 /// Whether a name is in `snake_case`: a lowercase letter, then lowercase letters, digits and underscores.

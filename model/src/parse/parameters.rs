@@ -1,4 +1,5 @@
-//! Parameters and inputs: names with their default numbers. Inputs become fields of the generated mechanism, parameters those of a type of their own.
+//! Parameters and inputs: names with their default numbers. Inputs become fields of the generated mechanism, parameters
+//! those of a type of their own.
 
 use std::ops::Range;
 

@@ -261,7 +261,8 @@ pub(super) type Kinds<'k> = &'k [(&'static str, &'static [&'static str])];
 
 /// Refuses the keys that belong to other kinds of the same section.
 ///
-/// Where another kind has all the keys that are there it is the kind that was meant, and nothing is asked of the one that is written.
+/// Where another kind has all the keys that are there it is the kind that was meant, and nothing is asked of the one
+/// that is written.
 pub(super) fn refuse_others(
     reader: &mut Reader<'_>,
     section: &Section<'_>,

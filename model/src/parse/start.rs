@@ -1,4 +1,5 @@
-//! The start must be given where it counts, and exist: the page's angular velocities must be ones that the joints allow.
+//! The start must be given where it counts, and exist: the page's angular velocities must be ones that the joints
+//! allow.
 
 use super::kinds::start_keys;
 use super::reader::Reader;

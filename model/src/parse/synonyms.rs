@@ -1,4 +1,5 @@
-//! What other programs and formats call things that have another name here: URDF, SDF, MuJoCo's MJCF, Simscape, Adams, Modelica.
+//! What other programs and formats call things that have another name here: URDF, SDF, MuJoCo's MJCF, Simscape, Adams,
+//! Modelica.
 //!
 //! One word may stand for several of ours; which is meant, the place says, that knows its own words.
 

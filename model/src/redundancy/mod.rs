@@ -18,8 +18,8 @@ pub struct Analysis {
     pub rank: usize,
     /// Number of velocities that the independent rows, drivers' rows among them, leave free.
     pub degrees_of_freedom: usize,
-    /// Whether the rank at the start itself is less: the mechanism starts in a dead point or where branches meet, and its
-    /// velocities and accelerations there are not determined.
+    /// Whether the rank at the start itself is less: the mechanism starts in a dead point or where branches meet, and
+    /// its velocities and accelerations there are not determined.
     pub singular_start: bool,
 }
 
@@ -34,16 +34,17 @@ impl Model {
 
 /// Finds redundant rows. What [`Model::redundant`] holds already is not looked at.
 ///
-/// The rank of all rows, with lengths by [`Model::size`], is taken at the assembled start and at poses around it that satisfy the
-/// joints and couplers (drivers released), and the largest counts: a singular start does not fool it. Rows are
-/// kept in this order as long as they are independent: constrained bodies, joints of the trees, couplers, joints that
-/// close loops, drivers; so loop-closing joints lose rows first, later joints before earlier ones. Of one joint the rows that are
-/// most independent stay. Open trees have no redundant rows by construction and cost no more than
+/// The rank of all rows, with lengths by [`Model::size`], is taken at the assembled start and at poses around it that
+/// satisfy the joints and couplers (drivers released), and the largest counts: a singular start does not fool it. Rows
+/// are kept in this order as long as they are independent: constrained bodies, joints of the trees, couplers, joints
+/// that close loops, drivers; so loop-closing joints lose rows first, later joints before earlier ones. Of one joint
+/// the rows that are most independent stay. Open trees have no redundant rows by construction and cost no more than
 /// their start.
 ///
 /// # Errors
-/// Those of [`Model::assemble`], whose rows all have to be met, redundant ones too; a driver of a coordinate that is fixed
-/// without it; a mechanism that can neither move nor is driven; driven bodies whose motions contradict redundant rows later.
+/// Those of [`Model::assemble`], whose rows all have to be met, redundant ones too; a driver of a coordinate that is
+/// fixed without it; a mechanism that can neither move nor is driven; driven bodies whose motions contradict redundant
+/// rows later.
 pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     let (start, tree) = (model.assemble()?, Tree::of(model));
     if model.is_open(&tree) {
@@ -119,8 +120,8 @@ fn check_drivers(model: &Model, redundant: &[RedundantRow]) -> Result<(), Assemb
     Ok(())
 }
 
-/// Steps of the run after which redundant rows on driven bodies are looked at again: a motion may begin so smoothly that
-/// nothing shows at once.
+/// Steps of the run after which redundant rows on driven bodies are looked at again: a motion may begin so smoothly
+/// that nothing shows at once.
 const LATER: [f64; 3] = [3.0, 10.0, 30.0];
 
 /// Rows between driven bodies may hold at the start and not later, when only the rows that are kept are heeded.

@@ -5,8 +5,8 @@ use crate::assemble::projection::{Configuration, System, scattered};
 /// How many poses are looked for.
 const SAMPLES: usize = 3;
 
-/// How far from the start, rad or parts of the size: far enough that a singular start shows, near enough to come back to
-/// the constraints on the same branch.
+/// How far from the start, rad or parts of the size: far enough that a singular start shows, near enough to come back
+/// to the constraints on the same branch.
 const STEP: f64 = 0.15;
 
 /// A pose that is nearer to the start than this part of the step has not left it.

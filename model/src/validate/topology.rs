@@ -83,7 +83,8 @@ fn between_held(model: &Model, index: usize) -> Problem {
     }
 }
 
-/// A joint between the tree of a free body and another root. Bodies that only rods hold are no roots that could hold it.
+/// A joint between the tree of a free body and another root. Bodies that only rods hold are no roots that could hold
+/// it.
 fn ties_free_root(model: &Model, tree: &Tree, index: usize) -> Option<Problem> {
     let joint = &model.joints[index];
     let roots = [&joint.first, &joint.second].map(|end| root(tree, end.body));

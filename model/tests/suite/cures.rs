@@ -1,5 +1,5 @@
-//! What a message says to write is written, and then the page is read again: the mistake is gone, and what was written is no
-//! mistake itself. Of cures that offer several ways each is tried.
+//! What a message says to write is written, and then the page is read again: the mistake is gone, and what was written
+//! is no mistake itself. Of cures that offer several ways each is tried.
 
 use std::ops::Range;
 use std::path::Path;

@@ -89,8 +89,8 @@ ratio = 0.5
 offset = 1.57
 "#;
 
-/// Nothing tells how the bead is turned: the zero of the tie is as good a guess as the bead's own orientation, and where one is on the wrong
-/// branch the other is taken.
+/// Nothing tells how the bead is turned: the zero of the tie is as good a guess as the bead's own orientation, and
+/// where one is on the wrong branch the other is taken.
 #[test]
 fn a_guess_from_which_it_does_not_close_gives_way_to_the_other() {
     let model = read("bead", BEAD).unwrap_or_else(|mistakes| panic!("{mistakes}"));

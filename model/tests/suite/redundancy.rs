@@ -39,8 +39,8 @@ impl Pin {
     }
 }
 
-/// Bodies with their frames parallel to the global one, joined by revolute joints where those say; body 0 is the ground. Each body's
-/// centre is at its number's place of a skew line, so that no coordinate is special.
+/// Bodies with their frames parallel to the global one, joined by revolute joints where those say; body 0 is the
+/// ground. Each body's centre is at its number's place of a skew line, so that no coordinate is special.
 fn pinned(n_bodies: usize, pins: &[Pin]) -> String {
     let mut text = "format = 1\nname = \"pinned\"\n[[body]]\nname = \"b0\"\nfixed = true\n".to_owned();
     for body in 1..n_bodies {

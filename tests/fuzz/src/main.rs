@@ -5,9 +5,9 @@
 //! cargo run --package gyro-fuzz -- --seed 7 --case 1234    one case again, with its input
 //! ```
 //!
-//! What must hold of any input: no panic, no overflow of the stack, an answer within [`supervise::PATIENCE`], no more than
-//! [`supervise::MEMORY_KB`] of memory, and a place in every refusal. Cases run in processes of their own, so that one which does not come
-//! back is found too. Case number and seed determine the input.
+//! What must hold of any input: no panic, no overflow of the stack, an answer within [`supervise::PATIENCE`], no more
+//! than [`supervise::MEMORY_KB`] of memory, and a place in every refusal. Cases run in processes of their own, so that
+//! one which does not come back is found too. Case number and seed determine the input.
 #![allow(clippy::print_stdout, reason = "a program that prints what it finds")]
 
 mod case;

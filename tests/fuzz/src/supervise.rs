@@ -10,7 +10,8 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How long one case may take of a processor, or of time where that is not known. All but a few take milliseconds, good pages seconds.
+/// How long one case may take of a processor, or of time where that is not known. All but a few take milliseconds, good
+/// pages seconds.
 pub const PATIENCE: Duration = Duration::from_secs(40);
 
 /// How long one case may take on a machine that is busy with other things.

@@ -1,5 +1,5 @@
-//! The generator's own text with faults in it, of which one at a time is switched on: see `faults.rs`. All but the list of stale places
-//! needs the feature `faults`.
+//! The generator's own text with faults in it, of which one at a time is switched on: see `faults.rs`. All but the list
+//! of stale places needs the feature `faults`.
 #![allow(warnings, clippy::all, reason = "a copy with faults is not written to be read")]
 
 use std::cell::Cell;

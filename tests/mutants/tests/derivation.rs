@@ -47,7 +47,8 @@ fn written(model: &Model, fault: usize) -> Option<gyro_mutants::Module> {
 /// Seed of the primes and points.
 const SEED: u64 = 13;
 
-/// Whether a claim about a module is refuted; the first that is ends the search. `None` if the prime has not enough bits.
+/// Whether a claim about a module is refuted; the first that is ends the search. `None` if the prime has not enough
+/// bits.
 fn is_refuted<const L: usize>(model: &Model, module: &Module) -> Option<bool> {
     let decider = Decider::<L>::new(model, prime(model, module, SEED).ok()?);
     let mut verdicts = Claim::all(module).into_iter().map(|claim| decider.decide(module, claim, 1, SEED));

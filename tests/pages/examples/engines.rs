@@ -1,5 +1,5 @@
-//! Compares many random pages in every engine: `engines [FILE...] [FIRST_SEED COUNT]`; with `--compile` generated modules are compiled and run
-//! by the solvers, thirty pages to a program.
+//! Compares many random pages in every engine: `engines [FILE...] [FIRST_SEED COUNT]`; with `--compile` generated
+//! modules are compiled and run by the solvers, thirty pages to a program.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 #[path = "../tests/support/engines.rs"]

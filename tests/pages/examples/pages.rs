@@ -1,4 +1,5 @@
-//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [--read] [--module] [FILE...]`.
+//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [--read]
+//! [--module] [FILE...]`.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_verifier::{Depth, verify};

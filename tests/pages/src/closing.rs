@@ -5,7 +5,8 @@ use crate::vector::{Place, Vector, cross, difference, dot, scaled, sum};
 use gyro_model::{Model, Support};
 use nalgebra::DMatrix;
 
-/// The least singular value of what a joint's rows are of the free motions that counts as regular; its rows are about one.
+/// The least singular value of what a joint's rows are of the free motions that counts as regular; its rows are about
+/// one.
 pub const REGULAR: f64 = 0.02;
 
 /// Two points that are farther apart than this are different, m.
@@ -31,8 +32,8 @@ pub struct End {
 }
 
 impl Closing {
-    /// A joint at a point of the first body, with this axis and zero direction there; none if these make no frame. Only of a rod is the other
-    /// body's point chosen too.
+    /// A joint at a point of the first body, with this axis and zero direction there; none if these make no frame. Only
+    /// of a rod is the other body's point chosen too.
     pub fn between(
         kind: Kind,
         [a, b]: [usize; 2],
@@ -117,7 +118,8 @@ impl Closing {
         }
     }
 
-    /// Whether none of the joint's rows is a consequence of others: their derivatives along free motions are independent.
+    /// Whether none of the joint's rows is a consequence of others: their derivatives along free motions are
+    /// independent.
     pub fn is_regular(&self, model: &Model, places: &[Place], motions: &[Vec<f64>]) -> bool {
         let rows = self.rows(places);
         let rates: Vec<f64> = motions

@@ -1,8 +1,10 @@
-//! Random model pages: correct mechanisms with everything that the format has, written as people and programs write them.
+//! Random model pages: correct mechanisms with everything that the format has, written as people and programs write
+//! them.
 //!
-//! Trees of one to four bodies with joints of all kinds, roots that are fixed, driven, free or held by rows of their own, loops, couplers, drivers,
-//! forces and outputs; numbers that a program printed, that somebody shortened, that differ by less than a float can tell. A start is
-//! planted: joints that close loops are put where the bodies already are. So no page should be refused by anybody.
+//! Trees of one to four bodies with joints of all kinds, roots that are fixed, driven, free or held by rows of their
+//! own, loops, couplers, drivers, forces and outputs; numbers that a program printed, that somebody shortened, that
+//! differ by less than a float can tell. A start is planted: joints that close loops are put where the bodies already
+//! are. So no page should be refused by anybody.
 //!
 //! ```
 //! let text = gyro_pages::page(7);

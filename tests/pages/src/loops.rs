@@ -1,5 +1,5 @@
-//! What ties the tree's coordinates: drivers, couplers, and joints that close loops. Loops are closed where the tree already is, so
-//! that a consistent start exists.
+//! What ties the tree's coordinates: drivers, couplers, and joints that close loops. Loops are closed where the tree
+//! already is, so that a consistent start exists.
 
 use crate::closing::Closing;
 use crate::dice::value;

@@ -70,13 +70,14 @@ pub struct Page {
     pub bodies: Vec<(Hold, String)>,
     /// The tree that each body belongs to: a free body's own, or zero.
     pub roots: Vec<usize>,
-    /// The last body before it that hangs on a rod, or zero: its place is a guess as long as nothing but rods holds its tree.
+    /// The last body before it that hangs on a rod, or zero: its place is a guess as long as nothing but rods holds its
+    /// tree.
     pub held: Vec<usize>,
     pub joints: Vec<Joint>,
     /// All the rest.
     pub elements: String,
-    /// How many ways the joints of each tree leave its bodies to move against one another and its root; those of a free root are none of
-    /// them, as nothing can tie it.
+    /// How many ways the joints of each tree leave its bodies to move against one another and its root; those of a free
+    /// root are none of them, as nothing can tie it.
     pub freedoms: BTreeMap<usize, usize>,
     /// Whether something will close loops or couple coordinates: then starts are guesses.
     pub is_closed: bool,

@@ -1,5 +1,5 @@
-//! Random pages in every engine and in all coordinates: accelerations and short trajectories, as near to each other as rounding lets
-//! them be.
+//! Random pages in every engine and in all coordinates: accelerations and short trajectories, as near to each other as
+//! rounding lets them be.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 #[path = "support/engines.rs"]

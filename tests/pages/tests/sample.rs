@@ -1,4 +1,5 @@
-//! A sample of random pages is generated and proved. `cargo run --release -p gyro-pages --example pages -- --count 10000` does more.
+//! A sample of random pages is generated and proved. `cargo run --release -p gyro-pages --example pages -- --count
+//! 10000` does more.
 
 use gyro_verifier::{Depth, verify};
 

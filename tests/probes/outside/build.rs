@@ -49,7 +49,8 @@ const WRONG: bool = false;
 /// How many pages of odd names there are: not as many as names, each of which is proved and compiled.
 const ODD_PAGES: usize = 6;
 
-/// Names of what Rust, its prelude, the run time, generated code and the programs around it know, and names at the limits of what a name is.
+/// Names of what Rust, its prelude, the run time, generated code and the programs around it know, and names at the
+/// limits of what a name is.
 fn odd() -> Vec<String> {
     let known = "mechanism equations error result default core gyro_sim t k self_ dual scalar std alloc gyro_runner y x tree tree_with_jacobian \
         with_duals columns new start set_parameter value index option some none ok err vec string copy clone debug partial_eq phantom_data main build \

@@ -14,7 +14,8 @@ pub struct Modules {
 }
 
 impl Modules {
-    /// Reads all files under a crate's `src`. What is only compiled for tests, and the root that declares the modules, is left out.
+    /// Reads all files under a crate's `src`. What is only compiled for tests, and the root that declares the modules,
+    /// is left out.
     pub fn of(source: &Path) -> Self {
         let mut files = BTreeMap::new();
         read(source, "", &mut files);

@@ -9,8 +9,8 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Atoms over integers modulo a prime. What the functions are known to satisfy, the values do: `sin² + cos² = 1`, the
-/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`. Also
-/// `atan2(0, x) = 0`, which holds if x is positive: that it is must be seen elsewhere.
+/// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`.
+/// Also `atan2(0, x) = 0`, which holds if x is positive: that it is must be seen elsewhere.
 #[derive(Debug)]
 pub struct Drawn<'p, const L: usize> {
     prime: &'p Prime<L>,

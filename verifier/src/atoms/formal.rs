@@ -36,7 +36,8 @@ impl Atoms<Degree> for Formal {
         Degree::polynomial(1.0)
     }
 
-    /// The root of a quotient is of half its degrees; they are counted whole. Where there is none, a variable stands for it.
+    /// The root of a quotient is of half its degrees; they are counted whole. Where there is none, a variable stands
+    /// for it.
     fn sqrt(&self, x: &Degree) -> Degree {
         Degree { numerator_log2: x.numerator_log2.max(0.0), ..*x }
     }

@@ -4,8 +4,8 @@ use super::Field;
 use gyro_model::Rational;
 use num_traits::Zero;
 
-/// Bounds on the total degrees of a numerator and a denominator, as if nothing cancelled. A factorisation doubles them with every
-/// pivot, so they are kept as logarithms.
+/// Bounds on the total degrees of a numerator and a denominator, as if nothing cancelled. A factorisation doubles them
+/// with every pivot, so they are kept as logarithms.
 ///
 /// It is a number like others: to run a program over it gives bounds for its results.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -245,7 +245,8 @@ impl<'a> Reader<'a> {
         if place < size { Ok(Some(source(place))) } else { Err(refused(index)) }
     }
 
-    /// `let (a, b,) = { ...; (a, b,) };`: the bindings inside, of which only some go on. The block may be compiled apart.
+    /// `let (a, b,) = { ...; (a, b,) };`: the bindings inside, of which only some go on. The block may be compiled
+    /// apart.
     fn chunk<'p>(&mut self, names: impl Iterator<Item = &'p Pat>, block: &Expr) -> Result<(), Refusal> {
         let block = within(block).unwrap_or(block);
         let Expr::Block(inner) = block else { return Err(refused(block)) };

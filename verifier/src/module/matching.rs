@@ -10,7 +10,8 @@ use std::iter::Peekable;
 pub struct Hole {
     /// The braces with what is in them.
     pub body: Group,
-    /// Names of the arguments that the expected text leaves to choice, `ANY_t` for `t` or any name of what is not read, `_t`.
+    /// Names of the arguments that the expected text leaves to choice, `ANY_t` for `t` or any name of what is not read,
+    /// `_t`.
     pub arguments: Vec<String>,
     /// The function's documentation.
     pub doc: String,

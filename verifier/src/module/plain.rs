@@ -1,8 +1,8 @@
 //! Whether a body consists of what the reader looks at, and of nothing else.
 //!
-//! A syntax tree has places for much that no emitted body has: attributes, labels, types, type arguments, qualifiers. Instead of naming what
-//! must not be there, the body is written down again from the parts that the reader takes its meaning from. What comes out must
-//! be the tokens that stand there, so that whatever else there is, is refused.
+//! A syntax tree has places for much that no emitted body has: attributes, labels, types, type arguments, qualifiers.
+//! Instead of naming what must not be there, the body is written down again from the parts that the reader takes its
+//! meaning from. What comes out must be the tokens that stand there, so that whatever else there is, is refused.
 
 use super::syntax::refused;
 use crate::refusal::Refusal;

@@ -1,7 +1,7 @@
 //! What a module must look like around its formulas: everything that the description alone determines.
 //!
-//! Function bodies are left open as `{ HOLE_name }`, counts that depend on formulas as `INT_name`, and arguments that a body may
-//! leave unread as `ANY_name`.
+//! Function bodies are left open as `{ HOLE_name }`, counts that depend on formulas as `INT_name`, and arguments that a
+//! body may leave unread as `ANY_name`.
 
 use crate::joints::JointLayout;
 use gyro_model::{

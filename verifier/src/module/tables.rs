@@ -4,11 +4,13 @@ use crate::refusal::Refusal;
 use gyro_model::{Model, Motion, Spline};
 use std::slice::from_ref;
 
-/// The tables of a module in their order, and its text without their numbers. Each must be a table of the model, number for number.
+/// The tables of a module in their order, and its text without their numbers. Each must be a table of the model, number
+/// for number.
 ///
-/// A table can have a hundred thousand rows, which as tokens would take most of the time of a proof. So the arrays `KNOTS_0`, `PIECES_0` and so on are read, and
-/// emptied, before the text is parsed. Only numbers, commas, brackets and blanks are taken out, and lines stay where they are; an array that
-/// is written otherwise is not emptied, and [`matching`](super::matching) expects empty ones.
+/// A table can have a hundred thousand rows, which as tokens would take most of the time of a proof. So the arrays
+/// `KNOTS_0`, `PIECES_0` and so on are read, and emptied, before the text is parsed. Only numbers, commas, brackets and
+/// blanks are taken out, and lines stay where they are; an array that is written otherwise is not emptied, and
+/// [`matching`](super::matching) expects empty ones.
 pub fn read(model: &Model, text: &str) -> Result<(Vec<Spline>, String), Refusal> {
     let (arrays, emptied) = arrays(text)?;
     let pairs = arrays.chunks(2).enumerate().map(|(k, pair)| match pair {

@@ -59,7 +59,8 @@ pub enum Claim {
     JointAccelerationsAt,
     /// `corrected_accelerations` are those of the bodies there.
     CorrectedAccelerations,
-    /// `corrected_derivative` gives eqs. (14), (16), these accelerations, there the power, and the rates of the turn references.
+    /// `corrected_derivative` gives eqs. (14), (16), these accelerations, there the power, and the rates of the turn
+    /// references.
     CorrectedDerivative,
     /// `corrected_multipliers` satisfy eq. (17) there.
     CorrectedMultipliers,
@@ -262,7 +263,8 @@ impl Claim {
     }
 }
 
-/// The matrix that the values are, minus the given one, by rows, where either has an entry. A value without a place in the matrix is a row of its own.
+/// The matrix that the values are, minus the given one, by rows, where either has an entry. A value without a place in
+/// the matrix is a row of its own.
 fn sparse_differences<F: Field>(
     values: &[F],
     pattern: &[(usize, usize)],
@@ -283,9 +285,10 @@ fn sparse_differences<F: Field>(
     differences.into_iter().map(|row| row.into_values().collect()).collect()
 }
 
-/// With `δ = P(rows)` what the module gives: `Φ_π' P(rows) = rows` for any rows, and `(z − P(Φ_π' z))ᵀ M P(rows) = 0` for any motion z. What is in the
-/// brackets changes no row, and every motion that changes none is of this form: of z = 0 and no rows the second claim says that P(0) = 0. So
-/// `M δ` does no work on any motion that the rows leave free, and is `−Φ_π'ᵀ μ`.
+/// With `δ = P(rows)` what the module gives: `Φ_π' P(rows) = rows` for any rows, and `(z − P(Φ_π' z))ᵀ M P(rows) = 0`
+/// for any motion z. What is in the brackets changes no row, and every motion that changes none is of this form: of z =
+/// 0 and no rows the second claim says that P(0) = 0. So `M δ` does no work on any motion that the rows leave free, and
+/// is `−Φ_π'ᵀ μ`.
 fn projection<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let textbook = case.textbook(&case.point)?;
     let (phi_pi, mass) = (textbook.phi_pi()?, textbook.mass_matrix());

@@ -21,8 +21,8 @@ pub struct Needless {
 }
 
 impl<const L: usize> Decider<'_, L> {
-    /// Whether a function of one module gives the same numbers as that of another one at a random point; `None` if one of them exists at
-    /// no point. Functions that read accelerations are given those of the first module.
+    /// Whether a function of one module gives the same numbers as that of another one at a random point; `None` if one
+    /// of them exists at no point. Functions that read accelerations are given those of the first module.
     pub fn agree(&self, modules: [&Module; 2], function: &str, seed: impl Into<Seed>) -> Option<bool> {
         let same_places = modules[0].programs[function].places == modules[1].programs[function].places;
         let seed = seed.into();
@@ -63,8 +63,8 @@ impl<const L: usize> Decider<'_, L> {
         a.iter().zip(&b).all(|(a, b)| a.sub(b).to_f64().abs() <= FAR_FROM_ZERO * largest)
     }
 
-    /// Operations whose value, up to its sign, is zero or one that is known before, wherever |p| = 1: what a cleverer generator could
-    /// leave out. They are no fault. `None` if the function exists at no point.
+    /// Operations whose value, up to its sign, is zero or one that is known before, wherever |p| = 1: what a cleverer
+    /// generator could leave out. They are no fault. `None` if the function exists at no point.
     pub fn needless(&self, module: &Module, function: &str, seed: impl Into<Seed>) -> Option<Vec<Needless>> {
         self.at_point(module, seed.into(), |draw, atoms| {
             let (draw, accelerations) = suited(module, function, draw, atoms)?;
@@ -87,9 +87,11 @@ impl<const L: usize> Decider<'_, L> {
         })
     }
 
-    /// What is wrong with the patterns: zeros that are stored, places out of order. (That no place is missing is part of the claims.)
+    /// What is wrong with the patterns: zeros that are stored, places out of order. (That no place is missing is part
+    /// of the claims.)
     ///
-    /// A number that is zero at a random point is zero identically, with the probability of its claim; so it is if any number may stand for a root.
+    /// A number that is zero at a random point is zero identically, with the probability of its claim; so it is if any
+    /// number may stand for a root.
     ///
     /// # Errors
     /// [`Verdict::Undecided`] if something is divided by zero everywhere.

@@ -1,12 +1,13 @@
 //! Decides claims at random points and bounds the probability of a wrong yes.
 //!
-//! A claim's residuals are quotients of polynomials in what is drawn. If one is not zero identically, its numerator, of degree d,
-//! vanishes at a random point with probability at most d / p (Schwartz 1980, Zippel 1979).
+//! A claim's residuals are quotients of polynomials in what is drawn. If one is not zero identically, its numerator, of
+//! degree d, vanishes at a random point with probability at most d / p (Schwartz 1980, Zippel 1979).
 //!
-//! *Roots.* Of a number that varies a root exists modulo p at every other point only. Where it does not, a number drawn at random stands
-//! for it: an identity that holds for any number in its place holds for the root. So a residual that is zero decides for the claim. One
-//! that is not decides against it only where all roots exist; if there are too many to find such a point, floats of
-//! 384 bits decide. Roots of parameters alone are never too many: they are few for each joint, and joints are drawn one by one.
+//! *Roots.* Of a number that varies a root exists modulo p at every other point only. Where it does not, a number drawn
+//! at random stands for it: an identity that holds for any number in its place holds for the root. So a residual that
+//! is zero decides for the claim. One that is not decides against it only where all roots exist; if there are too many
+//! to find such a point, floats of 384 bits decide. Roots of parameters alone are never too many: they are few for each
+//! joint, and joints are drawn one by one.
 
 use super::case::Case;
 use super::claim::Claim;
@@ -423,8 +424,8 @@ impl<'a, const L: usize> Decider<'a, L> {
         Some((point::modular(self.model, module, &self.prime, &mut random)?, atoms))
     }
 
-    /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been missed. `None` if they
-    /// are all zero where all roots exist.
+    /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been
+    /// missed. `None` if they are all zero where all roots exist.
     fn look_closer(&self, statements: &Statements<'_>, residuals: &[Id], seed: Seed) -> Option<Verdict> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let roots = statements.roots(&reach);
@@ -460,7 +461,8 @@ impl<'a, const L: usize> Decider<'a, L> {
         Some(self.refute_in_floats(statements, residuals, &reach, seed))
     }
 
-    /// The angle of a point on the line y = 0 was taken for zero: a claim that needs it is refuted if the point is not on the right half.
+    /// The angle of a point on the line y = 0 was taken for zero: a claim that needs it is refuted if the point is not
+    /// on the right half.
     fn look_behind(
         &self,
         statements: &Statements<'_>,
@@ -515,8 +517,8 @@ impl<'a, const L: usize> Decider<'a, L> {
         }
     }
 
-    /// Evaluates something at a random point at which it exists with all its roots; where there are too many to find such a point, with numbers in the
-    /// place of some. `None` if something is divided by zero.
+    /// Evaluates something at a random point at which it exists with all its roots; where there are too many to find
+    /// such a point, with numbers in the place of some. `None` if something is divided by zero.
     pub(super) fn at_any_point<'p, R>(
         &'p self,
         module: &Module,
@@ -556,7 +558,8 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 }
 
-/// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding makes 1e-115 of it.
+/// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding
+/// makes 1e-115 of it.
 pub(super) const FAR_FROM_ZERO: f64 = 1e-60;
 
 /// In how many ways two arguments may be one family by accident: by sign, and by any of the halves of either.

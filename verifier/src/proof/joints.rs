@@ -1,10 +1,10 @@
 //! What a tree's functions in joint coordinates must satisfy.
 //!
-//! `y = to_maximal(x)` satisfies all rows, and the joint coordinates that the textbook reads off it are those that it was made of. So its
-//! velocities v depend on u through a matrix `B = ∂v/∂u` of full column rank, whose columns are all that the velocity rows leave free. Then
-//! the accelerations of eq. (17) are the v̇ that satisfy the rows' second derivative, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the
-//! constraints only what does no work on any free motion, `Bᵀ (M v̇ − f) = 0`: multipliers are not needed. B and v̇ are
-//! derivatives of `to_maximal` by dual numbers.
+//! `y = to_maximal(x)` satisfies all rows, and the joint coordinates that the textbook reads off it are those that it
+//! was made of. So its velocities v depend on u through a matrix `B = ∂v/∂u` of full column rank, whose columns are all
+//! that the velocity rows leave free. Then the accelerations of eq. (17) are the v̇ that satisfy the rows' second
+//! derivative, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the constraints only what does no work on any free motion, `Bᵀ (M
+//! v̇ − f) = 0`: multipliers are not needed. B and v̇ are derivatives of `to_maximal` by dual numbers.
 
 use super::case::{Arguments, Case};
 use super::partition::turning;
@@ -118,8 +118,9 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
-/// At any state all but angles are what the textbook reads off it. Angles change as the textbook's do, however the buffer changes, and of the
-/// state of (x, u) they are x if the buffer holds x: so the buffer does nothing but choose among the turns.
+/// At any state all but angles are what the textbook reads off it. Angles change as the textbook's do, however the
+/// buffer changes, and of the state of (x, u) they are x if the buffer holds x: so the buffer does nothing but choose
+/// among the turns.
 pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
     let maximal = Point { state: case.run("to_maximal", &case.point), ..case.point.clone() };

@@ -1,9 +1,10 @@
 //! What the coordinate partition of a tree by charts must satisfy.
 //!
-//! Independent of a body on a revolute joint are one Euler parameter, the special one that the chart names, and the rate about its own
-//! axis; of a free body or one on a spherical joint, all Euler parameters but the special one, and w'. A Newton step goes from root to
-//! leaf: a body's dot-1 rows are linearised where the bodies before it are corrected already and its own p was
-//! first brought to unit length, `u = p (3 − pᵀp) / 2`; its point rows then give its position exactly.
+//! Independent of a body on a revolute joint are one Euler parameter, the special one that the chart names, and the
+//! rate about its own axis; of a free body or one on a spherical joint, all Euler parameters but the special one, and
+//! w'. A Newton step goes from root to leaf: a body's dot-1 rows are linearised where the bodies before it are
+//! corrected already and its own p was first brought to unit length, `u = p (3 − pᵀp) / 2`; its point rows then give
+//! its position exactly.
 
 use super::case::Case;
 use super::point::stretched;

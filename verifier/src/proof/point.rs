@@ -40,8 +40,8 @@ impl<F: Field> Draw<F> {
         }
     }
 
-    /// A random point with |p| = 1: Euler parameters are `(1 − u·u, 2u) / (1 + u·u)` of a random vector u, which reaches
-    /// every unit vector but one. `None` where `1 + u·u` vanishes.
+    /// A random point with |p| = 1: Euler parameters are `(1 − u·u, 2u) / (1 + u·u)` of a random vector u, which
+    /// reaches every unit vector but one. `None` where `1 + u·u` vanishes.
     fn with(
         model: &Model,
         module: &Module,

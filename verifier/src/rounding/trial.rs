@@ -24,15 +24,17 @@ pub const KERNELS: [&str; 5] = [
 pub struct Trial<'c> {
     /// The maximal state in `f64`.
     pub state: Vec<f64>,
-    /// Error of each kernel in `f64`, in the order of [`KERNELS`]: the largest error of a result in terms of the largest result. Of u̇ in
-    /// terms of the largest of u̇ and v̇: in gimbal lock u̇ may vanish while all else accelerates.
+    /// Error of each kernel in `f64`, in the order of [`KERNELS`]: the largest error of a result in terms of the
+    /// largest result. Of u̇ in terms of the largest of u̇ and v̇: in gimbal lock u̇ may vanish while all else
+    /// accelerates.
     pub errors: [f64; KERNELS.len()],
     /// (s̈, ẇ') in 384 bits.
     pub accelerations: Vec<Real<'c>>,
 }
 
-/// Tries a joint state `(x, u)`, the maximal state of it violated by as much as `violation` says for each of its numbers. The kernels of
-/// corrected states are tried on the state itself. `None` where a kernel divides by zero in 384 bits, or for what is no tree.
+/// Tries a joint state `(x, u)`, the maximal state of it violated by as much as `violation` says for each of its
+/// numbers. The kernels of corrected states are tried on the state itself. `None` where a kernel divides by zero in 384
+/// bits, or for what is no tree.
 pub fn trial<'c>(
     model: &Model,
     module: &Module,
@@ -85,7 +87,8 @@ pub fn trial<'c>(
     Some(Trial { state: short_violated.state, errors, accelerations })
 }
 
-/// The largest error in terms of the largest number, also among those of `scale`; infinite where something is not a number.
+/// The largest error in terms of the largest number, also among those of `scale`; infinite where something is not a
+/// number.
 pub fn relative_error(exact: &[Real<'_>], computed: &[f64], scale: &[Real<'_>]) -> f64 {
     let largest = exact.iter().chain(scale).map(|x| x.to_f64().abs()).fold(0.0, f64::max);
     let error = exact

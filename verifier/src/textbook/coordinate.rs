@@ -30,8 +30,8 @@ impl<F: Field> Placed<F> {
 }
 
 impl<F: Field> Evaluation<'_, F> {
-    /// A coordinate along the poses' path; of an angle the continuous value, which must have a turn reference. `None` where it
-    /// is not defined.
+    /// A coordinate along the poses' path; of an angle the continuous value, which must have a turn reference. `None`
+    /// where it is not defined.
     pub(super) fn coordinate(&self, on: JointCoordinate, poses: &[Pose<F>]) -> Option<Jet<F>> {
         let kind = self.textbook.model.coordinate_kind(on);
         let placed = self.joints[on.joint].placed(poses);
@@ -47,8 +47,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some(reference + rest)
     }
 
-    /// How fast the angle of `(C, S)` changes along the motion, `(C S' − S C') / (S² + C²)`: off the constraints not the rate of the
-    /// coordinate.
+    /// How fast the angle of `(C, S)` changes along the motion, `(C S' − S C') / (S² + C²)`: off the constraints not
+    /// the rate of the coordinate.
     pub fn angle_rate(&self, on: JointCoordinate) -> Option<F> {
         let (frames, mut poses) = (&self.joints[on.joint], self.still.clone());
         for body in [frames.first.body, frames.second.body] {

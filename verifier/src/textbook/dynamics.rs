@@ -82,7 +82,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some([forces.power.value, drivers])
     }
 
-    /// What is left of eq. (17) at accelerations `(s̈, ẇ')` and multipliers: 6 numbers for each body, then one for each row.
+    /// What is left of eq. (17) at accelerations `(s̈, ẇ')` and multipliers: 6 numbers for each body, then one for each
+    /// row.
     pub fn residual_of_motion(&self, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
         let (imbalance, phi_pi) = (self.imbalance(accelerations)?, self.phi_pi()?);
         let reactions = phi_pi.transposed_product(lambda, &self.scope.zero.value);

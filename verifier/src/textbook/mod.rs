@@ -1,9 +1,9 @@
 //! The textbook side: what a mechanism's functions must be equal to.
 //!
-//! Typed from Gruzman and Sarzeto's paper (equation numbers are its own) and from Haug, *Computer Aided Kinematics and Dynamics
-//! of Mechanical Systems* (1989), as plainly as they print it: no step is taken to save work, and nothing is shared with the
-//! generator. Φ is written once; its derivatives Φ_q, Φ_π', ν and γ are taken by second-order dual numbers over the field, which
-//! is exact. Everything is defined wherever |p| = 1, on the constraints and off them.
+//! Typed from Gruzman and Sarzeto's paper (equation numbers are its own) and from Haug, *Computer Aided Kinematics and
+//! Dynamics of Mechanical Systems* (1989), as plainly as they print it: no step is taken to save work, and nothing is
+//! shared with the generator. Φ is written once; its derivatives Φ_q, Φ_π', ν and γ are taken by second-order dual
+//! numbers over the field, which is exact. Everything is defined wherever |p| = 1, on the constraints and off them.
 //!
 //! Functions return `None` where a formula divides by zero: such a point decides nothing, another must be taken.
 

@@ -22,8 +22,8 @@ pub enum Reading<F> {
     },
     /// A length and its rate.
     Length([F; 2]),
-    /// Euler parameters of the second body's frame in the first's, and the angular velocity of the second body relative to the
-    /// first in the second's frame.
+    /// Euler parameters of the second body's frame in the first's, and the angular velocity of the second body relative
+    /// to the first in the second's frame.
     Orientation([F; 7]),
 }
 
@@ -74,7 +74,8 @@ impl<F: Field> Evaluation<'_, F> {
         self.textbook.turns.iter().map(|&turn| self.coordinate_rate(turn).value).collect()
     }
 
-    /// The numbers of all outputs, at accelerations `(s̈, ẇ')` of the bodies with coordinates and multipliers of all rows.
+    /// The numbers of all outputs, at accelerations `(s̈, ẇ')` of the bodies with coordinates and multipliers of all
+    /// rows.
     pub fn outputs(&self, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
         let outputs = self.textbook.model.outputs.iter();
         let numbers = outputs.map(|output| self.output(&output.kind, accelerations, lambda));
@@ -122,8 +123,8 @@ impl<F: Field> Evaluation<'_, F> {
         [acceleration.s + moving.pose.a.apply(&relative), acceleration.w]
     }
 
-    /// `−Φ_rᵀλ` and `−A Φ_π'ᵀλ` of a joint's rows on its second body, about its joint point there, in the first body's joint
-    /// frame; where the second has no coordinates, the opposite of what the rows do to the first.
+    /// `−Φ_rᵀλ` and `−A Φ_π'ᵀλ` of a joint's rows on its second body, about its joint point there, in the first body's
+    /// joint frame; where the second has no coordinates, the opposite of what the rows do to the first.
     fn reaction(&self, joint: usize, lambda: &[F]) -> Option<[Vector<F>; 2]> {
         let frames = &self.joints[joint];
         let (i, j) = (frames.first.body, frames.second.body);

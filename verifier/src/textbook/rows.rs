@@ -38,7 +38,8 @@ impl<F: Field> Evaluation<'_, F> {
         self.derivatives(self.textbook.n_rows(), 6, |moving_body, k| Path::Virtual { moving_body, k })
     }
 
-    /// The derivatives of the joint rows along some paths of each moving_body. A row in which a body does not occur does not change with it.
+    /// The derivatives of the joint rows along some paths of each moving_body. A row in which a body does not occur
+    /// does not change with it.
     fn derivatives(
         &self,
         n_rows: usize,
@@ -65,7 +66,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some(matrix)
     }
 
-    /// Φ of an owner's rows to first order in a change of the Euler parameters of a moving_body from other ones: `Φ + Φ_p δ`.
+    /// Φ of an owner's rows to first order in a change of the Euler parameters of a moving_body from other ones: `Φ +
+    /// Φ_p δ`.
     pub fn linearised(&self, owner: RowOwner, moving_body: usize, p: &[F], change: &[F]) -> Option<Vec<F>> {
         let body = self.textbook.moving_bodies[moving_body];
         let mut poses = self.still.clone();

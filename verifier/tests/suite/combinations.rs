@@ -68,8 +68,8 @@ fn page((kind, own, coordinate): (&str, &str, Option<&str>), tuned: &[&str], has
 /// What is refused, of one kind of joint.
 fn refused(kind: (&str, &str, Option<&str>)) -> Vec<String> {
     let mut refused = Vec::new();
-    // What depends on the parameter alone is a result of its own where there is an input. Without one there are fewer such results,
-    // so there all parameters come at once; one by one they were tried once.
+    // What depends on the parameter alone is a result of its own where there is an input. Without one there are fewer
+    // such results, so there all parameters come at once; one by one they were tried once.
     let alone = TUNABLE.iter().map(|tuned| (std::slice::from_ref(tuned), true));
     for (tuned, has_input) in alone.chain([(&TUNABLE[..], false), (&[], false)]) {
         let page = generate_text("combined.toml", &page(kind, tuned, has_input));

@@ -4,8 +4,8 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-/// What `cargo metadata` says of the workspace's own manifests. It looks at no other package: what other platforms would need has
-/// been fetched by nobody.
+/// What `cargo metadata` says of the workspace's own manifests. It looks at no other package: what other platforms
+/// would need has been fetched by nobody.
 fn metadata() -> Value {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let output = Command::new(cargo)
@@ -17,8 +17,8 @@ fn metadata() -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// The packages of the workspace that each of them names as a normal dependency, for any platform and feature. No package from
-/// elsewhere can lead back into the workspace, so these are all the ways there are.
+/// The packages of the workspace that each of them names as a normal dependency, for any platform and feature. No
+/// package from elsewhere can lead back into the workspace, so these are all the ways there are.
 fn edges(metadata: &Value) -> BTreeMap<String, Vec<String>> {
     let text = |value: &Value| value.as_str().expect("a text").to_owned();
     let list = |value: &Value| value.as_array().expect("a list").clone();

@@ -1,6 +1,7 @@
 //! Fault injection: emitted modules with one thing wrong must not be proved.
 //!
-//! Formulas are mutated after they were read, so that a mutant differs in nothing but its formula; the text is mutated as text.
+//! Formulas are mutated after they were read, so that a mutant differs in nothing but its formula; the text is mutated
+//! as text.
 
 use crate::faults::{Fault, apply, faults};
 use crate::support::Page;
@@ -101,8 +102,8 @@ fn is_of_maximal(function: &str) -> bool {
     !of_joints.iter().any(|start| function.starts_with(start))
 }
 
-/// Faults of the derivation of γ, and others, half of them in functions of joint coordinates if there are any, spread evenly over all
-/// possible ones.
+/// Faults of the derivation of γ, and others, half of them in functions of joint coordinates if there are any, spread
+/// evenly over all possible ones.
 fn sample(module: &Module, count: usize) -> Vec<(String, Fault)> {
     let is_derivation = |fault: &Fault| {
         matches!(fault, Fault::ForgottenTerm | Fault::TransposedRotation(_) | Fault::ForgottenVelocities(_))
@@ -153,7 +154,8 @@ fn no_mutant_of_a_text_survives() {
     assert!(survivors.is_empty(), "{} survivors:\n{}", survivors.len(), survivors.join("\n"));
 }
 
-/// Whether another text, with exact constants of its own, computes the same at the states that its functions are made for.
+/// Whether another text, with exact constants of its own, computes the same at the states that its functions are made
+/// for.
 pub fn is_equivalent(page: &Page, [code, constants]: [&str; 2]) -> bool {
     let read = |code, constants| Module::read(&page.model, code, constants).expect("the emitted subset");
     let modules = [read(&page.code, &page.constants), read(code, constants)];

@@ -12,8 +12,8 @@ fn modules_of_both_partitions_are_proved() {
     }
 }
 
-/// The half angle between joint frames that are skew to each other is a root of what has roots in it. Modulo some primes it does not
-/// exist: these frames are proved modulo others.
+/// The half angle between joint frames that are skew to each other is a root of what has roots in it. Modulo some
+/// primes it does not exist: these frames are proved modulo others.
 #[test]
 fn roots_of_roots_are_found() {
     let axes = ["[1, 1, 0]", "[1, 2, 3]", "[2.34, 2.25, 2.22]", "[1, 1, 1]"];

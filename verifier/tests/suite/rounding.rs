@@ -4,8 +4,8 @@ use gyro_verifier::field::{Precision, Real};
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{self, DOUBLE_DIGITS, Kind};
 
-/// Units in the last place that a kernel of the paper's scene may lose near the start, where nothing cancels but what the scene makes
-/// cancel: angles of 1e-7 between axes at right angles.
+/// Units in the last place that a kernel of the paper's scene may lose near the start, where nothing cancels but what
+/// the scene makes cancel: angles of 1e-7 between axes at right angles.
 const NEAR_START: f64 = 100.0;
 
 #[test]

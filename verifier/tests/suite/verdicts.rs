@@ -119,8 +119,8 @@ fn arm(axis: &str, zero: &str) -> Model {
     gyro_model::read("arm.toml", &page).unwrap_or_else(|problems| panic!("{page}\n{problems}"))
 }
 
-/// The axis is as long as the root of 26 + p², its zero direction across it as that of 26 (26 + p²): of a number that is no square modulo a prime, times
-/// 26 or not, one root is always missing, unless 26 is a square.
+/// The axis is as long as the root of 26 + p², its zero direction across it as that of 26 (26 + p²): of a number that
+/// is no square modulo a prime, times 26 or not, one root is always missing, unless 26 is a square.
 #[test]
 fn roots_of_parameters_do_not_exclude_each_other() {
     for (axis, zero) in
@@ -227,7 +227,8 @@ fn zero_but_for_rounding_is_zero() {
     assert!(report.is_proved(), "{report}");
 }
 
-/// A body turned by half a turn away from its joint may have its axis at right angles to the joint's: solves of trees divide by zero there, and may.
+/// A body turned by half a turn away from its joint may have its axis at right angles to the joint's: solves of trees
+/// divide by zero there, and may.
 #[test]
 fn solves_may_need_joints_that_are_whole() {
     let page = "format = 1\nname = \"arm\"\n[[body]]\nname = \"base\"\nfixed = \"constrained\"\nmass = 1\ninertia = [0.1, 0.2, 0.1]\n\

@@ -106,7 +106,8 @@ fn kept(chip: Chip, name: String) -> Result<Program, Failure> {
 /// How long a program may run.
 pub(crate) const RUNNING: Duration = Duration::from_secs(120);
 
-/// Virtual time of an instruction, as the power of two of nanoseconds: 4 ns for a program that keeps time, 256 ns for one that counts.
+/// Virtual time of an instruction, as the power of two of nanoseconds: 4 ns for a program that keeps time, 256 ns for
+/// one that counts.
 fn shift(name: &str) -> u32 {
     if name.starts_with("control") { 2 } else { 8 }
 }

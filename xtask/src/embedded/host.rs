@@ -11,7 +11,8 @@ use std::process::Command;
 /// What the host printed.
 pub(crate) struct Expected(Vec<Run>);
 
-/// Builds the runs for this machine, as it is and with all that its processor can do, and runs them: the bits must not depend on it.
+/// Builds the runs for this machine, as it is and with all that its processor can do, and runs them: the bits must not
+/// depend on it.
 pub(crate) fn run() -> Result<Expected, Failure> {
     let _spinner = Spinner::new("building and running on the host".to_owned());
     let plain = with("host", "")?;

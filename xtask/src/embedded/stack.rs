@@ -1,5 +1,5 @@
-//! A bound of the stack without running anything: the stack of each function, from the compiler, along the longest path of calls, from
-//! the disassembly.
+//! A bound of the stack without running anything: the stack of each function, from the compiler, along the longest path
+//! of calls, from the disassembly.
 
 use super::elf::Elf;
 use super::firmware::Program;
@@ -162,8 +162,8 @@ fn head(line: &str) -> Option<(u64, &str)> {
     Some((u64::from_str_radix(address, 16).ok()?, name))
 }
 
-/// `blx r3`, or a branch through a register other than that of the return. (`mov pc, r6` jumps within a table of branches, which
-/// are in the disassembly too.)
+/// `blx r3`, or a branch through a register other than that of the return. (`mov pc, r6` jumps within a table of
+/// branches, which are in the disassembly too.)
 fn is_call_by_pointer(instruction: &str) -> bool {
     let mut words = instruction.split_whitespace();
     match (words.next(), words.next()) {

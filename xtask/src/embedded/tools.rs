@@ -50,7 +50,8 @@ impl Tools {
         Command::new(self.path(name))
     }
 
-    /// A command of Cargo for a target without an operating system, on the firmware's workspace; `core` is built from its source.
+    /// A command of Cargo for a target without an operating system, on the firmware's workspace; `core` is built from
+    /// its source.
     pub(crate) fn cargo(&self, subcommand: &str, triple: &str, linker: &str, flags: &str) -> Command {
         let variable = triple.to_uppercase().replace('-', "_");
         let mut command = self.command("cargo");

@@ -1,4 +1,5 @@
-//! The numbers of tables. As tokens those of a long table would take most of the time of a generation, so they are written into the text.
+//! The numbers of tables. As tokens those of a long table would take most of the time of a generation, so they are
+//! written into the text.
 
 use gyro_model::Spline;
 

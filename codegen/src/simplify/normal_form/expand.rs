@@ -68,7 +68,8 @@ impl<'a> Expansion<'a> {
             let other_square = self.product(&value, &value)?;
             square.add(&other_square.scale(&Constant::integer(-1)));
         }
-        // What follows from earlier relations, such as cos² = 1 − sin² where sin² = 1 − cos² is known, replaces nothing.
+        // What follows from earlier relations, such as cos² = 1 − sin² where sin² = 1 − cos² is known, replaces
+        // nothing.
         let says_more = |literal: Literal| {
             let has_square = |(_, m): (&Constant, &Monomial)| m.powers().any(|(l, e)| l == literal && e >= 2);
             !square.terms().any(has_square)
@@ -85,8 +86,9 @@ impl<'a> Expansion<'a> {
         literal.and_then(|literal| self.rules.get(&literal)).is_some_and(|rule| rule.used)
     }
 
-    /// How many terms of denominators, and of what else will be divided by, are subtracted from others although they cannot be negative: where they come close, digits are lost. A
-    /// parameter (a mass, a moment of inertia) counts as positive.
+    /// How many terms of denominators, and of what else will be divided by, are subtracted from others although they
+    /// cannot be negative: where they come close, digits are lost. A parameter (a mass, a moment of inertia) counts as
+    /// positive.
     pub fn cancellations<'p>(&self, divisors: impl Iterator<Item = &'p Polynomial>) -> usize {
         let is_parameter =
             |literal: Literal| matches!(self.atoms[literal], Atom::Symbol(Symbol::Parameter(_)));

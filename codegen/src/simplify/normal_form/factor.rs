@@ -1,9 +1,10 @@
 //! Greedy factoring of a system of sums: what saves most is given a name, again and again.
 //!
-//! A candidate is a sum of two terms up to a common factor, `(a s + 2 b)` in `3 a s x + 6 b x`, or, once no sum is left, a
-//! product of two factors. A longer common sum is found two terms at a time. After Rajski and Vasudevamurthy, "The
-//! testability-preserving concurrent decomposition and factorization of Boolean expressions", IEEE Trans. CAD 11(6), 1992,
-//! whose cubes have no coefficients: here sums match up to a constant factor, and a constant is a factor like any other.
+//! A candidate is a sum of two terms up to a common factor, `(a s + 2 b)` in `3 a s x + 6 b x`, or, once no sum is
+//! left, a product of two factors. A longer common sum is found two terms at a time. After Rajski and Vasudevamurthy,
+//! "The testability-preserving concurrent decomposition and factorization of Boolean expressions", IEEE Trans. CAD
+//! 11(6), 1992, whose cubes have no coefficients: here sums match up to a constant factor, and a constant is a factor
+//! like any other.
 
 use super::polynomial::{Literal, Monomial, mix};
 use super::sums::{Ratio, Scale, Scales, SumId, Sums, Term, Value};
@@ -11,8 +12,8 @@ use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What terms may have in common. Sums are found by a number that equal ones share: most pairs of terms are met once and
-/// never again. What is extracted is compared exactly.
+/// What terms may have in common. Sums are found by a number that equal ones share: most pairs of terms are met once
+/// and never again. What is extracted is compared exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Key {
     Sum(u64),
@@ -80,8 +81,8 @@ enum Choice {
 /// Scales that are tried for one sum, beside those without a coefficient.
 const MAX_SCALES: usize = 4;
 
-/// Extracts common parts until none saves an operation. A seed shuffles candidates of nearly equal worth; zero takes them
-/// in order. `None` if that takes more than `steps`, from which what it took is subtracted.
+/// Extracts common parts until none saves an operation. A seed shuffles candidates of nearly equal worth; zero takes
+/// them in order. `None` if that takes more than `steps`, from which what it took is subtracted.
 pub fn factor(mut system: Sums, seed: u64, steps: &mut usize) -> Option<Sums> {
     let pairs: usize = system.sums.iter().map(|terms| terms.len() * terms.len() / 2).sum();
     if pairs > *steps {
@@ -390,7 +391,8 @@ impl Factoring<'_> {
     }
 }
 
-/// What decides about the cost of a sum: how many literals its terms have, and their coefficients up to a common factor.
+/// What decides about the cost of a sum: how many literals its terms have, and their coefficients up to a common
+/// factor.
 struct Measure {
     degrees: [usize; 2],
     ratio: f64,

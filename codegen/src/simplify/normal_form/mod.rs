@@ -2,7 +2,8 @@
 //!
 //! What is built by a recursion over bodies carries terms that cancel or repeat. Written out as polynomials over sines,
 //! cosines, rates and parameters (`expand`), equal things are equal and opposite ones vanish; common factors, sums and
-//! terms are then found among all roots together (`factor`), and constant factors put where they cost least (`rescale`).
+//! terms are then found among all roots together (`factor`), and constant factors put where they cost least
+//! (`rescale`).
 
 mod expand;
 mod factor;
@@ -41,17 +42,17 @@ const MAX_STEPS: usize = 100_000;
 const FEW: u64 = 2;
 const MANY: u64 = 40;
 
-/// The cheapest form found of the roots: equal to them wherever the identities hold, and the roots themselves if nothing
-/// is cheaper or if they are too large.
+/// The cheapest form found of the roots: equal to them wherever the identities hold, and the roots themselves if
+/// nothing is cheaper or if they are too large.
 ///
-/// `unit` names points of unit circles and spheres, such as the four Euler parameters: the squares of each add up to one.
-/// The sine and cosine of one operand need no mention.
+/// `unit` names points of unit circles and spheres, such as the four Euler parameters: the squares of each add up to
+/// one. The sine and cosine of one operand need no mention.
 pub fn normal_form(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<ExprId> {
     normal_form_of(graph, unit, roots, &[])
 }
 
-/// The same; the last argument says which of the roots something will be divided by, so that they are better sums of what cannot be
-/// negative.
+/// The same; the last argument says which of the roots something will be divided by, so that they are better sums of
+/// what cannot be negative.
 pub fn normal_form_of(
     graph: &mut Graph,
     unit: &[Vec<ExprId>],
@@ -69,8 +70,9 @@ pub fn normal_form_of(
     }
 }
 
-/// Whether a root is taken of something that changes from step to step, such as the depth of a stop or the length of a link. It is small where a
-/// difference vanishes; as a polynomial, whose terms are not, it would have no digits left there.
+/// Whether a root is taken of something that changes from step to step, such as the depth of a stop or the length of a
+/// link. It is small where a difference vanishes; as a polynomial, whose terms are not, it would have no digits left
+/// there.
 fn loses_digits(graph: &Graph, roots: &[ExprId]) -> bool {
     let is_changing_root = |id: ExprId| matches!(graph.node(id), Node::Sqrt(_)) && graph.is_changing(id);
     graph.reachable(roots).into_iter().any(is_changing_root)
@@ -84,8 +86,8 @@ pub fn vanishes(graph: &mut Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
     expanded.is_some_and(|expanded| expanded.system.sums.iter().all(Vec::is_empty))
 }
 
-/// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom in
-/// common, or they could replace each other's squares without end.
+/// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom
+/// in common, or they could replace each other's squares without end.
 fn relations(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<Vec<ExprId>> {
     let reachable: HashSet<ExprId> = graph.reachable(roots).into_iter().collect();
     let mut relations = unit.to_vec();
@@ -110,8 +112,8 @@ struct Form {
     cost: usize,
 }
 
-/// First each relation in turn replaces another square than its first, if that loses fewer digits or is cheaper; then more ways of factoring are
-/// tried. `None` if the roots are too large.
+/// First each relation in turn replaces another square than its first, if that loses fewer digits or is cheaper; then
+/// more ways of factoring are tried. `None` if the roots are too large.
 fn search(graph: &Graph, relations: &[Vec<ExprId>], roots: (&[ExprId], &[bool])) -> Option<Form> {
     let (mut terms, mut steps) = (MAX_TERMS, MAX_STEPS);
     let mut choice = vec![0; relations.len()];

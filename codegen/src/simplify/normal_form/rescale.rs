@@ -1,5 +1,5 @@
-//! Where constant factors stand: a sum that has a name can be multiplied by a constant if what uses it is divided by it.
-//! Each is given the scale at which the fewest terms have a coefficient.
+//! Where constant factors stand: a sum that has a name can be multiplied by a constant if what uses it is divided by
+//! it. Each is given the scale at which the fewest terms have a coefficient.
 
 use super::expand::Function;
 use super::polynomial::Literal;

@@ -1,5 +1,5 @@
-//! Pages with elements of every kind that refer to each other at random. Tame pages are good as far as that can be arranged,
-//! wild ones seldom; neither may make the reader panic.
+//! Pages with elements of every kind that refer to each other at random. Tame pages are good as far as that can be
+//! arranged, wild ones seldom; neither may make the reader panic.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! Many random pages compiled by rustc into one program and run, beside the forms of the assembled twin by the same solvers.
+//! Many random pages compiled by rustc into one program and run, beside the forms of the assembled twin by the same
+//! solvers.
 
 #[path = "runs.rs"]
 mod runs;
@@ -13,7 +14,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What the ends of runs may differ by, in terms of what changes of the start by a unit in the last place do, or of roundings of each step.
+/// What the ends of runs may differ by, in terms of what changes of the start by a unit in the last place do, or of
+/// roundings of each step.
 const ALLOWED: f64 = 16.0;
 
 /// How often the twin is run anew from starts that differ by a rounding.

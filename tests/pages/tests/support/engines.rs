@@ -1,5 +1,5 @@
-//! One page in every engine and in all coordinates: generated formulas as they were emitted, read back and run in `f64`, beside the
-//! forms of the assembled twin, all held against the same formulas in 384 bits.
+//! One page in every engine and in all coordinates: generated formulas as they were emitted, read back and run in
+//! `f64`, beside the forms of the assembled twin, all held against the same formulas in 384 bits.
 
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_model::{Model, to_f64};
@@ -199,8 +199,9 @@ pub fn dithered(y: &[f64], series: u64) -> Vec<f64> {
     y.iter().enumerate().map(moved).collect()
 }
 
-/// How far roundings take what a function gives, as it shows itself: the largest change that changes of the inputs by a unit in the last place
-/// make, be it that the problem amplifies them or the way in which it is solved; and a rounding of what is added up to numbers of this scale.
+/// How far roundings take what a function gives, as it shows itself: the largest change that changes of the inputs by a
+/// unit in the last place make, be it that the problem amplifies them or the way in which it is solved; and a rounding
+/// of what is added up to numbers of this scale.
 fn noise(function: &dyn Fn(&Vec<f64>) -> Vec<f64>, y: &[f64], scale: f64) -> f64 {
     let result = function(&y.to_vec());
     let moved = |series| difference(&function(&dithered(y, series)), &result);
@@ -240,7 +241,8 @@ fn accelerations_at(
     }
 }
 
-/// The largest acceleration that forces would give the bodies without their joints: what cancels where joints hold them.
+/// The largest acceleration that forces would give the bodies without their joints: what cancels where joints hold
+/// them.
 fn unrestrained(model: &Model, generated: &Generated<f64>, t: f64, y: &[f64]) -> f64 {
     let forces = generated.run("applied_force", t, [y, &[]], &[]);
     let bodies = model.coordinate_bodies().into_iter().map(|body| &model.bodies[body]);

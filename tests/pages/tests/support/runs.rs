@@ -1,5 +1,5 @@
-//! Short runs by every correction and in all coordinates that a mechanism offers. This file is compiled into the example and into the program
-//! that it writes, so that both run the same.
+//! Short runs by every correction and in all coordinates that a mechanism offers. This file is compiled into the
+//! example and into the program that it writes, so that both run the same.
 
 use gyro_sim::{
     Baumgarte, ClosedForm, Corrected, Correction, Equations, Error, Exact, Joint, JointSpace, Kutta4,

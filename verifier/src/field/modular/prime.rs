@@ -38,8 +38,8 @@ impl<const L: usize> Prime<L> {
         Self::new((BigUint::one() << *exponent) - 1_u32, BigUint::from(2_u32))
     }
 
-    /// A random number that is all but surely a prime ([`Self::is_prime`] makes sure) for which every rational made of these integers has a
-    /// square root; `None` if they take too many bits.
+    /// A random number that is all but surely a prime ([`Self::is_prime`] makes sure) for which every rational made of
+    /// these integers has a square root; `None` if they take too many bits.
     ///
     /// Take p ≡ −1 modulo `8 n`. An odd prime q that divides n is then a square modulo p by quadratic reciprocity: if
     /// q ≡ 1 (mod 4), (q/p) = (p/q) = (−1/q) = 1; if q ≡ 3 (mod 4), (q/p) = −(p/q) = −(−1/q) = 1, as p ≡ 3 (mod 4).
@@ -65,7 +65,8 @@ impl<const L: usize> Prime<L> {
         self.value.count_ones() == self.value.bits() || (0..ROUNDS).all(|_| self.passes(random))
     }
 
-    /// A round of Miller and Rabin's test of a number ≡ 3 (mod 4) with a random base: the odd part of `p − 1` is `(p − 1) / 2`.
+    /// A round of Miller and Rabin's test of a number ≡ 3 (mod 4) with a random base: the odd part of `p − 1` is `(p −
+    /// 1) / 2`.
     fn passes(&self, random: &mut impl Rng) -> bool {
         let base = BigUint::new((0..8).map(|_| random.next_u32()).collect()) + 2_u32;
         let power = Modular::new(self, &base.into()).power(&(&self.value >> 1_u32));
@@ -98,8 +99,8 @@ impl<const L: usize> Prime<L> {
         &self.value
     }
 
-    /// Whether all prime factors of a rational's numerator and denominator are squares by the prime's making. Only then is it sure that
-    /// the root of `a²` which is a square is a and not −a.
+    /// Whether all prime factors of a rational's numerator and denominator are squares by the prime's making. Only then
+    /// is it sure that the root of `a²` which is a square is a and not −a.
     pub fn covers(&self, value: &Rational) -> bool {
         let mut rest = value.numer().magnitude() * value.denom().magnitude();
         loop {

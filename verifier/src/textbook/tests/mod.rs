@@ -1,4 +1,5 @@
-//! The textbook over `f64`: derivatives against differences, dynamics against energy, and against the model's own kinematics.
+//! The textbook over `f64`: derivatives against differences, dynamics against energy, and against the model's own
+//! kinematics.
 
 mod dynamics;
 mod kinematics;

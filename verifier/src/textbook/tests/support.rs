@@ -14,8 +14,9 @@ const RAFT: &str = "src/textbook/tests/raft.toml";
 /// States of each model.
 const STATES: u64 = 4;
 
-/// Shipped pages whose numbers leave nothing of difference quotients and absolute residuals in `f64`: rates of 1e5 rad/s, a mass ratio of
-/// 1e12, a base at 20 Hz, torques of 1e3 N·m on bodies of 1e-6 kg·m². Their textbook is that of the other gyroscopes.
+/// Shipped pages whose numbers leave nothing of difference quotients and absolute residuals in `f64`: rates of 1e5
+/// rad/s, a mass ratio of 1e12, a base at 20 Hz, torques of 1e3 N·m on bodies of 1e-6 kg·m². Their textbook is that of
+/// the other gyroscopes.
 const BEYOND_DIFFERENCES: [&str; 5] = [
     "gyroscope-fast",
     "gyroscope-heavy-rotor",
