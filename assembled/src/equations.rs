@@ -12,7 +12,7 @@ impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
     type Accelerations = Vec<T>;
 
     fn velocities(&self) -> Vec<T> {
-        zeros(self.lowered.n_v())
+        zeros(self.lowered.scene.n_v())
     }
 
     fn phi_q_values(&self) -> Vec<T> {
@@ -94,15 +94,15 @@ impl<T: Number, S: Solver<T>> Ports for Assembled<T, S> {
     }
 
     fn n_inputs(&self) -> usize {
-        self.lowered.inputs.len()
+        self.lowered.scene.inputs.len()
     }
 
     fn input_name(&self, index: usize) -> &str {
-        self.lowered.inputs.get(index).map_or("", |(name, _)| name)
+        self.lowered.scene.inputs.get(index).map_or("", |(name, _)| name)
     }
 
     fn set_input(&mut self, index: usize, value: T) -> bool {
-        let input = self.lowered.inputs.get_mut(index);
+        let input = self.lowered.scene.inputs.get_mut(index);
         input.map(|(_, present)| *present = value).is_some()
     }
 }

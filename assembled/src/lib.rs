@@ -1,20 +1,22 @@
-//! The runtime-assembled twin of any mechanism: textbook formulas typed by hand, `nalgebra` and a heap.
+//! The runtime-assembled model of any mechanism, called the *twin* of the generated one: textbook formulas typed by
+//! hand, with `nalgebra` and a heap.
 //!
 //! The twin reads the same [`Model`](gyro_model::Model) as the code generator and keeps the same contract
 //! ([`gyro_sim::Partition`], [`gyro_sim::Equations`]), but shares no derivation with it: Φ, Φ_q, ν and γ are typed from
-//! the paper and from Haug (1989). So it is the oracle of the tests, the honest opponent of the benchmarks and the quick
-//! look of `simulate --engine assembled`, all at once. It comes in three forms:
-//! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the dense
-//!   Jacobian. It does every model.
-//! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body by
-//!   body from the leaves to the root in the null space of each joint, and a partition by charts from the root to the
-//!   leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks this form or the first, as suits a model.
-//! * [`Recursive`], what an expert in rigid-body dynamics would make of it: articulated bodies in joint coordinates, and a partition in
-//!   closed form, both linear in the number of bodies. It takes the constraints for granted, and does the models that
-//!   [`Recursive::supports`]: trees of any joints.
+//! the paper and from Haug (1989). It is the independent reference of the tests, the baseline of the benchmarks and the
+//! engine of `simulate --engine assembled`, which needs no compilation. It comes in three forms:
+//! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the
+//!   dense Jacobian. It does every model.
+//! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body
+//!   by body from the leaves to the root in the null space of each joint, and a partition by charts from the root to
+//!   the leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks this form or the first, as
+//!   suits a model.
+//! * [`Recursive`], what an expert in rigid-body dynamics would make of it: articulated bodies in joint coordinates,
+//!   and a partition in closed form, both linear in the number of bodies. It takes the constraints for granted, and
+//!   does the models that [`Recursive::supports`]: trees of any joints.
 //!
-//! All share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint frames, less a
-//! function of time; a kind of joint is a short list of primitives:
+//! All share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint
+//! frames, less a function of time; a kind of joint is a short list of primitives:
 //!
 //! ```text
 //! JointKind ─primitives─▶ coincident points, dot-1, dot-2, distance ┐
@@ -22,12 +24,12 @@
 //! ForceKind ─law, path─▶ forces and torques ─energy─▶ energy, power
 //! ```
 //!
-//! Each primitive has its value with two time derivatives (so Φ, the velocity residual and −γ, driven bodies moving as they do)
-//! and its derivatives with respect to the positions of its two bodies.
+//! Each primitive has its value with two time derivatives (so Φ, the velocity residual and −γ, driven bodies moving as
+//! they do) and its derivatives with respect to the positions of its two bodies.
 //!
-//! Conventions are those of `gyro-sim`, and of [`Partition::solve_velocities`](gyro_sim::Partition::solve_velocities) this is meant by
-//! "independent": of the dense form components of ṙ and of `ṗ = ½ Gᵀ w'`, of the careful one what a joint leaves free of w' (see
-//! [`Elimination`]).
+//! Conventions are those of `gyro-sim`, and of [`Partition::solve_velocities`](gyro_sim::Partition::solve_velocities)
+//! this is meant by "independent": of the dense form components of ṙ and of `ṗ = ½ Gᵀ w'`, of the careful one what a
+//! joint leaves free of w' (see [`Elimination`]).
 //!
 //! # Example
 //! ```

@@ -1,4 +1,5 @@
-//! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without forces.
+//! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without
+//! forces.
 
 use crate::assembled::{Assembled, Solver};
 use crate::lowered::Lowered;
@@ -9,7 +10,7 @@ use gyro_sim::Projection;
 /// All forms alike: by Gaussian elimination with row pivoting, in work space that the first call allocates.
 impl<T: Number, S: Solver<T>> Projection for Assembled<T, S> {
     fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, out: &mut Vec<T>) {
-        let n = self.lowered.n_v() + self.lowered.n_rows();
+        let n = self.lowered.scene.n_v() + self.lowered.n_rows();
         let work = &mut *self.work();
         build(&self.lowered, Moment { t, y }, rows, work);
         solve(work, n);
@@ -22,11 +23,11 @@ impl<T: Number, S: Solver<T>> Projection for Assembled<T, S> {
 
 /// `[M 0 Φ_rᵀ; 0 J' Φ_π'ᵀ; Φ_r Φ_π' 0]` by rows, each with its right-hand side at its end.
 fn build<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, rows: &[T], work: &mut Vec<T>) {
-    let n_v = lowered.n_v();
+    let n_v = lowered.scene.n_v();
     let stride = n_v + lowered.n_rows() + 1;
     work.clear();
     work.resize((stride - 1) * stride, T::zero());
-    for (moving_body, body) in lowered.bodies.iter().enumerate() {
+    for (moving_body, body) in lowered.scene.bodies.iter().enumerate() {
         for i in 0..3 {
             let (linear, angular) = (6 * moving_body + i, 6 * moving_body + 3 + i);
             work[linear * stride + linear] = body.mass;

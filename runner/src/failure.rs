@@ -71,8 +71,8 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
             "at t = {t} s {} would need steps as short as {step:e} s for this tolerance",
             element(index)
         ),
-        Error::Setting { setting, value } => format!("{setting} = {value} s is no length of a step"),
-        Error::NoEnd { t, t_end } => format!("at t = {t} s there is no way to t = {t_end} s"),
+        Error::Setting { setting, value } => format!("{setting} = {value} s is not a valid step length"),
+        Error::NoEnd { t, t_end } => format!("a run cannot go from t = {t} s to the end time t = {t_end} s"),
         Error::TooManySteps { t, steps } => format!("at t = {t} s the budget of {steps} steps is used up"),
         Error::Stiff { t, rate, step } => format!(
             "at t = {t} s a rate of {rate:.4e}/s allows this method steps of no more than {step:.3e} s, too many for its budget"
