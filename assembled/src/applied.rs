@@ -7,9 +7,10 @@ use crate::place::{Moment, Place};
 impl<T: Number> Lowered<T> {
     /// Writes `(f, n' − w̃'J'w')`, body after body.
     pub(crate) fn applied_force(&self, at: Moment<'_, T>, out: &mut [T]) {
-        for (moving_body, (body, out)) in self.bodies.iter().zip(out.as_chunks_mut::<6>().0).enumerate() {
-            let w = self.w(at.y, moving_body);
-            out[..3].copy_from_slice((self.gravity * body.mass).as_slice());
+        for (moving_body, (body, out)) in self.scene.bodies.iter().zip(out.as_chunks_mut::<6>().0).enumerate()
+        {
+            let w = self.scene.w(at.y, moving_body);
+            out[..3].copy_from_slice((self.scene.gravity * body.mass).as_slice());
             out[3..].copy_from_slice((-w.cross(&(body.inertia * w))).as_slice());
         }
         self.add_page_force(at, out);
@@ -18,7 +19,7 @@ impl<T: Number> Lowered<T> {
     /// Adds what friction and the page's forces exert: `(f, n')`, body after body.
     pub(crate) fn add_page_force(&self, at: Moment<'_, T>, out: &mut [T]) {
         for element in &self.elements {
-            element.exert(self, at, |place, _, wrench| {
+            element.exert(&self.scene, at, |place, _, wrench| {
                 if let Place::Slot(moving_body) = place {
                     let out = &mut out[6 * moving_body..6 * moving_body + 6];
                     let wrench = wrench.force.iter().chain(wrench.torque.iter());

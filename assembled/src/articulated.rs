@@ -80,7 +80,7 @@ pub(crate) fn accelerations<T: Number>(
     let Space { nodes, driven, .. } = space;
     for link in links.iter().rev() {
         if let Hold::Joint(hinge) = &link.hold {
-            fold(&lowered.joints[hinge.joint], hinge, link.moving_body, nodes, driven);
+            fold(&lowered.scene.joints[hinge.joint], hinge, link.moving_body, nodes, driven);
         }
     }
     for link in links {
@@ -95,7 +95,7 @@ pub(crate) fn accelerations<T: Number>(
 /// Puts every body by itself into the work space.
 pub(crate) fn place_all<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, space: &mut Space<T>) {
     for (index, motion) in space.driven.iter_mut().enumerate() {
-        *motion = lowered.driven_motion(at.t, index);
+        *motion = lowered.scene.driven_motion(at.t, index);
     }
     lowered.applied_force(at, &mut space.forces);
     for (moving_body, (node, force)) in
@@ -107,10 +107,10 @@ pub(crate) fn place_all<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, spac
 
 /// A body by itself.
 fn place<T: Number>(lowered: &Lowered<T>, y: &[T], moving_body: usize, force: &[T; 6], node: &mut Node<T>) {
-    let body = &lowered.bodies[moving_body];
-    let a = direction_rotation(&lowered.p(y, moving_body));
+    let body = &lowered.scene.bodies[moving_body];
+    let a = direction_rotation(&lowered.scene.p(y, moving_body));
     let [fx, fy, fz, nx, ny, nz] = *force;
-    node.attitude = Attitude { a, omega: a * lowered.w(y, moving_body) };
+    node.attitude = Attitude { a, omega: a * lowered.scene.w(y, moving_body) };
     node.applied = Spatial { linear: Vector3::new(fx, fy, fz), angular: a * Vector3::new(nx, ny, nz) };
     node.force = node.applied;
     node.inertia = Inertia {
@@ -167,14 +167,14 @@ fn acceleration<T: Number>(
     match &link.hold {
         Hold::Free => node.inertia.solve(&node.force),
         Hold::Constrained(index, _) => {
-            let body = &lowered.constrained[*index];
+            let body = &lowered.scene.constrained[*index];
             let (q0, q) = lowered.relative_orientation(y, body);
             // ½ (q₀ I + q̃) ẇ' = ¼ |w'|² q is solved by a multiple of q.
             let angular = node.attitude.a * q * (node.attitude.omega.norm_squared() * number(0.5) / q0);
             Spatial { linear: Vector3::zeros(), angular }
         }
         Hold::Joint(hinge) => {
-            let (parent_end, _) = hinge.ends(&lowered.joints[hinge.joint]);
+            let (parent_end, _) = hinge.ends(&lowered.scene.joints[hinge.joint]);
             node.follower.acceleration(&match parent_end.place {
                 Place::Slot(moving_body) => nodes[moving_body].acceleration,
                 Place::Ground(_) => Spatial::zero(),

@@ -69,7 +69,8 @@ pub trait Solver<T: Number>: Clone + Debug {
         choice: &Self::Independent,
         y: &mut [T],
     ) -> Result<(), Refusal<T>>;
-    /// Solves eq. (19) for the dependent velocities. Which velocities are held is the solver's: see its own documentation.
+    /// Solves eq. (19) for the dependent velocities. Which velocities are held is the solver's: see its own
+    /// documentation.
     ///
     /// # Errors
     /// The pivot that vanished.
@@ -80,7 +81,8 @@ pub trait Solver<T: Number>: Clone + Debug {
         choice: &Self::Independent,
         y: &mut [T],
     ) -> Result<(), T>;
-    /// How clear a state is of singular poses: a pivot, and the constraint row that is left with it. `None` where there are none.
+    /// How clear a state is of singular poses: a pivot, and the constraint row that is left with it. `None` where there
+    /// are none.
     fn clearance(&self, _lowered: &Lowered<T>, _t: T, _y: &[T]) -> Option<(T, usize)> {
         None
     }
@@ -174,13 +176,14 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
 
     fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
         let (lowered, at) = (&self.lowered, Moment { t, y });
-        for (moving_body, dq) in dy.as_chunks_mut::<7>().0[..lowered.n_bodies()].iter_mut().enumerate() {
-            dq[..3].copy_from_slice(lowered.s(y, moving_body).as_slice()); // eq. (16)
-            let p_dot: Vector4<T> = p_dot(&lowered.p(y, moving_body), &lowered.w(y, moving_body));
+        for (moving_body, dq) in dy.as_chunks_mut::<7>().0[..lowered.scene.n_bodies()].iter_mut().enumerate()
+        {
+            dq[..3].copy_from_slice(lowered.scene.s(y, moving_body).as_slice()); // eq. (16)
+            let p_dot: Vector4<T> = p_dot(&lowered.scene.p(y, moving_body), &lowered.scene.w(y, moving_body));
             dq[3..].copy_from_slice(p_dot.as_slice());
         }
-        let velocities = lowered.n_q()..lowered.n_q() + lowered.n_v();
-        let n_v = lowered.n_v();
+        let velocities = lowered.scene.n_q()..lowered.scene.n_q() + lowered.scene.n_v();
+        let n_v = lowered.scene.n_v();
         let lambda_nu = if lowered.is_driven {
             self.with_solution(at, |solution| {
                 dy[velocities].copy_from_slice(&solution.accelerations[..n_v]);

@@ -1,5 +1,5 @@
-//! λ by a balance of forces from the leaves to the roots, for every kind of joint: `Φ_qᵀ λ = f − M a` of each body and its
-//! descendants.
+//! λ by a balance of forces from the leaves to the roots, for every kind of joint: `Φ_qᵀ λ = f − M a` of each body and
+//! its descendants.
 
 use crate::limbs::Limbs;
 use crate::lowered::Lowered;
@@ -22,7 +22,7 @@ pub(crate) fn multipliers<T: Number>(
     lowered.applied_force(at, &mut space.forces);
     let unbalanced = space.forces.as_chunks_mut::<6>().0;
     for ((force, body), taken) in
-        unbalanced.iter_mut().zip(&lowered.bodies).zip(accelerations.as_chunks::<6>().0)
+        unbalanced.iter_mut().zip(&lowered.scene.bodies).zip(accelerations.as_chunks::<6>().0)
     {
         let turn = body.inertia * nalgebra::Vector3::new(taken[3], taken[4], taken[5]);
         let taken = std::array::from_fn(|k| if k < 3 { taken[k] * body.mass } else { turn[k - 3] });
@@ -35,7 +35,7 @@ pub(crate) fn multipliers<T: Number>(
         let rows = &space.gradients[hinge.rows.clone()];
         let lambda = &mut lambda[hinge.rows.clone()];
         solve(rows, weight, &unbalanced[limb.moving_body], lambda);
-        if let Some(parent) = hinge.ends(&lowered.joints[hinge.joint]).0.place.moving_body() {
+        if let Some(parent) = hinge.ends(&lowered.scene.joints[hinge.joint]).0.place.moving_body() {
             for ([_, of_parent], lambda) in rows.iter().zip(lambda) {
                 unbalanced[parent] = plus(&unbalanced[parent], -*lambda, of_parent);
             }
@@ -59,8 +59,8 @@ fn differentiate<T: Number>(
     });
 }
 
-/// Solves `Gᵀ λ = force` for the rows G of one body, of which there are six at most: by least squares, as the rows carry
-/// whatever their joint must.
+/// Solves `Gᵀ λ = force` for the rows G of one body, of which there are six at most: by least squares, as the rows
+/// carry whatever their joint must.
 fn solve<T: Number>(rows: &[[Six<T>; 2]], weight: T, force: &Six<T>, lambda: &mut [T]) {
     let weighted =
         |v: &Six<T>| -> Six<T> { std::array::from_fn(|k| if k < 3 { v[k] } else { v[k] * weight }) };

@@ -14,19 +14,20 @@ use std::cell::RefCell;
 
 /// Eliminates eq. (17) from the leaves to the root in the null space of each joint, in global axes.
 ///
-/// The child's virtual rotation is its parent's, plus one along what the joint leaves free, plus a bias that the joint's
-/// γ determines. So each body folds its inertia and its force into its parent's, and accelerations follow from the root
-/// to the leaves. It is Featherstone's articulated-body recursion (*Rigid Body Dynamics Algorithms*, chapter 7) on
-/// maximal coordinates, exact also where joint rows are violated: no two joint frames are assumed to coincide.
+/// The child's virtual rotation is its parent's, plus one along what the joint leaves free, plus a bias that the
+/// joint's γ determines. So each body folds its inertia and its force into its parent's, and accelerations follow from
+/// the root to the leaves. It is Featherstone's articulated-body recursion (*Rigid Body Dynamics Algorithms*, chapter
+/// 7) on maximal coordinates, exact also where joint rows are violated: no two joint frames are assumed to coincide.
 /// Multipliers follow from a balance of forces, only where they are asked for. Bodies held by rows of their own are
 /// ground to their children, and so are bodies that move by prescription, with an acceleration.
 ///
 /// It does trees of revolute, spherical and fixed joints: see [`Assembled::supports`].
 ///
-/// The partition goes from the root to the leaves by charts, as in [`gyro_sim::charts`]: one 4×4 system a body. At velocity
-/// level a revolute joint holds its child's rate about the joint's axis, `h'·w'`, and changes w' only at right angles to it; a
-/// free or spherically held body keeps w' whole. Holding a single component of ṗ instead lets what integration has lost at right
-/// angles leak into the spin, and so into the energy: 1.3e-10 of it in 100 s of the paper's gyroscope instead of 7e-14.
+/// The partition goes from the root to the leaves by charts, as in [`gyro_sim::charts`]: one 4×4 system a body. At
+/// velocity level a revolute joint holds its child's rate about the joint's axis, `h'·w'`, and changes w' only at right
+/// angles to it; a free or spherically held body keeps w' whole. Holding a single component of ṗ instead lets what
+/// integration has lost at right angles leak into the spin, and so into the energy: 1.3e-10 of it in 100 s of the
+/// paper's gyroscope instead of 7e-14.
 #[derive(Clone, Debug)]
 pub struct Elimination<T: Number> {
     links: Vec<Link>,
@@ -35,8 +36,9 @@ pub struct Elimination<T: Number> {
 }
 
 impl<T: Number> Assembled<T, Elimination<T>> {
-    /// Whether elimination can do a model: a tree of revolute, spherical and fixed joints that hangs on fixed, constrained,
-    /// free or driven bodies, with any forces and outputs, but without drivers and couplers of joint coordinates.
+    /// Whether elimination can do a model: a tree of revolute, spherical and fixed joints that hangs on fixed,
+    /// constrained, free or driven bodies, with any forces and outputs, but without drivers and couplers of joint
+    /// coordinates.
     ///
     /// # Errors
     /// The first thing in the model that it cannot do.
@@ -64,14 +66,17 @@ impl<T: Number> Solver<T> for Elimination<T> {
     fn new(model: &Model, lowered: &Lowered<T>) -> Result<Self, Unsupported> {
         Assembled::<T, Self>::supports(model)?;
         let links = Tree::of(model).links.iter().map(|link| lower_link(model, lowered, link)).collect();
-        let driven = (0..lowered.driven.len()).map(|index| lowered.driven_motion(T::zero(), index)).collect();
-        let (nodes, forces) = (vec![Node::new(); lowered.n_bodies()], vec![T::zero(); lowered.n_v()]);
+        let driven = (0..lowered.scene.driven.len())
+            .map(|index| lowered.scene.driven_motion(T::zero(), index))
+            .collect();
+        let (nodes, forces) =
+            (vec![Node::new(); lowered.scene.n_bodies()], vec![T::zero(); lowered.scene.n_v()]);
         let space = Space { nodes, driven, forces };
         Ok(Self { links, space: RefCell::new(space) })
     }
 
     fn accelerations_len(&self, lowered: &Lowered<T>) -> usize {
-        lowered.n_v()
+        lowered.scene.n_v()
     }
 
     fn accelerations(&self, lowered: &Lowered<T>, t: T, y: &[T], out: &mut [T]) {
@@ -112,7 +117,7 @@ fn lower_link<T: Number>(model: &Model, lowered: &Lowered<T>, link: &gyro_model:
     let moving_body_of = |body| moving_bodies.iter().position(|&b| b == body);
     let moving_body = moving_body_of(link.body).expect("bodies of links have coordinates");
     let constrained =
-        |moving_body| lowered.constrained.iter().position(|body| body.moving_body == moving_body);
+        |moving_body| lowered.scene.constrained.iter().position(|body| body.moving_body == moving_body);
     let hold = match link.attachment {
         Attachment::Free => Hold::Free,
         Attachment::Constrained => Hold::Constrained(

@@ -1,7 +1,8 @@
 //! The partition of the careful form: from the root to the leaves, one 4×4 system in a body's Euler parameters.
 //!
-//! Which Euler parameter of a body is special follows the rule of [`gyro_sim::charts`]. A parent is corrected before its
-//! children look at it, so the block-triangular system needs no coupling blocks, and point rows are met in closed form.
+//! Which Euler parameter of a body is special follows the rule of [`gyro_sim::charts`]. A parent is corrected before
+//! its children look at it, so the block-triangular system needs no coupling blocks, and point rows are met in closed
+//! form.
 
 use crate::hinges::{Bearing, Hinge, Hold, Link, Side};
 use crate::joint::Dot;
@@ -44,18 +45,18 @@ pub(crate) fn newton_step<T: Number>(
 ) -> Result<(), T> {
     for (link, &chart) in links.iter().zip(choice) {
         match &link.hold {
-            Hold::Constrained(index, _) => restore(&lowered.constrained[*index], y),
+            Hold::Constrained(index, _) => restore(&lowered.scene.constrained[*index], y),
             Hold::Free => {
                 let step = parameter_step(lowered, link.moving_body, &[], chart, y)?;
-                set_p(y, link.moving_body, &(lowered.p(y, link.moving_body) + step));
+                set_p(y, link.moving_body, &(lowered.scene.p(y, link.moving_body) + step));
             }
             Hold::Joint(hinge) => {
                 let (facing, parent) = facing_dots(lowered, hinge, Moment { t, y });
-                let n_dots = lowered.joints[hinge.joint].dots.len();
+                let n_dots = lowered.scene.joints[hinge.joint].dots.len();
                 let step = parameter_step(lowered, link.moving_body, &facing[..n_dots], chart, y)?;
-                let p = lowered.p(y, link.moving_body) + step;
+                let p = lowered.scene.p(y, link.moving_body) + step;
                 set_p(y, link.moving_body, &p);
-                let (parent_end, child_end) = hinge.ends(&lowered.joints[hinge.joint]);
+                let (parent_end, child_end) = hinge.ends(&lowered.scene.joints[hinge.joint]);
                 let r = parent.r + parent.a * parent_end.point - rotation(&p) * child_end.point; // eq. (7)
                 y[7 * link.moving_body..7 * link.moving_body + 3].copy_from_slice(r.as_slice());
             }
@@ -77,24 +78,24 @@ pub(crate) fn solve_velocities<T: Number>(
             Hold::Constrained(..) => (Vector3::zeros(), Vector3::zeros()),
             Hold::Free => continue,
             Hold::Joint(hinge) => {
-                let joint = &lowered.joints[hinge.joint];
+                let joint = &lowered.scene.joints[hinge.joint];
                 let (facing, parent) = facing_dots(lowered, hinge, Moment { t, y });
                 let (parent_end, child_end) = hinge.ends(joint);
-                let (a, w) = (rotation(&lowered.p(y, moving_body)), lowered.w(y, moving_body));
+                let (a, w) = (rotation(&lowered.scene.p(y, moving_body)), lowered.scene.w(y, moving_body));
                 let rows = facing.map(|facing| facing.velocity_row(&a, &w));
                 let w = w + angular_change(hinge.bearing, &rows, &child_end.h)?;
                 (parent.tip_velocity(&parent_end.point) - a * w.cross(&child_end.point), w)
             }
         };
-        let at = lowered.n_q() + 6 * moving_body;
+        let at = lowered.scene.n_q() + 6 * moving_body;
         y[at..at + 3].copy_from_slice(s.as_slice());
         y[at + 3..at + 6].copy_from_slice(w.as_slice());
     }
     Ok(())
 }
 
-/// The change of the child's w' that takes the residuals of the rotation rows away: of a revolute joint at right angles to the
-/// child's own axis h', of a fixed one whatever it takes, of a spherical one none.
+/// The change of the child's w' that takes the residuals of the rotation rows away: of a revolute joint at right angles
+/// to the child's own axis h', of a fixed one whatever it takes, of a spherical one none.
 fn angular_change<T: Number>(
     bearing: Bearing,
     rows: &[(Vector3<T>, T); 3],
@@ -133,11 +134,11 @@ impl<T: Number> Facing<T> {
 
 /// The vector whose largest component decides the chart; none where no rotation is free.
 fn deciding_vector<T: Number>(lowered: &Lowered<T>, link: &Link, y: &[T]) -> Option<[T; 4]> {
-    let p = lowered.p(y, link.moving_body);
+    let p = lowered.scene.p(y, link.moving_body);
     let Hold::Joint(hinge) = &link.hold else {
         return matches!(link.hold, Hold::Free).then(|| p.into());
     };
-    let joint = &lowered.joints[hinge.joint];
+    let joint = &lowered.scene.joints[hinge.joint];
     match hinge.bearing {
         // The tangent ½ Gᵀ h'.
         Bearing::Revolute => Some(p_dot(&p, &hinge.ends(joint).1.h).into()),
@@ -152,8 +153,8 @@ fn facing_dots<T: Number>(
     hinge: &Hinge,
     at: Moment<'_, T>,
 ) -> ([Facing<T>; 3], Motion<T>) {
-    let joint = &lowered.joints[hinge.joint];
-    let parent = lowered.motion(at, &hinge.ends(joint).0.place);
+    let joint = &lowered.scene.joints[hinge.joint];
+    let parent = lowered.scene.motion(at, &hinge.ends(joint).0.place);
     let facing = |dot: &Dot<T>| {
         let (own, child) = match hinge.child {
             Side::First => (dot.b, dot.a),
@@ -174,7 +175,7 @@ fn parameter_step<T: Number>(
     chart: u8,
     y: &[T],
 ) -> Result<Vector4<T>, T> {
-    let p = lowered.p(y, moving_body);
+    let p = lowered.scene.p(y, moving_body);
     let a = rotation(&p);
     let mut right = Vector4::zeros();
     for (k, facing) in facing.iter().enumerate() {

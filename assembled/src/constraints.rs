@@ -1,7 +1,7 @@
 //! Values, Jacobians, ν and γ of the constraint rows, typed from the paper's section 4 and Haug (1989), chapter 11.
 //!
-//! One walk over the rows serves Φ_q and (Φ_r, Φ_π'): it calls a sink with row, column and value of each entry that is not zero by
-//! structure, row by row.
+//! One walk over the rows serves Φ_q and (Φ_r, Φ_π'): it calls a sink with row, column and value of each entry that is
+//! not zero by structure, row by row.
 
 use crate::course::Course;
 use crate::gradient::Gradient;
@@ -36,9 +36,9 @@ impl<'a, T: Number> Pairs<'a, T> {
             *last = None;
         }
         let evaluate = || {
-            let joint = &lowered.joints[joint];
+            let joint = &lowered.scene.joints[joint];
             [&joint.first.place, &joint.second.place].map(|place| {
-                let motion = lowered.motion(*at, place);
+                let motion = lowered.scene.motion(*at, place);
                 if place.moving_body().is_some() { moved(motion) } else { motion }
             })
         };
@@ -51,7 +51,7 @@ impl<T: Number> Lowered<T> {
     pub(crate) fn phi(&self, at: Moment<'_, T>, out: &mut [T]) {
         self.for_each_jet(at, |row, [value, ..]| out[row] = value);
         for (moving_body, out) in out[self.n_rows()..].iter_mut().enumerate() {
-            *out = self.p(at.y, moving_body).norm_squared() - T::one(); // eq. (12)
+            *out = self.scene.p(at.y, moving_body).norm_squared() - T::one(); // eq. (12)
         }
     }
 
@@ -60,8 +60,8 @@ impl<T: Number> Lowered<T> {
         // The orientation rows are linear in p: rows e1 to e3 of p̄₀ ∘ p, which are G(p₀) p.
         let orientation = |body: &Constrained<T>| g_matrix(&body.p0);
         self.for_each_gradient(at, along_p, orientation, &mut sink);
-        for moving_body in 0..self.n_bodies() {
-            let p = self.p(at.y, moving_body);
+        for moving_body in 0..self.scene.n_bodies() {
+            let p = self.scene.p(at.y, moving_body);
             (0..4).for_each(|k| {
                 sink(self.n_rows() + moving_body, 7 * moving_body + 3 + k, number::<T>(2.0) * p[k])
             });
@@ -88,8 +88,8 @@ impl<T: Number> Lowered<T> {
         }
     }
 
-    /// Writes γ, the right-hand side of `Φ_r r̈ + Φ_π' ẇ' = γ`: minus the second time derivative of the rows where bodies with
-    /// coordinates have no acceleration and all others the prescribed one. Haug (1989), section 11.2.
+    /// Writes γ, the right-hand side of `Φ_r r̈ + Φ_π' ẇ' = γ`: minus the second time derivative of the rows where
+    /// bodies with coordinates have no acceleration and all others the prescribed one. Haug (1989), section 11.2.
     pub(crate) fn gamma(&self, at: Moment<'_, T>, out: &mut [T]) {
         self.for_each_jet(at, |row, [_, _, second]| out[row] = -second);
     }
@@ -101,7 +101,7 @@ impl<T: Number> Lowered<T> {
 
     /// Scalar and vector part of `p̄₀ ∘ p`.
     pub(crate) fn relative_orientation(&self, y: &[T], body: &Constrained<T>) -> (T, Vector3<T>) {
-        let relative = relative_matrix(&body.p0) * self.p(y, body.moving_body);
+        let relative = relative_matrix(&body.p0) * self.scene.p(y, body.moving_body);
         (relative[0], relative.fixed_rows::<3>(1).into_owned())
     }
 
@@ -111,7 +111,7 @@ impl<T: Number> Lowered<T> {
         for (index, row) in self.rows.iter().enumerate() {
             let jet = match row {
                 Row::Constrained { body, component } => {
-                    self.constrained_jet(at.y, &self.constrained[*body], *component)
+                    self.constrained_jet(at.y, &self.scene.constrained[*body], *component)
                 }
                 Row::Measured { terms, course } => self.measured_jet(terms, course.as_ref(), &mut pairs),
             };
@@ -127,7 +127,8 @@ impl<T: Number> Lowered<T> {
             let mut size =
                 course.as_ref().map_or(0.0, |course| course.jet(gyro_sim::Real::to_f64(at.t))[0].abs());
             for term in terms {
-                let [value, ..] = term.measure.jet(&self.joints[term.joint], pairs.of(term.joint), at.y);
+                let [value, ..] =
+                    term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), at.y);
                 size += gyro_sim::Real::to_f64(abs(term.factor * value));
             }
             f(index, number(size));
@@ -139,17 +140,18 @@ impl<T: Number> Lowered<T> {
         let prescribed = course.map_or([0.0; 3], |course| course.jet(gyro_sim::Real::to_f64(t)));
         let start = prescribed.map(|x| -number::<T>(x));
         terms.iter().fold(start, |sum, term| {
-            let jet = term.measure.jet(&self.joints[term.joint], pairs.of(term.joint), y);
+            let jet = term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), y);
             [0, 1, 2].map(|k| sum[k] + term.factor * jet[k])
         })
     }
 
-    /// Eqs. (5) and (6). The second derivative of the latter follows from `Ġᵀw' = −½|w'|² p`: −¼|w'|² times the row itself.
+    /// Eqs. (5) and (6). The second derivative of the latter follows from `Ġᵀw' = −½|w'|² p`: −¼|w'|² times the row
+    /// itself.
     fn constrained_jet(&self, y: &[T], body: &Constrained<T>, component: usize) -> [T; 3] {
-        let w = self.w(y, body.moving_body);
+        let w = self.scene.w(y, body.moving_body);
         if component < 3 {
-            let displacement = self.r(y, body.moving_body) - body.r0;
-            return [displacement[component], self.s(y, body.moving_body)[component], T::zero()];
+            let displacement = self.scene.r(y, body.moving_body) - body.r0;
+            return [displacement[component], self.scene.s(y, body.moving_body)[component], T::zero()];
         }
         let relative = self.relative_orientation(y, body);
         let (row, rate) = (relative.1[component - 3], (orientation_block(&relative) * w)[component - 3]);
@@ -169,7 +171,7 @@ impl<T: Number> Lowered<T> {
             let sink = |column, value| sink(index, column, value);
             match row {
                 Row::Constrained { body, component } => {
-                    let body = &self.constrained[*body];
+                    let body = &self.scene.constrained[*body];
                     constrained_pull(*component, &orientation(body)).walk(body.moving_body, sink);
                 }
                 Row::Measured { terms, .. } => self.measured_gradient(terms, &mut pairs, turning, sink),
@@ -185,7 +187,7 @@ impl<T: Number> Lowered<T> {
         mut sink: impl FnMut(usize, T),
     ) {
         let mut pulls = |term: &Term<T>| {
-            let joint = &self.joints[term.joint];
+            let joint = &self.scene.joints[term.joint];
             let [first, second] = term.measure.pulls(joint, pairs.of(term.joint), turning);
             [(joint.first.place.moving_body(), first), (joint.second.place.moving_body(), second)]
         };

@@ -13,8 +13,8 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// The partition is the paper's too: the dense Jacobian of all constraints, eqs. (11) and (12), whose columns full
 /// pivoting divides into dependent and independent ones. The coordinates are chosen anew when the volume of Φ_u has
-/// fallen below half of that of the best choice: see [`Solver::follow`] for what it counts. At velocity level the independent
-/// ones of ṙ and of `ṗ = ½ Gᵀ w'`, at the corrected p, keep their values.
+/// fallen below half of that of the best choice: see [`Solver::follow`] for what it counts. At velocity level the
+/// independent ones of ṙ and of `ṗ = ½ Gᵀ w'`, at the corrected p, keep their values.
 ///
 /// It does every model.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ impl<T: Number> Solver<T> for Saddle {
 
     /// The whole solution of eq. (17).
     fn accelerations_len(&self, lowered: &Lowered<T>) -> usize {
-        lowered.n_v() + lowered.n_rows()
+        lowered.scene.n_v() + lowered.n_rows()
     }
 
     fn accelerations(&self, lowered: &Lowered<T>, t: T, y: &[T], out: &mut [T]) {
@@ -41,7 +41,7 @@ impl<T: Number> Solver<T> for Saddle {
     }
 
     fn multipliers(&self, lowered: &Lowered<T>, _: T, _: &[T], accelerations: &[T], lambda: &mut [T]) {
-        lambda.copy_from_slice(&accelerations[lowered.n_v()..]);
+        lambda.copy_from_slice(&accelerations[lowered.scene.n_v()..]);
     }
 
     fn independent(&self, lowered: &Lowered<T>, t: T, y: &[T]) -> Vec<usize> {
@@ -79,7 +79,7 @@ impl<T: Number> Solver<T> for Saddle {
 
 /// Accelerations and multipliers; not finite where the matrix is singular.
 fn solve<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DVector<T> {
-    let (n_v, n_rows) = (lowered.n_v(), lowered.n_rows());
+    let (n_v, n_rows) = (lowered.scene.n_v(), lowered.n_rows());
     let mut right = DVector::zeros(n_v + n_rows);
     let (force, gamma) = right.as_mut_slice().split_at_mut(n_v);
     lowered.applied_force(at, force);
@@ -92,9 +92,9 @@ fn solve<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DVector<T> {
 
 /// `[M 0 Φ_rᵀ; 0 J' Φ_π'ᵀ; Φ_r Φ_π' 0]`, velocities ordered `(s, w')` body after body.
 fn matrix<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
-    let n_v = lowered.n_v();
+    let n_v = lowered.scene.n_v();
     let mut matrix = DMatrix::zeros(n_v + lowered.n_rows(), n_v + lowered.n_rows());
-    for (moving_body, body) in lowered.bodies.iter().enumerate() {
+    for (moving_body, body) in lowered.scene.bodies.iter().enumerate() {
         let at = 6 * moving_body;
         (at..at + 3).for_each(|k| matrix[(k, k)] = body.mass);
         matrix.fixed_view_mut::<3, 3>(at + 3, at + 3).copy_from(&body.inertia);

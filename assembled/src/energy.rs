@@ -19,15 +19,19 @@ impl<T: Number> Lowered<T> {
     /// Kinetic and potential energy, the latter of gravity and springs.
     pub(crate) fn energy(&self, at: Moment<'_, T>) -> Energy<T> {
         let mut energy = Energy { kinetic: T::zero(), potential: T::zero() };
-        for (moving_body, body) in self.bodies.iter().enumerate() {
-            let (r, s, w) = (self.r(at.y, moving_body), self.s(at.y, moving_body), self.w(at.y, moving_body));
+        for (moving_body, body) in self.scene.bodies.iter().enumerate() {
+            let (r, s, w) = (
+                self.scene.r(at.y, moving_body),
+                self.scene.s(at.y, moving_body),
+                self.scene.w(at.y, moving_body),
+            );
             let twice = body.mass * s.norm_squared() + w.dot(&(body.inertia * w));
             energy.kinetic += twice * number(0.5);
-            energy.potential -= body.mass * self.gravity.dot(&r);
+            energy.potential -= body.mass * self.scene.gravity.dot(&r);
         }
         for element in &self.elements {
             if let Element::Along { path, law } = element {
-                energy.potential += law.potential(&self.inputs, || path.value(self, at));
+                energy.potential += law.potential(&self.scene.inputs, || path.value(&self.scene, at));
             }
         }
         energy
@@ -37,7 +41,7 @@ impl<T: Number> Lowered<T> {
     pub(crate) fn power(&self, at: Moment<'_, T>, lambda_nu: T) -> Power<T> {
         let mut power = Power { non_conservative: T::zero(), drivers: -lambda_nu };
         for element in &self.elements {
-            element.exert(self, at, |place, motion, wrench| {
+            element.exert(&self.scene, at, |place, motion, wrench| {
                 let on_body = wrench.power(motion);
                 if !element.is_conservative() {
                     power.non_conservative += on_body;

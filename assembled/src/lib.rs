@@ -13,8 +13,8 @@
 //!   closed form, both linear in the number of bodies. It takes the constraints for granted, and does the models that
 //!   [`Recursive::supports`]: trees of any joints.
 //!
-//! All share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint frames, less a
-//! function of time; a kind of joint is a short list of primitives:
+//! All share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint
+//! frames, less a function of time; a kind of joint is a short list of primitives:
 //!
 //! ```text
 //! JointKind ─primitives─▶ coincident points, dot-1, dot-2, distance ┐
@@ -22,12 +22,12 @@
 //! ForceKind ─law, path─▶ forces and torques ─energy─▶ energy, power
 //! ```
 //!
-//! Each primitive has its value with two time derivatives (so Φ, the velocity residual and −γ, driven bodies moving as they do)
-//! and its derivatives with respect to the positions of its two bodies.
+//! Each primitive has its value with two time derivatives (so Φ, the velocity residual and −γ, driven bodies moving as
+//! they do) and its derivatives with respect to the positions of its two bodies.
 //!
-//! Conventions are those of `gyro-sim`, and of [`Partition::solve_velocities`](gyro_sim::Partition::solve_velocities) this is meant by
-//! "independent": of the dense form components of ṙ and of `ṗ = ½ Gᵀ w'`, of the careful one what a joint leaves free of w' (see
-//! [`Elimination`]).
+//! Conventions are those of `gyro-sim`, and of [`Partition::solve_velocities`](gyro_sim::Partition::solve_velocities)
+//! this is meant by "independent": of the dense form components of ṙ and of `ṗ = ½ Gᵀ w'`, of the careful one what a
+//! joint leaves free of w' (see [`Elimination`]).
 //!
 //! # Example
 //! ```

@@ -98,7 +98,8 @@ fn limb<T: Number>(
         return (link.attachment == Attachment::Free).then_some(Limb { moving_body, parent: 0, hinge: None });
     };
     let lead = number(model.value(&model.joints[joint].lead));
-    let (of_joint, described) = (Screw::all(&lowered.joints[joint], lead), &lowered.joints[joint]);
+    let (of_joint, described) =
+        (Screw::all(&lowered.scene.joints[joint], lead), &lowered.scene.joints[joint]);
     let first = screws.len();
     let hinge = Hinge {
         joint,
@@ -117,7 +118,7 @@ fn limb<T: Number>(
     let parent_body = ends[usize::from(reversed)].body;
     let is_fixed = |body: &gyro_model::Body| body.support == Support::Fixed;
     let n_fixed = |bodies: &[gyro_model::Body]| bodies.iter().filter(|body| is_fixed(body)).count();
-    let first_held = 1 + lowered.driven.len();
+    let first_held = 1 + lowered.scene.driven.len();
     let first_fixed = first_held + held.len();
     let parent = match hinge.ends(described).0.place {
         Place::Ground(_) => first_fixed + n_fixed(&model.bodies[..parent_body]),
@@ -137,7 +138,7 @@ fn limb<T: Number>(
 fn held<T: Number>(model: &Model, lowered: &Lowered<T>) -> Vec<(usize, Range<usize>)> {
     let moving_bodies = model.coordinate_bodies();
     let rows = |moving_body: usize| model.rows_of(RowOwner::Body(moving_bodies[moving_body]));
-    lowered.constrained.iter().map(|body| (body.moving_body, rows(body.moving_body))).collect()
+    lowered.scene.constrained.iter().map(|body| (body.moving_body, rows(body.moving_body))).collect()
 }
 
 /// Euler parameters of a joint frame.

@@ -9,7 +9,6 @@ use crate::rows::Row;
 use crate::scene::Scene;
 use gyro_model::{AssemblyError, JointCoordinate, Model, RowOwner, RowUnit};
 use gyro_sim::{Owner, RowInfo};
-use std::ops::{Deref, DerefMut};
 
 /// A model in numbers. It holds no state but the values of the inputs.
 #[derive(Clone, Debug)]
@@ -29,20 +28,6 @@ pub struct Lowered<T: Number> {
     /// Where these angles are among the readings.
     pub(crate) turn_readings: Vec<u16>,
     pub(crate) start: Vec<T>,
-}
-
-impl<T: Number> Deref for Lowered<T> {
-    type Target = Scene<T>;
-
-    fn deref(&self) -> &Scene<T> {
-        &self.scene
-    }
-}
-
-impl<T: Number> DerefMut for Lowered<T> {
-    fn deref_mut(&mut self) -> &mut Scene<T> {
-        &mut self.scene
-    }
 }
 
 impl<T: Number> Lowered<T> {

@@ -27,11 +27,11 @@ impl<T: Number> Lowered<T> {
     fn output(&self, at: Moment<'_, T>, solution: Solution<'_, T>, quantity: &Quantity<T>, out: &mut [T]) {
         match quantity {
             Quantity::Pose(spot) => {
-                let motion = self.motion(at, &spot.place);
+                let motion = self.scene.motion(at, &spot.place);
                 write(out, &motion.tip(&spot.point), motion.p.as_slice());
             }
             Quantity::Velocity(spot) => {
-                let motion = self.motion(at, &spot.place);
+                let motion = self.scene.motion(at, &spot.place);
                 write(out, &motion.tip_velocity(&spot.point), motion.w.as_slice());
             }
             Quantity::Acceleration(spot) => {
@@ -40,7 +40,7 @@ impl<T: Number> Lowered<T> {
             }
             Quantity::Inertial(spot) => {
                 let motion = self.accelerated(at, &spot.place, solution.accelerations);
-                let specific_force = motion.point(&spot.point).second - self.gravity;
+                let specific_force = motion.point(&spot.point).second - self.scene.gravity;
                 write(out, &motion.a.tr_mul(&specific_force), motion.w.as_slice());
             }
             Quantity::Reaction(joint, rows) => {
@@ -61,7 +61,7 @@ impl<T: Number> Lowered<T> {
 
     /// The motion of a body with its acceleration, prescribed or not.
     fn accelerated(&self, at: Moment<'_, T>, place: &Place<T>, accelerations: &[T]) -> Motion<T> {
-        let motion = self.motion(at, place);
+        let motion = self.scene.motion(at, place);
         let Some(moving_body) = place.moving_body() else { return motion };
         let of = |from: usize| {
             Vector3::from_column_slice(&accelerations[6 * moving_body + from..6 * moving_body + from + 3])
@@ -69,11 +69,11 @@ impl<T: Number> Lowered<T> {
         Motion { s_dot: of(0), w_dot: of(3), ..motion }
     }
 
-    /// `−Φ_rᵀ λ` and `−Φ_π'ᵀ λ` of a joint's rows on its second body (without coordinates: what acts on the first, turned
-    /// round), the torque about the second's joint point, both in the first body's joint frame.
+    /// `−Φ_rᵀ λ` and `−Φ_π'ᵀ λ` of a joint's rows on its second body (without coordinates: what acts on the first,
+    /// turned round), the torque about the second's joint point, both in the first body's joint frame.
     fn reaction(&self, at: Moment<'_, T>, joint: usize, rows: &[usize], lambda: &[T]) -> [Vector3<T>; 2] {
-        let joint = &self.joints[joint];
-        let motions = self.motions(at, joint);
+        let joint = &self.scene.joints[joint];
+        let motions = self.scene.motions(at, joint);
         let (side, sign) =
             if joint.second.place.moving_body().is_some() { (1, -T::one()) } else { (0, T::one()) };
         let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());

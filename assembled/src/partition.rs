@@ -23,13 +23,13 @@ pub(crate) struct Choice<T> {
     log_volume: T,
 }
 
-/// Full pivoting takes as many pivots as there are constraints; the columns left over are independent. Where there are too many
-/// constraints none is.
+/// Full pivoting takes as many pivots as there are constraints; the columns left over are independent. Where there are
+/// too many constraints none is.
 pub(crate) fn best<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> Choice<T> {
     let lu = jacobian(lowered, at).full_piv_lu();
-    let mut columns = RowDVector::from_iterator(lowered.n_q(), 0..lowered.n_q());
+    let mut columns = RowDVector::from_iterator(lowered.scene.n_q(), 0..lowered.scene.n_q());
     lu.q().permute_columns(&mut columns);
-    let n_dependent = n_constraints(lowered).min(lowered.n_q());
+    let n_dependent = n_constraints(lowered).min(lowered.scene.n_q());
     let mut independent = columns.as_slice()[n_dependent..].to_vec();
     independent.sort_unstable();
     Choice { independent, log_volume: log_volume(lu.lu_internal()) }
@@ -51,8 +51,9 @@ pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, choice:
     u32::try_from(exchanged).unwrap_or(u32::MAX)
 }
 
-/// One over the norm of the pseudoinverse of Φ_q, and of the joints' rows the one that is nearest to the span of the others. With the
-/// transposed Jacobian `Q R` the norm is that of R⁻¹, and a row's distance is one over the length of its row of R⁻¹.
+/// One over the norm of the pseudoinverse of Φ_q, and of the joints' rows the one that is nearest to the span of the
+/// others. With the transposed Jacobian `Q R` the norm is that of R⁻¹, and a row's distance is one over the length of
+/// its row of R⁻¹.
 pub(crate) fn clearance<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> (T, usize) {
     let triangle = jacobian(lowered, at).transpose().qr().r();
     let n = triangle.ncols();
@@ -67,12 +68,12 @@ pub(crate) fn clearance<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> (
     (T::one() / inverse.norm(), longest.1)
 }
 
-/// A change of the dependent positions is trusted up to this part of the smallest pivot: a larger one may lead to another way to put the
-/// mechanism together.
+/// A change of the dependent positions is trusted up to this part of the smallest pivot: a larger one may lead to
+/// another way to put the mechanism together.
 const TRUSTED: f64 = 0.125;
 
-/// Changes of velocities by less than so many roundings, over a pivot below [`NEAR`] and over its square, are noise: positions are known to a rounding
-/// over the pivot.
+/// Changes of velocities by less than so many roundings, over a pivot below [`NEAR`] and over its square, are noise:
+/// positions are known to a rounding over the pivot.
 const ROUNDINGS: f64 = 16.0;
 const NEAR: f64 = 0.02;
 const SLIGHT: f64 = 1e-3;
@@ -99,8 +100,8 @@ pub(crate) fn newton_step<T: Number>(
     Ok(())
 }
 
-/// Eq. (19), `Φ_u u̇ = ν − Φ_v v̇`, for the change of u̇ from its integrated value: `Φ_u Δu̇ = ν − Φ_q q̇` with q̇ = (s, ½ Gᵀ w') at the
-/// corrected p; then Δw' = 2 G Δṗ.
+/// Eq. (19), `Φ_u u̇ = ν − Φ_v v̇`, for the change of u̇ from its integrated value: `Φ_u Δu̇ = ν − Φ_q q̇` with q̇ =
+/// (s, ½ Gᵀ w') at the corrected p; then Δw' = 2 G Δṗ.
 pub(crate) fn solve_velocities<T: Number>(
     lowered: &Lowered<T>,
     t: T,
@@ -113,30 +114,32 @@ pub(crate) fn solve_velocities<T: Number>(
     right.iter_mut().enumerate().for_each(|(row, rate)| *rate = -*rate * row_scale(lowered, row));
     let residual = right.amax();
     let (solution, pivot) = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
-    let speed = y[lowered.n_q()..lowered.n_q() + lowered.n_v()].iter().fold(T::zero(), |m, v| abs(*v).max(m));
+    let speed = y[lowered.scene.n_q()..lowered.scene.n_q() + lowered.scene.n_v()]
+        .iter()
+        .fold(T::zero(), |m, v| abs(*v).max(m));
     let rounding = T::EPSILON * number(ROUNDINGS);
     let is_slight = rounding < number::<T>(SLIGHT) * pivot * pivot;
     if is_slight && pivot < number(NEAR) && residual * pivot <= rounding * speed {
         return Ok(());
     }
-    let mut change = DVector::zeros(lowered.n_q());
+    let mut change = DVector::zeros(lowered.scene.n_q());
     dependent(lowered, choice).zip(solution.iter()).for_each(|(column, value)| change[column] = *value);
-    for moving_body in 0..lowered.n_bodies() {
-        let (from, to) = (7 * moving_body, lowered.n_q() + 6 * moving_body);
+    for moving_body in 0..lowered.scene.n_bodies() {
+        let (from, to) = (7 * moving_body, lowered.scene.n_q() + 6 * moving_body);
         (0..3).for_each(|k| y[to + k] += change[from + k] * lowered.size);
         let p_dot: Vector4<T> = change.fixed_rows::<4>(from + 3).into_owned();
-        let w = angular_velocity(&lowered.p(y, moving_body), &p_dot);
+        let w = angular_velocity(&lowered.scene.p(y, moving_body), &p_dot);
         (0..3).for_each(|k| y[to + 3 + k] += w[k]);
     }
     Ok(())
 }
 
 fn n_constraints<T: Number>(lowered: &Lowered<T>) -> usize {
-    lowered.n_rows() + lowered.n_bodies()
+    lowered.n_rows() + lowered.scene.n_bodies()
 }
 
 fn dependent<T: Number>(lowered: &Lowered<T>, choice: &[usize]) -> impl Iterator<Item = usize> {
-    (0..lowered.n_q()).filter(|column| choice.binary_search(column).is_err())
+    (0..lowered.scene.n_q()).filter(|column| choice.binary_search(column).is_err())
 }
 
 /// What the row is multiplied by.
@@ -152,7 +155,7 @@ fn column_scale<T: Number>(lowered: &Lowered<T>, column: usize) -> T {
 
 /// The scaled Φ_q, normalisations included: 25×28 for the paper's gyroscope.
 fn jacobian<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
-    let mut jacobian = DMatrix::zeros(n_constraints(lowered), lowered.n_q());
+    let mut jacobian = DMatrix::zeros(n_constraints(lowered), lowered.scene.n_q());
     lowered.phi_q(at, |row, column, value| {
         jacobian[(row, column)] = value * row_scale(lowered, row) * column_scale(lowered, column);
     });
@@ -164,7 +167,8 @@ fn factorise<T: Number>(jacobian: &DMatrix<T>, choice: &[usize]) -> LU<T, Dyn, D
     jacobian.select_columns(&columns).lu()
 }
 
-/// Solves with Φ_u, and gives its smallest pivot; fails with it, or with zero if there are more constraints than coordinates.
+/// Solves with Φ_u, and gives its smallest pivot; fails with it, or with zero if there are more constraints than
+/// coordinates.
 fn solve<T: Number>(
     jacobian: &DMatrix<T>,
     choice: &[usize],

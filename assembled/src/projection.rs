@@ -1,4 +1,5 @@
-//! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without forces.
+//! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without
+//! forces.
 
 use crate::lowered::Lowered;
 use crate::number::{Number, abs};
@@ -24,11 +25,11 @@ pub(crate) fn project<T: Number>(
 
 /// `[M 0 Φ_rᵀ; 0 J' Φ_π'ᵀ; Φ_r Φ_π' 0]` by rows, each with its right-hand side at its end.
 fn build<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, rows: &[T], work: &mut Vec<T>) {
-    let n_v = lowered.n_v();
+    let n_v = lowered.scene.n_v();
     let stride = n_v + lowered.n_rows() + 1;
     work.clear();
     work.resize((stride - 1) * stride, T::zero());
-    for (moving_body, body) in lowered.bodies.iter().enumerate() {
+    for (moving_body, body) in lowered.scene.bodies.iter().enumerate() {
         for i in 0..3 {
             let (linear, angular) = (6 * moving_body + i, 6 * moving_body + 3 + i);
             work[linear * stride + linear] = body.mass;

@@ -20,7 +20,7 @@ pub(crate) fn multipliers<T: Number>(
     lambda: &mut [T],
 ) {
     place_all(lowered, at, space);
-    let unbalanced = space.nodes.iter_mut().zip(&lowered.bodies).zip(accelerations.as_chunks::<6>().0);
+    let unbalanced = space.nodes.iter_mut().zip(&lowered.scene.bodies).zip(accelerations.as_chunks::<6>().0);
     for ((node, body), [x, y, z, u, v, w]) in unbalanced {
         node.applied.linear -= Vector3::new(*x, *y, *z) * body.mass;
         node.applied.angular -= node.attitude.a * (body.inertia * Vector3::new(*u, *v, *w));
@@ -30,14 +30,14 @@ pub(crate) fn multipliers<T: Number>(
         match &link.hold {
             Hold::Free => {}
             Hold::Constrained(index, first_row) => {
-                let body = &lowered.constrained[*index];
+                let body = &lowered.scene.constrained[*index];
                 let torque = space.nodes[link.moving_body].attitude.a.tr_mul(&unbalanced.angular);
                 let orientation = orientation_multipliers(&lowered.relative_orientation(at.y, body), &torque);
                 lambda[*first_row..first_row + 3].copy_from_slice(unbalanced.linear.as_slice());
                 lambda[first_row + 3..first_row + 6].copy_from_slice(orientation.as_slice());
             }
             Hold::Joint(hinge) => {
-                let joint = &lowered.joints[hinge.joint];
+                let joint = &lowered.scene.joints[hinge.joint];
                 let on_parent = joint_multipliers(joint, hinge, &unbalanced, link.moving_body, space, lambda);
                 if let Place::Slot(parent) = hinge.ends(joint).0.place {
                     space.nodes[parent].applied += on_parent;

@@ -13,13 +13,13 @@ use gyro_model::JointKind;
 impl<T: Number> Lowered<T> {
     /// Number of raw readings of all joints.
     pub(crate) fn n_readings(&self) -> usize {
-        self.joints.iter().flat_map(|joint| &joint.readings).map(|reading| reading.n_readings()).sum()
+        self.scene.joints.iter().flat_map(|joint| &joint.readings).map(|reading| reading.n_readings()).sum()
     }
 
     /// Writes the raw readings, joint after joint.
     pub(crate) fn read_joints(&self, at: Moment<'_, T>, out: &mut [T]) {
         let mut rest = out;
-        for joint in &self.joints {
+        for joint in &self.scene.joints {
             let len = joint.readings.iter().map(|reading| reading.n_readings()).sum();
             let (out, after) = rest.split_at_mut(len);
             self.read_joint(at, joint, out);
@@ -55,7 +55,7 @@ impl<T: Number> Lowered<T> {
 
     /// The motion with a true rotation, also where a stage of the integrator has left p a little off unit length.
     fn true_motion(&self, at: Moment<'_, T>, place: &Place<T>) -> Motion<T> {
-        let motion = self.motion(at, place);
+        let motion = self.scene.motion(at, place);
         if place.moving_body().is_some() {
             Motion { a: direction_rotation(&motion.p), ..motion }
         } else {

@@ -22,10 +22,10 @@ pub(crate) fn positions<T: Number>(
     t: T,
     y: &mut [T],
 ) -> Result<(), T> {
-    lowered.constrained.iter().for_each(|body| restore(body, y));
+    lowered.scene.constrained.iter().for_each(|body| restore(body, y));
     for limb in &tree.limbs {
         let p = match &limb.hinge {
-            None => normalised(lowered.p(y, limb.moving_body))?,
+            None => normalised(lowered.scene.p(y, limb.moving_body))?,
             Some(hinge) => {
                 let (r, p) = position(tree, lowered, hinge, Moment { t, y })?;
                 y[7 * limb.moving_body..7 * limb.moving_body + 3].copy_from_slice(r.as_slice());
@@ -44,8 +44,8 @@ fn position<T: Number>(
     hinge: &Hinge<T>,
     at: Moment<'_, T>,
 ) -> Result<(Vector3<T>, Vector4<T>), T> {
-    let joint = &lowered.joints[hinge.joint];
-    let [i, j] = &mut lowered.motions(at, joint);
+    let joint = &lowered.scene.joints[hinge.joint];
+    let [i, j] = &mut lowered.scene.motions(at, joint);
     let (first, second) = (product(&i.p, &hinge.frames[0]), product(&j.p, &hinge.frames[1]));
     let between = allowed(joint.kind, product(&conjugate(&first), &second))?;
     let p = match hinge.child {
@@ -107,7 +107,7 @@ fn normalised<T: Number>(p: Vector4<T>) -> Result<Vector4<T>, T> {
 
 /// Gives every body the velocity that its parent's and the rates of its joint make; the rates are the state's.
 pub(crate) fn velocities<T: Number>(tree: &Limbs<T>, lowered: &Lowered<T>, t: T, y: &mut [T]) {
-    let velocities = lowered.n_q();
+    let velocities = lowered.scene.n_q();
     for (moving_body, _) in &tree.held {
         y[velocities + 6 * moving_body..velocities + 6 * moving_body + 6].fill(number(0.0));
     }
@@ -127,8 +127,8 @@ fn velocity<T: Number>(
     hinge: &Hinge<T>,
     at: Moment<'_, T>,
 ) -> (Vector3<T>, Vector3<T>) {
-    let joint = &lowered.joints[hinge.joint];
-    let [i, j] = lowered.motions(at, joint);
+    let joint = &lowered.scene.joints[hinge.joint];
+    let [i, j] = lowered.scene.motions(at, joint);
     let arms = [j.tip(&joint.second.point) - i.r, j.a * joint.second.point];
     let at_point = [i.s + i.omega().cross(&arms[0]), j.s + j.omega().cross(&arms[1])];
     let (turning, sliding) = (j.omega() - i.omega(), at_point[1] - at_point[0]);

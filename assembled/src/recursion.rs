@@ -12,19 +12,20 @@ use crate::sweeps::{self, Node, Space};
 use gyro_model::{Model, Tree};
 use std::cell::RefCell;
 
-/// Featherstone's articulated-body recursion (*Rigid Body Dynamics Algorithms*, chapter 7): work linear in the number of bodies,
-/// no matrix larger than six by six, no allocation.
+/// Featherstone's articulated-body recursion (*Rigid Body Dynamics Algorithms*, chapter 7): work linear in the number
+/// of bodies, no matrix larger than six by six, no allocation.
 ///
-/// All six-vectors are in global axes about one point, the mass centre of the first moving body: so inertias and forces of a
-/// body and its descendants simply add up. A joint with several freedoms is eliminated screw by screw. The velocities that the
-/// state has make each body's acceleration at constant joint rates; what is solved for is the rest. Unlike the
-/// [careful form](crate::Elimination) it takes the constraints for granted: it is right where positions and velocities meet them
-/// (after a correction, and between two of them as nearly as the drift is small), elsewhere it means something else.
+/// All six-vectors are in global axes about one point, the mass centre of the first moving body: so inertias and forces
+/// of a body and its descendants simply add up. A joint with several freedoms is eliminated screw by screw. The
+/// velocities that the state has make each body's acceleration at constant joint rates; what is solved for is the rest.
+/// Unlike the [careful form](crate::Elimination) it takes the constraints for granted: it is right where positions and
+/// velocities meet them (after a correction, and between two of them as nearly as the drift is small), elsewhere it
+/// means something else.
 ///
 /// It does trees of every kind of joint: see [`Assembled::supports`].
 ///
-/// The partition is in closed form, from the root to the leaves: joint coordinates are read off the uncorrected body against its
-/// corrected parent, and the body is put where they say. So there is nothing to choose, and no iteration.
+/// The partition is in closed form, from the root to the leaves: joint coordinates are read off the uncorrected body
+/// against its corrected parent, and the body is put where they say. So there is nothing to choose, and no iteration.
 #[derive(Clone, Debug)]
 pub struct Recursion<T: Number> {
     tree: Limbs<T>,
@@ -33,8 +34,8 @@ pub struct Recursion<T: Number> {
 }
 
 impl<T: Number> Assembled<T, Recursion<T>> {
-    /// Whether the recursion can do a model: a tree of joints that hangs on fixed, constrained, free or driven bodies, with any
-    /// forces and outputs, but without drivers and couplers of joint coordinates.
+    /// Whether the recursion can do a model: a tree of joints that hangs on fixed, constrained, free or driven bodies,
+    /// with any forces and outputs, but without drivers and couplers of joint coordinates.
     ///
     /// # Errors
     /// The first thing in the model that it cannot do.
@@ -60,18 +61,18 @@ impl<T: Number> Solver<T> for Recursion<T> {
     fn new(model: &Model, lowered: &Lowered<T>) -> Result<Self, Unsupported> {
         Assembled::<T, Self>::supports(model)?;
         let tree = Limbs::new(model, lowered);
-        let n_nodes = 1 + lowered.driven.len() + tree.held.len() + tree.fixed.len() + tree.limbs.len();
+        let n_nodes = 1 + lowered.scene.driven.len() + tree.held.len() + tree.fixed.len() + tree.limbs.len();
         let space = RefCell::new(Space {
             nodes: vec![Node::new(); n_nodes],
             turning: vec![sweeps::Free::new(); tree.screws.len()],
-            forces: vec![number(0.0); lowered.n_v()],
+            forces: vec![number(0.0); lowered.scene.n_v()],
             gradients: vec![[[number(0.0); 6]; 2]; lowered.n_rows()],
         });
         Ok(Self { tree, space })
     }
 
     fn accelerations_len(&self, lowered: &Lowered<T>) -> usize {
-        lowered.n_v()
+        lowered.scene.n_v()
     }
 
     fn accelerations(&self, lowered: &Lowered<T>, t: T, y: &[T], out: &mut [T]) {

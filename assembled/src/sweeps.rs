@@ -101,7 +101,7 @@ pub(crate) fn accelerations<T: Number>(
         out.fill(number(0.0));
         return;
     };
-    let origin = lowered.r(at.y, first.moving_body);
+    let origin = lowered.scene.r(at.y, first.moving_body);
     place_roots(tree, lowered, at, &origin, &mut space.nodes);
     let has_forces = !lowered.elements.is_empty();
     if has_forces {
@@ -116,7 +116,7 @@ pub(crate) fn accelerations<T: Number>(
         place(lowered, at, limb.moving_body, &origin, node);
         coast(tree, limb, &before[limb.parent], node, free);
         let force = has_forces.then(|| &space.forces[6 * limb.moving_body..6 * limb.moving_body + 6]);
-        load(&lowered.bodies[limb.moving_body], &lowered.gravity, force, node);
+        load(&lowered.scene.bodies[limb.moving_body], &lowered.scene.gravity, force, node);
     }
     for (index, limb) in tree.limbs.iter().enumerate().rev() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
@@ -144,16 +144,17 @@ fn place_roots<T: Number>(
     let zero = Vector3::zeros();
     nodes[0].centre = -origin;
     nodes[0].a = Matrix3::identity();
-    let first_held = 1 + lowered.driven.len();
+    let first_held = 1 + lowered.scene.driven.len();
     for (index, node) in nodes[1..first_held].iter_mut().enumerate() {
-        *node = Node::known(&lowered.driven_motion(at.t, index), origin);
+        *node = Node::known(&lowered.scene.driven_motion(at.t, index), origin);
     }
     let first_fixed = first_held + tree.held.len();
     for (node, motion) in nodes[first_fixed..].iter_mut().zip(&tree.fixed) {
         *node = Node::known(motion, origin);
     }
     for (node, &(moving_body, _)) in nodes[first_held..].iter_mut().zip(&tree.held) {
-        let pose = Motion::new(lowered.r(at.y, moving_body), lowered.p(at.y, moving_body), zero, zero);
+        let pose =
+            Motion::new(lowered.scene.r(at.y, moving_body), lowered.scene.p(at.y, moving_body), zero, zero);
         *node = Node::known(&pose, origin);
     }
 }
@@ -167,10 +168,10 @@ fn place<T: Number>(
     origin: &Vector3<T>,
     node: &mut Node<T>,
 ) {
-    node.a = unit_rotation(&lowered.p(at.y, moving_body));
-    node.centre = lowered.r(at.y, moving_body) - origin;
-    node.centre_velocity = lowered.s(at.y, moving_body);
-    let omega = node.a * lowered.w(at.y, moving_body);
+    node.a = unit_rotation(&lowered.scene.p(at.y, moving_body));
+    node.centre = lowered.scene.r(at.y, moving_body) - origin;
+    node.centre_velocity = lowered.scene.s(at.y, moving_body);
+    let omega = node.a * lowered.scene.w(at.y, moving_body);
     node.velocity = six(&(node.centre_velocity + node.centre.cross(&omega)), &omega);
 }
 
@@ -198,9 +199,9 @@ fn unit_rotation<T: Number>(p: &Vector4<T>) -> Matrix3<T> {
 
 /// The joint's screws, and the acceleration that the parent's and the velocities make.
 ///
-/// What a joint's screws add to a parent's motion is carried along by the body that they are fixed in: with all of them in one
-/// body the acceleration gains `v_parent × v_child`; of a joint with screws in both, the part x of the relative velocity that is
-/// fixed in the first body makes `−(v_child − v_parent) × x` besides.
+/// What a joint's screws add to a parent's motion is carried along by the body that they are fixed in: with all of them
+/// in one body the acceleration gains `v_parent × v_child`; of a joint with screws in both, the part x of the relative
+/// velocity that is fixed in the first body makes `−(v_child − v_parent) × x` besides.
 #[inline]
 fn coast<T: Number>(
     tree: &Limbs<T>,
@@ -233,8 +234,8 @@ fn coast<T: Number>(
     node.coasting = plus(&parent.coasting, number(1.0), &gained);
 }
 
-/// The part of a relative velocity that is due to the screw fixed in the first body, which comes first and is orthogonal to those
-/// of its kind.
+/// The part of a relative velocity that is due to the screw fixed in the first body, which comes first and is
+/// orthogonal to those of its kind.
 fn first_part<T: Number>(
     tree: &Limbs<T>,
     hinge: &Hinge<T>,

@@ -1,7 +1,7 @@
 //! From the description of a mechanism to unrolled Rust.
 //!
-//! [`generate`] is a pure function: the text of a model page in, the text of a module out, byte for byte the same each time.
-//! It does no I/O, so a `build.rs` can call it as well as `cargo xtask generate`:
+//! [`generate`] is a pure function: the text of a model page in, the text of a module out, byte for byte the same each
+//! time. It does no I/O, so a `build.rs` can call it as well as `cargo xtask generate`:
 //!
 //! ```
 //! let page = r#"
@@ -32,9 +32,10 @@
 //! # Ok::<(), gyro_codegen::Error>(())
 //! ```
 //!
-//! The stages, a folder each, none of which knows of a later one: `expr` has the graph of expressions, `simplify` passes that shorten any of them, `derive`
-//! the textbook from the model to Φ, its derivatives, masses and forces, `solve` the solves of eq. (17) and of the coordinate partition,
-//! `joint_space` the same for trees in joint coordinates; `equations` brings them together, `kernels` names what a module computes, `emit` writes it.
+//! The stages, a folder each, none of which knows of a later one: `expr` has the graph of expressions, `simplify`
+//! passes that shorten any of them, `derive` the textbook from the model to Φ, its derivatives, masses and forces,
+//! `solve` the solves of eq. (17) and of the coordinate partition, `joint_space` the same for trees in joint
+//! coordinates; `equations` brings them together, `kernels` names what a module computes, `emit` writes it.
 #![deny(missing_docs)]
 
 mod derive;
@@ -74,15 +75,17 @@ pub struct Module {
     pub type_name: String,
     /// The text of the module's file.
     pub code: String,
-    /// The exact constants behind the literals of the code, one literal a line: `0.7071067811865476 = 1/2*sqrt(2)`. Where
-    /// several round to one literal, they are listed with what its occurrences stand for, in the order of the text: ` as 1*3 2`.
+    /// The exact constants behind the literals of the code, one literal a line: `0.7071067811865476 = 1/2*sqrt(2)`.
+    /// Where several round to one literal, they are listed with what its occurrences stand for, in the order of the
+    /// text: ` as 1*3 2`.
     pub constants: String,
     /// What was generated, as data: the head of the file shows it.
     pub data_sheet: DataSheet,
 }
 
 impl Module {
-    /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a module).
+    /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a
+    /// module).
     pub fn as_item(&self) -> String {
         format!("/// Generated from a model page.\npub mod {} {{\n{}}}\n", self.name, self.code)
     }
@@ -106,7 +109,7 @@ impl fmt::Display for Error {
     }
 }
 
-/// The same words as [`fmt::Display`]: a `main` or `build.rs` that returns the error shows it in this form.
+/// The same text as [`fmt::Display`]: a `main` or `build.rs` that returns the error shows it in this form.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "\n{self}")

@@ -8,7 +8,7 @@ use gyro_sim_suite::{
 };
 use std::f64::consts::{FRAC_PI_4, PI};
 
-/// As the issue asks, relative.
+/// Relative tolerance on a period: the truncation error of the step is below it.
 const PERIOD: f64 = 1e-9;
 
 /// Precession and nutation over a second or two, rad, with the fine steps used here.
@@ -144,23 +144,24 @@ fn a_motion_that_is_a_little_wrong_is_noticed() {
 /// Over a second at the paper's step.
 const DRIFT: f64 = 1e-11;
 
-/// Of tops that turn faster for their size, of a stop that throws a body back within a hundredth of a second, of rings that turn
-/// fast in gimbal lock, and of springs that give up their energy within milliseconds.
+/// Of tops that turn faster for their size, of a stop that throws a body back within a hundredth of a second, of rings
+/// that turn fast in gimbal lock, and of springs that give up their energy within milliseconds.
 const FAST: [&str; 5] =
     ["spinning-top", "stops", "gyroscope-gimbal-lock", "gyroscope-stiff", "gyroscope-overdamped"];
 const DRIFT_OF_FAST: f64 = 1e-10;
 
-/// Of linkages that pass a pose in which their rows depend on each other: on both sides of it accelerations are quotients of
-/// small numbers.
+/// Of linkages that pass a pose in which their rows depend on each other: on both sides of it accelerations are
+/// quotients of small numbers.
 const SINGULAR: [&str; 2] = ["parallelogram", "four-bar-in-line"];
 const DRIFT_OF_SINGULAR: f64 = 1e-7;
 
-/// Those whose poses are singular twice over, or of seven bars, are followed up to there: `poses.rs` has them pass, under error control.
+/// Those whose poses are singular twice over, or of seven bars, are followed up to there: `poses.rs` has them pass,
+/// under error control.
 const UP_TO_POSE: [&str; 2] = ["peaucellier", "two-four-bars"];
 const BEFORE_POSE: f64 = 0.2;
 
-/// The paper's second; where a page asks for shorter steps, as many of those; through the pose in line, the page's own, as there
-/// shorter ones lose more.
+/// The paper's second; where a page asks for shorter steps, as many of those; through the pose in line, the page's own,
+/// as there shorter ones lose more.
 fn settings(page: &str, model: &Model) -> Settings {
     let asked = &model.simulation;
     if page == "four-bar-in-line" {

@@ -1,5 +1,5 @@
-//! Closed loops: the planar four-bar linkage against its reduction to one coordinate, redundant rows, a driver, and the pose with
-//! all bars in line.
+//! Closed loops: the planar four-bar linkage against its reduction to one coordinate, redundant rows, a driver, and the
+//! pose with all bars in line.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::{Model, RowOwner};
@@ -12,7 +12,7 @@ use gyro_sim_suite::{
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::LazyLock;
 
-/// As the issue asks.
+/// Relative energy drift that the truncation error of the step allows.
 const DRIFT: f64 = 1e-8;
 
 /// Angles (rad) and rates (rad/s) over ten seconds, in which small errors grow with time.
@@ -27,11 +27,12 @@ const VIOLATION: f64 = 1e-12;
 /// Torque, N·m, and power, W, of the driven crank.
 const TORQUE: f64 = 1e-9;
 
-/// Crank and rocker, rad: equal on the branch of the parallelogram, a radian apart on the other one within a tenth of a second.
+/// Crank and rocker, rad: equal on the branch of the parallelogram, a radian apart on the other one within a tenth of a
+/// second.
 const BRANCH: f64 = 1e-4;
 
-/// Steps, s, and how far the motion may be off by then, rad: near the pose in line accelerations are a quotient of small
-/// numbers.
+/// Steps, s, and how far the motion may be off by then, rad: near the pose in line accelerations are a quotient of
+/// small numbers.
 const STEPS: [(f64, f64); 4] = [(2e-2, 1e-1), (5e-3, 1e-2), (1e-3, 1e-4), (2e-4, 1e-4)];
 
 /// Half the page's step.
@@ -125,8 +126,8 @@ fn as_pendulum(rate: f64) -> Pendulum {
     Pendulum::parallelogram(bars, 9.81, 0.5, rate)
 }
 
-/// Runs the parallelogram; it must move as the pendulum as long as it goes, and if it stops before the end, say why. Returns
-/// whether it came to the end, and the largest angle of the crank.
+/// Runs the parallelogram; it must move as the pendulum as long as it goes, and if it stops before the end, say why.
+/// Returns whether it came to the end, and the largest angle of the crank.
 fn check_parallelogram(mechanism: &Engine, rate: f64, (step, allowed): (f64, f64)) -> (bool, f64) {
     let text = page("parallelogram").replace("rate = 9\n", &format!("rate = {rate}\n"));
     let model = gyro_model::read("parallelogram.toml", &text).unwrap_or_else(|mistakes| panic!("{mistakes}"));

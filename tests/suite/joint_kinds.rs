@@ -1,5 +1,5 @@
-//! Each kind of joint by itself: how many freedoms it leaves, and one motion with its reaction against a solution that owes
-//! nothing to constraints.
+//! Each kind of joint by itself: how many freedoms it leaves, and one motion with its reaction against a solution that
+//! owes nothing to constraints.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_reference::{
@@ -12,7 +12,8 @@ use gyro_sim_suite::{
     pair, played, reference_body, simulate, times, worst,
 };
 
-/// Coordinates (rad, m) and rates: RK4 at the pages' steps, some ten radians a second over a second or two, is good for this.
+/// Coordinates (rad, m) and rates: RK4 at the pages' steps, some ten radians a second over a second or two, is good for
+/// this.
 const MOTION: f64 = 1e-9;
 
 /// Forces and torques, N and N·m, of order ten: they follow from the motion.
@@ -21,7 +22,7 @@ const REACTION: f64 = 1e-8;
 /// The same of a top whose bearing bears thousands of newtons.
 const REACTION_OF_TOP: f64 = 1e-6;
 
-/// As the issue asks, m.
+/// Tolerance on the position of the top, m: the truncation error of the step is below it.
 const TOP: f64 = 1e-8;
 
 /// Each page with its degrees of freedom.
@@ -115,7 +116,8 @@ fn universal() {
         (0..2).map(|axis| (reference[k].positions[axis], reference[k].rates[axis])).collect()
     });
     check_reaction("universal", &mechanism, &run, |k, _| {
-        // The first link's reaction is without its own spring, but the damper about the second axis, (0, cos, sin), goes through it.
+        // The first link's reaction is without its own spring, but the damper about the second axis, (0, cos, sin),
+        // goes through it.
         let sample = &reference[k];
         let (sin, cos) = sample.positions[0].sin_cos();
         let mut reaction = sample.reactions[0].in_joint_frame([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
@@ -152,7 +154,8 @@ fn prismatic() {
     let times = times(&run);
     check_coordinates("prismatic", &run, |k| vec![pair(reference.at(times[k]))]);
     check_reaction("prismatic", &mechanism, &run, |k, _| {
-        // m (r̈ − g) at the mass centre, which lies at −(0.1, 0.05, −0.02) from the point; the spring acts at the point.
+        // m (r̈ − g) at the mass centre, which lies at −(0.1, 0.05, −0.02) from the point; the spring acts at the
+        // point.
         let [.., acceleration] = reference.at(times[k]);
         let total = [0.8 * acceleration, 0.6 * acceleration + 9.81, 0.0].map(|x| 1.3 * x);
         let frame = [[-0.6, 0.8, 0.0], [0.0, 0.0, 1.0], [0.8, 0.6, 0.0]];

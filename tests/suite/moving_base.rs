@@ -7,13 +7,13 @@ use gyro_sim_suite::{
     Engine, PAPER, Run, check, check_pairs, coordinate, generated, model, output, played, simulate, times,
 };
 
-/// Angles, rad, as the issue asks; the rotor makes a hundred radians.
+/// Tolerance on angles, rad; the rotor turns by a hundred radians.
 const ANGLES: f64 = 1e-9;
 
 /// Rates, rad/s: the nutation turns at 144 rad/s, a hundred times as much as the angles.
 const RATES: f64 = 1e-7;
 
-/// Work and balance of energy over the kinetic energy, as the issue asks.
+/// Tolerance on the work and on the energy balance, relative to the kinetic energy.
 const WORK: f64 = 1e-9;
 
 /// The carried arm, coordinates and rates, and its reactions, N and N·m.

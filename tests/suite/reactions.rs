@@ -4,11 +4,11 @@ use crate::solved::{RESTING, ROLLING, ROLLING_AND_PITCHING, Solved};
 use gyro_reference::{Pendulum, moving_base};
 use gyro_sim_suite::{Engine, PAPER, Run, check, generated, model, output, played, simulate, times};
 
-/// N and N·m, as the issue asks; m/s and m/s² for what is at the tip.
+/// Tolerance in N and N·m, and in m/s and m/s² at the tip: forces are of order one.
 const REACTION: f64 = 1e-9;
 
-/// Specific force, m/s², and angular rate, rad/s, of the inner ring: angular accelerations are a hundred and forty times the
-/// rates, which are good to 1e-8.
+/// Specific force, m/s², and angular rate, rad/s, of the inner ring: angular accelerations are a hundred and forty
+/// times the rates, which are good to 1e-8.
 const SENSOR: f64 = 1e-7;
 
 /// Power to move the base, W.

@@ -10,7 +10,7 @@ const STATES: usize = 200;
 /// Any time at which what is driven moves and accelerates.
 const TIME: f64 = 0.3;
 
-/// What the issue asks of both engines.
+/// How closely both engines must agree: rounding of eq. (17), with a margin of some decades.
 const AGREEMENT: f64 = 1e-10;
 
 fn accelerations<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> (Vec<f64>, Vec<f64>) {

@@ -1,4 +1,4 @@
-//! The value of an expression, by a walk that shares nothing with simplification.
+//! Evaluates expressions numerically; shares no code with simplification.
 
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;

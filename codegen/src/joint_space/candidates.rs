@@ -63,7 +63,7 @@ impl Candidates {
         }
     }
 
-    /// Leaves out the forms that lose digits by cancellation which Gram–Schmidt keeps.
+    /// Leaves out the forms that cancellation makes less accurate than Gram–Schmidt.
     pub fn retain_accurate(&mut self, system: &mut System, coordinates: &Coordinates) {
         let Some((_, keeping)) = &self.by_gram_schmidt else { return };
         if !cancellation::may_matter(system) {
@@ -103,14 +103,14 @@ fn expanded<'c>(
     candidates.into_iter().map(expanded).collect()
 }
 
-/// The names of those ways of writing the rates' rates that lose digits which another keeps.
+/// The names of the forms of u̇ that are less accurate than `keeping`, which is known to cancel nothing.
 fn inaccurate(
     system: &System,
     coordinates: &Coordinates,
     ways: &[(String, Vec<ExprId>)],
     keeping: &[ExprId],
 ) -> Vec<String> {
-    // What turns freely is not among what is tried.
+    // Free orientations are not sampled.
     let is_tried = !coordinates.have_orientations();
     let scalars = coordinates.layout.links.iter().flat_map(|link| &link.scalars);
     let angles = scalars.filter(|scalar| scalar.kind.is_angle()).map(|scalar| scalar.place.x).collect();

@@ -1,4 +1,4 @@
-//! The last passes over a function, when its form is chosen; what forms are compared by.
+//! Chooses the cheapest of several forms of a function, compared after the final passes.
 
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
@@ -43,7 +43,8 @@ pub struct FinalPasses {
 }
 
 impl FinalPasses {
-    /// Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
+    /// Near a singular pose rounding decides which branch a linkage follows, so functions of mechanisms with loops keep
+    /// their scales.
     pub fn of(has_loops: bool) -> Self {
         Self { chooses_scales: !has_loops }
     }

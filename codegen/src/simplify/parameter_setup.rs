@@ -1,4 +1,4 @@
-//! What depends on parameters alone is computed once, before all steps, by a function of its own.
+//! Moves what depends on parameters alone into a function of its own, which runs once when parameters are set.
 //!
 //! First each function is rewritten so that more does: factors that depend on parameters alone move together through
 //! products and sums, `p (q x + y r)` to `(p q) x + (p r) y`, wherever that saves an operation. Then the largest such
@@ -9,7 +9,8 @@ use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
 use rustc_hash::FxHashMap as HashMap;
 
-/// Takes out of functions that are called in every step what depends on parameters alone: the values of [`Symbol::ParameterSetup`].
+/// Takes out of functions that are called in every step what depends on parameters alone: the values of
+/// [`Symbol::ParameterSetup`].
 pub fn separate<'r>(
     graph: &mut Graph,
     functions: impl IntoIterator<Item = &'r mut Vec<ExprId>>,

@@ -1,6 +1,7 @@
-//! Every expression up to a constant factor. A product has the factors of its operands together, a reciprocal the reciprocal factor; a sum takes the
-//! factor that most of its terms have, and only the others pay for theirs. What a good choice of units does by hand falls out of it:
-//! with the moments of one body as unit of inertia, or an arm as unit of length, most constants become one.
+//! Every expression up to a constant factor. A product has the factors of its operands together, a reciprocal the
+//! reciprocal factor; a sum takes the factor that most of its terms have, and only the others pay for theirs. The
+//! result is what a good choice of units achieves by hand: with the moments of one body as unit of inertia, or an arm
+//! as unit of length, most constants become one.
 
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};

@@ -1,6 +1,6 @@
-//! Which ways of writing the same expressions keep their digits. Where masses or moments of inertia are unlike, or are parameters that may be
-//! set so, a way is tried at states and masses among which are extreme ones: evaluated in `f32` it may not be much further
-//! from itself in `f64` than a way that is known to keep its digits (see `orthogonal`).
+//! Detects forms of an expression that lose accuracy by cancellation. Where masses or moments of inertia differ widely,
+//! or are parameters that may be set so, a form is evaluated at sample states and masses, extreme ones among them: its
+//! error in `f32` against `f64` may not be much larger than that of a form that cancels nothing (see `gram_schmidt`).
 
 use crate::derive::system::System;
 use crate::expr::evaluate::evaluate;
@@ -17,13 +17,14 @@ const STATES: u32 = 200;
 /// Masses and moments that are parameters are tried at their values times ten to a power between minus and plus this.
 const DECADES: f64 = 3.0;
 
-/// Masses or moments that differ by more than this are unlike: the sum of two loses as many digits of the lesser.
+/// Masses or moments that differ by more than this factor differ widely: their sum loses as many digits of the smaller
+/// one.
 const UNLIKE: f64 = 1e3;
 
-/// An error that is larger by no more than this is the like of another.
+/// An error that is larger than another by no more than this factor counts as equal.
 const LIKE: f64 = 10.0;
 
-/// Whether digits are at stake: whether masses or moments of inertia are parameters, or unlike.
+/// Whether cancellation may matter: whether masses or moments of inertia are parameters, or differ widely.
 pub fn may_matter(system: &mut System) -> bool {
     let (mut masses, mut moments, mut about_joints) = (Vec::new(), Vec::new(), Vec::new());
     for (moving_body, body) in system.moving_bodies.clone().into_iter().enumerate() {
@@ -87,7 +88,7 @@ impl Trials {
         Self { states: (0..STATES).map(state).collect() }
     }
 
-    /// Whether a way of writing some expressions keeps the digits that another is known to keep.
+    /// Whether a form of some expressions is as accurate as another that is known to cancel nothing.
     pub fn is_accurate(&self, graph: &Graph, way: &[ExprId], keeping: &[ExprId]) -> bool {
         self.states.iter().all(|state| {
             let [error, least] = [way, keeping].map(|roots| {
@@ -149,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn digits_are_at_stake_where_masses_are_unlike_or_may_be() {
+    fn cancellation_may_matter_where_masses_differ_widely_or_may_be_set_so() {
         assert!(!at_stake(include_str!("../../../models/gyroscope.toml")));
         assert!(at_stake(include_str!("../../../models/gyroscope-light-rings.toml")));
         assert!(at_stake(include_str!("../../../models/gyroscope-parameters.toml")));

@@ -1,4 +1,5 @@
-//! The solve of eq. (17) for the trees of a mechanism, through the null space of the joints, in the way that suits them.
+//! Forward dynamics: solves eq. (17) for the trees of a mechanism through the null space of the joints, by several
+//! methods of which the cheapest accurate one is taken.
 
 use crate::derive::Textbook;
 use crate::derive::dynamics::Dynamics;
@@ -43,7 +44,8 @@ impl ForwardDynamics {
             links.iter().map(|&link| MotionSubspace::of(system, kinematics, link)).collect();
         let loop_rows = system.loop_closure_rows();
         let mut eliminated = vec![EliminatedTree::new(system, subspaces.clone(), Basis::Mixed)];
-        // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
+        // Near a singular pose rounding decides which branch a linkage follows, so loops keep the one form that was
+        // tested on such poses.
         let (mut reduced, mut gram_schmidt) = (None, Vec::new());
         if loop_rows.is_empty() {
             let in_global_frame: Vec<_> =
@@ -97,8 +99,8 @@ impl ForwardDynamics {
         }
     }
 
-    /// The smallest (δr, δπ') of each moving_body, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
-    /// and with these changes for γ.
+    /// The smallest (δr, δπ') of each moving_body, in the metric of the masses, that change the rows by
+    /// [`Symbol::Change`]: eq. (17) without forces and with these changes for γ.
     pub fn projection(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
         let changes: Vec<_> =
             (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
@@ -137,7 +139,7 @@ impl Candidates {
             admitted.extend(gram_schmidt);
             return admitted;
         }
-        // Elimination keeps more digits where a body spins fast: they are worth a quarter of the operations.
+        // Elimination is more accurate where a body spins fast, which is worth a quarter of the operations.
         let saves_a_quarter = |reduced: &Vec<ExprId>| {
             let cost = |form: &Vec<ExprId>| cost(&system.graph, form);
             eliminated.iter().all(|eliminated| 4 * cost(reduced) < 3 * cost(eliminated))
@@ -185,7 +187,8 @@ fn cheapest(graph: &Graph, forms: Vec<Vec<ExprId>>) -> Vec<ExprId> {
     forms.into_iter().min_by_key(|form| cost(graph, form)).expect("at least one")
 }
 
-/// Those forms of the accelerations of an open tree that keep the digits that `keeping` is known to keep.
+/// The forms of the accelerations of an open tree that lose no accuracy against `keeping`, which is known to cancel
+/// nothing.
 fn accurate(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprId]) -> Vec<Vec<ExprId>> {
     let mut expansion = Expansion::new(&system.definitions);
     let keeping = expansion.all(&mut system.graph, keeping);
@@ -213,7 +216,8 @@ mod tests {
     /// A thousand operations on numbers of order one, and a solve.
     const ROUNDING: f64 = 1e-9;
 
-    /// Through the reduced mass matrix, by elimination and by orthogonal motions, in every basis, the accelerations are the same.
+    /// Through the reduced mass matrix, by elimination and by orthogonal motions, in every basis, the accelerations are
+    /// the same.
     fn check(page: &str) {
         let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
         let mut system = System::new(&model);

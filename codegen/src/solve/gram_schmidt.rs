@@ -1,10 +1,11 @@
-//! The solve of eq. (17) for small open trees by least squares: `B u̇` comes as near as can be, in the metric of the masses, to how the
-//! bodies would accelerate alone. The columns of B, how each rate moves all bodies, are made orthogonal one after the other from
-//! the leaves to the roots (modified Gram–Schmidt: Björck, *Solving linear least squares problems by Gram–Schmidt
-//! orthogonalization*, BIT 7 (1967)).
+//! The solve of eq. (17) for small open trees by least squares: `B u̇` comes as near as can be, in the metric of the
+//! masses, to how the bodies would accelerate alone. The columns of B, how each rate moves all bodies, are made
+//! orthogonal one after the other from the leaves to the roots (modified Gram–Schmidt: Björck, *Solving linear least
+//! squares problems by Gram–Schmidt orthogonalization*, BIT 7 (1967)).
 //!
-//! `Bᵀ M B` is never formed and no inertia is subtracted from another. What a heavy leaf leaves to a light root is then a
-//! short motion, not the small difference of two large inertias: masses, moments and arms may differ as they like.
+//! `Bᵀ M B` is never formed and no inertia is subtracted from another. Where a heavy leaf hangs on a light root, what
+//! matters is then a short motion, not the small difference of two large inertias: the accuracy does not depend on the
+//! ratios of masses, moments and arms.
 
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
@@ -48,7 +49,8 @@ struct Part {
 }
 
 impl GramSchmidtTree {
-    /// The links come root first. The basis has rotations in the bodies' own frames: there their inertias are constants.
+    /// The links come root first. The basis has rotations in the bodies' own frames: there their inertias are
+    /// constants.
     pub fn new(system: &mut System, subspaces: Vec<MotionSubspace>, basis: Basis) -> Self {
         let frames = basis.frames(system);
         let bodies: Vec<_> =
@@ -193,7 +195,8 @@ impl Column {
         share
     }
 
-    /// How fast the motion accelerates under the wrenches and a force along it; the wrenches are left with what it does not take.
+    /// How fast the motion accelerates under the wrenches and a force along it; the wrenches are left with what it does
+    /// not take.
     fn taken_from(&self, graph: &mut Graph, wrenches: &mut [SpatialVector], force: ExprId) -> ExprId {
         let driving = self.parts.iter().fold(force, |sum, (&moving_body, part)| {
             let along = part.motion.dot(graph, &wrenches[moving_body]);

@@ -1,4 +1,4 @@
-//! LDLᵀ of a sparse symmetric system of expressions, without pivoting: whoever uses it answers for the order.
+//! LDLᵀ of a sparse symmetric system of expressions, without pivoting: the caller is responsible for a safe order.
 
 use crate::expr::graph::{ExprId, Graph};
 use std::collections::BTreeMap;

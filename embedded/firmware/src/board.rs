@@ -13,7 +13,7 @@ fn semihosting(operation: u32, argument: usize) {
 }
 
 /// Writes to the console; what is written must end with a zero byte.
-pub(crate) fn write(text: &[u8; 2]) {
+pub(crate) fn write<const N: usize>(text: &[u8; N]) {
     const WRITE0: u32 = 0x04;
     semihosting(WRITE0, text.as_ptr().addr());
 }
@@ -31,7 +31,7 @@ pub fn exit(is_success: bool) -> ! {
 /// An instruction that the processor does not have: most often double precision on one without.
 #[exception]
 unsafe fn HardFault(_: &ExceptionFrame) -> ! {
-    crate::print::line("hard fault");
+    write(b"hard fault\n\0");
     exit(false)
 }
 
