@@ -164,7 +164,7 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
         let lowered = &self.lowered;
         Buffers {
             rows: zeros(lowered.n_rows()),
-            constraints: zeros(lowered.n_rows() + lowered.n_bodies()),
+            constraints: zeros(lowered.n_rows() + lowered.scene.n_bodies()),
             readings: zeros(lowered.n_readings()),
             outputs: zeros(lowered.n_outputs()),
         }
@@ -234,7 +234,7 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
     }
 
     fn set_input(&mut self, index: usize, value: T) -> bool {
-        let input = self.lowered.inputs.get_mut(index);
+        let input = self.lowered.scene.inputs.get_mut(index);
         input.map(|(_, present)| *present = value).is_some()
     }
 }

@@ -65,8 +65,9 @@ impl OwnedDescription {
         };
         let names = Names {
             size: model.size(),
-            bodies: lowered.bodies.iter().map(|body| body.name.clone()).collect(),
+            bodies: lowered.scene.bodies.iter().map(|body| body.name.clone()).collect(),
             joints: lowered
+                .scene
                 .joints
                 .iter()
                 .map(|joint| (joint.name.clone(), joint.readings.to_vec()))
@@ -76,7 +77,7 @@ impl OwnedDescription {
             rows: lowered.row_infos.clone(),
             has_work: lowered.work.is_some(),
             turn_references: lowered.turn_readings.clone(),
-            inputs: lowered.inputs.iter().map(|(name, _)| name.clone()).collect(),
+            inputs: lowered.scene.inputs.iter().map(|(name, _)| name.clone()).collect(),
             outputs: model.outputs.iter().flat_map(columns).collect(),
         };
         Self(Arc::new(Described::new(Lists::new(names, |names| Borrowed::of(names)), |lists| {

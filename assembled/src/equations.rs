@@ -14,7 +14,7 @@ impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
 
     fn terms(&self) -> Terms<Self> {
         Terms {
-            velocities: zeros(self.lowered.n_v()),
+            velocities: zeros(self.lowered.scene.n_v()),
             phi_q: zeros(self.phi_q_pattern.len()),
             phi_pi: zeros(self.phi_pi_pattern.len()),
             accelerations: zeros(self.solver.accelerations_len(&self.lowered)),

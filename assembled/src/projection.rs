@@ -14,7 +14,7 @@ pub(crate) fn project<T: Number>(
     work: &mut Vec<T>,
     out: &mut [T],
 ) {
-    let n = lowered.n_v() + lowered.n_rows();
+    let n = lowered.scene.n_v() + lowered.n_rows();
     build(lowered, at, rows, work);
     solve(work, n);
     // The solution has taken the place of the right-hand side.
