@@ -223,7 +223,7 @@ mod tests {
             let vectors = [motion.r, motion.s, motion.w, motion.s_dot, motion.w_dot];
             let expected_vectors = [expected.r, expected.s, expected.w, expected.ds, expected.dw];
             for (vector, expected) in vectors.iter().zip(expected_vectors) {
-                assert!((vector - Vector3::from(expected.0)).norm() < 1e-13, "{vector} at {t}");
+                assert!((vector - expected).norm() < 1e-13, "{vector} at {t}");
             }
             assert!((motion.p - Vector4::from(expected.p.0)).norm() < 1e-15, "{} at {t}", motion.p);
         }

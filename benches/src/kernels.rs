@@ -1,9 +1,8 @@
 //! What is measured: one line for each kernel.
 
 use crate::data_sheet::DataSheet;
-use crate::data_sheet::DataSheet;
 use crate::scene::Scene;
-use gyro_sim::{Equations, Joint, JointSpace, Mechanism, Partition, Partitioned, Rk4};
+use gyro_sim::{Equations, Joint, JointSpace, Partition, Partitioned, Rk4};
 use gyro_yardstick::{FLOPS, STEP};
 use std::fmt;
 use std::hint::black_box;

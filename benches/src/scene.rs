@@ -3,7 +3,7 @@
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_mechanisms::gyroscope_maximal::GyroscopeMaximal;
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{Equations, Mechanism, Rk4};
+use gyro_sim::{Equations, Rk4};
 use gyro_yardstick::{Floor, STEP};
 
 /// Steps to the state at which kernels are measured: 0.37 s, where nothing is zero.

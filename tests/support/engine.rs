@@ -58,7 +58,7 @@ impl<T: Real + 'static> Engine<T> {
     }
 
     /// All that motions of it can be begun with, as a program of its own would have it.
-    pub fn kit(&self, duals: Duals<T>) -> Box<dyn MotionBuilder<Self>> {
+    pub fn builder(&self, duals: Duals<T>) -> Box<dyn MotionBuilder<Self>> {
         if self.is_tree() { Box::new(TreeWithJacobian(duals)) } else { Box::new(WithDuals(duals)) }
     }
 

@@ -265,14 +265,13 @@ mod tests {
         );
         let model = gyro_model::read("page.toml", &page).expect("a page without mistakes");
         let mut system = System::new(&model);
-        let kinematics = Kinematics::derive(&mut system);
-        let dynamics = Dynamics::derive(&mut system);
-        let trees = Trees::of(&mut system, &kinematics);
-        let way = trees.solve(&mut system, &kinematics, &dynamics).accelerations;
-        let tree = OrthogonalTree::new(&mut system, trees.freedoms.clone(), Basis::Mixed);
-        let excitation = Excitation::by_forces(&mut system, &dynamics, &tree.freedoms);
+        let textbook = Textbook::derive(&mut system);
+        let trees = ForwardDynamics::of(&mut system, &textbook.kinematics);
+        let form = trees.solve(&mut system, &textbook).solved;
+        let tree = GramSchmidtTree::new(&mut system, trees.subspaces.clone(), Basis::Mixed);
+        let excitation = Excitation::by_forces(&mut system, &textbook.dynamics, &tree.subspaces);
         let keeping = listed(&tree.respond(&mut system.graph, &excitation).motions);
-        let kept = keeping_digits(&mut system, vec![(way, Vec::new())], &keeping);
+        let kept = accurate(&mut system, vec![form], &keeping);
         assert_eq!(kept.len(), 1, "beside {others:?}");
     }
 

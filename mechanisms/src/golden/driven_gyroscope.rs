@@ -80,10 +80,110 @@ impl<T: gyro_sim::Scalar> DrivenGyroscope<T> {
         false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
     type Scalar = T;
     type State = [T; 40];
-    /// The assembled start, with all parameters at their defaults.
+    type Rows = [T; 15];
+    type Constraints = [T; 18];
+    type Readings = [T; 9];
+    type Outputs = [T; 0];
+    fn description(&self) -> &gyro_sim::Description<'_> {
+        const DESCRIPTION: gyro_sim::Description<'static> = gyro_sim::Description {
+            size: 0.01414213562373095,
+            bodies: &["outer_ring", "inner_ring", "rotor"],
+            joints: &[
+                gyro_sim::JointInfo {
+                    name: "alpha",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+                gyro_sim::JointInfo {
+                    name: "beta",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+                gyro_sim::JointInfo {
+                    name: "phi",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+            ],
+            couplers: &[],
+            drivers: &[],
+            rows: &[
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: false,
+                },
+            ],
+            has_work: true,
+            turn_references: &[],
+            inputs: &[],
+            outputs: &[],
+        };
+        &DESCRIPTION
+    }
+    fn buffers(&self) -> gyro_sim::Buffers<Self> {
+        gyro_sim::Buffers {
+            rows: [T::constant(0.0); 15],
+            constraints: [T::constant(0.0); 18],
+            readings: [T::constant(0.0); 9],
+            outputs: [T::constant(0.0); 0],
+        }
+    }
     fn start(&self) -> Self::State {
         let k = T::constant;
         [
@@ -131,7 +231,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
     }
     /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        let mut accelerations = [T::constant(0.0); 18];
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -404,23 +504,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
             t72,
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
-    type Rows = [T; 15];
-    type Constraints = [T; 18];
-    type Readings = [T; 9];
-    fn rows(&self) -> Self::Rows {
-        [T::constant(0.0); 15]
-    }
-    fn constraints(&self) -> Self::Constraints {
-        [T::constant(0.0); 18]
-    }
-    fn readings(&self) -> Self::Readings {
-        [T::constant(0.0); 9]
-    }
     /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
+        let mut accelerations = [T::constant(0.0); 18];
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1105,128 +1191,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
             rotor_wx - inner_ring_wx,
         ];
     }
-    fn n_bodies(&self) -> usize {
-        3
-    }
-    fn n_joints(&self) -> usize {
-        3
-    }
-    fn body_name(&self, body: usize) -> &str {
-        const BODIES: [&str; 3] = ["outer_ring", "inner_ring", "rotor"];
-        BODIES.get(body).copied().unwrap_or_default()
-    }
-    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
-        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
-            gyro_sim::JointInfo {
-                name: "alpha",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "beta",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "phi",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-        ];
-        JOINTS
-            .get(joint)
-            .copied()
-            .unwrap_or(gyro_sim::JointInfo {
-                name: "",
-                coordinates: &[],
-            })
-    }
-    fn coupler_name(&self, coupler: usize) -> &str {
-        const COUPLERS: [&str; 0] = [];
-        COUPLERS.get(coupler).copied().unwrap_or_default()
-    }
-    fn driver_name(&self, driver: usize) -> &str {
-        const DRIVERS: [&str; 0] = [];
-        DRIVERS.get(driver).copied().unwrap_or_default()
-    }
-    fn row(&self, row: usize) -> gyro_sim::RowInfo {
-        const ROWS: [gyro_sim::RowInfo; 15] = [
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: false,
-            },
-        ];
-        ROWS.get(row)
-            .copied()
-            .unwrap_or(gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            })
-    }
-    fn size(&self) -> T {
-        T::constant(0.01414213562373095)
-    }
-    fn work(&self, y: &Self::State) -> T {
-        y[39]
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Charted for DrivenGyroscope<T> {
-    type Vectors = [[T; 4]; 3];
+/// The solves of the partition, for the charts that are given as unit vectors.
+impl<T: gyro_sim::Scalar> DrivenGyroscope<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
+    fn chart_vectors(&self, y: &[T; 40]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -1246,7 +1219,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for DrivenGyroscope<T> {
         ]
     }
     /// One Newton step of the dependent positions: 509 operations (200 ±, 306 ×, 3 ÷) and 3 functions.
-    fn newton_step_on(&self, t: T, charts: &Self::Vectors, y: &mut Self::State) {
+    fn newton_step_on(&self, t: T, charts: &[[T; 4]; 3], y: &mut [T; 40]) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1572,7 +1545,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for DrivenGyroscope<T> {
         y[20] = k(0.5) * t144;
     }
     /// Solves eq. (19) for the dependent velocities: 252 operations (102 ±, 147 ×, 3 ÷) and 4 functions.
-    fn solve_velocities_on(&self, t: T, _charts: &Self::Vectors, y: &mut Self::State) {
+    fn solve_velocities_on(&self, t: T, _charts: &[[T; 4]; 3], y: &mut [T; 40]) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1718,13 +1691,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for DrivenGyroscope<T> {
         y[38] = T::fused(-(t72 * t80), t82, T::fused(t78 * t80, t77, rotor_wz));
     }
 }
-impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
+impl<T: gyro_sim::Lanes> gyro_sim::Partition for DrivenGyroscope<T> {
+    type Independent = gyro_sim::charts::Charts<T, 3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     fn newton_step(
         &self,
@@ -1732,12 +1705,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::Charted::newton_step_on(
-            self,
-            t,
-            &gyro_sim::charts::one_hot(choice),
-            y,
-        );
+        self.newton_step_on(t, &gyro_sim::charts::one_hot(choice), y);
         Ok(())
     }
     fn solve_velocities(
@@ -1746,12 +1714,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for DrivenGyroscope<T> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::Charted::solve_velocities_on(
-            self,
-            t,
-            &gyro_sim::charts::one_hot(choice),
-            y,
-        );
+        self.solve_velocities_on(t, &gyro_sim::charts::one_hot(choice), y);
         Ok(())
     }
 }
@@ -1761,17 +1724,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
     type PhiPi = [T; 41];
     /// (s̈, ẇ') of each body.
     type Accelerations = [T; 18];
-    fn velocities(&self) -> Self::Velocities {
-        [T::constant(0.0); 18]
-    }
-    fn phi_q_values(&self) -> Self::PhiQ {
-        [T::constant(0.0); 77]
-    }
-    fn phi_pi_values(&self) -> Self::PhiPi {
-        [T::constant(0.0); 41]
-    }
-    fn accelerations_buffer(&self) -> Self::Accelerations {
-        [T::constant(0.0); 18]
+    fn terms(&self) -> gyro_sim::Terms<Self> {
+        gyro_sim::Terms {
+            velocities: [T::constant(0.0); 18],
+            phi_q: [T::constant(0.0); 77],
+            phi_pi: [T::constant(0.0); 41],
+            accelerations: [T::constant(0.0); 18],
+        }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -2944,8 +2903,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             -(k(1.25e-6) * T::fused(-t26, t52 * t82, t31 * (t53 * t82))),
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenGyroscope<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 365 operations (144 ±, 216 ×, 5 ÷) and 3 functions.
     fn project(
         &self,
@@ -3158,15 +3115,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
     type Solution = [T; 33];
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+        gyro_sim::JointBuffers {
+            rates: [T::constant(0.0); 3],
+            solution: [T::constant(0.0); 33],
+            jacobian: [T::constant(0.0); 49],
+            input_jacobian: [T::constant(0.0); 0],
+        }
+    }
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
-    }
-    fn rates(&self) -> Self::Rates {
-        [T::constant(0.0); 3]
-    }
-    fn solution(&self) -> Self::Solution {
-        [T::constant(0.0); 33]
     }
     /// Writes u̇: 66 operations (20 ±, 45 ×, 1 ÷) and 8 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -3241,7 +3202,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     }
     /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 427 operations (162 ±, 263 ×, 2 ÷) and 18 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
-        let mut rates = gyro_sim::JointSpace::rates(self);
+        let mut rates = [T::constant(0.0); 3];
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
         let k = T::constant;
         let x0 = x[0];
@@ -4731,16 +4692,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             -(k(5e-6) * t152),
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
-    type Jacobian = [T; 49];
-    type InputJacobian = [T; 0];
-    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-        [T::constant(0.0); 49]
-    }
-    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-        [T::constant(0.0); 0]
-    }
     /// Writes ∂f/∂x and ∂f/∂t: 1403 operations (529 ±, 872 ×, 2 ÷) and 18 functions.
     fn joint_jacobian(
         &self,
@@ -5929,35 +5880,4 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
         _x: &Self::Joints,
         _out: &mut Self::InputJacobian,
     ) {}
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenGyroscope<T> {
-    type Outputs = [T; 0];
-    fn outputs_buffer(&self) -> Self::Outputs {
-        [T::constant(0.0); 0]
-    }
-    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
-    fn n_outputs(&self) -> usize {
-        0
-    }
-    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
-        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
-        OUTPUTS
-            .get(index)
-            .copied()
-            .unwrap_or(gyro_sim::OutputInfo {
-                name: "",
-                suffix: "",
-                unit: "",
-            })
-    }
-    fn n_inputs(&self) -> usize {
-        0
-    }
-    fn input_name(&self, index: usize) -> &str {
-        const INPUTS: [&str; 0] = [];
-        INPUTS.get(index).copied().unwrap_or_default()
-    }
-    fn set_input(&mut self, _index: usize, _value: T) -> bool {
-        false
-    }
 }

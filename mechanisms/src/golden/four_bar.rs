@@ -62,10 +62,125 @@ impl<T: gyro_sim::Scalar> FourBar<T> {
         false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Ode for FourBar<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
     type Scalar = T;
     type State = [T; 39];
-    /// The assembled start, with all parameters at their defaults.
+    type Rows = [T; 17];
+    type Constraints = [T; 20];
+    type Readings = [T; 19];
+    type Outputs = [T; 0];
+    fn description(&self) -> &gyro_sim::Description<'_> {
+        const DESCRIPTION: gyro_sim::Description<'static> = gyro_sim::Description {
+            size: 0.5,
+            bodies: &["crank", "coupler", "rocker"],
+            joints: &[
+                gyro_sim::JointInfo {
+                    name: "crank_pivot",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+                gyro_sim::JointInfo {
+                    name: "rocker_pivot",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+                gyro_sim::JointInfo {
+                    name: "elbow",
+                    coordinates: &[
+                        gyro_sim::Coordinate::Angle,
+                        gyro_sim::Coordinate::Angle,
+                    ],
+                },
+                gyro_sim::JointInfo {
+                    name: "knee",
+                    coordinates: &[gyro_sim::Coordinate::Orientation],
+                },
+            ],
+            couplers: &[],
+            drivers: &[],
+            rows: &[
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(3),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(3),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(3),
+                    is_length: true,
+                },
+            ],
+            has_work: false,
+            turn_references: &[],
+            inputs: &[],
+            outputs: &[],
+        };
+        &DESCRIPTION
+    }
+    fn buffers(&self) -> gyro_sim::Buffers<Self> {
+        gyro_sim::Buffers {
+            rows: [T::constant(0.0); 17],
+            constraints: [T::constant(0.0); 20],
+            readings: [T::constant(0.0); 19],
+            outputs: [T::constant(0.0); 0],
+        }
+    }
     fn start(&self) -> Self::State {
         let k = T::constant;
         [
@@ -112,7 +227,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FourBar<T> {
     }
     /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        let mut accelerations = [T::constant(0.0); 21];
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let crank_e0 = y[3];
@@ -246,20 +361,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FourBar<T> {
             accelerations[16],
             accelerations[17],
         ];
-    }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
-    type Rows = [T; 17];
-    type Constraints = [T; 20];
-    type Readings = [T; 19];
-    fn rows(&self) -> Self::Rows {
-        [T::constant(0.0); 17]
-    }
-    fn constraints(&self) -> Self::Constraints {
-        [T::constant(0.0); 20]
-    }
-    fn readings(&self) -> Self::Readings {
-        [T::constant(0.0); 19]
     }
     /// Writes Φ: 108 operations (58 ±, 50 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
@@ -736,134 +837,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
             rocker_wz - t76,
         ];
     }
-    fn n_bodies(&self) -> usize {
-        3
-    }
-    fn n_joints(&self) -> usize {
-        4
-    }
-    fn body_name(&self, body: usize) -> &str {
-        const BODIES: [&str; 3] = ["crank", "coupler", "rocker"];
-        BODIES.get(body).copied().unwrap_or_default()
-    }
-    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
-        const JOINTS: [gyro_sim::JointInfo<'static>; 4] = [
-            gyro_sim::JointInfo {
-                name: "crank_pivot",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "rocker_pivot",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "elbow",
-                coordinates: &[gyro_sim::Coordinate::Angle, gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "knee",
-                coordinates: &[gyro_sim::Coordinate::Orientation],
-            },
-        ];
-        JOINTS
-            .get(joint)
-            .copied()
-            .unwrap_or(gyro_sim::JointInfo {
-                name: "",
-                coordinates: &[],
-            })
-    }
-    fn coupler_name(&self, coupler: usize) -> &str {
-        const COUPLERS: [&str; 0] = [];
-        COUPLERS.get(coupler).copied().unwrap_or_default()
-    }
-    fn driver_name(&self, driver: usize) -> &str {
-        const DRIVERS: [&str; 0] = [];
-        DRIVERS.get(driver).copied().unwrap_or_default()
-    }
-    fn row(&self, row: usize) -> gyro_sim::RowInfo {
-        const ROWS: [gyro_sim::RowInfo; 17] = [
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(3),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(3),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(3),
-                is_length: true,
-            },
-        ];
-        ROWS.get(row)
-            .copied()
-            .unwrap_or(gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            })
-    }
-    fn size(&self) -> T {
-        T::constant(0.5)
-    }
-    fn work(&self, _y: &Self::State) -> T {
-        T::constant(0.0)
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for FourBar<T> {
@@ -909,17 +885,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
     type PhiPi = [T; 66];
     /// (s̈, ẇ') of each body, then 3 multipliers of the rows that close loops.
     type Accelerations = [T; 21];
-    fn velocities(&self) -> Self::Velocities {
-        [T::constant(0.0); 18]
-    }
-    fn phi_q_values(&self) -> Self::PhiQ {
-        [T::constant(0.0); 114]
-    }
-    fn phi_pi_values(&self) -> Self::PhiPi {
-        [T::constant(0.0); 66]
-    }
-    fn accelerations_buffer(&self) -> Self::Accelerations {
-        [T::constant(0.0); 21]
+    fn terms(&self) -> gyro_sim::Terms<Self> {
+        gyro_sim::Terms {
+            velocities: [T::constant(0.0); 18],
+            phi_q: [T::constant(0.0); 114],
+            phi_pi: [T::constant(0.0); 66],
+            accelerations: [T::constant(0.0); 21],
+        }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -2598,8 +2570,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             closing2,
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBar<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 993 operations (415 ±, 569 ×, 9 ÷).
     fn project(
         &self,
@@ -3291,36 +3261,5 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBar<T> {
             -t167,
             T::fused(t288, t291, -T::fused(t243, t292, T::fused(t203, t293, t172))),
         ];
-    }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Ports for FourBar<T> {
-    type Outputs = [T; 0];
-    fn outputs_buffer(&self) -> Self::Outputs {
-        [T::constant(0.0); 0]
-    }
-    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
-    fn n_outputs(&self) -> usize {
-        0
-    }
-    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
-        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
-        OUTPUTS
-            .get(index)
-            .copied()
-            .unwrap_or(gyro_sim::OutputInfo {
-                name: "",
-                suffix: "",
-                unit: "",
-            })
-    }
-    fn n_inputs(&self) -> usize {
-        0
-    }
-    fn input_name(&self, index: usize) -> &str {
-        const INPUTS: [&str; 0] = [];
-        INPUTS.get(index).copied().unwrap_or_default()
-    }
-    fn set_input(&mut self, _index: usize, _value: T) -> bool {
-        false
     }
 }

@@ -80,10 +80,134 @@ impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
         false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
     type Scalar = T;
     type State = [T; 52];
-    /// The assembled start, with all parameters at their defaults.
+    type Rows = [T; 21];
+    type Constraints = [T; 25];
+    type Readings = [T; 9];
+    type Outputs = [T; 0];
+    fn description(&self) -> &gyro_sim::Description<'_> {
+        const DESCRIPTION: gyro_sim::Description<'static> = gyro_sim::Description {
+            size: 0.01414213562373095,
+            bodies: &["base", "outer_ring", "inner_ring", "rotor"],
+            joints: &[
+                gyro_sim::JointInfo {
+                    name: "alpha",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+                gyro_sim::JointInfo {
+                    name: "beta",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+                gyro_sim::JointInfo {
+                    name: "phi",
+                    coordinates: &[gyro_sim::Coordinate::Angle],
+                },
+            ],
+            couplers: &[],
+            drivers: &[],
+            rows: &[
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Body(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Body(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Body(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Body(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Body(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Body(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(1),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: false,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(2),
+                    is_length: false,
+                },
+            ],
+            has_work: false,
+            turn_references: &[],
+            inputs: &[],
+            outputs: &[],
+        };
+        &DESCRIPTION
+    }
+    fn buffers(&self) -> gyro_sim::Buffers<Self> {
+        gyro_sim::Buffers {
+            rows: [T::constant(0.0); 21],
+            constraints: [T::constant(0.0); 25],
+            readings: [T::constant(0.0); 9],
+            outputs: [T::constant(0.0); 0],
+        }
+    }
     fn start(&self) -> Self::State {
         let k = T::constant;
         [
@@ -143,7 +267,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
     }
     /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        let mut accelerations = [T::constant(0.0); 24];
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let base_e0 = y[3];
@@ -337,23 +461,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
             accelerations[23],
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
-    type Rows = [T; 21];
-    type Constraints = [T; 25];
-    type Readings = [T; 9];
-    fn rows(&self) -> Self::Rows {
-        [T::constant(0.0); 21]
-    }
-    fn constraints(&self) -> Self::Constraints {
-        [T::constant(0.0); 25]
-    }
-    fn readings(&self) -> Self::Readings {
-        [T::constant(0.0); 9]
-    }
     /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
+        let mut accelerations = [T::constant(0.0); 24];
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let base_e0 = y[3];
@@ -1085,152 +1195,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             rotor_wx - inner_ring_wx,
         ];
     }
-    fn n_bodies(&self) -> usize {
-        4
-    }
-    fn n_joints(&self) -> usize {
-        3
-    }
-    fn body_name(&self, body: usize) -> &str {
-        const BODIES: [&str; 4] = ["base", "outer_ring", "inner_ring", "rotor"];
-        BODIES.get(body).copied().unwrap_or_default()
-    }
-    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
-        const JOINTS: [gyro_sim::JointInfo<'static>; 3] = [
-            gyro_sim::JointInfo {
-                name: "alpha",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "beta",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-            gyro_sim::JointInfo {
-                name: "phi",
-                coordinates: &[gyro_sim::Coordinate::Angle],
-            },
-        ];
-        JOINTS
-            .get(joint)
-            .copied()
-            .unwrap_or(gyro_sim::JointInfo {
-                name: "",
-                coordinates: &[],
-            })
-    }
-    fn coupler_name(&self, coupler: usize) -> &str {
-        const COUPLERS: [&str; 0] = [];
-        COUPLERS.get(coupler).copied().unwrap_or_default()
-    }
-    fn driver_name(&self, driver: usize) -> &str {
-        const DRIVERS: [&str; 0] = [];
-        DRIVERS.get(driver).copied().unwrap_or_default()
-    }
-    fn row(&self, row: usize) -> gyro_sim::RowInfo {
-        const ROWS: [gyro_sim::RowInfo; 21] = [
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(1),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: false,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(2),
-                is_length: false,
-            },
-        ];
-        ROWS.get(row)
-            .copied()
-            .unwrap_or(gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            })
-    }
-    fn size(&self) -> T {
-        T::constant(0.01414213562373095)
-    }
-    fn work(&self, _y: &Self::State) -> T {
-        T::constant(0.0)
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
-    type Vectors = [[T; 4]; 3];
+/// The solves of the partition, for the charts that are given as unit vectors.
+impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
+    fn chart_vectors(&self, y: &[T; 52]) -> [[T; 4]; 3] {
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
         let outer_ring_e2 = y[12];
@@ -1250,7 +1223,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         ]
     }
     /// One Newton step of the dependent positions: 493 operations (193 ±, 297 ×, 3 ÷).
-    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
+    fn newton_step_on(&self, _t: T, charts: &[[T; 4]; 3], y: &mut [T; 52]) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
@@ -1576,7 +1549,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         y[27] = k(0.5) * t137;
     }
     /// Solves eq. (19) for the dependent velocities: 267 operations (112 ±, 152 ×, 3 ÷).
-    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
+    fn solve_velocities_on(&self, _t: T, _charts: &[[T; 4]; 3], y: &mut [T; 52]) {
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -1729,13 +1702,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
         y[51] = T::fused(-(t77 * t85), t87, T::fused(t83 * t85, t82, rotor_wz));
     }
 }
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
+impl<T: gyro_sim::Lanes> gyro_sim::Partition for GyroscopeMaximal<T> {
+    type Independent = gyro_sim::charts::Charts<T, 3>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     fn newton_step(
         &self,
@@ -1743,12 +1716,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::Charted::newton_step_on(
-            self,
-            t,
-            &gyro_sim::charts::one_hot(choice),
-            y,
-        );
+        self.newton_step_on(t, &gyro_sim::charts::one_hot(choice), y);
         Ok(())
     }
     fn solve_velocities(
@@ -1757,12 +1725,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::Charted::solve_velocities_on(
-            self,
-            t,
-            &gyro_sim::charts::one_hot(choice),
-            y,
-        );
+        self.solve_velocities_on(t, &gyro_sim::charts::one_hot(choice), y);
         Ok(())
     }
 }
@@ -1772,17 +1735,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
     type PhiPi = [T; 60];
     /// (s̈, ẇ') of each body.
     type Accelerations = [T; 24];
-    fn velocities(&self) -> Self::Velocities {
-        [T::constant(0.0); 24]
-    }
-    fn phi_q_values(&self) -> Self::PhiQ {
-        [T::constant(0.0); 98]
-    }
-    fn phi_pi_values(&self) -> Self::PhiPi {
-        [T::constant(0.0); 60]
-    }
-    fn accelerations_buffer(&self) -> Self::Accelerations {
-        [T::constant(0.0); 24]
+    fn terms(&self) -> gyro_sim::Terms<Self> {
+        gyro_sim::Terms {
+            velocities: [T::constant(0.0); 24],
+            phi_q: [T::constant(0.0); 98],
+            phi_pi: [T::constant(0.0); 60],
+            accelerations: [T::constant(0.0); 24],
+        }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -3350,8 +3309,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -(k(1.25e-6) * T::fused(-t29, t55 * t118, t34 * (t56 * t118))),
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMaximal<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 460 operations (184 ±, 270 ×, 6 ÷).
     fn project(
         &self,
@@ -3643,15 +3600,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
     type Solution = [T; 45];
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+        gyro_sim::JointBuffers {
+            rates: [T::constant(0.0); 3],
+            solution: [T::constant(0.0); 45],
+            jacobian: [T::constant(0.0); 36],
+            input_jacobian: [T::constant(0.0); 0],
+        }
+    }
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(100.0)]
-    }
-    fn rates(&self) -> Self::Rates {
-        [T::constant(0.0); 3]
-    }
-    fn solution(&self) -> Self::Solution {
-        [T::constant(0.0); 45]
     }
     /// Writes u̇: 19 operations (5 ±, 13 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -3675,7 +3636,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     }
     /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
-        let mut rates = gyro_sim::JointSpace::rates(self);
+        let mut rates = [T::constant(0.0); 3];
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
         let u0 = x[3];
         let u1 = x[4];
@@ -4560,16 +4521,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             t67,
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
-    type Jacobian = [T; 36];
-    type InputJacobian = [T; 0];
-    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-        [T::constant(0.0); 36]
-    }
-    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-        [T::constant(0.0); 0]
-    }
     /// Writes ∂f/∂x and ∂f/∂t: 58 operations (12 ±, 45 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
@@ -4660,35 +4611,4 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
         _x: &Self::Joints,
         _out: &mut Self::InputJacobian,
     ) {}
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeMaximal<T> {
-    type Outputs = [T; 0];
-    fn outputs_buffer(&self) -> Self::Outputs {
-        [T::constant(0.0); 0]
-    }
-    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
-    fn n_outputs(&self) -> usize {
-        0
-    }
-    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
-        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
-        OUTPUTS
-            .get(index)
-            .copied()
-            .unwrap_or(gyro_sim::OutputInfo {
-                name: "",
-                suffix: "",
-                unit: "",
-            })
-    }
-    fn n_inputs(&self) -> usize {
-        0
-    }
-    fn input_name(&self, index: usize) -> &str {
-        const INPUTS: [&str; 0] = [];
-        INPUTS.get(index).copied().unwrap_or_default()
-    }
-    fn set_input(&mut self, _index: usize, _value: T) -> bool {
-        false
-    }
 }

@@ -81,10 +81,54 @@ impl<T: gyro_sim::Scalar> HeavyTop<T> {
         false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
     type Scalar = T;
     type State = [T; 13];
-    /// The assembled start, with all parameters at their defaults.
+    type Rows = [T; 3];
+    type Constraints = [T; 4];
+    type Readings = [T; 7];
+    type Outputs = [T; 0];
+    fn description(&self) -> &gyro_sim::Description<'_> {
+        const DESCRIPTION: gyro_sim::Description<'static> = gyro_sim::Description {
+            size: 0.04,
+            bodies: &["top"],
+            joints: &[
+                gyro_sim::JointInfo {
+                    name: "tip",
+                    coordinates: &[gyro_sim::Coordinate::Orientation],
+                },
+            ],
+            couplers: &[],
+            drivers: &[],
+            rows: &[
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+                gyro_sim::RowInfo {
+                    owner: gyro_sim::Owner::Joint(0),
+                    is_length: true,
+                },
+            ],
+            has_work: false,
+            turn_references: &[],
+            inputs: &[],
+            outputs: &[],
+        };
+        &DESCRIPTION
+    }
+    fn buffers(&self) -> gyro_sim::Buffers<Self> {
+        gyro_sim::Buffers {
+            rows: [T::constant(0.0); 3],
+            constraints: [T::constant(0.0); 4],
+            readings: [T::constant(0.0); 7],
+            outputs: [T::constant(0.0); 0],
+        }
+    }
     fn start(&self) -> Self::State {
         let k = T::constant;
         [
@@ -105,7 +149,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
     }
     /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
+        let mut accelerations = [T::constant(0.0); 6];
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let top_e0 = y[3];
@@ -138,23 +182,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
             accelerations[5],
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
-    type Rows = [T; 3];
-    type Constraints = [T; 4];
-    type Readings = [T; 7];
-    fn rows(&self) -> Self::Rows {
-        [T::constant(0.0); 3]
-    }
-    fn constraints(&self) -> Self::Constraints {
-        [T::constant(0.0); 4]
-    }
-    fn readings(&self) -> Self::Readings {
-        [T::constant(0.0); 7]
-    }
     /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
+        let mut accelerations = [T::constant(0.0); 6];
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let top_e0 = y[3];
@@ -272,72 +302,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let top_wz = y[12];
         *out = [top_e0, top_e1, top_e2, top_e3, top_wx, top_wy, top_wz];
     }
-    fn n_bodies(&self) -> usize {
-        1
-    }
-    fn n_joints(&self) -> usize {
-        1
-    }
-    fn body_name(&self, body: usize) -> &str {
-        const BODIES: [&str; 1] = ["top"];
-        BODIES.get(body).copied().unwrap_or_default()
-    }
-    fn joint(&self, joint: usize) -> gyro_sim::JointInfo<'_> {
-        const JOINTS: [gyro_sim::JointInfo<'static>; 1] = [
-            gyro_sim::JointInfo {
-                name: "tip",
-                coordinates: &[gyro_sim::Coordinate::Orientation],
-            },
-        ];
-        JOINTS
-            .get(joint)
-            .copied()
-            .unwrap_or(gyro_sim::JointInfo {
-                name: "",
-                coordinates: &[],
-            })
-    }
-    fn coupler_name(&self, coupler: usize) -> &str {
-        const COUPLERS: [&str; 0] = [];
-        COUPLERS.get(coupler).copied().unwrap_or_default()
-    }
-    fn driver_name(&self, driver: usize) -> &str {
-        const DRIVERS: [&str; 0] = [];
-        DRIVERS.get(driver).copied().unwrap_or_default()
-    }
-    fn row(&self, row: usize) -> gyro_sim::RowInfo {
-        const ROWS: [gyro_sim::RowInfo; 3] = [
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-            gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Joint(0),
-                is_length: true,
-            },
-        ];
-        ROWS.get(row)
-            .copied()
-            .unwrap_or(gyro_sim::RowInfo {
-                owner: gyro_sim::Owner::Body(0),
-                is_length: false,
-            })
-    }
-    fn size(&self) -> T {
-        T::constant(0.04)
-    }
-    fn work(&self, _y: &Self::State) -> T {
-        T::constant(0.0)
+    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
+    fn set_input(&mut self, _index: usize, _value: T) -> bool {
+        false
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
-    type Vectors = [[T; 4]; 1];
+/// The solves of the partition, for the charts that are given as unit vectors.
+impl<T: gyro_sim::Scalar> HeavyTop<T> {
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
+    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
@@ -345,7 +318,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
         [[top_e0, top_e1, top_e2, top_e3]]
     }
     /// One Newton step of the dependent positions: 38 operations (15 ±, 22 ×, 1 ÷).
-    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
+    fn newton_step_on(&self, _t: T, charts: &[[T; 4]; 1], y: &mut [T; 13]) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -379,7 +352,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
         y[6] = t3;
     }
     /// Solves eq. (19) for the dependent velocities: 29 operations (11 ±, 18 ×, 0 ÷).
-    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
+    fn solve_velocities_on(&self, _t: T, _charts: &[[T; 4]; 1], y: &mut [T; 13]) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -410,13 +383,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
         y[9] = k(0.08) * t5;
     }
 }
-impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
+impl<T: gyro_sim::Lanes> gyro_sim::Partition for HeavyTop<T> {
+    type Independent = gyro_sim::charts::Charts<T, 1>;
     fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+        gyro_sim::charts::best(&self.chart_vectors(y))
     }
     fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
     }
     fn newton_step(
         &self,
@@ -424,12 +397,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::Charted::newton_step_on(
-            self,
-            t,
-            &gyro_sim::charts::one_hot(choice),
-            y,
-        );
+        self.newton_step_on(t, &gyro_sim::charts::one_hot(choice), y);
         Ok(())
     }
     fn solve_velocities(
@@ -438,12 +406,7 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::Charted::solve_velocities_on(
-            self,
-            t,
-            &gyro_sim::charts::one_hot(choice),
-            y,
-        );
+        self.solve_velocities_on(t, &gyro_sim::charts::one_hot(choice), y);
         Ok(())
     }
 }
@@ -453,17 +416,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     type PhiPi = [T; 9];
     /// (s̈, ẇ') of each body.
     type Accelerations = [T; 6];
-    fn velocities(&self) -> Self::Velocities {
-        [T::constant(0.0); 6]
-    }
-    fn phi_q_values(&self) -> Self::PhiQ {
-        [T::constant(0.0); 17]
-    }
-    fn phi_pi_values(&self) -> Self::PhiPi {
-        [T::constant(0.0); 9]
-    }
-    fn accelerations_buffer(&self) -> Self::Accelerations {
-        [T::constant(0.0); 6]
+    fn terms(&self) -> gyro_sim::Terms<Self> {
+        gyro_sim::Terms {
+            velocities: [T::constant(0.0); 6],
+            phi_q: [T::constant(0.0); 17],
+            phi_pi: [T::constant(0.0); 9],
+            accelerations: [T::constant(0.0); 6],
+        }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &[
@@ -668,8 +627,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
             -T::fused(k(0.5), top_dsz, k(4.905)),
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Projection for HeavyTop<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 58 operations (24 ±, 34 ×, 0 ÷).
     fn project(
         &self,
@@ -720,6 +677,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
     type Solution = [T; 9];
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+        gyro_sim::JointBuffers {
+            rates: [T::constant(0.0); 3],
+            solution: [T::constant(0.0); 9],
+            jacobian: [T::constant(0.0); 49],
+            input_jacobian: [T::constant(0.0); 0],
+        }
+    }
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
         [
@@ -731,12 +698,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             k(1.1982587525585533),
             k(200.0),
         ]
-    }
-    fn rates(&self) -> Self::Rates {
-        [T::constant(0.0); 3]
-    }
-    fn solution(&self) -> Self::Solution {
-        [T::constant(0.0); 9]
     }
     /// Writes u̇: 13 operations (4 ±, 9 ×, 0 ÷).
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
@@ -757,7 +718,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
     }
     /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
-        let mut rates = gyro_sim::JointSpace::rates(self);
+        let mut rates = [T::constant(0.0); 3];
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
         let k = T::constant;
         let x0 = x[0];
@@ -973,16 +934,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             -(k(0.04) * (k(122.625) + t19)),
         ];
     }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
-    type Jacobian = [T; 49];
-    type InputJacobian = [T; 0];
-    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-        [T::constant(0.0); 49]
-    }
-    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-        [T::constant(0.0); 0]
-    }
     /// Writes ∂f/∂x and ∂f/∂t: 14 operations (0 ±, 14 ×, 0 ÷).
     fn joint_jacobian(
         &self,
@@ -1070,35 +1021,4 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
         _x: &Self::Joints,
         _out: &mut Self::InputJacobian,
     ) {}
-}
-impl<T: gyro_sim::Scalar> gyro_sim::Ports for HeavyTop<T> {
-    type Outputs = [T; 0];
-    fn outputs_buffer(&self) -> Self::Outputs {
-        [T::constant(0.0); 0]
-    }
-    fn outputs(&self, _t: T, _y: &Self::State, _out: &mut Self::Outputs) {}
-    fn n_outputs(&self) -> usize {
-        0
-    }
-    fn output(&self, index: usize) -> gyro_sim::OutputInfo<'_> {
-        const OUTPUTS: [gyro_sim::OutputInfo<'static>; 0] = [];
-        OUTPUTS
-            .get(index)
-            .copied()
-            .unwrap_or(gyro_sim::OutputInfo {
-                name: "",
-                suffix: "",
-                unit: "",
-            })
-    }
-    fn n_inputs(&self) -> usize {
-        0
-    }
-    fn input_name(&self, index: usize) -> &str {
-        const INPUTS: [&str; 0] = [];
-        INPUTS.get(index).copied().unwrap_or_default()
-    }
-    fn set_input(&mut self, _index: usize, _value: T) -> bool {
-        false
-    }
 }

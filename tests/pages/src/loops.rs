@@ -140,7 +140,7 @@ pub fn places(model: &Model) -> Vec<Place> {
         },
         Support::Driven => {
             let at = body.motion.as_ref().map(|motion| motion.state(model, body, 0.0)).expect("it is driven");
-            Place { position: at.r.0, orientation: at.p.0 }
+            Place { position: at.r.into(), orientation: at.p.0 }
         }
         _ => {
             let q = moving_bodies.next().expect("seven numbers a body");

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose modules are looked at.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 10] = [
     "model",
     "codegen",
     "gyro-sim",

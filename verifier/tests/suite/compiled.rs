@@ -1,7 +1,7 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
 use gyro_mechanisms::{four_bar::FourBar, torsion::Torsion};
-use gyro_sim::{Equations, JointSpace, Mechanism, Partition};
+use gyro_sim::{Equations, JointSpace, Partition};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
 use gyro_verifier::module::{Module, source_of_accelerations};
@@ -59,7 +59,7 @@ fn read(page: &str) -> (crate::support::Page, Module) {
 /// The functions of joint coordinates.
 fn check_joints<M>(page: &str, mechanism: &M)
 where
-    M: JointSpace<Scalar = f64> + Partition,
+    M: JointSpace<Scalar = f64, Jacobian: AsRef<[f64]>> + Partition,
 {
     let (page, module) = read(page);
     let numbers: Vec<f64> = constants((), &module);

@@ -191,12 +191,12 @@ fn driven_bodies_move_as_the_model_says() {
             let (expected, moving) = (motion.state(textbook.model, body, point.t), evaluation.moving(index));
             let acceleration = evaluation.acceleration(index, &[]);
             let values = |v: &Vector<f64>| v.0.each_ref().map(|x| x.value);
-            assert_close(what, &values(&moving.pose.r), &expected.r.0, ROUNDING);
+            assert_close(what, &values(&moving.pose.r), &<[f64; 3]>::from(expected.r), ROUNDING);
             assert_close(what, &moving.pose.p.each_ref().map(|e| e.value), &expected.p.0, ROUNDING);
-            assert_close(what, &values(&moving.s), &expected.s.0, ROUNDING);
-            assert_close(what, &values(&moving.w), &expected.w.0, ROUNDING);
-            assert_close(what, &values(&acceleration.s), &expected.ds.0, ROUNDING);
-            assert_close(what, &values(&acceleration.w), &expected.dw.0, ROUNDING);
+            assert_close(what, &values(&moving.s), &<[f64; 3]>::from(expected.s), ROUNDING);
+            assert_close(what, &values(&moving.w), &<[f64; 3]>::from(expected.w), ROUNDING);
+            assert_close(what, &values(&acceleration.s), &<[f64; 3]>::from(expected.ds), ROUNDING);
+            assert_close(what, &values(&acceleration.w), &<[f64; 3]>::from(expected.dw), ROUNDING);
             // Both ways to the orientation agree.
             let from_p = evaluation.scope.rotation(&moving.pose.p);
             for (row, other) in moving.pose.a.0.iter().zip(&from_p.0) {
