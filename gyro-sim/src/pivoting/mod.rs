@@ -24,7 +24,7 @@
 //! ```
 //! # fn main() -> Result<(), gyro_sim::Error> {
 //! use gyro_mechanisms::four_bar::FourBar;
-//! use gyro_sim::{Ode, Partitioned};
+//! use gyro_sim::{Mechanism, Partitioned};
 //!
 //! let linkage = FourBar::<f64>::default();
 //! let mut state = linkage.start();
