@@ -104,7 +104,8 @@ fn a_mistake_in_any_page_is_known_before_anything_is_compiled() {
     assert!(words.contains("nowhere.toml cannot be read") && !folder.0.join("out").exists(), "{words}");
 }
 
-/// The pages of the report that are kept in the repository, and their figures: nothing else, and no link to anything else.
+/// The pages of the report that are kept in the repository, and their figures: nothing else, and no link to anything
+/// else.
 #[test]
 fn what_is_kept_links_only_what_is_kept() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/report");
