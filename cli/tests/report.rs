@@ -76,7 +76,7 @@ fn a_page_without_a_reference_is_reported_whole() {
     let output = report(&["--quick", &shown(&page), "--out", &shown(&out)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let markdown = folder.text("out/my-pendulum.md");
-    assert!(markdown.contains("because this page has no reference solution"), "{markdown}");
+    assert!(markdown.contains("because this model file has no reference solution"), "{markdown}");
     let html = folder.text("out/my-pendulum.html");
     // Self-contained: figures inside, nothing from elsewhere.
     assert!(html.matches("<svg").count() >= 6 && !html.contains("src=") && !html.contains("<link"));
