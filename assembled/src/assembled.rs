@@ -32,7 +32,8 @@ struct Space<T> {
     lambda: Vec<T>,
     nu: Vec<T>,
     readings: Vec<T>,
-    /// Of [`project`](gyro_sim::Equations::project): empty until it is asked for, as it grows with the square of the mechanism.
+    /// Of [`project`](gyro_sim::Equations::project): empty until it is asked for, as it grows with the square of the
+    /// mechanism.
     projection: Vec<T>,
 }
 

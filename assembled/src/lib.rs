@@ -4,14 +4,15 @@
 //! ([`gyro_sim::Partition`], [`gyro_sim::Equations`]), but shares no derivation with it: Φ, Φ_q, ν and γ are typed from
 //! the paper and from Haug (1989). So it is the reference of the tests, the comparison of the benchmarks and the quick
 //! look of `simulate --engine assembled`, all at once. It comes in three forms:
-//! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the dense
-//!   Jacobian. It does every model.
-//! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body by
-//!   body from the leaves to the root in the null space of each joint, and a partition by charts from the root to the
-//!   leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks this form or the first, as suits a model.
-//! * [`Recursive`], what an expert in rigid-body dynamics would make of it: articulated bodies in joint coordinates, and a partition in
-//!   closed form, both linear in the number of bodies. It takes the constraints for granted, and does the models that
-//!   [`Recursive::supports`]: trees of any joints.
+//! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the
+//!   dense Jacobian. It does every model.
+//! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body
+//!   by body from the leaves to the root in the null space of each joint, and a partition by charts from the root to
+//!   the leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks this form or the first, as
+//!   suits a model.
+//! * [`Recursive`], what an expert in rigid-body dynamics would make of it: articulated bodies in joint coordinates,
+//!   and a partition in closed form, both linear in the number of bodies. It takes the constraints for granted, and
+//!   does the models that [`Recursive::supports`]: trees of any joints.
 //!
 //! All share the formulas. A row is a linear combination of the textbook's primitives and of angles between joint
 //! frames, less a function of time; a kind of joint is a short list of primitives:

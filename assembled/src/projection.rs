@@ -5,8 +5,8 @@ use crate::lowered::Lowered;
 use crate::number::{Number, abs};
 use crate::place::Moment;
 
-/// Writes the change of the velocities' coordinates. All forms alike: by Gaussian elimination with row pivoting, in work space that the
-/// first call allocates.
+/// Writes the change of the velocities' coordinates. All forms alike: by Gaussian elimination with row pivoting, in
+/// work space that the first call allocates.
 pub(crate) fn project<T: Number>(
     lowered: &Lowered<T>,
     at: Moment<'_, T>,

@@ -1,4 +1,5 @@
-//! A whole run of an assembled mechanism, for a command line: compiled here once, so that its caller need not be optimised.
+//! A whole run of an assembled mechanism, for a command line: compiled here once, so that its caller need not be
+//! optimised.
 
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;

@@ -64,10 +64,10 @@ const VELOCITIES: &str = "solve of the velocities";
 const GENERATED: &str = "generated";
 const CORRECTED: &str = "generated, corrected state";
 const GENERATED_MAXIMAL: &str = "generated, paper's form";
-const RECURSIVE: &str = "recursive twin";
-const CAREFUL: &str = "careful twin";
-const DENSE: &str = "dense twin 33×33";
-const DENSE_MAXIMAL: &str = "dense twin 45×45";
+const RECURSIVE: &str = "assembled, recursive";
+const CAREFUL: &str = "assembled, careful";
+const DENSE: &str = "assembled, dense 33×33";
+const DENSE_MAXIMAL: &str = "assembled, dense 45×45";
 
 /// Every kernel of the paper's scene; the floor comes first.
 pub fn kernels(scene: &Scene) -> Vec<Kernel<'_>> {

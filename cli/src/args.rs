@@ -11,10 +11,10 @@ use std::path::PathBuf;
 pub const EXIT_CODES: &str = "Exit codes:
   0  it is done
   1  it was asked for correctly and did not succeed: a run that ends early, a refuted proof, a stale file under --check
-  2  it cannot be done as it was asked for: an option, a page or a file; nothing was begun
+  2  it cannot be done as it was asked for: an option, a model or another file; nothing was begun
   3  the run has come to its end, and its result is worthless; files and figures are written all the same";
 
-/// From a page of bodies and joints to Rust code and to plots.
+/// From a model file of bodies and joints to Rust code and to plots.
 #[derive(Debug, Parser)]
 #[command(name = "gyro", after_help = EXIT_CODES)]
 pub struct Cli {
@@ -36,10 +36,10 @@ pub enum Command {
 
 /// Write the Rust modules of models and their data sheets
 ///
-/// The module of a model goes beside its model file, or where --out says. Of the models of this project the data sheets are
-/// kept (mechanisms/sheets, tests/sheets, embedded/sheets) and a few modules to be read (mechanisms/src/golden, and the
-/// paper's scene in gyro-sim/src/generated); all others are generated when they are compiled. Nothing is written unless
-/// every model is free of mistakes.
+/// The module of a model goes beside its model file, or where --out says. Of the models of this project the data sheets
+/// are kept (mechanisms/sheets, tests/sheets, embedded/sheets) and a few modules to be read (mechanisms/src/golden, and
+/// the paper's scene in gyro-sim/src/generated); all others are generated when they are compiled. Nothing is written
+/// unless every model is free of mistakes.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask generate                          what is kept of every model of this project
@@ -47,7 +47,7 @@ pub enum Command {
   cargo xtask generate --check                  fail if a generated file is not fresh
   cargo xtask generate ~/gimbal.toml --out src/gimbal.rs")]
 pub struct GenerateArgs {
-    /// Model pages; all of this project if none is given
+    /// Model files; all of this project if none is given
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// Write nothing: exit with status 1 and show the difference if a file is not what its model says
@@ -63,22 +63,22 @@ pub struct GenerateArgs {
 
 /// Prove generated modules against the textbook
 ///
-/// Parses the module of each model back from its file and decides, by identity testing over a prime field, whether every
-/// function computes what the textbook says. See docs/verification.md.
+/// Parses the module of each model back from its file and decides, by identity testing over a prime field, whether
+/// every function computes what the textbook says. See docs/verification.md.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask verify                            every module of the workspace
-  cargo xtask verify ~/gimbal.toml              the module that `cargo xtask generate` wrote beside the page
+  cargo xtask verify ~/gimbal.toml              the module that `cargo xtask generate` wrote beside the model
   cargo xtask verify --json models/gyroscope.toml")]
 pub struct VerifyArgs {
-    /// Model pages; all of the workspace if none is given
+    /// Model files; all of the workspace if none is given
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
-    /// Measure rounding instead: errors of generated code and of both forms of the twin, against 384 bits
+    /// Measure rounding instead: errors of generated code and of two runtime-assembled forms, against 384 bits
     #[arg(long, conflicts_with_all = ["quick", "json"])]
     pub(crate) rounding: bool,
-    /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random configurations of ten kinds
-    /// are compared with 384 bits, beside the dense twin
+    /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random
+    /// configurations of ten kinds are compared with 384 bits, beside the dense assembled form
     #[arg(long, value_name = "CONFIGURATIONS", num_args = 0..=1, default_missing_value = "1000", conflicts_with_all = ["rounding", "quick", "json"])]
     pub(crate) stability: Option<NonZeroUsize>,
     /// One point for each claim instead of two
@@ -94,15 +94,16 @@ pub struct VerifyArgs {
 
 /// Show what is generated from a model, what is left out, and what each element of the model costs
 ///
-/// Prints coordinates, equations and degrees of freedom; of each function the operations before and after each pass and the bytes of
-/// machine code; and the operations of the same model without one of its elements, or with more parameters. Writes no module.
+/// Prints coordinates, equations and degrees of freedom; of each function the operations before and after each pass and
+/// the bytes of machine code; and the operations of the same model without one of its elements, or with more
+/// parameters. Writes no module.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask inspect models/gyroscope.toml
   cargo xtask inspect ~/gimbal.toml --no-compile     no machine code: at once
   cargo xtask inspect models/four-bar.toml --json")]
 pub struct InspectArgs {
-    /// Model page, anywhere on disk
+    /// Model file, anywhere on disk
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
     /// Leave out the machine code, for which the module has to be compiled
@@ -115,8 +116,8 @@ pub struct InspectArgs {
 
 /// Simulate a model
 ///
-/// Prints a summary and writes a CSV file and plots. What no option says, the model page's own table `simulation` says. Of an option
-/// that is given twice the last one counts. All times are in seconds.
+/// Prints a summary and writes a CSV file and plots. What no option says, the model file's own table `simulation` says.
+/// Of an option that is given twice the last one counts. All times are in seconds.
 #[derive(Clone, Debug, Args)]
 #[command(
     args_override_self = true,
@@ -133,7 +134,7 @@ Exit codes: 0 done; 1 the run has failed; 2 it cannot be made as it was asked fo
 worthless"
 )]
 pub struct SimulateArgs {
-    /// Model page, anywhere on disk
+    /// Model file, anywhere on disk
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
     /// What computes the motion
@@ -157,37 +158,40 @@ pub struct SimulateArgs {
     /// Error tolerated in each step, relative and absolute: steps are then as long as it allows
     #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
-    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code only)
+    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code
+    /// only)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
     pub(crate) coordinates: Coordinates,
-    /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the page's]
+    /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
+    /// model file's]
     #[arg(long, value_name = "NAME", value_parser = correction)]
     pub(crate) correction: Option<Correction>,
     /// When they are corrected: steps=K or violation=SIZE [default: --correct-every; every step with --tolerance]
     #[arg(long, value_name = "WHEN", value_parser = when, overrides_with = "correct_every")]
     pub(crate) correct_when: Option<When>,
-    /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more than an hour
-    /// are made only with a budget
+    /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more
+    /// than an hour are made only with a budget
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) budget: Option<u64>,
     /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
-    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and eigenvalues. Trees only
+    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and
+    /// eigenvalues. Trees only
     #[arg(long, value_name = "S", value_parser = seconds_or_none, allow_hyphen_values = true, conflicts_with = "t_end")]
     pub(crate) linearize: Option<f64>,
     /// Number type of the run
     #[arg(long, value_enum, default_value_t = Precision::F64)]
     pub(crate) precision: Precision,
-    /// Interval between samples [default: the page's, on the nearest whole number of corrections]
+    /// Interval between samples [default: the model file's, on the nearest whole number of corrections]
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) every: Option<f64>,
     /// Value of one of the model's parameters; may be given several times. The start is assembled anew
     #[arg(long, value_name = "PARAMETER=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, Rational)>,
-    /// What one of the model's inputs is, once for each input: a number, or a CSV file with two columns, time and value.
-    /// Between rows the value is linear, beyond them it is held; each step has the value at its start. Other inputs keep the
-    /// page's value
+    /// What one of the model's inputs is, once for each input: a number, or a CSV file with two columns, time and
+    /// value. Between rows the value is linear, beyond them it is held; each step has the value at its start. Other
+    /// inputs keep the model file's value
     #[arg(long, value_name = "NAME=FILE.csv|NUMBER", value_parser = feed)]
     pub(crate) input: Vec<(String, Feed)>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
@@ -196,7 +200,8 @@ pub struct SimulateArgs {
     /// Folder for the CSV file and the plots [default: out/NAME; none with --json]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files with all samples
+    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files
+    /// with all samples
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -205,12 +210,12 @@ pub struct SimulateArgs {
 pub(crate) enum Engine {
     /// Generated code, compiled for the purpose
     Generated,
-    /// The runtime-assembled twin, as a careful engineer would make it where the model allows (trees of revolute, spherical and
-    /// fixed joints): starts at once
+    /// The runtime-assembled model, as a careful engineer would make it where the mechanism allows (trees of revolute,
+    /// spherical and fixed joints): starts at once
     Assembled,
-    /// The twin in the paper's plain dense form
+    /// The runtime-assembled model in the paper's plain dense form
     Dense,
-    /// The twin as a recursion in joint coordinates: for trees of any joints, and the quickest without compiling
+    /// The same as a recursion in joint coordinates: for trees of any joints, and the quickest without compiling
     Recursive,
 }
 
@@ -257,10 +262,10 @@ impl From<MethodName> for Method {
     }
 }
 
-/// Write the model page of a URDF robot
+/// Write the model file of a URDF robot
 ///
-/// Says what of the robot has no counterpart on the page. Link frames become body frames at the mass centres; links without
-/// mass are merged with what they are fixed to.
+/// Says what of the robot has no counterpart in the model file. Link frames become body frames at the mass centres;
+/// links without mass are merged with what they are fixed to.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask import arm.urdf                    writes arm.toml beside it
@@ -270,22 +275,22 @@ pub struct ImportArgs {
     /// Robot in the Unified Robot Description Format
     #[arg(value_name = "FILE.urdf")]
     pub(crate) file: PathBuf,
-    /// Where to write the page [default: beside the robot, with the extension toml]
+    /// Where to write the model file [default: beside the robot, with the extension toml]
     #[arg(long, value_name = "MODEL.toml")]
     pub(crate) out: Option<PathBuf>,
     /// Let the root link float in place of fixing it to the ground
     #[arg(long)]
     pub(crate) floating: bool,
-    /// Replace a page that an import has written
+    /// Replace a model file that an import has written
     #[arg(long)]
     pub(crate) force: bool,
 }
 
 /// Report error against run time, drift and stability of scenes
 ///
-/// Runs each scene by every integrator, correction, coordinates and precision and by the twins, counts errors from a reference solution of
-/// its own, and writes a page for each scene as Markdown and as one HTML file, figures, raw data as CSV and an index. All of it
-/// takes about twenty minutes; leave the machine alone meanwhile.
+/// Runs each scene by every integrator, correction, coordinates and precision and by runtime-assembled models, counts
+/// errors from a reference solution of its own, and writes a page for each scene as Markdown and as one HTML file,
+/// figures, raw data as CSV and an index. All of it takes about twenty minutes; leave the machine alone meanwhile.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   cargo xtask report                             every model in models/, to out/report; what is kept, to docs/report
@@ -293,7 +298,7 @@ pub struct ImportArgs {
   cargo xtask report --quick                     a minute, to target/report
   cargo xtask report ~/gimbal.toml --out ~/gimbal-report")]
 pub struct ReportArgs {
-    /// Model pages; all of models/ if none is given
+    /// Model files; all of models/ if none is given
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// Few points and short runs, and the paper's scene alone if none is given

@@ -12,7 +12,8 @@ pub fn root() -> PathBuf {
     xtask.parent().unwrap_or(xtask).to_path_buf()
 }
 
-/// The largest page, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies takes.
+/// The largest page, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies
+/// takes.
 pub const LARGEST_PAGE: u64 = 4 << 20;
 
 /// The largest table of a motion or an input that is read: two million rows and more.

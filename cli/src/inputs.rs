@@ -45,7 +45,7 @@ fn check(model: &Model, index: usize, rows: &[[f64; 2]]) -> Result<(), String> {
 
 fn unknown(model: &Model, name: &str, known: &[&str]) -> Failure {
     let help = if known.is_empty() {
-        format!("the model `{}` has no inputs; the page names them under [inputs]", model.name)
+        format!("the model `{}` has no inputs; the model file names them under [inputs]", model.name)
     } else {
         words::instead(name, known)
     };

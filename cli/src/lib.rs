@@ -1,5 +1,5 @@
-//! The command line of the project, as a library: `gyro` is a binary of it, and `cargo xtask` adds the commands of those who
-//! develop the project. What is public besides [`Cli`] and [`Command`] is for these.
+//! The command line of the project, as a library: `gyro` is a binary of it, and `cargo xtask` adds the commands of
+//! those who develop the project. What is public besides [`Cli`] and [`Command`] is for these.
 
 mod args;
 pub mod chain;

@@ -90,8 +90,8 @@ fn call(kernel: Kernel) -> Option<Call> {
     Some(Call { function, takes, passes, returns })
 }
 
-/// The root of a library whose module `mechanism` has this type, with the functions of these kernels: without them nothing would be
-/// compiled.
+/// The root of a library whose module `mechanism` has this type, with the functions of these kernels: without them
+/// nothing would be compiled.
 pub fn library(type_name: &str, kernels: &[Kernel]) -> String {
     let mut text = format!(
         "#[allow(warnings, clippy::all)]

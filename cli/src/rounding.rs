@@ -15,45 +15,50 @@ const STATES: usize = 50;
 
 const SEED: u64 = 1;
 
-/// A generated kernel this many times worse than the same of the pivoted twin is pointed out.
+/// A generated kernel this many times worse than the same of the pivoted dense form is pointed out.
 const CONSPICUOUS: f64 = 10.0;
 
 /// How to read the tables.
 const HEAD: &str = "# Rounding of generated code
 
-Made by `cargo xtask verify --rounding > docs/rounding.md`. A proof says nothing about rounding; this is measured.
+Made by `cargo xtask verify --rounding > docs/rounding.md`. A proof says nothing about rounding; so it is measured here.
 
-Each function runs in `f64` and `f32`, and in `f64` as both forms of the assembled twin, at the same states, and is compared with 384-bit
-floats. A cell has the worst error and in parentheses the median, in units in the last place (of the precision in question) of the largest result, at
-states *near the start* / *random* / *extreme* (speeds and distances from 1e-6 to 1e6). None of these states satisfies the constraints exactly,
-but for functions in joint coordinates, and those of corrected states (`joint_accelerations_at` and all that begin with `corrected`), which
-run at the maximal states of joint states that are drawn in the same way.
+Each function runs in `f64` and `f32`, and in `f64` in two forms of the [runtime-assembled
+model](glossary.md#runtime-assembled-model), the careful and the dense one, at the same states, and is compared with
+384-bit floats. A cell has the worst error and in parentheses the median, in units in the last place (of the precision
+in question) of the largest result, at states *near the start* / *random* / *extreme* (speeds and distances from 1e-6 to
+1e6). These states do not satisfy the constraints, except for functions in joint coordinates and those of corrected
+states (`joint_accelerations_at` and all that begin with `corrected`), which run at the maximal states of joint states
+that are drawn in the same way.
 
 How to read it:
 
-* The state is rounded before anything is computed, and the reference is not told. Where the result is a small difference of large numbers (Φ near
-  the start, where it is 1e-7) that alone makes thousands of units, for every implementation alike: compare a row's columns, not rows.
-* The dense twin solves eq. (17) by LU with pivoting: what it loses is about what the state's conditioning costs. The generated solve
-  does not pivot; it may be better or worse. Where a kernel is more than ten times worse than the dense twin, it is listed here first.
-* The twin has no u̇: beside `joint_accelerations_at` stands what it loses in v̇, at the same states.
-* The worst rows of corrected states are those of bodies that are free along their joint. `planar` and `cylindrical` fall freely and spin about a joint
-  point beside the mass centre: their λ, and the s̈ of a fast spin, are small rests of large terms (weight less inertia, centripetal less tangential
-  acceleration) that `corrected_multipliers` and `corrected_accelerations` compute one by one. The dense twin solves for the mass centre's acceleration itself.
-* Empty cells: the twin has no such function (it chooses coordinates by pivoting and reads angles with another factor), or no careful
-  form for the mechanism; or all results are zero.
+* The state is rounded before anything is computed, and the reference is not told. Where the result is a small
+  difference of large numbers (Φ near the start, where it is 1e-7) that alone makes thousands of units, for every
+  implementation alike: compare a row's columns, not rows.
+* The dense form solves eq. (17) by LU with pivoting: its loss is about what the conditioning of the state costs. The
+  generated solve does not pivot; it may be better or worse. Where a kernel is more than ten times worse than the dense
+  form, it is listed here first.
+* The runtime-assembled model has no u̇: beside `joint_accelerations_at` stands what it loses in v̇, at the same states.
+* The worst rows of corrected states are those of bodies that are free along their joint. `planar` and `cylindrical`
+  fall freely and spin about a joint point beside the mass centre: their λ, and the s̈ of a fast spin, are small rests
+  of large terms (weight less inertia, centripetal less tangential acceleration) that `corrected_multipliers` and
+  `corrected_accelerations` compute one by one. The dense form solves for the mass centre's acceleration itself.
+* Empty cells: the runtime-assembled model has no such function (it chooses coordinates by pivoting and reads angles
+  with another factor), or no careful form for the mechanism; or all results are zero.
 
 ";
 
 /// The whole report in Markdown.
 pub(crate) fn report(tables: &[Table]) -> String {
     let conspicuous: Vec<&String> = tables.iter().flat_map(|table| &table.conspicuous).collect();
-    let mut text = HEAD.to_owned() + "## More than ten times worse than the dense twin\n\n";
+    let mut text = HEAD.to_owned() + "## More than ten times worse than the dense form\n\n";
     let [compared, dense_worse] =
         [|t: &Table| t.compared, |t: &Table| t.dense_worse].map(|of| tables.iter().map(of).sum::<usize>());
     let _ = writeln!(
         text,
-        "Of {compared} comparisons of worst errors (a function at one kind of states each) these {}; in {dense_worse} the dense twin is more than ten \
-         times worse than the generated code.\n",
+        "Of {compared} comparisons of worst errors (a function at one kind of states each) these {}; in {dense_worse} the dense form is more than\n\
+         ten times worse than the generated code.\n",
         conspicuous.len()
     );
     conspicuous.iter().for_each(|line| text += &format!("* {line}\n"));
@@ -65,9 +70,9 @@ pub(crate) fn report(tables: &[Table]) -> String {
 pub(crate) struct Table {
     text: String,
     conspicuous: Vec<String>,
-    /// Functions at one kind of states that the dense twin has too.
+    /// Functions at one kind of states that the dense form has too.
     compared: usize,
-    /// Of these, how many the dense twin computes much worse.
+    /// Of these, how many the dense form computes much worse.
     dense_worse: usize,
 }
 
@@ -79,10 +84,8 @@ pub(crate) fn table(model: &Model, code: &str, constants: &str) -> Result<Table,
     let careful = Careful::<f64>::supports(model).ok().and_then(|()| Careful::new(model).ok());
     let dense = Dense::<f64>::new(model).map_err(|e| Failure::Usage(e.to_string()))?;
     let measured = measure(model, &module, STATES, SEED);
-    let mut text = format!(
-        "\n## {}\n\n| function | f64 | f32 | careful twin | dense twin |\n|---|---|---|---|---|\n",
-        model.name
-    );
+    let mut text =
+        format!("\n## {}\n\n| function | f64 | f32 | careful | dense |\n|---|---|---|---|---|\n", model.name);
     let (mut conspicuous, mut compared, mut dense_worse) = (Vec::new(), 0, 0);
     for function in module.programs.keys() {
         let of_function = measured.iter().filter(|row| row.function == *function);
@@ -98,7 +101,7 @@ pub(crate) fn table(model: &Model, code: &str, constants: &str) -> Result<Table,
                 let ratio = row.double.worst / dense.worst;
                 let kind = row.kind;
                 conspicuous.push(format!(
-                    "{}, {function}, {kind} states: worst {ratio:.0} times that of the dense twin",
+                    "{}, {function}, {kind} states: worst {ratio:.0} times that of the dense form",
                     model.name
                 ));
             }

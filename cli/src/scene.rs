@@ -106,12 +106,13 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Fa
             format!("joint coordinates are for trees of joints, and `{}` has {what}", model.name)
         }
         (Engine::Recursive, None) => {
-            "the recursive twin runs in maximal states, though it solves in joint coordinates: \
+            "the recursive form runs in maximal states, though it solves in joint coordinates: \
              for generated code in joint coordinates leave out --engine recursive"
                 .to_owned()
         }
         (Engine::Assembled | Engine::Dense, None) => {
-            "the twins run in maximal coordinates: for joint coordinates leave out --engine".to_owned()
+            "runtime-assembled models run in maximal coordinates: for joint coordinates leave out --engine"
+                .to_owned()
         }
         (Engine::Generated, None) => return Ok(()),
     };

@@ -24,12 +24,14 @@ const SEED: u64 = 20_261_121;
 
 const HEAD: &str = "# Stability: what the solves lose on extreme configurations
 
-Measured by `cargo xtask verify --stability`. Of each mechanism all masses, inertias and joint points are made parameters; then configurations are drawn at
-random and every kernel that gives accelerations is compared with itself in 384 bits (`cargo xtask verify` has proved it equal to the
-textbook). The error of a configuration is the largest error of a result in terms of the largest result; a failure is an
-error above 1e-3. All are given the same state in `f64`, the reference too, so an error is the kernel's own. *Dense twin*: eq. (17) by LU with
-pivoting, on the same states; beside kernels that give u̇, whose errors are in terms of the largest
-of u̇ and v̇, stands what it loses in v̇.
+Measured by `cargo xtask verify --stability COUNT`, COUNT configurations of each kind. Of each mechanism all
+masses, inertias and joint points are made parameters; then configurations are drawn at random, and every function that
+gives accelerations is compared with itself in 384 bits (`cargo xtask verify` has proved it equal to the textbook). The
+error of a configuration is the largest error of a result in terms of the largest result; a failure is an error above
+1e-3. All get the same state in `f64`, the reference too, so an error is the function's own. *Dense*: the dense form of
+the [runtime-assembled model](glossary.md#runtime-assembled-model), eq. (17) by LU with pivoting, on the same states; it
+has no u̇, so beside functions that give u̇, whose errors are in terms of the largest of u̇ and v̇, the table shows its
+error in v̇.
 
 ";
 
@@ -48,7 +50,7 @@ enum Kind {
 }
 
 const KINDS: [(Kind, &str); 10] = [
-    (Kind::Nominal, "as on the page, any angle, up to 100 rad/s"),
+    (Kind::Nominal, "as in the model file, any angle, up to 100 rad/s"),
     (Kind::Masses(6), "mass ratios to 1e±6"),
     (Kind::Masses(12), "mass ratios to 1e±12"),
     (Kind::Inertias, "each moment of inertia times 1e±3"),
@@ -63,7 +65,7 @@ const KINDS: [(Kind, &str); 10] = [
 /// The whole report in Markdown; without pages, of the paper's gyroscope and of a chain of four bodies with skewed
 /// axes.
 pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String, Failure> {
-    let mut text = HEAD.to_owned();
+    let mut text = HEAD.replace("COUNT", &configurations.to_string());
     for model in models(pages)? {
         text += &table(&model, configurations)?;
     }
@@ -105,7 +107,7 @@ fn freed(model: &Model) -> Model {
     freed
 }
 
-/// Errors of one configuration: of the kernels, and of the dense twin.
+/// Errors of one configuration: of the kernels, and of the dense form.
 type Errors = ([f64; KERNELS.len()], f64);
 
 /// A freed model with its generated module.
@@ -145,7 +147,7 @@ fn table(model: &Model, configurations: usize) -> Result<String, Failure> {
     let _spinner = Spinner::new(format!("trying configurations of {}", model.name));
     let subject = Subject::new(model)?;
     let mut text = format!(
-        "## {}\n\n| configurations | kernel | median | worst | failures | dense twin: median | worst | failures |\n|---|---|---|---|---|---|---|---|\n",
+        "## {}\n\n| configurations | kernel | median | worst | failures | dense: median | worst | failures |\n|---|---|---|---|---|---|---|---|\n",
         model.name
     );
     for (place, (_, words)) in KINDS.into_iter().enumerate() {
@@ -288,7 +290,7 @@ mod tests {
     /// Whatever the configuration.
     const MEDIAN: f64 = 3e-15;
 
-    /// The worst in terms of the dense twin's.
+    /// The worst in terms of the dense form's.
     const WORST: f64 = 2.0;
 
     #[test]

@@ -96,7 +96,7 @@ pub(crate) fn proved(model: &Model, module: Module) -> Result<Module, Failure> {
 
 fn judge(report: &Report) -> Result<(), Failure> {
     if report.is_refuted() {
-        let cure = "this is a mistake of the generator: please report it with the page";
+        let cure = "this is a mistake of the generator: please report it with the model file";
         return Err(Failure::Run(format!(
             "the generated module is not what the textbook says\n{report}{cure}"
         )));

@@ -13,7 +13,8 @@ use std::sync::{Mutex, PoisonError};
 /// How a file that is to be replaced is known for the tool's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// By its place: in the workspace, where nobody else writes, or named by the user as the page to be brought up to date.
+    /// By its place: in the workspace, where nobody else writes, or named by the user as the page to be brought up to
+    /// date.
     Place,
     /// By how its text begins.
     Mark(&'static str),
@@ -74,7 +75,8 @@ fn is_own(path: &Path, known: Known) -> bool {
 
 /// Writes a file unless it has this text already. Returns whether it was written.
 ///
-/// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need be.
+/// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need
+/// be.
 pub fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
     check(path, known)?;
     if holds(path, text) {

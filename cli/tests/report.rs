@@ -76,7 +76,7 @@ fn a_page_without_a_reference_is_reported_whole() {
     let output = report(&["--quick", &shown(&page), "--out", &shown(&out)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let markdown = folder.text("out/my-pendulum.md");
-    assert!(markdown.contains("because this page has no reference solution"), "{markdown}");
+    assert!(markdown.contains("because this model file has no reference solution"), "{markdown}");
     let html = folder.text("out/my-pendulum.html");
     // Self-contained: figures inside, nothing from elsewhere.
     assert!(html.matches("<svg").count() >= 6 && !html.contains("src=") && !html.contains("<link"));
@@ -104,7 +104,8 @@ fn a_mistake_in_any_page_is_known_before_anything_is_compiled() {
     assert!(words.contains("nowhere.toml cannot be read") && !folder.0.join("out").exists(), "{words}");
 }
 
-/// The pages of the report that are kept in the repository, and their figures: nothing else, and no link to anything else.
+/// The pages of the report that are kept in the repository, and their figures: nothing else, and no link to anything
+/// else.
 #[test]
 fn what_is_kept_links_only_what_is_kept() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/report");

@@ -11,7 +11,7 @@
 
 use crate::DoubleDouble;
 use crate::base_motion::{FrameMotion, unit};
-use crate::chain::{Freedom, Link};
+use crate::link::{Freedom, Link};
 use crate::rotation::{ORIGIN, Precise, tensor_times};
 use crate::trajectory::{decimal, decimals};
 use crate::vector::{add, cross, dot, scale, sub};

@@ -5,8 +5,8 @@ use gyro_sim::{Mechanism, Scalar};
 /// What one of the mechanism's inputs is over time: linear between the rows of a table, and held beyond its ends. A
 /// table of one row is a constant.
 ///
-/// Each step of the integrator has the value at its own start, held over the step, as a sampled controller gives it; each
-/// sample has the value at its own time.
+/// Each step of the integrator has the value at its own start, held over the step, as a sampled controller gives it;
+/// each sample has the value at its own time.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Input {
     /// Index among the mechanism's inputs.

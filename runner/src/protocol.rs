@@ -1,7 +1,8 @@
-//! How the command line and the program that it compiles speak with each other: values in CBOR (RFC 8949), which keeps every bit of a number.
+//! How the command line and the program that it compiles speak with each other: values in CBOR (RFC 8949), which keeps
+//! every bit of a number.
 //!
-//! The command line writes a [`Request`] to the program's standard input; the program answers with [`Reply`] values on its standard
-//! output up to one that ends the run, and waits for the next.
+//! The command line writes a [`Request`] to the program's standard input; the program answers with [`Reply`] values on
+//! its standard output up to one that ends the run, and waits for the next.
 
 use crate::motion::Linear;
 use crate::{Approach, Forecast, Sample, Settings, Start, Summary, Timing};

@@ -148,8 +148,8 @@ fn of_the_tutorial(language: &str) -> Vec<String> {
     page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
 }
 
-/// The model file, the manifest, the build script and the program of docs/tutorial.md make a package that builds and runs, and prints
-/// what the tutorial says.
+/// The model file, the manifest, the build script and the program of docs/tutorial.md make a package that builds and
+/// runs, and prints what the tutorial says.
 #[test]
 fn the_tutorial_s_package_builds_and_runs() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tutorial");

@@ -53,8 +53,8 @@ fn order(errors: &[(u32, f64)]) -> f64 {
     sum(0, 1) / sum(0, 0)
 }
 
-/// Orders of a method in maximal coordinates with each correction after every step: with the equations for states that are corrected,
-/// and with exact ones where the correction needs them.
+/// Orders of a method in maximal coordinates with each correction after every step: with the equations for states that
+/// are corrected, and with exact ones where the correction needs them.
 fn orders<D, E, A>((corrected, exact): (D, E), method: impl Fn(&State) -> A, steps: &[u32]) -> [f64; 3]
 where
     D: Ode<Gyroscope<f64>, Scalar = f64, State = State> + Clone,

@@ -8,9 +8,11 @@ mod joints;
 mod partition;
 mod point;
 mod residuals;
+mod statements;
 
 pub(crate) use case::point as point_of_terms;
 
 pub use claim::Claim;
 pub use compare::Needless;
-pub use decide::{Decider, Statements, Verdict, prime};
+pub use decide::{Decider, Verdict};
+pub use statements::{Statements, prime};

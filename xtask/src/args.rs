@@ -22,12 +22,12 @@ pub(crate) enum Command {
 
 /// Measure generated code and write the tables of docs/performance.md
 ///
-/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the twin, in turns in one
-/// process; counts instructions where valgrind is installed; generates, compiles and runs chains of more and more
-/// bodies. All of it optimised. Takes several minutes; leave the machine alone meanwhile.
+/// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the runtime-assembled
+/// model, in turns in one process; counts instructions where valgrind is installed; generates, compiles and runs
+/// chains of more and more bodies. All of it optimised. Takes several minutes; leave the machine alone meanwhile.
 #[derive(Debug, Args)]
 pub(crate) struct PerformanceArgs {
-    /// The page whose tables are to be replaced [default: docs/performance.md]
+    /// The document whose tables are to be replaced [default: docs/performance.md]
     #[arg(long, value_name = "FILE.md")]
     pub(crate) out: Option<PathBuf>,
     /// Bodies of the longest chain; 0 leaves the chains and their table alone
@@ -45,7 +45,7 @@ pub(crate) struct PerformanceArgs {
 /// docs/embedded.md anew. The tools come from embedded/setup.sh; nothing is fetched here.
 #[derive(Debug, Args)]
 pub(crate) struct EmbeddedArgs {
-    /// The page whose tables are to be replaced [default: docs/embedded.md]
+    /// The document whose tables are to be replaced [default: docs/embedded.md]
     #[arg(long, value_name = "FILE.md")]
     pub(crate) out: Option<PathBuf>,
     /// Print the tables instead, and write nothing

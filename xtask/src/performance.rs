@@ -147,7 +147,7 @@ fn machine() -> Result<String, Failure> {
 /// The page with what stands between the marks of this name replaced.
 pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String, Failure> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
-    let missing = |mark: &str| Failure::Usage(format!("the page has no line `{}`", mark.trim()));
+    let missing = |mark: &str| Failure::Usage(format!("the document has no line `{}`", mark.trim()));
     let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;
     let (_, after) = rest.split_once(&end).ok_or_else(|| missing(&end))?;
     Ok(format!("{before}{begin}{text}{end}{after}"))
@@ -166,9 +166,9 @@ mod tests {
 
     #[test]
     fn rows_are_read_whole_or_not_at_all() {
-        let read = rows("phi\tcareful twin\t\t12.5\t2.0\n").unwrap();
+        let read = rows("phi\tassembled, careful\t\t12.5\t2.0\n").unwrap();
         assert_eq!((read[0].what.as_str(), read[0].flops.as_str(), read[0].ns), ("phi", "", 12.5));
-        assert!(rows("phi\tcareful twin\t12.5\n").is_err());
+        assert!(rows("phi\tassembled, careful\t12.5\n").is_err());
         assert_eq!(total("events: Ir\ntotals: 4200\n"), Some(4200));
         assert_eq!(total("nothing"), None);
     }

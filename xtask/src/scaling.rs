@@ -35,7 +35,7 @@ pub(crate) fn table(generator: &Path, most: usize) -> Result<String, Failure> {
     let mut chains = place.generate(generator, &sizes)?;
     place.compile(&mut chains)?;
     place.run(&mut chains)?;
-    let mut text = "| bodies | flops | flops a body | generated, ns | recursive twin, ns | careful twin, ns | generation, s | rustc \
+    let mut text = "| bodies | flops | flops a body | generated, ns | assembled, recursive, ns | assembled, careful, ns | generation, s | rustc \
                     release, s | rustc debug, s | machine code, bytes |\n"
         .to_owned();
     text += "|---|---|---|---|---|---|---|---|---|---|\n";

@@ -89,8 +89,8 @@ fn names_a_file(command: &[String]) -> bool {
     command[3..].first().is_some_and(|word| [".toml", ".urdf"].iter().any(|end| word.ends_with(end)))
 }
 
-/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long ones but that
-/// they exist.
+/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long
+/// ones but that they exist.
 fn run(command: &[String], folder: &Path) -> Output {
     let mut args: Vec<String> = command[2..].to_vec();
     if let Some(at) = args.iter().position(|word| word == "--out") {

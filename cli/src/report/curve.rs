@@ -134,9 +134,9 @@ impl Setting {
 pub(crate) fn who(engine: Engine) -> &'static str {
     match engine {
         Engine::Generated => "generated",
-        Engine::Recursive => "recursive twin",
-        Engine::Assembled => "careful twin",
-        Engine::Dense => "dense twin",
+        Engine::Recursive => "assembled, recursive",
+        Engine::Assembled => "assembled, careful",
+        Engine::Dense => "assembled, dense",
     }
 }
 

@@ -138,9 +138,9 @@ const GROUPS: [Group; 8] = [
     ("generated f32, maximal, corrected", style_of(BLUE, Stroke::Dashed), |c| {
         ours(c, Precision::F32) && c.treatment.is_corrected()
     }),
-    ("recursive twin", style_of(ORANGE, Stroke::Solid), |c| c.engine == Engine::Recursive),
-    ("careful twin", style_of(VERMILION, Stroke::Solid), |c| c.engine == Engine::Assembled),
-    ("dense twin", style_of(BLACK, Stroke::Solid), |c| c.engine == Engine::Dense),
+    ("assembled, recursive", style_of(ORANGE, Stroke::Solid), |c| c.engine == Engine::Recursive),
+    ("assembled, careful", style_of(VERMILION, Stroke::Solid), |c| c.engine == Engine::Assembled),
+    ("assembled, dense", style_of(BLACK, Stroke::Solid), |c| c.engine == Engine::Dense),
 ];
 
 const fn style_of(colour: &'static str, stroke: Stroke) -> Style {

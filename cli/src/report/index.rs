@@ -19,7 +19,7 @@ const HEAD: [&str; 9] = [
     "1e-6, maximal",
     "1e-10, joint",
     "1e-10, maximal",
-    "twin over generated at 1e-6",
+    "assembled over generated at 1e-6",
     "smallest error in f32",
     "runs",
     "failed",

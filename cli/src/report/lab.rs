@@ -129,9 +129,10 @@ impl Lab {
             .run((engine, Precision::F64), &self.plan(&curve, setting, 10_000_000, None))
             .map_err(Failure::Run)?;
         let source = format!(
-            "the {} by dop853 at a tolerance of {TIGHT:e}, because this page has no reference solution: errors below {FLOOR:e} are not \
+            "the {} form of the runtime-assembled model by dop853 at a tolerance of {TIGHT:e}, because this model file has no \
+             reference solution: errors below {FLOOR:e} are not \
              known and are shown as that",
-            super::curve::who(engine)
+            engine.name()
         );
         Ok(Truth::of_samples(&self.model, (source, FLOOR), &run.samples))
     }

@@ -113,7 +113,7 @@ impl Knob {
             Self::Damping(force, _) => {
                 format!("damping of `{}` in SI units", model.forces[force].name).replace('`', "")
             }
-            Self::Rates => "rates of the start, as multiples of the page's".to_owned(),
+            Self::Rates => "rates of the start, as multiples of the model file's".to_owned(),
         }
     }
 

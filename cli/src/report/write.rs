@@ -113,7 +113,7 @@ pub(crate) const CHOICES: [Choice; 4] = [
     ("joint coordinates", |p| is_ours(p, Precision::F64) && p.curve.treatment == Treatment::Joint),
     ("maximal, corrected", |p| is_ours(p, Precision::F64) && p.curve.treatment.is_corrected()),
     ("f32", |p| is_ours(p, Precision::F32)),
-    ("best twin", |p| p.curve.engine != Engine::Generated),
+    ("best assembled", |p| p.curve.engine != Engine::Generated),
 ];
 
 fn is_ours(point: &Point, precision: Precision) -> bool {
@@ -235,7 +235,7 @@ fn drift(study: &Study, page: &mut Page) {
     let settings = &study.lab.model.simulation;
     page.heading(2, "Drift");
     page.text(format!(
-        "{} s by RK4 at the page's own step of {} s, corrected every {} s. Data: `{name}-drift.csv`.",
+        "{} s by RK4 at the model file's own step of {} s, corrected every {} s. Data: `{name}-drift.csv`.",
         number(study.long, 4),
         number(settings.step, 4),
         number(settings.correct_every, 4),
@@ -302,7 +302,7 @@ fn stability(study: &Study, page: &mut Page) {
         Some(vec![map.integrator.to_string(), seconds(column.theory), seconds(column.found.limit), apart])
     });
     page.table(
-        &["at the page's own value", "limit in theory [s]", "limit found [s]", "apart"],
+        &["at the model file's own value", "limit in theory [s]", "limit found [s]", "apart"],
         rows.collect(),
     );
     for trouble in &study.troubles {

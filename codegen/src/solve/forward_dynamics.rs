@@ -254,7 +254,8 @@ mod tests {
         }
     }
 
-    /// A rod that slides and turns at its end, its moments tunable, and `others`: nothing of its moments is lost beside those of its mass at its length.
+    /// A rod that slides and turns at its end, its moments tunable, and `others`: nothing of its moments is lost beside
+    /// those of its mass at its length.
     fn keeps_digits(others: &str) {
         let page = format!(
             "format = 1\nname = \"rod\"\n[parameters]\nmoment = 0.033\n[[body]]\nname = \"wall\"\nfixed = true\n\

@@ -1,5 +1,5 @@
-//! Mechanisms that `cargo xtask embedded` generates before it builds this: the compiler for the chip may be too old for the generator. They
-//! are not kept in the repository.
+//! Mechanisms that `cargo xtask embedded` generates before it builds this: the compiler for the chip may be too old for
+//! the generator. They are not kept in the repository.
 #![allow(clippy::all, unused_qualifications, reason = "generated code is checked for what it computes")]
 
 include!("../generated/chain.rs");

@@ -4,8 +4,8 @@
 //! include!(concat!(env!("OUT_DIR"), "/modules.rs"));
 //! ```
 //!
-//! The build script runs again when a model file, or a table that one names, is changed; what comes out as it was is not written
-//! again, so that nothing is compiled again for it.
+//! The build script runs again when a model file, or a table that one names, is changed; what comes out as it was is
+//! not written again, so that nothing is compiled again for it.
 #![deny(missing_docs)]
 #![allow(clippy::print_stdout, reason = "it is how a build script tells cargo what it depends on")]
 

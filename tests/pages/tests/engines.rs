@@ -10,8 +10,9 @@ use support::compare;
 /// Seeds of the sample; the example `engines 0 300` does more.
 const SEEDS: std::ops::Range<u64> = 3000..3012;
 
-/// Pages whose comparison is delicate: a damper too stiff for the first steps, a slide along which its base is thrown, a drive of which the method
-/// loses the constraints, and a rod whose moments count little beside its mass at its length.
+/// Pages whose comparison is delicate: a damper too stiff for the first steps, a slide along which its base is thrown,
+/// a drive of which the method loses the constraints, and a rod whose moments count little beside its mass at its
+/// length.
 const DELICATE: [u64; 4] = [4146, 4210, 4220, 4262];
 
 #[test]

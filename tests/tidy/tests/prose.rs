@@ -9,7 +9,7 @@ const WIDTH: usize = 120;
 /// All hand-written files below a folder that end like this.
 pub fn files(root: &Path, extension: &str) -> Vec<PathBuf> {
     /// What is generated, built, or no part of the project.
-    const SKIPPED: [&str; 6] = ["target", "generated", "mechanisms", "out", "report", "node_modules"];
+    const SKIPPED: [&str; 6] = ["target", "generated", "golden", "out", "report", "node_modules"];
     let mut found = Vec::new();
     let mut open = vec![root.to_owned()];
     while let Some(folder) = open.pop() {
@@ -30,13 +30,17 @@ pub fn files(root: &Path, extension: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The numbers of the lines of a Markdown text that are too long: tables, code and lines that hold a link are excepted.
+/// The numbers of the lines of a Markdown text that are too long: tables, code, lines that hold a link and what a tool
+/// writes between `<!-- begin NAME -->` and `<!-- end NAME -->` are excepted.
 pub fn long_in_markdown(text: &str) -> Vec<usize> {
-    let mut is_code = false;
+    let (mut is_code, mut is_written_by_a_tool) = (false, false);
     let too_long = |(index, line): (usize, &str)| {
         let is_fence = line.trim_start().starts_with("```");
         is_code ^= is_fence;
-        let is_excepted = is_code || is_fence || line.trim_start().starts_with('|') || line.contains("](");
+        is_written_by_a_tool |= line.starts_with("<!-- begin ");
+        is_written_by_a_tool &= !line.starts_with("<!-- end ");
+        let is_table = line.trim_start().starts_with('|');
+        let is_excepted = is_code || is_fence || is_written_by_a_tool || is_table || line.contains("](");
         (!is_excepted && is_long(line)).then_some(index + 1)
     };
     text.lines().enumerate().filter_map(too_long).collect()

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose modules are looked at.
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 13] = [
     "model",
     "codegen",
     "gyro-sim",
@@ -19,16 +19,15 @@ const CRATES: [&str; 10] = [
     "runner",
     "cli",
     "xtask",
+    "mechanisms",
+    "mechanisms/build",
+    "reference",
     "benches",
     "yardstick",
 ];
 
 /// The longest hand-written file, in lines.
 const LINES: usize = 500;
-
-/// Files that are rewritten elsewhere at this moment, by the beginning of their paths. To be removed when that is
-/// merged.
-const UNTIL_MERGED: [&str; 4] = ["gyro-sim/", "README.md", "ARCHITECTURE.md", "docs/"];
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
 const STAGES: [&str; 8] =
@@ -43,7 +42,6 @@ fn no_modules_use_each_other_in_a_circle() {
     let mut found = Vec::new();
     for name in CRATES {
         let modules = Modules::of(&root().join(name).join("src"));
-        assert!(!modules.uses.is_empty(), "{name} has no modules");
         found.extend(circles(&modules.uses).iter().map(|circle| format!("{name}: {}", circle.join(", "))));
     }
     assert!(found.is_empty(), "circles of modules:\n{}", found.join("\n"));
@@ -66,17 +64,16 @@ fn no_stage_of_the_generator_knows_of_a_later_one() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The path of a file from the root, unless it is rewritten elsewhere.
-fn shown(path: &Path) -> Option<String> {
-    let path = path.strip_prefix(root()).expect("a path below the root").display().to_string();
-    (!UNTIL_MERGED.iter().any(|start| path.starts_with(start))).then_some(path)
+/// The path of a file from the root.
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root()).expect("a path below the root").display().to_string()
 }
 
 #[test]
 fn no_file_is_long() {
     let lines = |path: &PathBuf| fs::read_to_string(path).expect("a text").lines().count();
     let long = files(&root(), "rs").into_iter().filter(|path| lines(path) > LINES);
-    let long: Vec<_> = long.filter_map(|path| shown(&path)).collect();
+    let long: Vec<_> = long.map(|path| shown(&path)).collect();
     assert!(long.is_empty(), "more than {LINES} lines: split by meaning\n{}", long.join("\n"));
 }
 
@@ -85,7 +82,7 @@ fn no_line_of_prose_is_long() {
     let mut found = Vec::new();
     let mut read = |extension: &str, long: fn(&str) -> Vec<usize>| {
         for path in files(&root(), extension) {
-            let Some(name) = shown(&path) else { continue };
+            let name = shown(&path);
             let text = fs::read_to_string(&path).expect("a text");
             found.extend(long(&text).into_iter().map(|line| format!("{name}:{line}")));
         }

@@ -25,8 +25,8 @@ pub struct Drawn<'p, const L: usize> {
     missed: Cell<bool>,
 }
 
-/// How often an argument is halved when it is new, until one is met that is known: what is met later may be a half, a quarter of it. A point of the
-/// circle is drawn for the last one, and doubled.
+/// How often an argument is halved when it is new, until one is met that is known: what is met later may be a half, a
+/// quarter of it. A point of the circle is drawn for the last one, and doubled.
 pub(crate) const HALVINGS: u32 = 8;
 
 type Table<K, V> = RefCell<HashMap<K, V>>;

@@ -173,7 +173,8 @@ fn turned_twice([first, second]: [&str; 2]) -> Report {
     verify(&page.model, &page.code, &page.constants, Depth::Quick)
 }
 
-/// An angle and its double drive a body: their halves, and they, are of one family. So are angles that are farther from each other.
+/// An angle and its double drive a body: their halves, and they, are of one family. So are angles that are farther from
+/// each other.
 #[test]
 fn angles_and_their_doubles_are_of_one_family() {
     let once = "[0.05, 1]";

@@ -1,5 +1,5 @@
-//! `cargo xtask embedded`: generates its mechanisms, builds the firmware, runs it under QEMU, compares it with the host, and writes the tables of
-//! docs/embedded.md.
+//! `cargo xtask embedded`: generates its mechanisms, builds the firmware, runs it under QEMU, compares it with the
+//! host, and writes the tables of docs/embedded.md.
 
 mod budget;
 mod elf;

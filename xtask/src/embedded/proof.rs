@@ -47,7 +47,8 @@ pub(crate) fn forbidden(program: &Program) -> Result<Vec<String>, Failure> {
     Ok(symbols.iter().map(|(_, name)| name.clone()).filter(is_forbidden).collect())
 }
 
-/// Whether the accelerations that `gyro_sim::Partitioned` integrates are one straight line: no call, to libm or elsewhere.
+/// Whether the accelerations that `gyro_sim::Partitioned` integrates are one straight line: no call, to libm or
+/// elsewhere.
 pub(crate) fn is_straight(tools: &Tools, program: &Program) -> Result<bool, Failure> {
     let is_derivative = |name: &str| name.contains("::Corrected as ") && name.ends_with("::derivative");
     match stack::calls(tools, program, is_derivative)? {

@@ -1,4 +1,5 @@
-//! The mechanisms of the firmware. Its compiler is another than this tool's, so that no build script of its own generates them.
+//! The mechanisms of the firmware. Its compiler is another than this tool's, so that no build script of its own
+//! generates them.
 
 use super::folder;
 use gyro_cli::failure::Failure;

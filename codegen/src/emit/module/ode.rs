@@ -24,7 +24,8 @@ impl ModuleWriter<'_> {
         }
     }
 
-    /// The rates of everything but the velocities; the accelerations are those of `Equations`, unrolled there and nowhere else.
+    /// The rates of everything but the velocities; the accelerations are those of `Equations`, unrolled there and
+    /// nowhere else.
     pub fn derivative(&self) -> TokenStream {
         let what = "Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes";
         let n = index(self.equations.solved.roots.len());

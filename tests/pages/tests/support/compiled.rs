@@ -130,7 +130,8 @@ impl Twin {
         Self { ends, noise }
     }
 
-    /// How far what was printed is from this form's end in terms of what is allowed: roundings, and what both are off by as finer steps tell.
+    /// How far what was printed is from this form's end in terms of what is allowed: roundings, and what both are off
+    /// by as finer steps tell.
     fn beside(&self, line: &[&str], finer: &[&str]) -> f64 {
         // Trees in joint coordinates and by the closed form come to where the partition comes.
         let name = if ["joint", "closed form"].contains(&line[2]) { "partition" } else { line[2] };

@@ -19,8 +19,8 @@ const DITHERS: u64 = 6;
 /// Accelerations that are smaller, m/s² or rad/s², are those of a mechanism at rest.
 const AT_REST: f64 = 1e-6;
 
-/// A trajectory, s, and its steps; again with twice as many, to see how much the method is off by. So many times as many steps at most
-/// where motions are too stiff for fewer.
+/// A trajectory, s, and its steps; again with twice as many, to see how much the method is off by. So many times as
+/// many steps at most where motions are too stiff for fewer.
 const T_END: f64 = 0.005;
 const STEPS: u32 = 20;
 const STIFF: u32 = 64;
@@ -171,8 +171,8 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| if (a - b).abs() <= worst { worst } else { (a - b).abs() })
 }
 
-/// With Euler parameters of length one, which neither rounding nor the method keeps: formulas hold where p is a unit vector, and of others each
-/// engine makes something else.
+/// With Euler parameters of length one, which neither rounding nor the method keeps: formulas hold where p is a unit
+/// vector, and of others each engine makes something else.
 fn normalised<F: Field>(context: F::Context, mut y: Vec<F>) -> Vec<F>
 where
     Elementary: Atoms<F>,
@@ -295,7 +295,8 @@ fn trajectories_agree(
     let method = difference(&maximal(start, 2 * steps), &end);
     let scale = f64::from(steps) * largest(&end).max(1.0);
     let own = noise(&|y| maximal(y, steps), start, scale);
-    // The method does not keep the constraints and the length of Euler parameters, and off them each engine goes its own way.
+    // The method does not keep the constraints and the length of Euler parameters, and off them each engine goes its
+    // own way.
     let mut note = |name: &str, function: &dyn Fn(&Vec<f64>, u32) -> Vec<f64>, start: &[f64]| {
         let start = start.to_vec();
         let (found, finer) = (function(&start, steps), function(&start, 2 * steps));

@@ -1,0 +1,283 @@
+//! What can be begun with which mechanism: the more it implements, the more there is.
+
+use super::contract::{COLUMNS, Linear, Motion, MotionBuilder, in_f64};
+use super::correction::{Boxed, keeping, partitioning};
+use super::lens::{Slopes, input_column, joint_duals, joints, joints_near};
+use super::moving::{adaptive, explicit};
+use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::offers::Offers;
+use crate::pivots;
+use gyro_sim::{
+    Baumgarte, ByDuals, ClosedForm, Corrected, Dual, Equations, Exact, Joint, JointSpace, Mechanism, Ode,
+    Partition, Real, Rodas4, Scalar, Uncorrected, Watched,
+};
+use std::fmt::Debug;
+
+/// For whatever can be partitioned.
+#[derive(Clone, Copy, Debug)]
+pub struct Any;
+
+/// For mechanisms with a projection too.
+#[derive(Clone, Copy, Debug)]
+pub struct Projecting;
+
+/// For any mechanism whose kernels exist in dual numbers too.
+#[derive(Clone, Copy, Debug)]
+pub struct WithDuals<D>(pub D);
+
+/// For trees.
+#[derive(Clone, Copy, Debug)]
+pub struct Tree<D>(pub D);
+
+/// For trees with a generated Jacobian.
+#[derive(Clone, Copy, Debug)]
+pub struct TreeWithJacobian<D>(pub D);
+
+impl<M: Partition<Scalar: Real> + 'static> MotionBuilder<M> for Any {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        only_maximal(approach)?;
+        only_explicit(approach)?;
+        match approach.correction {
+            Keeping::Partition => {
+                Ok(explicit(Slopes::of(Corrected), partitioning(mechanism, y), approach, y))
+            }
+            Keeping::None => {
+                Ok(explicit(Slopes::of(Exact), Boxed(Box::new(Watched::new(mechanism))), approach, y))
+            }
+            other => {
+                Err(format!("the correction {other} needs a projection, which this mechanism does not have"))
+            }
+        }
+    }
+}
+
+impl<M: Partition<Scalar: Real> + Equations + 'static> MotionBuilder<M> for Projecting {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        only_maximal(approach)?;
+        only_explicit(approach)?;
+        let correction = keeping(mechanism, approach, y)?;
+        Ok(maximal(approach, correction, y))
+    }
+
+    fn offers(&self) -> Offers {
+        Offers { joint_space: false, derivatives: false, ..Offers::ALL }
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
+}
+
+impl<M, D> MotionBuilder<M> for WithDuals<D>
+where
+    M: Partition<Scalar: Real> + Equations + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        only_maximal(approach)?;
+        let correction = keeping(mechanism, approach, y)?;
+        if approach.integrator == Integrator::Rodas4 {
+            return Ok(implicit(approach, self.0.clone(), correction, y));
+        }
+        Ok(maximal(approach, correction, y))
+    }
+
+    fn offers(&self) -> Offers {
+        Offers { joint_space: false, ..Offers::ALL }
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
+}
+
+impl<M, D> MotionBuilder<M> for Tree<D>
+where
+    M: Partition<Scalar: Real> + JointSpace + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        if approach.coordinates == Coordinates::Maximal {
+            return in_maximal(mechanism, approach, &self.0, y);
+        }
+        let x = joints(mechanism, y);
+        if approach.integrator == Integrator::Rodas4 {
+            let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
+            return Ok(adaptive(joint_duals(&self.0), method, Uncorrected, approach, &x));
+        }
+        Ok(explicit(Joint, Uncorrected, approach, &x))
+    }
+
+    fn offers(&self) -> Offers {
+        Offers::ALL
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
+
+    fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
+        let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
+        let zero = M::Scalar::constant(0.0);
+        let (mut by_state, mut by_time) = (vec![zero; square(x.as_ref())], x.clone());
+        let mut slope = x.clone();
+        mechanism.joint_derivative(time, &x, &mut slope);
+        joint_duals(&self.0).jacobian(mechanism, time, &x, &mut by_state, &mut by_time);
+        let n_inputs = mechanism.description().inputs.len();
+        let mut by_inputs = vec![zero; n_inputs * x.as_ref().len()];
+        for input in 0..n_inputs {
+            let column = input_column(&self.0, input, time, x.as_ref());
+            for (row, slope) in by_inputs.chunks_exact_mut(n_inputs).zip(column) {
+                row[input] = slope;
+            }
+        }
+        Some(Linear {
+            t,
+            state: in_f64(x.as_ref()),
+            slope: in_f64(slope.as_ref()),
+            by_state: in_f64(&by_state),
+            by_inputs: in_f64(&by_inputs),
+        })
+    }
+}
+
+impl<M, D> MotionBuilder<M> for TreeWithJacobian<D>
+where
+    M: Partition<Scalar: Real>
+        + JointSpace<
+            Jacobian: AsRef<[M::Scalar]> + AsMut<[M::Scalar]> + Debug,
+            InputJacobian: AsRef<[M::Scalar]>,
+        > + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        if approach.coordinates == Coordinates::Maximal {
+            return in_maximal(mechanism, approach, &self.0, y);
+        }
+        let x = joints(mechanism, y);
+        if approach.integrator == Integrator::Rodas4 {
+            let method = Rodas4::new(&x, mechanism.joint_buffers().jacobian);
+            return Ok(adaptive(Joint, method, Uncorrected, approach, &x));
+        }
+        Ok(explicit(Joint, Uncorrected, approach, &x))
+    }
+
+    fn offers(&self) -> Offers {
+        Offers::ALL
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
+
+    fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
+        let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
+        let (mut slope, mut by_time) = (x.clone(), x.clone());
+        let buffers = mechanism.joint_buffers();
+        let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
+        mechanism.joint_derivative(time, &x, &mut slope);
+        mechanism.joint_jacobian(time, &x, &mut by_state, &mut by_time);
+        mechanism.joint_input_jacobian(time, &x, &mut by_inputs);
+        Some(Linear {
+            t,
+            state: in_f64(x.as_ref()),
+            slope: in_f64(slope.as_ref()),
+            by_state: in_f64(by_state.as_ref()),
+            by_inputs: in_f64(by_inputs.as_ref()),
+        })
+    }
+}
+
+fn only_maximal(approach: &Approach) -> Result<(), String> {
+    match approach.coordinates {
+        Coordinates::Maximal => Ok(()),
+        Coordinates::Joint => {
+            Err("joint coordinates are for trees of joints, and for generated code".to_owned())
+        }
+    }
+}
+
+fn only_explicit(approach: &Approach) -> Result<(), String> {
+    if approach.integrator == Integrator::Rodas4 {
+        return Err("rodas4 needs derivatives, which only generated code has".to_owned());
+    }
+    Ok(())
+}
+
+/// The work of all applied forces over the mechanism's size and of all moments over a radian, J.
+pub(super) fn work_scale<M: Equations<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
+    let mut forces = mechanism.terms().velocities;
+    mechanism.applied_force(Scalar::constant(t), y, &mut forces);
+    let size = mechanism.size().to_f64();
+    let work = |(k, force): (usize, &M::Scalar)| {
+        let force = force.abs().to_f64();
+        if k % 6 < 3 { force * size } else { force }
+    };
+    forces.as_ref().iter().enumerate().map(work).sum()
+}
+
+fn square<T>(state: &[T]) -> usize {
+    state.len() * state.len()
+}
+
+/// Maximal coordinates of trees.
+fn in_maximal<M, D>(
+    mechanism: &M,
+    approach: &Approach,
+    duals: &D,
+    y: &M::State,
+) -> Result<Box<dyn Motion<M>>, String>
+where
+    M: Partition<Scalar: Real> + JointSpace + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    let correction = match approach.correction {
+        Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
+        _ => keeping(mechanism, approach, y)?,
+    };
+    if approach.integrator == Integrator::Rodas4 {
+        return Ok(implicit(approach, duals.clone(), correction, y));
+    }
+    Ok(maximal(approach, correction, y))
+}
+
+/// Explicit methods in maximal coordinates.
+fn maximal<M>(approach: &Approach, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
+where
+    M: Partition<Scalar: Real> + Equations + 'static,
+{
+    let slopes = match approach.correction {
+        // The projection is as good as it is only with accelerations that are exact off the constraints.
+        Keeping::None | Keeping::MassWeighted => Slopes::of(Exact),
+        Keeping::Baumgarte(rate) => Slopes::of(Baumgarte { rate: M::Scalar::constant(rate) }),
+        _ => Slopes::of(Corrected),
+    };
+    explicit(slopes, correction, approach, y)
+}
+
+/// Rodas in maximal coordinates.
+fn implicit<M, D>(approach: &Approach, duals: D, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
+where
+    M: Partition<Scalar: Real> + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + 'static,
+{
+    let method = Rodas4::new(y, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
+    let start = duals.start();
+    adaptive(ByDuals::new(Exact, duals, start), method, correction, approach, y)
+}

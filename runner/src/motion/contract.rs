@@ -1,0 +1,106 @@
+//! What a motion is, and what there is to begin one with.
+
+use crate::approach::Approach;
+use crate::offers::Offers;
+use gyro_sim::{Error, Mechanism, Partition, Real, Statistics};
+use std::fmt::Debug;
+
+/// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
+pub trait Motion<M: Mechanism> {
+    /// One step of this length.
+    ///
+    /// # Errors
+    /// [`Error`] of the solver.
+    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error>;
+    /// One step under error control, not beyond `t_end`.
+    ///
+    /// # Errors
+    /// [`Error`] of the solver.
+    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), Error>;
+    /// Corrects the state.
+    ///
+    /// # Errors
+    /// [`Error`] of the correction.
+    fn correct(&mut self, mechanism: &M) -> Result<(), Error>;
+    /// The time, s.
+    fn time(&self) -> f64;
+    /// Writes the maximal state at a time within the last step.
+    ///
+    /// # Errors
+    /// [`Error`] of the correction.
+    fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error>;
+    /// An input of the mechanism has changed.
+    fn set_input(&mut self, index: usize, value: f64);
+    /// What the steps have cost and met.
+    fn statistics(&self) -> Statistics;
+    /// How often independent coordinates have been chosen anew.
+    fn chart_switches(&self) -> u64;
+}
+
+/// What there is to begin motions of a mechanism with: more for some than for others.
+pub trait MotionBuilder<M: Partition<Scalar: Real>> {
+    /// A motion from a maximal state at time zero; in words why there cannot be one.
+    ///
+    /// # Errors
+    /// What the mechanism lacks for this approach.
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+    /// What can be asked for; the precision and the inputs are the run's.
+    fn offers(&self) -> Offers {
+        Offers { joint_space: false, derivatives: false, projection: false, ..Offers::ALL }
+    }
+    /// The work of the applied forces over the mechanism's size and of their moments over a radian, J: what energies
+    /// are rounded against. Zero where the forces are not at hand.
+    fn work_scale(&self, _mechanism: &M, _t: f64, _y: &M::State) -> f64 {
+        0.0
+    }
+    /// The smallest pivot of the constraint Jacobian by full pivoting, lengths in units of the mechanism's size; `None`
+    /// where the Jacobian is not at hand. It vanishes in singular poses.
+    fn smallest_pivot(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<f64> {
+        None
+    }
+    /// The linearisation of the joint form about a maximal state; `None` for what has no joint form.
+    ///
+    /// `nearest` has for each coordinate, joint after joint, the continuous angle, which the state alone does not tell.
+    fn linearise(&self, _mechanism: &M, _t: f64, _y: &M::State, _nearest: &[f64]) -> Option<Linear> {
+        None
+    }
+}
+
+/// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Linear {
+    /// Time, s.
+    pub t: f64,
+    /// The joint state.
+    pub state: Vec<f64>,
+    /// Its derivative.
+    pub slope: Vec<f64>,
+    /// A = ∂f/∂x, row by row.
+    pub by_state: Vec<f64>,
+    /// B = ∂f/∂u, row by row.
+    pub by_inputs: Vec<f64>,
+}
+
+impl Linear {
+    /// The same without the last element of the state: the work done, on which nothing depends.
+    pub(crate) fn without_last(self) -> Self {
+        let n = self.state.len();
+        let n_inputs = self.by_inputs.len().checked_div(n).unwrap_or(0);
+        let Some(kept) = n.checked_sub(1) else { return self };
+        let rows = self.by_state.chunks_exact(n).take(kept);
+        Self {
+            t: self.t,
+            by_state: rows.flat_map(|row| &row[..kept]).copied().collect(),
+            by_inputs: self.by_inputs[..kept * n_inputs].to_vec(),
+            state: self.state[..kept].to_vec(),
+            slope: self.slope[..kept].to_vec(),
+        }
+    }
+}
+
+pub(super) fn in_f64<T: Real>(numbers: &[T]) -> Vec<f64> {
+    numbers.iter().map(|x| x.to_f64()).collect()
+}
+
+/// Columns of a Jacobian that are computed at a time.
+pub const COLUMNS: usize = 4;

@@ -1,0 +1,126 @@
+//! The equations that are integrated, and the maximal state as seen through each of them.
+
+use super::contract::COLUMNS;
+use gyro_sim::{ByDuals, Coordinate, Dual, Exact, Joint, JointSpace, Mechanism, Ode, Real, Scalar};
+
+/// ∂f/∂u of one input. What the input is set to does not matter: it enters linearly.
+pub(super) fn input_column<T: Real, D>(duals: &D, input: usize, t: T, x: &[T]) -> Vec<T>
+where
+    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Clone,
+{
+    let mut duals = duals.clone();
+    let (mut arguments, zero, one) = (duals.joint_start(), T::constant(0.0), T::constant(1.0));
+    let slopes = core::array::from_fn(|k| if k == 0 { one } else { zero });
+    duals.set_input(input, Dual { value: zero, slopes });
+    for (argument, value) in arguments.as_mut().iter_mut().zip(x) {
+        *argument = Dual::new(*value);
+    }
+    let mut out = arguments.clone();
+    duals.joint_derivative(Dual::new(t), &arguments, &mut out);
+    out.as_ref().iter().map(|number| number.slopes[0]).collect()
+}
+
+/// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
+/// joint.
+pub(super) fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
+    let mut x = mechanism.joint_start();
+    let coordinates = mechanism.description().joints.iter().flat_map(|joint| joint.coordinates);
+    let mut place = 0;
+    for (coordinate, angle) in coordinates.zip(nearest) {
+        if let (Coordinate::Angle, Some(x)) = (coordinate, x.as_mut().get_mut(place)) {
+            *x = Scalar::constant(*angle);
+        }
+        place += if *coordinate == Coordinate::Orientation { 4 } else { 1 };
+    }
+    mechanism.to_joints(Scalar::constant(t), y, &mut x);
+    x
+}
+
+/// The joint state of a maximal one.
+pub(super) fn joints<M: JointSpace>(mechanism: &M, y: &M::State) -> M::Joints {
+    let mut x = mechanism.joint_start();
+    mechanism.to_joints(Scalar::constant(0.0), y, &mut x);
+    x
+}
+
+/// Equations of a mechanism that are integrated, and how their state is shown.
+pub(super) trait Lens<M: Mechanism>: Ode<M, Scalar = M::Scalar, State: 'static> + 'static {
+    /// Writes the maximal state.
+    fn show(&self, mechanism: &M, t: M::Scalar, from: &Self::State, to: &mut M::State);
+    fn set_input(&mut self, _index: usize, _value: f64) {}
+}
+
+fn copy<M: Mechanism>(from: &M::State, to: &mut M::State) {
+    to.as_mut().copy_from_slice(from.as_ref());
+}
+
+type Derivative<M> =
+    dyn Fn(&M, <M as Mechanism>::Scalar, &<M as Mechanism>::State, &mut <M as Mechanism>::State);
+
+/// Maximal coordinates: one of the right-hand sides that a mechanism has there. Boxed, like corrections, so that
+/// integrators are not compiled anew for each.
+pub(super) struct Slopes<M: Mechanism>(Box<Derivative<M>>);
+
+impl<M: Mechanism + 'static> Slopes<M> {
+    pub(super) fn of(dynamics: impl Ode<M, Scalar = M::Scalar, State = M::State> + 'static) -> Self {
+        Self(Box::new(move |mechanism, t, y, dy| dynamics.derivative(mechanism, t, y, dy)))
+    }
+}
+
+impl<M: Mechanism> Ode<M> for Slopes<M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+    type Jacobian = ();
+
+    fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        self.0(mechanism, t, y, dy);
+    }
+}
+
+impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Slopes<M> {
+    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
+        copy::<M>(from, to);
+    }
+}
+
+/// Maximal coordinates, with a Jacobian by dual numbers.
+type Duals<D, T> = ByDuals<Exact, D, <D as Mechanism>::State, Vec<T>, COLUMNS>;
+
+impl<M, D> Lens<M> for Duals<D, M::Scalar>
+where
+    M: Mechanism<State: 'static, Scalar: 'static> + 'static,
+    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>, State: 'static> + 'static,
+{
+    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
+        copy::<M>(from, to);
+    }
+    fn set_input(&mut self, index: usize, value: f64) {
+        self.in_duals_mut().set_input(index, Scalar::constant(value));
+    }
+}
+
+impl<M: JointSpace<Joints: 'static> + 'static> Lens<M> for Joint {
+    fn show(&self, mechanism: &M, t: M::Scalar, from: &M::Joints, to: &mut M::State) {
+        mechanism.to_maximal(t, from, to);
+    }
+}
+
+/// Joint coordinates, with a Jacobian by dual numbers.
+type JointDuals<D, T> = ByDuals<Joint, D, <D as JointSpace>::Joints, Vec<T>, COLUMNS>;
+
+pub(super) fn joint_duals<D: JointSpace + Clone, T>(duals: &D) -> JointDuals<D, T> {
+    ByDuals::new(Joint, duals.clone(), duals.joint_start())
+}
+
+impl<M, D> Lens<M> for JointDuals<D, M::Scalar>
+where
+    M: JointSpace<Joints: 'static, Scalar: 'static> + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>, Joints: 'static> + 'static,
+{
+    fn show(&self, mechanism: &M, t: M::Scalar, from: &M::Joints, to: &mut M::State) {
+        mechanism.to_maximal(t, from, to);
+    }
+    fn set_input(&mut self, index: usize, value: f64) {
+        self.in_duals_mut().set_input(index, Scalar::constant(value));
+    }
+}

@@ -1,0 +1,122 @@
+//! A solver under way.
+
+use super::contract::Motion;
+use super::lens::Lens;
+use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use gyro_sim::integrate::Method;
+use gyro_sim::{
+    Control, Correction, Dop853, Error, Kutta4, Mechanism, Real, Scalar, Solver, Statistics, Tsit5, When,
+};
+use std::fmt::Debug;
+
+pub(super) fn explicit<M, L, C>(
+    lens: L,
+    correction: C,
+    approach: &Approach,
+    y: &L::State,
+) -> Box<dyn Motion<M>>
+where
+    M: Mechanism<Scalar: Real> + 'static,
+    L: Lens<M>,
+    C: Correction<L, M> + 'static,
+{
+    match approach.integrator {
+        Integrator::Rk4 => Box::new(Fixed(solver(lens, Kutta4::new(y), correction, approach, y))),
+        Integrator::Tsit5 => adaptive(lens, Tsit5::new(y), correction, approach, y),
+        _ => adaptive(lens, Dop853::new(y), correction, approach, y),
+    }
+}
+
+pub(super) fn adaptive<M, L, A, C>(
+    lens: L,
+    method: A,
+    correction: C,
+    approach: &Approach,
+    y: &L::State,
+) -> Box<dyn Motion<M>>
+where
+    M: Mechanism<Scalar: Real> + 'static,
+    L: Lens<M>,
+    A: Method<L, M> + 'static,
+    C: Correction<L, M> + 'static,
+{
+    Box::new(Adaptive(solver(lens, method, correction, approach, y)))
+}
+
+fn solver<L, S, T: Real, A, C>(
+    lens: L,
+    method: A,
+    correction: C,
+    approach: &Approach,
+    y: &S,
+) -> Solver<L, S, T, A, C>
+where
+    S: Clone + Debug + AsRef<[T]> + AsMut<[T]>,
+{
+    let mut control = Control::default();
+    if let Some(tolerance) = approach.tolerance {
+        control = control.with_tolerance(tolerance);
+    }
+    control.budget = approach.budget.unwrap_or(control.budget);
+    let has_corrections = approach.coordinates == Coordinates::Maximal
+        && !matches!(approach.correction, Keeping::None | Keeping::Baumgarte(_));
+    control.when = match (approach.when, approach.tolerance) {
+        (Some(when), _) if has_corrections => when.into(),
+        (None, Some(_)) if has_corrections => When::Steps(1),
+        // Never, or when the schedule says so.
+        _ => When::Steps(u32::MAX),
+    };
+    Solver::with_correction(lens, method, correction, T::constant(0.0), y).with_control(control)
+}
+
+/// A method without an error estimate.
+struct Fixed<L, S, T, A, C>(Solver<L, S, T, A, C>);
+
+/// A method with one.
+struct Adaptive<L, S, T, A, C>(Solver<L, S, T, A, C>);
+
+macro_rules! motion {
+    ($type:ident, |$self:ident, $mechanism:ident, $t_end:ident| $towards:expr) => {
+        impl<M, L, A, C> Motion<M> for $type<L, L::State, M::Scalar, A, C>
+        where
+            M: Mechanism<Scalar: Real> + 'static,
+            L: Lens<M>,
+            A: Method<L, M>,
+            C: Correction<L, M>,
+        {
+            fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
+                self.0.step(mechanism, Scalar::constant(h))
+            }
+            fn step_towards(&mut $self, $mechanism: &M, $t_end: f64) -> Result<(), Error> {
+                $towards
+            }
+            fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
+                self.0.correct(&mechanism)
+            }
+            fn time(&self) -> f64 {
+                self.0.time().to_f64()
+            }
+            fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error> {
+                let (solver, t) = (&mut self.0, Scalar::constant(t));
+                let mut state = solver.state().clone();
+                solver.interpolate(mechanism, t, &mut state)?;
+                solver.dynamics().show(mechanism, t, &state, y);
+                Ok(())
+            }
+            fn set_input(&mut self, index: usize, value: f64) {
+                self.0.dynamics_mut().set_input(index, value);
+                self.0.system_has_changed();
+            }
+            fn statistics(&self) -> Statistics {
+                *self.0.statistics()
+            }
+            fn chart_switches(&self) -> u64 {
+                Correction::<L, M>::switches(self.0.correction())
+            }
+        }
+    };
+}
+
+motion!(Adaptive, |self, mechanism, t_end| self.0.step_towards(mechanism, Scalar::constant(t_end)));
+
+motion!(Fixed, |self, mechanism, t_end| self.step(mechanism, t_end - self.time()));

@@ -1,0 +1,100 @@
+//! The coordinate partition, in either of two ways.
+
+use super::mechanism::n_state;
+use super::pieces::lines;
+use crate::joints::JointLayout;
+use gyro_model::Model;
+
+/// How the coordinate partition is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// One special Euler parameter for each joint.
+    Charts,
+    /// Full pivoting at run time.
+    Pivoting,
+}
+
+pub(super) fn partition(model: &Model, name: &str, choice: Choice, joints: Option<&JointLayout>) -> String {
+    match choice {
+        Choice::Charts => by_charts(model, name),
+        Choice::Pivoting => by_pivoting(model, name, joints),
+    }
+}
+
+const SOLVED: &str = "::core::result::Result<(), gyro_sim::Error>";
+
+fn by_charts(model: &Model, name: &str) -> String {
+    let state = n_state(model);
+    let solves = ["newton_step", "solve_velocities"];
+    let unrolled = lines(solves.map(|solve| {
+        format!(
+            "fn {solve}_on(
+                &self, ANY_t: T, ANY_charts: &[[T; 4]; INT_charts], ANY_y: &mut [T; {state}]
+            ) {{ HOLE_{solve} }}"
+        )
+    }));
+    let chosen = lines(solves.map(|solve| {
+        format!(
+            "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
+                self.{solve}_on(t, &gyro_sim::charts::one_hot(choice), y);
+                Ok(())
+            }}"
+        )
+    }));
+    format!(
+        "impl<T: gyro_sim::Scalar> {name}<T> {{
+            fn chart_vectors(&self, ANY_y: &[T; {state}]) -> [[T; 4]; INT_charts] {{ HOLE_chart_vectors }}
+            {unrolled}
+        }}
+        impl<T: gyro_sim::Lanes> gyro_sim::Partition for {name}<T> {{
+            type Independent = gyro_sim::charts::Charts<T, INT_charts>;
+            fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {{
+                gyro_sim::charts::best(&self.chart_vectors(y))
+            }}
+            fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
+                gyro_sim::charts::follow(&self.chart_vectors(y), choice)
+            }}
+            {chosen}
+        }}"
+    )
+}
+
+fn by_pivoting(model: &Model, name: &str, joints: Option<&JointLayout>) -> String {
+    let n = model.coordinate_bodies().len();
+    let (n_constraints, n_positions) = (model.rows().len() + n, 7 * n);
+    let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
+        format!(
+            "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
+                gyro_sim::pivoting::{solve}(self, t, choice, y)
+            }}"
+        )
+    }));
+    // Trees have no singular poses.
+    let clearance = if joints.is_some() {
+        String::new()
+    } else {
+        format!(
+            "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
+                ::core::option::Option::Some(
+                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
+                )
+            }}"
+        )
+    };
+    format!(
+        "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
+            type Independent = gyro_sim::pivoting::Pivots<{n_constraints}, {n_positions}>;
+            fn independent(&self, t: T, y: &Self::State) -> Self::Independent {{
+                gyro_sim::pivoting::independent(self, t, y)
+            }}
+            fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
+                gyro_sim::pivoting::follow(self, t, y, choice)
+            }}
+            fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {{
+                gyro_sim::pivoting::is_met(self, t, y, phi)
+            }}
+            {solves}
+            {clearance}
+        }}"
+    )
+}

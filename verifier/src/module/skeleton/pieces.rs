@@ -1,0 +1,53 @@
+//! Pieces of text: lists, buffers, and functions that fill or set something.
+
+use gyro_model::Parameter;
+use std::fmt::Display;
+
+pub(super) fn list<T: Display>(items: impl IntoIterator<Item = T>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+pub(super) fn lines<T: Display>(items: impl IntoIterator<Item = T>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(" ")
+}
+
+pub(super) fn names<'a>(items: impl IntoIterator<Item = &'a String>) -> String {
+    list(items.into_iter().map(|name| format!("{name:?}")))
+}
+
+/// `match` that sets one of some fields, or its refusal where there are none; what comes before and after it.
+pub(super) fn setter(
+    signature: &str,
+    fields: &[Parameter],
+    (of, before, after): (&str, &str, &str),
+) -> String {
+    if fields.is_empty() {
+        return format!("{signature}(&mut self, _index: usize, _value: T) -> bool {{ false }}");
+    }
+    let arm = |(k, field): (usize, &Parameter)| format!("{k} => {{ {of}.{} = value; }}", field.name);
+    let arms = lines(fields.iter().enumerate().map(arm));
+    format!(
+        "{signature}(&mut self, index: usize, value: T) -> bool {{
+            {before}
+            match index {{ {arms} _ => return false, }}
+            {after}
+            true
+        }}"
+    )
+}
+
+/// A function that gives buffers of zeros, a field for each pair.
+pub(super) fn buffers(function: &str, of: &str, fields: &[(&str, &str)]) -> String {
+    let zeros = |(field, count): &(&str, &str)| format!("{field}: [T::constant(0.0); {count}]");
+    let fields = list(fields.iter().map(zeros));
+    format!("fn {function}(&self) -> gyro_sim::{of}<Self> {{ gyro_sim::{of} {{ {fields} }} }}")
+}
+
+/// A function that fills `out`, for each pair of name and type.
+pub(super) fn fillings(pairs: &[(&str, &str)]) -> String {
+    lines(pairs.iter().map(|(function, ty)| {
+        format!(
+            "fn {function}(&self, ANY_t: T, ANY_y: &Self::State, ANY_out: &mut Self::{ty}) {{ HOLE_{function} }}"
+        )
+    }))
+}
