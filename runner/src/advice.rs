@@ -171,9 +171,16 @@ impl Plan<'_> {
         FINEST_ULPS * self.offers.epsilon
     }
 
-    /// This part of the step, and of the interval between corrections where there are more of them than steps.
+    /// The longest step that can be taken: the one asked for, or an interval between events that it is cut off at.
+    fn longest_step(&self) -> f64 {
+        let Settings { t_end, step, correct_every, sample_every } = *self.settings;
+        let every = correct_every.filter(|_| self.is_scheduled()).unwrap_or(f64::INFINITY);
+        step.min(sample_every).min(every).min(t_end)
+    }
+
+    /// This part of the longest step, and of the interval between corrections where there are more of them than steps.
     pub fn step_over(&self, factor: f64) -> Advice {
-        let step = rounded(self.settings.step / factor);
+        let step = rounded(self.longest_step() / factor);
         let mut changes = vec![Change::Step(step)];
         if let (true, Some(every)) = (self.is_scheduled(), self.settings.correct_every) {
             changes.push(Change::CorrectEvery(rounded(every / factor).max(step)));
@@ -219,7 +226,10 @@ impl Plan<'_> {
             Error::NotFinite { .. } if self.approach.tolerance.is_some() => {
                 self.double().into_iter().collect()
             }
-            Error::NotFinite { t, .. } | Error::NoConvergence { t, .. } => self.past(t),
+            Error::NotFinite { t, .. } => {
+                self.past(t).into_iter().chain(self.over_poses().filter(|_| t > 0.0)).collect()
+            }
+            Error::NoConvergence { t, .. } => self.past(t),
             Error::Singular { t, .. } | Error::Jump { t, .. } => {
                 let over = self.over_poses().filter(|over| t > 0.0 && self.accepts(over));
                 over.map_or_else(|| self.past(t), |over| vec![over])
@@ -241,6 +251,9 @@ impl Plan<'_> {
         }
     }
 
+    /// Steps that end elsewhere. Shorter steps of a schedule end at its samples and corrections again, where the ends of a
+    /// link may meet; those of error control do not.
+    ///
     /// Error control looks ahead for singular poses and steps over them, and corrections keep drift from hiding which
     /// way goes on. A pose that is not passed at one tolerance may be at another, where steps end elsewhere.
     pub(crate) fn over_poses(&self) -> Option<Advice> {
@@ -283,4 +296,27 @@ impl Plan<'_> {
 pub(crate) fn rounded(x: f64) -> f64 {
     let near: f64 = format!("{x:.1e}").parse().unwrap_or(x);
     if near <= x { near } else { format!("{:.1e}", 0.95 * x).parse().unwrap_or(x) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is advised is shorter than the steps that were taken: samples and corrections had cut them.
+    #[test]
+    fn advice_does_not_repeat_the_steps_that_failed() {
+        let (approach, offers) = (Approach::default(), Offers::ALL);
+        for (step, correct_every, sample_every) in
+            [(1.0, None, 0.01), (1.0, Some(0.01), 0.1), (0.01, Some(0.5), 0.1)]
+        {
+            let settings = Settings { t_end: 1.0, step, correct_every, sample_every };
+            let plan = Plan { settings: &settings, approach: &approach, offers: &offers };
+            let advice = plan.after(&Error::NotFinite { t: 0.5, index: 0 }, &Statistics::default(), None);
+            let (followed, _) = advice.first().expect("shorter steps").follow(&settings, &approach);
+            assert_eq!(followed.step, rounded(0.01 / SHORTER), "{settings:?}");
+            assert!(Schedule::steps(&followed) >= SHORTER * Schedule::steps(&settings), "{settings:?}");
+            // Shorter steps end at the same samples: where these are what fails, others are to be tried.
+            assert!(advice[1].changes.contains(&Change::Integrator(Integrator::Dop853)), "{settings:?}");
+        }
+    }
 }

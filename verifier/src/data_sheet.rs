@@ -269,6 +269,9 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
         " Polynomials between them, from each point's own time.",
     ];
     let mut docs: Vec<String> = plain.map(str::to_owned).to_vec();
+    if module.n_charts.is_some() {
+        docs.push(" The solves of the partition, for the charts that are given as unit vectors.".to_owned());
+    }
     let default = |p: &Parameter| to_f64(&p.value);
     docs.push(format!(" The mechanism `{}`.", model.name));
     docs.push(format!(" Parameters of [`{}`].", type_name(&model.name)));

@@ -1,7 +1,7 @@
 //! Mechanisms with loops, rods or couplers: the guess is projected onto the constraints.
 
 use super::error::AssemblyError;
-use super::guess::{Guess, Source, guesses};
+use super::guess::{Guess, Source, Told, guesses};
 use super::projection::{Configuration, Scales, System, rotation_vector, scattered};
 use super::velocity::velocities;
 use super::walk::{State, Walk, check_finite, relative, roots};
@@ -31,18 +31,20 @@ pub(super) fn assemble(model: &Model) -> Result<Start, AssemblyError> {
 }
 
 /// The trees along which bodies may be guessed. What the page says of joints is heeded as far as it can be: joints that
-/// it tells nothing of close the loops. Which is the better guess of a body that only such joints and points on lines
-/// hold, the joint's zero or the body's own orientation, nothing tells.
+/// it tells nothing of close the loops, and those that it tells some coordinates of come before them. Which is the
+/// better guess of a body that only joints of which nothing is told and points on lines hold, the joint's zero or the
+/// body's own orientation, nothing tells.
 fn trees(model: &Model, guesses: &[Guess]) -> [Tree; 2] {
     let ranked = |untold_turns: u8, untold_lines: u8| {
-        Tree::along(model, |joint| match (model.joints[joint].kind.turns(), guesses[joint].is_told()) {
-            (true, true) => 0,
-            (true, false) => untold_turns,
-            (false, true) => 2,
-            (false, false) => untold_lines,
+        Tree::along(model, |joint| match (model.joints[joint].kind.turns(), guesses[joint].told()) {
+            (true, Told::All) => 0,
+            (true, Told::Part) => 1,
+            (true, Told::Nothing) => untold_turns,
+            (false, Told::All | Told::Part) => 3,
+            (false, Told::Nothing) => untold_lines,
         })
     };
-    [ranked(1, 2), ranked(4, 3)]
+    [ranked(2, 3), ranked(5, 4)]
 }
 
 fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, AssemblyError> {

@@ -32,11 +32,27 @@ pub(super) enum Source {
     Unknown,
 }
 
+/// How much of the relative pose of a joint's bodies is known or guessed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Told {
+    /// All of it.
+    All,
+    /// Some of its coordinates.
+    Part,
+    /// None of it.
+    Nothing,
+}
+
 impl Guess {
-    /// Whether the relative pose of the joint's bodies is known or guessed.
-    pub(super) fn is_told(&self) -> bool {
-        let has_orientation = !self.is_ball || self.orientation.is_some();
-        has_orientation && self.source.iter().all(|source| *source != Source::Unknown)
+    /// How much is known or guessed of where the joint is.
+    pub(super) fn told(&self) -> Told {
+        let is_turned = !self.is_ball || self.orientation.is_some();
+        let is_known = |source: &Source| *source != Source::Unknown;
+        match (self.source.iter().all(is_known), self.source.iter().any(is_known)) {
+            (true, _) if is_turned => Told::All,
+            (_, true) => Told::Part,
+            _ => Told::Nothing,
+        }
     }
 }
 
