@@ -265,7 +265,6 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
         " Sets all parameters, and computes what depends on them alone.",
         " Whether the mechanism can have these parameters, as the model page's rules decide.",
         " The assembled start, with all parameters at their defaults.",
-        " The solves of the partition, for the charts that are given as unit vectors.",
         " Polynomials between them, from each point's own time.",
     ];
     let mut docs: Vec<String> = plain.map(str::to_owned).to_vec();

@@ -63,9 +63,7 @@ pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 8] {
         ("paper maximal", |clock| maximal(&Gyroscope::<T>::default(), PAPER, clock)),
         ("paper joint", |clock| joint(&Gyroscope::<T>::default(), PAPER, clock)),
         ("misaligned maximal", |clock| maximal(&GyroscopeCombinedOffsets::<T>::default(), PAPER, clock)),
-        ("misaligned joint", |clock| {
-            joint(&GyroscopeCombinedOffsets::<T>::default(), PAPER, clock)
-        }),
+        ("misaligned joint", |clock| joint(&GyroscopeCombinedOffsets::<T>::default(), PAPER, clock)),
         ("chain maximal", |clock| maximal(&Chain::<T>::default(), CHAIN, clock)),
         ("chain joint", |clock| joint(&Chain::<T>::default(), CHAIN, clock)),
         ("paper by-hand", |clock| {
