@@ -251,8 +251,8 @@ impl Plan<'_> {
         }
     }
 
-    /// Steps that end elsewhere. Shorter steps of a schedule end at its samples and corrections again, where the ends of
-    /// a link may meet; those of error control do not.
+    /// Steps that end elsewhere. Shorter steps of a schedule end at its samples and corrections again, where the ends
+    /// of a link may meet; those of error control do not.
     ///
     /// Error control looks ahead for singular poses and steps over them, and corrections keep drift from hiding which
     /// way goes on. A pose that is not passed at one tolerance may be at another, where steps end elsewhere.

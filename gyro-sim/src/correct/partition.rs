@@ -5,8 +5,8 @@ use crate::contract::Storage;
 use crate::violation::{Violation, constraint_violation};
 use crate::{Clearance, Corrected, Error, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
 
-/// *Direct integration* of the equations `D`, [`Exact`](crate::Exact) or [`Joint`](crate::Joint) of a mechanism or those
-/// of a system of one's own. No constraint is corrected: violations grow, as the paper says.
+/// *Direct integration* of the equations `D`, [`Exact`](crate::Exact) or [`Joint`](crate::Joint) of a mechanism or
+/// those of a system of one's own. No constraint is corrected: violations grow, as the paper says.
 #[derive(Clone, Debug)]
 pub struct Direct<D, S> {
     dynamics: D,

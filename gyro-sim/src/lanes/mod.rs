@@ -1,8 +1,9 @@
 //! SIMD lanes: one call advances four or eight scenarios (feature `lanes`).
 //!
 //! A generated mechanism takes any [`Scalar`](crate::Scalar), so it takes a pack of lanes: `wide`'s [`f64x4`],
-//! [`f64x8`] and [`f32x8`] are scalars here. Each lane has a state of its own, and parameters of its own, because a mechanism's parameters are
-//! fields of the scalar's type. Kernels are straight-line; what a solver decides, it decides lane by lane.
+//! [`f64x8`] and [`f32x8`] are scalars here. Each lane has a state of its own, and parameters of its own, because a
+//! mechanism's parameters are fields of the scalar's type. Kernels are straight-line; what a solver decides, it
+//! decides lane by lane.
 //!
 //! * In joint coordinates [`Rk4`](crate::Rk4) takes lanes as it is; [`Direct`] watches the lanes besides.
 //! * In maximal coordinates [`Partitioned`] corrects without branches: each lane is on charts of its own, and lanes
