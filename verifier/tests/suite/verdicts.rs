@@ -242,7 +242,66 @@ fn solves_may_need_joints_that_are_whole() {
         "fixed = \"constrained\"\nmass = 1\ninertia = [0.1, 0.2, 0.1]",
         "driven = { translation = [0, 0, { polynomial = [0, 1] }], rotations = [] }",
     ) + "[[output]]\nname = \"r\"\nkind = \"reaction\"\njoint = \"hinge\"\n";
-    for page in [page, &driven] {
+    // The multipliers of a joint that is driven are solved for as the accelerations are.
+    let turned = r#"format = 1
+name = "wheel"
+gravity = [0, 0, 0]
+
+[parameters]
+p0 = 1.38e-1
+p1 = 0.2857142857142857
+p2 = 2.333333333333333481
+
+[inputs]
+in0 = 0.25
+in1 = -1.2062119
+
+[[body]]
+name = "b0"
+fixed = true
+orientation = [1, 1, 0, 0]
+
+[[body]]
+name = "b1"
+mass = 1.4689047243365352
+inertia = ["p0", 1.38e-1, 1.54e-2]
+
+[[body]]
+name = "b2"
+mass = 1e0
+inertia = [9.936243965e-1, 9.936243965e-1, 9.936243965e-1]
+
+[[joint]]
+name = "j0"
+kind = "revolute"
+first = { body = "b0", point = ["p1", 0.16666666666666666, 0], axis = [1, 0, 0], zero = [3, 4, 4] }
+second = { body = "b1", point = [0, 2.50, 0], axis = [1, 0, 0], zero = [3, 4, 4] }
+
+[[joint]]
+name = "j1"
+kind = "fixed"
+first = { body = "b0", point = [-0.75, 0.3, -0.1000000000000000055511151231257827], axis = [1, 0, 0], zero = [0, 1, 0] }
+second = { body = "b2", point = [0, 0, 0], axis = [1, 0, 0], zero = [0, 1, 0] }
+
+[[driver]]
+name = "d0"
+joint = "j0"
+motion = { product = [{ sinusoid = { amplitude = -0.25, angular_frequency = 5e-1, phase_deg = 83.06864099091769 } }, -0.6836524] }
+
+[[force]]
+name = "f0"
+kind = "load"
+body = "b1"
+force = [-1.00000000000000000001, "in0", "in0"]
+torque = ["-p2", -0.4754124, "in1"]
+
+[[force]]
+name = "f1"
+kind = "motor"
+joint = "j0"
+value = 0.333333333333333
+"#;
+    for page in [page, &driven, turned] {
         let model = gyro_model::read("arm.toml", page).unwrap_or_else(|problems| panic!("{problems}"));
         let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
         let report = verify(&model, &module.code, &module.constants, Depth::Quick);
