@@ -2,11 +2,11 @@
 
 use crate::description::OwnedDescription;
 use crate::error::{BuildError, Unsupported};
-use crate::lowered::Lowered;
+use crate::model::lowered::Lowered;
+use crate::model::outputs::Solution;
+use crate::model::place::Moment;
+use crate::model::textbook::p_dot;
 use crate::number::{Number, number};
-use crate::outputs::Solution;
-use crate::place::Moment;
-use crate::textbook::p_dot;
 use gyro_model::Model;
 use gyro_sim::{Buffers, Clearance, Description, Energy, Error, Mechanism, Owner, Partition};
 use nalgebra::Vector4;

@@ -1,6 +1,6 @@
 //! Names, rows and sizes of a model, built once.
 
-use crate::lowered::Lowered;
+use crate::model::lowered::Lowered;
 use crate::number::Number;
 use gyro_model::Model;
 use gyro_sim::{Coordinate, Description, JointInfo, OutputInfo, RowInfo};

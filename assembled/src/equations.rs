@@ -1,8 +1,8 @@
 //! The contract of `gyro-sim` that tells the equations term by term.
 
 use crate::assembled::{Assembled, Solver, zeros};
+use crate::model::place::Moment;
 use crate::number::Number;
-use crate::place::Moment;
 use crate::projection;
 use gyro_sim::{Equations, Terms};
 

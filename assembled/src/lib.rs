@@ -48,61 +48,27 @@
 //! ```
 #![deny(missing_docs)]
 
-mod applied;
-mod articulated;
 mod assembled;
-mod balance;
 mod careful;
-mod charts;
 pub mod child;
-mod constraints;
-mod course;
 mod dense;
 mod description;
-mod energy;
 mod equations;
 mod error;
-mod forces;
-mod gradient;
-mod hinges;
-mod joint;
-mod kinds;
-mod law;
-mod limbs;
-mod lowered;
-mod measure;
-mod motion;
-mod motion_subspace;
+mod model;
 mod number;
-mod observed;
-mod outputs;
-mod partition;
-mod path;
-mod place;
-mod primitives;
 mod projection;
 mod quick_look;
-mod reactions;
-mod readings;
-mod rebuild;
-mod recursion;
-mod rounding;
-mod rows;
-mod scene;
-mod screws;
-mod spatial;
-mod sweeps;
-mod textbook;
-mod turns;
+mod recursive;
 
 pub use assembled::{Assembled, Refusal, Solver};
 pub use careful::Elimination;
 pub use dense::Saddle;
 pub use error::{BuildError, Unsupported};
-pub use lowered::Lowered;
+pub use model::lowered::Lowered;
 pub use number::Number;
 pub use quick_look::{Form, Precision, QuickLookError, quick_look};
-pub use recursion::Recursion;
+pub use recursive::Recursion;
 
 /// The paper's plain form. See [`Saddle`].
 pub type Dense<T> = Assembled<T, Saddle>;

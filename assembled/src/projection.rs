@@ -1,9 +1,9 @@
 //! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without
 //! forces.
 
-use crate::lowered::Lowered;
+use crate::model::lowered::Lowered;
+use crate::model::place::Moment;
 use crate::number::{Number, abs};
-use crate::place::Moment;
 
 /// Writes the change of the velocities' coordinates. All forms alike: by Gaussian elimination with row pivoting, in
 /// work space that the first call allocates.

@@ -1,0 +1,56 @@
+//! Energy, and the power of what the energy does not account for.
+
+use crate::model::forces::Element;
+use crate::model::lowered::Lowered;
+use crate::model::place::{Moment, Place};
+use crate::number::{Number, number};
+use gyro_sim::Energy;
+
+/// What enters a mechanism, W. Energy minus the integral of both stays constant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Power<T> {
+    /// Of non-conservative forces, on the bodies at both of their ends.
+    pub(crate) non_conservative: T,
+    /// Of drivers and of bodies that move by prescription: `−λᵀν`, and what these bodies do against the forces on them.
+    pub(crate) drivers: T,
+}
+
+impl<T: Number> Lowered<T> {
+    /// Kinetic and potential energy, the latter of gravity and springs.
+    pub(crate) fn energy(&self, at: Moment<'_, T>) -> Energy<T> {
+        let mut energy = Energy { kinetic: T::zero(), potential: T::zero() };
+        for (moving_body, body) in self.scene.bodies.iter().enumerate() {
+            let (r, s, w) = (
+                self.scene.r(at.y, moving_body),
+                self.scene.s(at.y, moving_body),
+                self.scene.w(at.y, moving_body),
+            );
+            let twice = body.mass * s.norm_squared() + w.dot(&(body.inertia * w));
+            energy.kinetic += twice * number(0.5);
+            energy.potential -= body.mass * self.scene.gravity.dot(&r);
+        }
+        for element in &self.elements {
+            if let Element::Along { path, law } = element {
+                energy.potential += law.potential(&self.scene.inputs, || path.value(&self.scene, at));
+            }
+        }
+        energy
+    }
+
+    /// The power of all forces and drivers, given `λᵀν`.
+    pub(crate) fn power(&self, at: Moment<'_, T>, lambda_nu: T) -> Power<T> {
+        let mut power = Power { non_conservative: T::zero(), drivers: -lambda_nu };
+        for element in &self.elements {
+            element.exert(&self.scene, at, |place, motion, wrench| {
+                let on_body = wrench.power(motion);
+                if !element.is_conservative() {
+                    power.non_conservative += on_body;
+                }
+                if let Place::Driven(_) = place {
+                    power.drivers -= on_body;
+                }
+            });
+        }
+        power
+    }
+}

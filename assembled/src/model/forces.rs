@@ -1,0 +1,141 @@
+//! Applied forces, paper, eqs. (21) and (22): gravity, friction in the joints, and the forces of the page.
+
+use crate::model::joint::Joint;
+use crate::model::law::{Amount, Law};
+use crate::model::measure::Coordinate;
+use crate::model::motion::Motion;
+use crate::model::path::{Path, Wrench};
+use crate::model::place::{Moment, Place, Places, vector};
+use crate::model::scene::Scene;
+use crate::number::Number;
+use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Model};
+use nalgebra::Vector3;
+
+/// One thing that exerts forces.
+#[derive(Clone, Debug)]
+pub(crate) enum Element<T> {
+    /// A force along a coordinate, between two bodies.
+    Along { path: Path<T>, law: Law<T> },
+    /// Viscous friction of a spherical joint: minus this times the relative angular velocity.
+    Ball { joint: usize, friction: T },
+    /// Force and torque on one body.
+    Load {
+        place: Place<T>,
+        point: Vector3<T>,
+        force: [Amount<T>; 3],
+        torque: [Amount<T>; 3],
+        frame: LoadFrame,
+    },
+}
+
+impl<T: Number> Element<T> {
+    /// Friction of the joints, then the forces of the page.
+    pub(crate) fn all(model: &Model, places: &Places<T>, joints: &[Joint<T>]) -> Vec<Self> {
+        let frictions = (0..joints.len()).filter_map(|joint| Self::friction(model, joints, joint));
+        let forces = model.forces.iter().flat_map(|force| Self::new(model, places, joints, &force.kind));
+        frictions.chain(forces).collect()
+    }
+
+    /// A joint's own viscous friction.
+    fn friction(model: &Model, joints: &[Joint<T>], joint: usize) -> Option<Self> {
+        let friction = &model.joints[joint].friction;
+        if friction.is_zero() {
+            return None;
+        }
+        if joints[joint].kind == JointKind::Spherical {
+            return Some(Self::Ball { joint, friction: crate::number::number(model.value(friction)) });
+        }
+        let described = &joints[joint];
+        described.references.first()?;
+        let coordinate = Coordinate::of(described, 0);
+        let law = Law::Damper { damping: Amount::new(model, friction) };
+        Some(Self::Along { path: Path::Coordinate(coordinate), law })
+    }
+
+    fn new(model: &Model, places: &Places<T>, joints: &[Joint<T>], kind: &ForceKind) -> Vec<Self> {
+        let amount = |number| Amount::new(model, number);
+        let along = |on: &JointCoordinate, law| {
+            let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
+            vec![Self::Along { path, law }]
+        };
+        match kind {
+            ForceKind::Spring { on, stiffness, free } => {
+                along(on, Law::Spring { stiffness: amount(stiffness), free: amount(free) })
+            }
+            ForceKind::Damper { on, damping } => along(on, Law::Damper { damping: amount(damping) }),
+            ForceKind::Coulomb { on, level, rate } => {
+                along(on, Law::Coulomb { level: amount(level), rate: amount(rate) })
+            }
+            ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
+                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(amount);
+                along(on, Law::Stop { limit, side: *side, stiffness, damping, softness })
+            }
+            ForceKind::Motor { on, value } => along(on, Law::Motor { value: amount(value) }),
+            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+                let end = |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
+                let path = Path::Line([end(first), end(second)]);
+                let spring = Law::Spring { stiffness: amount(stiffness), free: amount(free_length) };
+                let damper = Law::Damper { damping: amount(damping) };
+                let wanted = [(stiffness, spring), (damping, damper)];
+                let wanted = wanted.into_iter().filter(|(strength, _)| !strength.is_zero());
+                wanted.map(|(_, law)| Self::Along { path, law }).collect()
+            }
+            ForceKind::Load { body, point, force, torque, frame } => vec![Self::Load {
+                place: places.of(*body),
+                point: vector(model.values(point)),
+                force: force.each_ref().map(amount),
+                torque: torque.each_ref().map(amount),
+                frame: *frame,
+            }],
+        }
+    }
+
+    /// Whether the energy counts what the element does.
+    pub(crate) fn is_conservative(&self) -> bool {
+        matches!(self, Self::Along { law, .. } if law.is_conservative())
+    }
+
+    /// Calls the sink with what the element exerts on each of its bodies, and that body's motion.
+    pub(crate) fn exert(
+        &self,
+        scene: &Scene<T>,
+        at: Moment<'_, T>,
+        mut sink: impl FnMut(&Place<T>, &Motion<T>, Wrench<T>),
+    ) {
+        match self {
+            Self::Along { path, law } => {
+                let places = path.places(scene);
+                let motions = places.map(|place| scene.motion(at, place));
+                let grip = path.grip(scene, &motions);
+                let force = law.force(&scene.inputs, || path.value(scene, at), grip.rate);
+                for ((place, motion), wrench) in places.into_iter().zip(&motions).zip(&grip.wrenches) {
+                    sink(place, motion, wrench.times(force));
+                }
+            }
+            Self::Ball { joint, friction } => {
+                let joint = &scene.joints[*joint];
+                let [i, j] = scene.motions(at, joint);
+                let torque = relative_angular_velocity(&i, &j) * -*friction;
+                sink(&joint.first.place, &i, Wrench::torque(-i.a.tr_mul(&(j.a * torque))));
+                sink(&joint.second.place, &j, Wrench::torque(torque));
+            }
+            Self::Load { place, point, force, torque, frame } => {
+                let motion = scene.motion(at, place);
+                let [force, torque] =
+                    [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&scene.inputs))));
+                // Both in the body's frame.
+                let (force, torque) = match frame {
+                    LoadFrame::Body => (force, torque),
+                    LoadFrame::Global => (motion.a.tr_mul(&force), motion.a.tr_mul(&torque)),
+                };
+                let wrench = Wrench { force: motion.a * force, torque: torque + point.cross(&force) };
+                sink(place, &motion, wrench);
+            }
+        }
+    }
+}
+
+/// `w'_j − A_jᵀ A_i w'_i`, in the second body's frame.
+pub(crate) fn relative_angular_velocity<T: Number>(i: &Motion<T>, j: &Motion<T>) -> Vector3<T> {
+    j.w - j.a.tr_mul(&(i.a * i.w))
+}

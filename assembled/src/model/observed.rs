@@ -1,0 +1,99 @@
+//! The numbers of a page's outputs at a moment.
+
+use crate::model::lowered::Lowered;
+use crate::model::motion::{Motion, along_pi};
+use crate::model::outputs::{Quantity, Solution};
+use crate::model::place::{Moment, Place};
+use crate::model::rows::Row;
+use crate::number::Number;
+use nalgebra::Vector3;
+
+impl<T: Number> Lowered<T> {
+    /// Number of numbers of all outputs.
+    pub(crate) fn n_outputs(&self) -> usize {
+        self.outputs.iter().map(|output| output.columns.len()).sum()
+    }
+
+    /// Writes all outputs.
+    pub(crate) fn outputs(&self, at: Moment<'_, T>, solution: Solution<'_, T>, out: &mut [T]) {
+        let mut rest = out;
+        for output in &self.outputs {
+            let (out, after) = rest.split_at_mut(output.columns.len());
+            self.output(at, solution, &output.quantity, out);
+            rest = after;
+        }
+    }
+
+    fn output(&self, at: Moment<'_, T>, solution: Solution<'_, T>, quantity: &Quantity<T>, out: &mut [T]) {
+        match quantity {
+            Quantity::Pose(spot) => {
+                let motion = self.scene.motion(at, &spot.place);
+                write(out, &motion.tip(&spot.point), motion.p.as_slice());
+            }
+            Quantity::Velocity(spot) => {
+                let motion = self.scene.motion(at, &spot.place);
+                write(out, &motion.tip_velocity(&spot.point), motion.w.as_slice());
+            }
+            Quantity::Acceleration(spot) => {
+                let motion = self.accelerated(at, &spot.place, solution.accelerations);
+                write(out, &motion.point(&spot.point).second, motion.w_dot.as_slice());
+            }
+            Quantity::Inertial(spot) => {
+                let motion = self.accelerated(at, &spot.place, solution.accelerations);
+                let specific_force = motion.point(&spot.point).second - self.scene.gravity;
+                write(out, &motion.a.tr_mul(&specific_force), motion.w.as_slice());
+            }
+            Quantity::Reaction(joint, rows) => {
+                let [force, torque] = self.reaction(at, *joint, rows, solution.lambda);
+                write(out, &force, torque.as_slice());
+            }
+            Quantity::Driver(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
+            Quantity::Energy => {
+                let energy = self.energy(at);
+                (out[0], out[1]) = (energy.kinetic, energy.potential);
+            }
+            Quantity::Power => {
+                let power = self.power(at, solution.lambda_nu);
+                (out[0], out[1]) = (power.non_conservative, power.drivers);
+            }
+        }
+    }
+
+    /// The motion of a body with its acceleration, prescribed or not.
+    fn accelerated(&self, at: Moment<'_, T>, place: &Place<T>, accelerations: &[T]) -> Motion<T> {
+        let motion = self.scene.motion(at, place);
+        let Some(moving_body) = place.moving_body() else { return motion };
+        let of = |from: usize| {
+            Vector3::from_column_slice(&accelerations[6 * moving_body + from..6 * moving_body + from + 3])
+        };
+        Motion { s_dot: of(0), w_dot: of(3), ..motion }
+    }
+
+    /// `−Φ_rᵀ λ` and `−Φ_π'ᵀ λ` of a joint's rows on its second body (without coordinates: what acts on the first,
+    /// turned round), the torque about the second's joint point, both in the first body's joint frame.
+    fn reaction(&self, at: Moment<'_, T>, joint: usize, rows: &[usize], lambda: &[T]) -> [Vector3<T>; 2] {
+        let joint = &self.scene.joints[joint];
+        let motions = self.scene.motions(at, joint);
+        let (side, sign) =
+            if joint.second.place.moving_body().is_some() { (1, -T::one()) } else { (0, T::one()) };
+        let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
+        for &row in rows {
+            let Row::Measured { terms, .. } = &self.rows[row] else { continue };
+            for term in terms {
+                let pull = &term.measure.pulls(joint, &motions, along_pi)[side];
+                force += pull.r.transpose() * (sign * term.factor * lambda[row]);
+                torque += pull.turn.transpose() * (sign * term.factor * lambda[row]);
+            }
+        }
+        let [i, j] = &motions;
+        let arm = j.tip(&joint.second.point) - motions[side].r;
+        let torque = motions[side].a * torque - arm.cross(&force);
+        let (f, g, h) = (i.a * joint.first.f, i.a * joint.first.g, i.a * joint.first.h);
+        [force, torque].map(|v| Vector3::new(f.dot(&v), g.dot(&v), h.dot(&v)))
+    }
+}
+
+fn write<T: Number>(out: &mut [T], vector: &Vector3<T>, rest: &[T]) {
+    out[..3].copy_from_slice(vector.as_slice());
+    out[3..].copy_from_slice(rest);
+}

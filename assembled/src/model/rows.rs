@@ -1,0 +1,70 @@
+//! The constraint rows, each a linear combination of what joints measure, minus a function of time.
+
+use crate::model::course::Course;
+use crate::model::joint::Joint;
+use crate::model::kinds::{Axis, Primitive, primitives};
+use crate::model::measure::{Coordinate, Measure};
+use crate::number::{Number, number};
+use gyro_model::{JointCoordinate, JointKind, Model, RowOwner};
+
+/// A constraint row.
+#[derive(Clone, Debug)]
+pub(crate) enum Row<T> {
+    /// One of the six of a constrained body, paper, eqs. (5) and (6).
+    Constrained { body: usize, component: usize },
+    /// `Σ factor · measure − course(t)`.
+    Measured { terms: Vec<Term<T>>, course: Option<Course> },
+}
+
+/// What a joint measures, times a factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term<T> {
+    pub(crate) factor: T,
+    pub(crate) joint: usize,
+    pub(crate) measure: Measure,
+}
+
+impl<T: Number> Row<T> {
+    pub(crate) fn new(
+        model: &Model,
+        moving_bodies: &[usize],
+        joints: &[Joint<T>],
+        row: &gyro_model::Row,
+    ) -> Self {
+        let coordinate = |factor: f64, of: JointCoordinate| Term {
+            factor: number(factor),
+            joint: of.joint,
+            measure: Coordinate::of(&joints[of.joint], of.coordinate).measure,
+        };
+        match row.owner {
+            RowOwner::Body(body) => {
+                let before = moving_bodies.iter().take_while(|&&b| b != body);
+                let held = |&&b: &&usize| model.bodies[b].support == gyro_model::Support::Constrained;
+                Self::Constrained { body: before.filter(held).count(), component: row.index }
+            }
+            RowOwner::Joint(joint) => {
+                let primitive = primitives(joints[joint].kind)[row.index];
+                let mut terms =
+                    vec![Term { factor: T::one(), joint, measure: Measure::Primitive(primitive) }];
+                if joints[joint].kind == JointKind::Screw && primitive == Primitive::Dot2(Axis::H) {
+                    let lead = model.value(&model.joints[joint].lead);
+                    terms.push(coordinate(-lead, JointCoordinate { joint, coordinate: 0 }));
+                }
+                Self::Measured { terms, course: None }
+            }
+            RowOwner::Coupler(coupler) => {
+                let coupler = &model.couplers[coupler];
+                let ratio = model.value(&coupler.ratio);
+                Self::Measured {
+                    terms: vec![coordinate(1.0, coupler.second), coordinate(-ratio, coupler.first)],
+                    course: Some(Course::constant(model.value(&coupler.offset))),
+                }
+            }
+            RowOwner::Driver(driver) => {
+                let driver = &model.drivers[driver];
+                let course = Some(Course::new(model, &driver.motion));
+                Self::Measured { terms: vec![coordinate(1.0, driver.coordinate)], course }
+            }
+        }
+    }
+}
