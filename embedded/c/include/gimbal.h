@@ -36,7 +36,8 @@ typedef enum GimbalStatus {
    */
   GIMBAL_STATUS_BAD_NUMBER = 4,
   /**
-   * The state is no longer finite: the step is too large. From here on the gimbal fails until it is initialised anew.
+   * The state is no longer finite: the step is too large. From here on the gimbal fails until it is initialised
+   * anew.
    */
   GIMBAL_STATUS_NOT_FINITE = 5,
   /**
@@ -130,8 +131,8 @@ extern "C" {
 enum GimbalStatus gimbal_init(struct Gimbal *gimbal);
 
 /**
- * Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is refused with
- * `BadNumber`, and the parameter keeps its value.
+ * Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is
+ * refused with `BadNumber`, and the parameter keeps its value.
  *
  * # Safety
  * As for `gimbal_init`.

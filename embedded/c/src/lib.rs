@@ -5,7 +5,7 @@
 
 use core::mem::{align_of, size_of};
 use core::panic::PanicInfo;
-use embedded_scenes::mechanisms::gimbal::Gimbal as Mechanism;
+use embedded_scenes::mechanisms::gimbal;
 use gyro_sim::{Error, JointCoordinate, Mechanism, Partitioned, Turns};
 
 /// Never called: `cargo xtask embedded` shows that nothing in what is linked can panic.
@@ -95,10 +95,10 @@ struct Simulation {
     mark: u64,
     status: GimbalStatus,
     t: f64,
-    mechanism: Mechanism<f64>,
-    state: <Mechanism<f64> as Mechanism>::State,
-    solver: Partitioned<Mechanism<f64>>,
-    turns: Turns<Mechanism<f64>>,
+    mechanism: gimbal::Gimbal<f64>,
+    state: <gimbal::Gimbal<f64> as Mechanism>::State,
+    solver: Partitioned<gimbal::Gimbal<f64>>,
+    turns: Turns<gimbal::Gimbal<f64>>,
 }
 
 /// Says that the words are a simulation.
@@ -110,7 +110,7 @@ const _: () = assert!(align_of::<Simulation>() <= align_of::<Gimbal>());
 impl Simulation {
     #[inline(always)]
     fn new() -> Self {
-        let mechanism = Mechanism::default();
+        let mechanism = gimbal::Gimbal::default();
         let state = mechanism.start();
         Self {
             mark: MARK,
