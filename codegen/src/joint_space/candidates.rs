@@ -2,6 +2,7 @@
 
 use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
+use super::embedding::Embedding;
 use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
@@ -20,6 +21,8 @@ pub type Candidate = (&'static str, Vec<ExprId>);
 pub struct Candidates {
     /// What u̇ is the solution of, angular velocities made of rates.
     pub balance: JointDynamics,
+    /// The same of a tree in which every rate is an unknown.
+    pub balance_of_tree: JointDynamics,
     /// By elimination.
     pub eliminated: Vec<Candidate>,
     /// The shortest of them in joint coordinates, for what has to be short rather than accurate: the Jacobian.
@@ -34,26 +37,29 @@ pub struct Candidates {
 
 impl Candidates {
     pub fn solve(system: &mut System, textbook: &Textbook, coordinates: &Coordinates) -> Self {
-        let Coordinates { layout, links_of_dynamics: links, unit, along, .. } = coordinates;
+        let Coordinates { embedding, links_of_dynamics: links, unit, along, .. } = coordinates;
         let loads = &textbook.dynamics.other_loads;
         let spins = dynamics::spins(system, links);
-        let balance = JointDynamics::new(system, layout, links, &spins, loads, along);
+        let balance = JointDynamics::new(system, links, &spins, loads, along, embedding);
+        let every = Embedding::identity(embedding.rates.len());
+        let balance_of_tree = JointDynamics::new(system, links, &spins, loads, along, &every);
         let mut reductions = Vec::new();
         let mut eliminated = vec![("recursion", balance.recursion(system))];
-        if layout.n_rates <= MAX_FACTORED {
+        if embedding.n_unknowns <= MAX_FACTORED {
             eliminated.push((NORMAL_FORM, balance.factored(system, unit, &mut reductions)));
         }
         let shortest = expanded(system, &coordinates.in_joints, &eliminated);
         let shortest = FinalPasses::of(false).cheapest(&mut system.graph, shortest).roots;
         let spins = spins_at_hand(system, coordinates);
-        let on_spins = JointDynamics::new(system, layout, links, &spins, loads, along);
+        let on_spins = JointDynamics::new(system, links, &spins, loads, along, embedding);
         let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
-        let is_small = (2..=gram_schmidt::MAX_RATES).contains(&layout.n_rates);
+        let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns);
         let by_gram_schmidt = is_small.then(|| ("orthogonal motions", balance.by_gram_schmidt(system)));
         let by_gram_schmidt_on_spins =
             is_small.then(|| ("orthogonal motions on the bodies' spins", on_spins.by_gram_schmidt(system)));
         Self {
             balance,
+            balance_of_tree,
             eliminated,
             shortest,
             eliminated_on_spins,

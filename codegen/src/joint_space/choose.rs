@@ -2,6 +2,7 @@
 
 use super::candidates::Candidates;
 use super::coordinates::Coordinates;
+use super::dynamics::JointDynamics;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
 use super::{dynamics, maps, motions, multipliers};
@@ -54,13 +55,17 @@ impl JointSpace {
         let passes = FinalPasses::of(false);
         let in_joints = &coordinates.in_joints;
         candidates.retain_accurate(system, &coordinates);
+        let n_rates = coordinates.layout.n_rates;
+        let of_state = |forms: &[(String, Vec<ExprId>)]| -> Vec<_> {
+            forms.iter().map(|(name, rates)| (name.clone(), rates[..n_rates].to_vec())).collect()
+        };
         let on_rates = candidates.on_rates(system, in_joints);
         let accelerations = Chosen {
             reductions: candidates.reductions.clone(),
-            ..passes.cheapest(&mut system.graph, on_rates)
+            ..passes.cheapest(&mut system.graph, of_state(&on_rates))
         };
         let at = candidates.all(system, &coordinates.of_joints);
-        let accelerations_at = passes.cheapest(&mut system.graph, at.clone());
+        let accelerations_at = passes.cheapest(&mut system.graph, of_state(&at));
         let corrected = corrected(system, &coordinates, &at, exact);
         let corrected = passes.cheapest(&mut system.graph, corrected);
         let multipliers = multipliers::of(system, textbook, &coordinates);
@@ -70,18 +75,22 @@ impl JointSpace {
         let solution = corrected.roots.iter().copied().chain(solved).collect();
         let rates = maps::coordinate_rates(system, &coordinates.layout);
         let along = dynamics::power_along(system, &coordinates.layout);
-        let power = Power { along, others: observed.power_but_along_coordinates };
+        let along = system.expanded(&coordinates.determined, &[along])[0];
+        let power =
+            Power { along, others: observed.power_but_along_coordinates, tree: &candidates.balance_of_tree };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
         let reduced = maps::reduced(system, &coordinates.layout);
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
-        let rates_of_rates: Vec<_> = (0..coordinates.layout.n_rates)
-            .map(|rate| system.graph.symbol(Symbol::RateOfRate(rate)))
-            .collect();
+        let rates_of_rates: Vec<_> =
+            (0..n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
         // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
         // which is emitted.
-        let differentiated =
-            if coordinates.have_orientations() { &accelerations.roots } else { &candidates.shortest };
+        let differentiated = if coordinates.have_orientations() {
+            &accelerations.roots
+        } else {
+            &candidates.shortest[..n_rates]
+        };
         let form = JointForm {
             coordinates: &coordinates,
             rates: &rates,
@@ -100,7 +109,7 @@ impl JointSpace {
             accelerations_at,
             corrected,
             jacobian,
-            maximal: maps::state(system, &coordinates.layout, &coordinates.maximal),
+            maximal: maps::state(system, &coordinates.layout, &coordinates.maximal, &coordinates.determined),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),
             reduced,
             layout: coordinates.layout,
@@ -128,14 +137,16 @@ fn corrected(
 }
 
 /// Power of non-conservative forces and drivers.
-struct Power {
+struct Power<'c> {
     /// Of forces along joint coordinates.
     along: ExprId,
     /// Of all others, in maximal coordinates.
     others: ExprId,
+    /// What the rates of the tree balance.
+    tree: &'c JointDynamics,
 }
 
-impl Power {
+impl Power<'_> {
     /// In joint coordinates, these rates' rates being known; none unless the state carries the work.
     fn at(
         &self,
@@ -144,10 +155,15 @@ impl Power {
         rates_of_rates: &[ExprId],
     ) -> Option<ExprId> {
         system.model.has_work().then(|| {
-            let motions = motions::motions(system, &coordinates.links, rates_of_rates, true);
+            let rates_of_rates = coordinates.of_tree(system, rates_of_rates);
+            let motions = motions::motions(system, &coordinates.links, &rates_of_rates, true);
+            let left = self.tree.left_over(system, &rates_of_rates);
+            let loop_multipliers = multipliers::beside_joints(system, &coordinates.layout, &left);
             let motions = system.expanded(&coordinates.in_joints, &motions);
+            let loop_multipliers = system.expanded(&coordinates.in_joints, &loop_multipliers);
             let mut values = coordinates.in_joints.clone();
             values.extend(motions::accelerations_by_symbol(&motions));
+            values.extend(multipliers::by_symbol(&loop_multipliers));
             let others = system.expanded(&values, &[self.others])[0];
             system.graph.add(self.along, others)
         })

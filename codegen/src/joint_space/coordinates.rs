@@ -1,5 +1,7 @@
 //! A tree in joint coordinates: what is derived before anything is solved.
 
+use super::determined;
+use super::embedding::Embedding;
 use super::layout::Layout;
 use super::link_kinematics::{self, LinkKinematics};
 use super::{dynamics, maps};
@@ -28,7 +30,11 @@ pub struct Coordinates {
     pub in_joints: Values,
     /// Joint coordinates and rates in terms of a maximal state that satisfies the constraints.
     pub of_joints: Values,
-    /// The force along each rate.
+    /// The coordinates that are no part of the state, with their rates and the rates' rates.
+    pub determined: Values,
+    /// How all rates of the tree accelerate.
+    pub embedding: Embedding,
+    /// The force along each rate of the tree.
     pub along: Vec<ExprId>,
     /// Sets of atoms of which the squares sum to one.
     pub unit: Vec<Vec<ExprId>>,
@@ -37,20 +43,47 @@ pub struct Coordinates {
 impl Coordinates {
     /// Whether joint coordinates describe the mechanism.
     pub fn cover(system: &System) -> bool {
-        system.tree.is_open() && system.loop_closure_rows().is_empty()
+        system.tree.is_open() && determined::determined(system.model, |_| true).1.is_empty()
     }
 
     pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
-        let layout = Layout::of(system);
+        let (known, _) = determined::determined(system.model, |_| true);
+        let layout = Layout::of(system, known);
+        let determined = determined::values(system, &layout);
+        let embedding = Embedding::of(system, &layout, &determined);
         let links = links_of(system, &layout, &|_| true);
         let maximal = maps::of_bodies(system, &layout, &links);
-        let in_joints = maps::in_joints(system, &layout, &maximal);
+        let maximal = maps::expanded(system, determined.clone(), maximal);
+        let in_joints = maps::in_joints(system, &layout, &maximal, &determined);
         let of_joints = maps::of_joints(system, &layout);
         let invariant = invariant_angles(system, &layout, &links, &textbook.dynamics);
         let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
         let along = dynamics::forces_along(system, &layout);
         let unit = unit_atoms(system, &layout);
-        Self { layout, links, links_of_dynamics, invariant, maximal, in_joints, of_joints, along, unit }
+        Self {
+            layout,
+            links,
+            links_of_dynamics,
+            invariant,
+            maximal,
+            in_joints,
+            of_joints,
+            determined,
+            embedding,
+            along,
+            unit,
+        }
+    }
+
+    /// The accelerations of all rates of the tree, from those of the state.
+    pub fn of_tree(&self, system: &mut System, rates_of_rates: &[ExprId]) -> Vec<ExprId> {
+        let known = rates_of_rates.iter().enumerate().map(|(rate, &value)| (Symbol::RateOfRate(rate), value));
+        let known: Values = known.collect();
+        let behind = (self.layout.n_rates..self.layout.n_tree_rates())
+            .map(|rate| self.determined[&Symbol::RateOfRate(rate)]);
+        let behind: Vec<_> = behind.collect();
+        let behind = system.expanded(&known, &behind);
+        rates_of_rates.iter().copied().chain(behind).collect()
     }
 
     /// Bodies that are described in a frame that does not turn with them.

@@ -4,6 +4,7 @@
 //! Both work in the bodies' own frames, on what [`LinkKinematics`] says. Gravity enters as an acceleration of the
 //! ground.
 
+use super::embedding::Embedding;
 use super::layout::Layout;
 use super::link_kinematics::{Bias, LinkKinematics};
 use crate::derive::dynamics::gyroscopic_torque;
@@ -18,6 +19,7 @@ use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{UNIT3, Vec3, ZERO3};
 use crate::simplify::normal_form::{Reduction, normal_form_of};
+use crate::solve::aggregate_joints::AggregateTree;
 use crate::solve::articulated_body::{Arm, Basis, EliminatedTree, Excitation, Inertia};
 use crate::solve::gram_schmidt::GramSchmidtTree;
 use crate::solve::ldl::Elimination;
@@ -47,14 +49,14 @@ impl Readings for OfJoints<'_> {
     }
 }
 
-/// The force along each rate.
+/// The force along each rate of the tree.
 pub fn forces_along(system: &mut System, layout: &Layout) -> Vec<ExprId> {
     let parts = forces::along_coordinates(system, &OfJoints(layout));
     summed_along(system, layout, parts)
 }
 
 fn summed_along(system: &mut System, layout: &Layout, parts: Vec<forces::Along>) -> Vec<ExprId> {
-    let mut along = vec![Graph::ZERO; layout.n_rates];
+    let mut along = vec![Graph::ZERO; layout.n_tree_rates()];
     for part in parts {
         let at = layout.scalar(part.on).expect("joints of a tree have their coordinates").place.u;
         along[at] = system.graph.add(along[at], part.force);
@@ -69,7 +71,8 @@ pub fn power_along(system: &mut System, layout: &Layout) -> ExprId {
     parts.retain(|part| part.potential.is_none());
     let mut along = summed_along(system, layout, parts);
     add_spherical_friction(system, layout, &mut along);
-    let rates: Vec<_> = (0..layout.n_rates).map(|rate| system.graph.symbol(Symbol::Rate(rate))).collect();
+    let rates = 0..layout.n_tree_rates();
+    let rates: Vec<_> = rates.map(|rate| system.graph.symbol(Symbol::Rate(rate))).collect();
     rates.iter().zip(along).fold(Graph::ZERO, |sum, (&rate, force)| {
         let power = system.graph.mul(force, rate);
         system.graph.add(sum, power)
@@ -94,62 +97,116 @@ fn add_spherical_friction(system: &mut System, layout: &Layout, along: &mut [Exp
 /// A tree in joint coordinates, ready to be solved.
 #[derive(Debug)]
 pub struct JointDynamics {
-    /// Rates of each link's free twists, root first.
-    rates: Vec<Vec<usize>>,
+    /// The unknowns of each link's free twists, root first, numbered in the order in which they occur.
+    unknowns: Vec<Vec<usize>>,
+    /// Of each unknown its place in the embedding.
+    places: Vec<usize>,
+    /// With the free twists of each unknown.
     subspaces: Vec<MotionSubspace>,
     /// In the bodies' own frames.
     excitation: Excitation,
-    n_rates: usize,
+    embedding: Embedding,
 }
 
 impl JointDynamics {
-    /// `loads` act on each body of the model besides gravity; `along` is the force along each rate.
+    /// `loads` act on each body of the model besides gravity; `along` is the force along each rate of the tree.
     pub fn new(
         system: &mut System,
-        layout: &Layout,
         links: &[LinkKinematics],
         spins: &[Vec3],
         loads: &[Load],
         along: &[ExprId],
+        embedding: &Embedding,
     ) -> Self {
-        let subspaces = links.iter().map(|link_kinematics| local_subspace(system, link_kinematics)).collect();
         let gravity = system.numbers(&system.model.gravity);
-        let forced = links.iter().map(|link_kinematics| {
+        let mut along = embedding.projected(&mut system.graph, along);
+        let (mut places, mut unknowns) = (Vec::new(), Vec::new());
+        let mut subspaces = Vec::new();
+        let none = Excitation::none(spins.len(), 0);
+        let mut excitation = Excitation { bias: Vec::new(), ..none };
+        for link_kinematics in links {
             let bias = bias(system, link_kinematics, spins);
             let graph = &mut system.graph;
             let at_joint = graph.transposed_vec(&link_kinematics.rotation, &bias.on_parent);
             let own = SpatialVector { t: graph.add_vec(&at_joint, &bias.on_body), rho: bias.rho };
             let ground = of_ground(system, link_kinematics, &gravity);
-            own.plus(&mut system.graph, &ground)
-        });
-        let forced = forced.collect();
-        let bias = (0..spins.len())
+            let forced = own.plus(&mut system.graph, &ground);
+            let moving = Moving::of(&mut system.graph, link_kinematics, embedding, forced);
+            let subspace = MotionSubspace { free: moving.twists, ..local_subspace(system, link_kinematics) };
+            subspaces.push(subspace);
+            excitation.forced.push(moving.forced);
+            // A force along an unknown acts once, on the first joint that it moves.
+            excitation.along.push(
+                moving
+                    .places
+                    .iter()
+                    .map(|&place| std::mem::replace(&mut along[place], Graph::ZERO))
+                    .collect(),
+            );
+            let number = |place: usize| {
+                places.iter().position(|&known| known == place).unwrap_or_else(|| {
+                    places.push(place);
+                    places.len() - 1
+                })
+            };
+            unknowns.push(moving.places.into_iter().map(number).collect());
+        }
+        excitation.bias = (0..spins.len())
             .map(|moving_body| inertial(system, moving_body, &spins[moving_body], loads))
             .collect();
-        let rates: Vec<Vec<_>> = links
-            .iter()
-            .map(|link_kinematics| link_kinematics.free.iter().map(|free| free.rate).collect())
-            .collect();
-        let along = rates.iter().map(|rates| rates.iter().map(|&rate| along[rate]).collect()).collect();
-        let excitation = Excitation { bias, forced, along };
-        Self { rates, subspaces, excitation, n_rates: layout.n_rates }
+        Self { unknowns, places, subspaces, excitation, embedding: embedding.clone() }
     }
 
-    /// u̇ through orthogonal motions.
+    /// Whether an unknown moves several joints.
+    fn shares_unknowns(&self) -> bool {
+        self.unknowns.iter().flatten().count() > self.places.len()
+    }
+
+    /// The accelerations of all rates of the tree through orthogonal motions.
     pub fn by_gram_schmidt(&self, system: &mut System) -> Vec<ExprId> {
-        let tree = GramSchmidtTree::new(system, self.subspaces.clone(), Basis::Mixed);
+        let (subspaces, unknowns) = (self.subspaces.clone(), self.unknowns.clone());
+        let tree = GramSchmidtTree::of_unknowns(system, subspaces, unknowns, Basis::Mixed);
         let response = tree.respond(&mut system.graph, &self.excitation);
-        self.scattered(&response.rates)
+        let found = self.scattered(&response.rates);
+        self.embedding.rates_of_rates(&mut system.graph, &found)
     }
 
-    /// u̇ by elimination from the leaves to the roots: operations grow linearly with the number of bodies.
+    /// The same by elimination from the leaves to the roots: operations grow linearly with the number of bodies.
     pub fn recursion(&self, system: &mut System) -> Vec<ExprId> {
-        let tree = EliminatedTree::new(system, self.subspaces.clone(), Basis::Mixed);
-        let response = tree.respond(&mut system.graph, &self.excitation);
-        self.scattered(&response.rates)
+        let tree = self.eliminated(system);
+        let found = self.respond(&mut system.graph, &tree, &self.excitation);
+        self.embedding.rates_of_rates(&mut system.graph, &found)
     }
 
-    /// u̇ by factoring the reduced mass matrix, all entries in polynomial normal form as long as pivots are constant.
+    fn eliminated(&self, system: &mut System) -> Eliminated {
+        let subspaces = self.subspaces.clone();
+        if self.shares_unknowns() {
+            Eliminated::Shared(AggregateTree::new(
+                system,
+                subspaces,
+                self.unknowns.clone(),
+                self.places.len(),
+            ))
+        } else {
+            Eliminated::Plain(EliminatedTree::new(system, subspaces, Basis::Mixed))
+        }
+    }
+
+    /// The unknowns, by their places in the embedding.
+    fn respond(&self, graph: &mut Graph, tree: &Eliminated, excitation: &Excitation) -> Vec<ExprId> {
+        match tree {
+            Eliminated::Plain(tree) => self.scattered(&tree.respond(graph, excitation).rates),
+            Eliminated::Shared(tree) => {
+                let found = tree.respond(graph, excitation);
+                let mut all = vec![Graph::ZERO; self.embedding.n_unknowns];
+                self.places.iter().zip(found).for_each(|(&place, value)| all[place] = value);
+                all
+            }
+        }
+    }
+
+    /// The same by factoring the reduced mass matrix, all entries in polynomial normal form as long as pivots are
+    /// constant.
     pub fn factored(
         &self,
         system: &mut System,
@@ -167,7 +224,7 @@ impl JointDynamics {
         };
         let mut elimination = Elimination::new(matrix, forces);
         elimination.rewrite(|old, divisors| reduced(graph, "mass matrix and forces", (old, divisors)));
-        for unknown in self.rates.iter().flatten().rev().copied() {
+        for unknown in self.places.iter().rev().copied() {
             let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
             elimination.pivot(graph, unknown);
             if is_constant {
@@ -175,17 +232,21 @@ impl JointDynamics {
             }
         }
         let solution = elimination.substitute_back(graph);
-        reduced(graph, "solution", (&solution, &[]))
+        let found = reduced(graph, "solution", (&solution, &[]));
+        self.embedding.rates_of_rates(graph, &found)
     }
 
-    /// The rates' rates that forces along the rates alone bring about, for each column of forces: `M⁻¹ force`.
+    /// The unknowns that forces along them alone bring about, for each column of forces: `M⁻¹ force`.
     pub fn accelerations_of(&self, system: &mut System, columns: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
-        let tree = EliminatedTree::new(system, self.subspaces.clone(), Basis::Mixed);
+        let tree = self.eliminated(system);
         let solved = |forces: &Vec<ExprId>| {
-            let along = self.rates.iter().map(|rates| rates.iter().map(|&rate| forces[rate]).collect());
+            let mut forces: Vec<_> = self.places.iter().map(|&place| forces[place]).collect();
+            // A force along an unknown acts once.
+            let mut taken = |&unknown: &usize| std::mem::replace(&mut forces[unknown], Graph::ZERO);
+            let along = self.unknowns.iter().map(|unknowns| unknowns.iter().map(&mut taken).collect());
             let none = Excitation::none(self.excitation.bias.len(), self.subspaces.len());
             let excitation = Excitation { along: along.collect(), ..none };
-            self.scattered(&tree.respond(&mut system.graph, &excitation).rates)
+            self.respond(&mut system.graph, &tree, &excitation)
         };
         columns.iter().map(solved).collect()
     }
@@ -204,7 +265,7 @@ impl JointDynamics {
         let matrix = places.into_iter().zip(entries).collect();
         let mut elimination = Elimination::of_several(matrix, columns.to_vec());
         elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
-        for unknown in self.rates.iter().flatten().rev().copied() {
+        for unknown in self.places.iter().rev().copied() {
             let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
             elimination.pivot(graph, unknown);
             if is_constant {
@@ -215,30 +276,31 @@ impl JointDynamics {
     }
 
     fn scattered(&self, rates: &[Vec<ExprId>]) -> Vec<ExprId> {
-        let mut all = vec![Graph::ZERO; self.n_rates];
-        for (places, values) in self.rates.iter().zip(rates) {
-            for (&place, &value) in places.iter().zip(values) {
-                all[place] = value;
+        let mut all = vec![Graph::ZERO; self.embedding.n_unknowns];
+        for (unknowns, values) in self.unknowns.iter().zip(rates) {
+            for (&unknown, &value) in unknowns.iter().zip(values) {
+                all[self.places[unknown]] = value;
             }
         }
         all
     }
 
-    /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one rate takes along each rate nearer to the root, the
-    /// inertia beyond it moving as one body.
+    /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one unknown takes along each unknown nearer to the root,
+    /// the inertia beyond it moving as one body.
     fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
         let mut bodies: Vec<_> =
             (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
         let mut matrix = BTreeMap::new();
-        for (subspace, rates) in self.subspaces.iter().zip(&self.rates).rev() {
+        let place = |unknown: usize| self.places[unknown];
+        for (subspace, unknowns) in self.subspaces.iter().zip(&self.unknowns).rev() {
             let arm = Arm::on_body(graph, subspace);
             let beyond = bodies[subspace.moving_body].seen_through(graph, &arm);
-            for (k, (twist, &rate)) in subspace.free.iter().zip(rates).enumerate() {
+            for (k, (twist, &unknown)) in subspace.free.iter().zip(unknowns).enumerate() {
                 let mut wrench = beyond.times(graph, twist);
-                for (other, &other_rate) in subspace.free[..=k].iter().zip(rates) {
+                for (l, (other, &other_unknown)) in subspace.free[..=k].iter().zip(unknowns).enumerate() {
                     let entry = other.dot(graph, &wrench);
-                    matrix.insert((rate.max(other_rate), rate.min(other_rate)), entry);
+                    couple(graph, &mut matrix, (place(unknown), place(other_unknown)), entry, k == l);
                 }
                 let mut link = subspace;
                 while let Some(parent) = link.parent {
@@ -246,9 +308,9 @@ impl JointDynamics {
                     let at = self.place_of(parent.moving_body);
                     link = &self.subspaces[at];
                     wrench = Arm::on_body(graph, link).wrench(graph, &carried);
-                    for (other, &other_rate) in link.free.iter().zip(&self.rates[at]) {
+                    for (other, &other_unknown) in link.free.iter().zip(&self.unknowns[at]) {
                         let entry = other.dot(graph, &wrench);
-                        matrix.insert((rate.max(other_rate), rate.min(other_rate)), entry);
+                        couple(graph, &mut matrix, (place(unknown), place(other_unknown)), entry, false);
                     }
                 }
             }
@@ -270,26 +332,26 @@ impl JointDynamics {
             .expect("every moving_body is a link")
     }
 
-    /// What drives each rate: forces less what the motion at constant rates takes.
+    /// What drives each unknown: forces less what the motion at constant rates takes.
     fn generalised_forces(&self, system: &mut System) -> Vec<ExprId> {
-        self.left_over(system, &vec![Graph::ZERO; self.n_rates])
+        self.left_over(system, &vec![Graph::ZERO; self.embedding.n_unknowns])
     }
 
-    /// The force along each rate that is left over by the motion with these rates' rates.
-    pub fn left_over(&self, system: &mut System, rates_of_rates: &[ExprId]) -> Vec<ExprId> {
+    /// The force along each unknown that is left over by the motion with these values of the unknowns.
+    pub fn left_over(&self, system: &mut System, found: &[ExprId]) -> Vec<ExprId> {
         let bodies: Vec<_> =
             (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
         let mut motions = vec![SpatialVector::ZERO; self.excitation.bias.len()];
-        for ((subspace, forced), rates) in self.subspaces.iter().zip(&self.excitation.forced).zip(&self.rates)
-        {
+        let links = self.subspaces.iter().zip(&self.excitation.forced).zip(&self.unknowns);
+        for ((subspace, forced), unknowns) in links {
             let mut motion = *forced;
             if let Some(parent) = subspace.parent {
                 let carried = parent.twist(graph, &motions[parent.moving_body]);
                 motion = motion.plus(graph, &carried);
             }
-            for (twist, &rate) in subspace.free.iter().zip(rates) {
-                let own = twist.scaled(graph, rates_of_rates[rate]);
+            for (twist, &unknown) in subspace.free.iter().zip(unknowns) {
+                let own = twist.scaled(graph, found[self.places[unknown]]);
                 motion = motion.plus(graph, &own);
             }
             motions[subspace.moving_body] = Arm::on_body(graph, subspace).twist(graph, &motion);
@@ -297,14 +359,16 @@ impl JointDynamics {
         let mut taken: Vec<_> = (motions.iter().zip(&bodies).zip(&self.excitation.bias))
             .map(|((motion, inertia), bias)| inertia.times(graph, motion).plus(graph, bias))
             .collect();
-        let mut forces = vec![Graph::ZERO; self.n_rates];
-        for ((subspace, rates), along) in
-            self.subspaces.iter().zip(&self.rates).zip(&self.excitation.along).rev()
+        let mut forces = vec![Graph::ZERO; self.embedding.n_unknowns];
+        for ((subspace, unknowns), along) in
+            self.subspaces.iter().zip(&self.unknowns).zip(&self.excitation.along).rev()
         {
             let wrench = Arm::on_body(graph, subspace).wrench(graph, &taken[subspace.moving_body]);
-            for ((twist, &rate), &along) in subspace.free.iter().zip(rates).zip(along) {
+            for ((twist, &unknown), &along) in subspace.free.iter().zip(unknowns).zip(along) {
                 let resisted = twist.dot(graph, &wrench);
-                forces[rate] = graph.sub(along, resisted);
+                let left = graph.sub(along, resisted);
+                let all = &mut forces[self.places[unknown]];
+                *all = graph.add(*all, left);
             }
             if let Some(parent) = subspace.parent {
                 let carried = parent.wrench(graph, &wrench);
@@ -313,6 +377,59 @@ impl JointDynamics {
         }
         forces
     }
+}
+
+/// A tree without its unknowns.
+enum Eliminated {
+    /// Each unknown moves a single joint.
+    Plain(EliminatedTree),
+    /// Some move several.
+    Shared(AggregateTree),
+}
+
+/// How a link moves by the unknowns.
+struct Moving {
+    /// Places of the unknowns that move it, in the embedding.
+    places: Vec<usize>,
+    twists: Vec<SpatialVector>,
+    /// If all unknowns are zero.
+    forced: SpatialVector,
+}
+
+impl Moving {
+    fn of(graph: &mut Graph, link: &LinkKinematics, embedding: &Embedding, forced: SpatialVector) -> Self {
+        let mut moving = Self { places: Vec::new(), twists: Vec::new(), forced };
+        for free in &link.free {
+            let motion = &embedding.rates[free.rate];
+            for &(place, factor) in &motion.columns {
+                let twist = free.twist.scaled(graph, factor);
+                match moving.places.iter().position(|&known| known == place) {
+                    Some(at) => moving.twists[at] = moving.twists[at].plus(graph, &twist),
+                    None => {
+                        moving.places.push(place);
+                        moving.twists.push(twist);
+                    }
+                }
+            }
+            let given = free.twist.scaled(graph, motion.bias);
+            moving.forced = moving.forced.plus(graph, &given);
+        }
+        moving
+    }
+}
+
+/// Adds what two motions of two unknowns have in common to the lower triangle; on the diagonal both orders of two
+/// motions of the same unknown.
+fn couple(
+    graph: &mut Graph,
+    matrix: &mut BTreeMap<(usize, usize), ExprId>,
+    (a, b): (usize, usize),
+    entry: ExprId,
+    is_same_motion: bool,
+) {
+    let both = if a == b && !is_same_motion { graph.add(entry, entry) } else { entry };
+    let whole = matrix.entry((a.max(b), a.min(b))).or_insert(Graph::ZERO);
+    *whole = graph.add(*whole, both);
 }
 
 /// Translations in the body's own frame.

@@ -1,9 +1,13 @@
 //! Where each joint's coordinates and rates stand.
 
+use super::determined::Determined;
 use crate::derive::system::System;
 use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
 
-/// The joint coordinates x and rates u of a tree: joints in the order of the page, then free bodies.
+/// The joint coordinates x and rates u of a tree: joints in the order of the model file, then free bodies.
+///
+/// Coordinates that others or time determine are no part of the state. They and their rates are counted on behind
+/// those of the state.
 #[derive(Clone, Debug)]
 pub struct Layout {
     /// One for each link of the tree, root first.
@@ -12,6 +16,8 @@ pub struct Layout {
     pub n_coordinates: usize,
     /// Length of u.
     pub n_rates: usize,
+    /// The coordinates that are no part of the state, in the order of their places.
+    pub determined: Vec<Determined>,
 }
 
 /// The coordinates of one link, in this order.
@@ -43,16 +49,21 @@ pub struct Place {
 }
 
 impl Layout {
-    pub fn of(system: &System) -> Self {
+    pub fn of(system: &System, determined: Vec<Determined>) -> Self {
         let mut links = system.tree.links.clone();
         links.sort_by_key(|link| match link.attachment {
             Attachment::Joint { joint, .. } => (0, joint),
             Attachment::Free | Attachment::Constrained => (1, link.body),
         });
-        let mut layout = Self { links: Vec::new(), n_coordinates: 0, n_rates: 0 };
+        let mut layout = Self { links: Vec::new(), n_coordinates: 0, n_rates: 0, determined };
         for link in links {
             let coordinates = layout.place(system, link);
             layout.links.push(coordinates);
+        }
+        let behind = |place: usize| Place { x: layout.n_coordinates + place, u: layout.n_rates + place };
+        for scalar in layout.links.iter_mut().flat_map(|link| &mut link.scalars) {
+            let place = layout.determined.iter().position(|known| known.coordinate == scalar.coordinate);
+            scalar.place = place.map_or(scalar.place, behind);
         }
         let order = |link: &LinkCoordinates| system.tree.links.iter().position(|l| l.body == link.link.body);
         layout.links.sort_by_key(order);
@@ -72,7 +83,9 @@ impl Layout {
                 let kind = system.joints[joint].kind;
                 for (coordinate, &kind) in kind.coordinates().iter().enumerate() {
                     let coordinate = JointCoordinate { joint, coordinate };
-                    coordinates.scalars.push(Scalar { coordinate, kind, place: self.take(1, 1) });
+                    let is_determined = self.determined.iter().any(|known| known.coordinate == coordinate);
+                    let size = usize::from(!is_determined);
+                    coordinates.scalars.push(Scalar { coordinate, kind, place: self.take(size, size) });
                 }
                 if matches!(kind, JointKind::Spherical | JointKind::PointOnLine) {
                     coordinates.orientation = Some(self.take(4, 3));
@@ -87,6 +100,17 @@ impl Layout {
         self.n_coordinates += coordinates;
         self.n_rates += rates;
         place
+    }
+
+    /// Number of rates of the tree, those included that are no part of the state.
+    pub fn n_tree_rates(&self) -> usize {
+        self.n_rates + self.determined.len()
+    }
+
+    /// The scalar coordinates that are part of the state.
+    pub fn scalars(&self) -> impl Iterator<Item = &Scalar> {
+        let all = self.links.iter().flat_map(|link| &link.scalars);
+        all.filter(|scalar| scalar.place.x < self.n_coordinates)
     }
 
     /// Where a scalar coordinate of a joint stands.

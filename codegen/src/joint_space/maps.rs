@@ -277,7 +277,7 @@ pub fn reduced(system: &mut System, layout: &Layout) -> Vec<ExprId> {
     let mut all: Vec<_> = (0..layout.n_coordinates)
         .map(|x| values.get(&Symbol::Coordinate(x)).copied().unwrap_or(Graph::ZERO))
         .collect();
-    for scalar in layout.links.iter().flat_map(|link| &link.scalars).filter(|s| s.kind.is_angle()) {
+    for scalar in layout.scalars().filter(|s| s.kind.is_angle()) {
         let before = system.graph.symbol(Symbol::Coordinate(scalar.place.x));
         let (sine, cosine) = raw_angle(system, scalar.coordinate, scalar.kind);
         all[scalar.place.x] = system.graph.continued(before, sine, cosine);
@@ -287,11 +287,12 @@ pub fn reduced(system: &mut System, layout: &Layout) -> Vec<ExprId> {
 }
 
 /// Everything in terms of joint coordinates and rates.
-pub fn in_joints(system: &mut System, layout: &Layout, maximal: &Values) -> Values {
-    let mut values = Values::default();
+pub fn in_joints(system: &mut System, layout: &Layout, maximal: &Values, determined: &Values) -> Values {
+    let mut values = determined.clone();
     for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
         let place = scalar.place.x;
-        let x = system.graph.symbol(Symbol::Coordinate(place));
+        let symbol = Symbol::Coordinate(place);
+        let x = determined.get(&symbol).copied().unwrap_or_else(|| system.graph.symbol(symbol));
         if scalar.kind.is_angle() {
             values.insert(Symbol::Sine(place), system.graph.sin(x));
             values.insert(Symbol::Cosine(place), system.graph.cos(x));
@@ -311,7 +312,7 @@ pub fn coordinate_rates(system: &mut System, layout: &Layout) -> Vec<ExprId> {
     let graph = &mut system.graph;
     let mut rates = vec![Graph::ZERO; layout.n_coordinates];
     for link in &layout.links {
-        for scalar in &link.scalars {
+        for scalar in link.scalars.iter().filter(|scalar| scalar.place.x < layout.n_coordinates) {
             rates[scalar.place.x] = graph.symbol(Symbol::Rate(scalar.place.u));
         }
         if let Some(place) = link.position {
@@ -330,7 +331,7 @@ pub fn coordinate_rates(system: &mut System, layout: &Layout) -> Vec<ExprId> {
 }
 
 /// Positions (r, p) of each moving_body, then velocities (s, w'), then turn references.
-pub fn state(system: &mut System, layout: &Layout, values: &Values) -> Vec<ExprId> {
+pub fn state(system: &mut System, layout: &Layout, values: &Values, determined: &Values) -> Vec<ExprId> {
     let moving_bodies = 0..system.moving_bodies.len();
     let position = |moving_body, k| {
         if k < 3 { Symbol::Position { moving_body, k } } else { Symbol::Euler { moving_body, k: k - 3 } }
@@ -345,7 +346,8 @@ pub fn state(system: &mut System, layout: &Layout, values: &Values) -> Vec<ExprI
     let turns = system.model.turn_references();
     let turns = turns.into_iter().map(|turn| {
         let scalar = layout.scalar(turn).expect("joints of a tree have their coordinates");
-        system.graph.symbol(Symbol::Coordinate(scalar.place.x))
+        let symbol = Symbol::Coordinate(scalar.place.x);
+        determined.get(&symbol).copied().unwrap_or_else(|| system.graph.symbol(symbol))
     });
     state.chain(turns).collect()
 }

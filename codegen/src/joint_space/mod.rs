@@ -9,7 +9,9 @@
 mod candidates;
 mod choose;
 mod coordinates;
+mod determined;
 mod dynamics;
+mod embedding;
 mod jacobian;
 mod layout;
 mod link_kinematics;

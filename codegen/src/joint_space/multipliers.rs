@@ -3,6 +3,8 @@
 //! divisions vanish.
 
 use super::coordinates::Coordinates;
+use super::determined::{Relation, place_of};
+use super::layout::Layout;
 use super::link_kinematics::LinkKinematics;
 use crate::derive::Textbook;
 use crate::derive::system::System;
@@ -27,6 +29,7 @@ pub fn of(
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
     let mut lacking: Vec<_> =
         (0..system.moving_bodies.len()).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
+    let mut left = vec![Graph::ZERO; layout.n_tree_rates()];
     for (link, link_kinematics) in layout.links.iter().zip(links).rev() {
         let subspace = MotionSubspace::of(system, kinematics, link.link);
         let values = rotations(system, link.link.attachment, link_kinematics);
@@ -43,6 +46,11 @@ pub fn of(
         let graph = &mut system.graph;
         let at_joint = Arm::on_body(graph, &subspace).wrench(graph, &lacking[subspace.moving_body]);
         let turned = graph.mat_vec(&link_kinematics.rotation, &at_joint.rho);
+        for free in &link_kinematics.free {
+            let t = graph.mat_vec(&subspace.frame, &free.twist.t);
+            let taken = SpatialVector { t, rho: free.twist.rho }.dot(graph, &at_joint);
+            left[free.rate] = graph.neg(taken);
+        }
         for (row, forced) in subspace.rows.clone().zip(forced) {
             let (force, torque) =
                 (graph.dot(&forced.t, &at_joint.t), forced.rotation.dot(graph, &at_joint.rho, &turned));
@@ -55,7 +63,52 @@ pub fn of(
             lacking[parent.moving_body] = lacking[parent.moving_body].plus(graph, &carried);
         }
     }
+    let of_closure = beside_joints(system, layout, &left);
+    for (row, value) in system.loop_closure_rows().into_iter().zip(of_closure) {
+        lambda[row] = value;
+    }
     lambda
+}
+
+/// The multipliers of the rows that no joint of the tree owns, in their order, from the force that is left over along
+/// each rate of the tree: `left = Φ_xᵀ λ`.
+pub fn beside_joints(system: &mut System, layout: &Layout, left: &[ExprId]) -> Vec<ExprId> {
+    let mut left = left.to_vec();
+    let rows = system.model.rows();
+    let mut found = Vec::new();
+    // What a coordinate determines comes after it.
+    for known in layout.determined.iter().rev() {
+        let place = place_of(layout, known.coordinate).u;
+        let ratio = match known.by {
+            Relation::Driver(_) => Graph::ZERO,
+            Relation::Forward(coupler) | Relation::Backward(coupler) => {
+                system.number(&system.model.couplers[coupler].ratio)
+            }
+        };
+        let graph = &mut system.graph;
+        // A coupler's row is `second − ratio · first − offset`.
+        let (lambda, on_source) = if matches!(known.by, Relation::Backward(_)) {
+            let quotient = graph.div(left[place], ratio);
+            let lambda = graph.neg(quotient);
+            (lambda, lambda)
+        } else {
+            let share = graph.mul(ratio, left[place]);
+            (left[place], graph.neg(share))
+        };
+        found.push((known.by.owner(), lambda));
+        if let Some(source) = known.by.source(system.model) {
+            let at = place_of(layout, source).u;
+            left[at] = system.graph.sub(left[at], on_source);
+        }
+    }
+    let of_row = |row: usize| found.iter().find(|(owner, _)| *owner == rows[row].owner);
+    let of_row = |row| of_row(row).expect("a row beside the joints determines a coordinate").1;
+    system.loop_closure_rows().into_iter().map(of_row).collect()
+}
+
+/// The symbols that stand for them.
+pub fn by_symbol(multipliers: &[ExprId]) -> impl Iterator<Item = (Symbol, ExprId)> {
+    multipliers.iter().enumerate().map(|(place, &value)| (Symbol::LoopMultiplier(place), value))
 }
 
 /// What a row forces upon its body.

@@ -263,6 +263,17 @@ impl Inertia {
         SpatialVector { t: graph.add_vec(&force, &turned), rho: graph.add_vec(&torque, &moment) }
     }
 
+    /// What is left once a wrench yields: `I − u uᵀ / d`.
+    pub fn less(&self, graph: &mut Graph, u: &SpatialVector, inverse: ExprId) -> Self {
+        let factor = u.scaled(graph, inverse);
+        Self {
+            mass: self.mass,
+            linear: less_product(graph, &self.linear, &factor.t, &u.t, Symmetry::Symmetric),
+            coupling: less_product(graph, &self.coupling, &factor.t, &u.rho, Symmetry::None),
+            angular: less_product(graph, &self.angular, &factor.rho, &u.rho, Symmetry::Symmetric),
+        }
+    }
+
     /// What the parent feels at the joint point, in its own frames.
     pub fn on_parent(&self, graph: &mut Graph, parent: &Parent) -> Self {
         let Parent { relative, carried, .. } = parent;
@@ -417,14 +428,7 @@ impl EliminatedJoint {
 impl Step {
     /// The inertia that remains once the twist yields.
     fn eliminate(&self, graph: &mut Graph, body: &Inertia) -> Inertia {
-        let u = self.resistance;
-        let factor = u.scaled(graph, self.inverse);
-        let mut rest = Inertia {
-            mass: body.mass,
-            linear: less_product(graph, &body.linear, &factor.t, &u.t, Symmetry::Symmetric),
-            coupling: less_product(graph, &body.coupling, &factor.t, &u.rho, Symmetry::None),
-            angular: less_product(graph, &body.angular, &factor.rho, &u.rho, Symmetry::Symmetric),
-        };
+        let mut rest = body.less(graph, &self.resistance, self.inverse);
         // Nothing resists the twist any more.
         match self.component {
             Some(Component::T(k)) => {

@@ -26,7 +26,9 @@ pub struct GramSchmidtTree {
     frames: Vec<Frames>,
     /// Of each moving_body.
     bodies: Vec<Inertia>,
-    /// One for each free twist, root first.
+    /// Of each subspace the unknowns that its free twists are parts of.
+    unknowns: Vec<Vec<usize>>,
+    /// One for each unknown.
     columns: Vec<Column>,
 }
 
@@ -52,11 +54,24 @@ impl GramSchmidtTree {
     /// The links come root first. The basis has rotations in the bodies' own frames: there their inertias are
     /// constants.
     pub fn new(system: &mut System, subspaces: Vec<MotionSubspace>, basis: Basis) -> Self {
+        let mut next = 0..;
+        let each = |subspace: &MotionSubspace| next.by_ref().take(subspace.free.len()).collect();
+        let unknowns = subspaces.iter().map(each).collect();
+        Self::of_unknowns(system, subspaces, unknowns, basis)
+    }
+
+    /// The same where free twists of several joints may belong to one unknown. Unknowns are numbered root first.
+    pub fn of_unknowns(
+        system: &mut System,
+        subspaces: Vec<MotionSubspace>,
+        unknowns: Vec<Vec<usize>>,
+        basis: Basis,
+    ) -> Self {
         let frames = basis.frames(system);
         let bodies: Vec<_> =
             (0..system.moving_bodies.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
-        let motions = motions_at_unit_rates(graph, &subspaces);
+        let motions = motions_at_unit_rates(graph, &subspaces, &unknowns);
         let mut columns: BTreeMap<usize, Column> = BTreeMap::new();
         for (rate, mut motion) in motions.into_iter().enumerate().rev() {
             let mut yielding = Vec::new();
@@ -68,7 +83,7 @@ impl GramSchmidtTree {
             }
             columns.insert(rate, Column::new(graph, &bodies, &motion, yielding));
         }
-        Self { subspaces, frames, bodies, columns: columns.into_values().collect() }
+        Self { subspaces, frames, bodies, unknowns, columns: columns.into_values().collect() }
     }
 
     pub fn respond(&self, graph: &mut Graph, excitation: &Excitation) -> Response {
@@ -81,9 +96,12 @@ impl GramSchmidtTree {
         let mut left: Vec<_> = (self.bodies.iter().zip(&unforced).zip(&bias))
             .map(|((body, motion), bias)| body.times(graph, motion).plus(graph, bias).negated(graph))
             .collect();
-        let mut forces: Vec<_> = (at_rest.iter().zip(along))
-            .flat_map(|(rates, along)| (0..rates.len()).map(|k| along.get(k).copied().unwrap_or(Graph::ZERO)))
-            .collect();
+        let mut forces = vec![Graph::ZERO; self.columns.len()];
+        for (unknowns, along) in self.unknowns.iter().zip(along) {
+            for (&unknown, &along) in unknowns.iter().zip(along) {
+                forces[unknown] = graph.add(forces[unknown], along);
+            }
+        }
         let mut all = vec![Graph::ZERO; forces.len()];
         for (rate, column) in self.columns.iter().enumerate().rev() {
             for &(other, share) in &column.yielding {
@@ -98,9 +116,9 @@ impl GramSchmidtTree {
                 all[other] = graph.sub(all[other], yielded);
             }
         }
-        let mut rest = &all[..];
-        let rates = at_rest.iter().map(|rates| rest.split_off(..rates.len()).unwrap_or_default().to_vec());
-        let rates: Vec<_> = rates.collect();
+        let rates =
+            self.unknowns.iter().map(|unknowns| unknowns.iter().map(|&unknown| all[unknown]).collect());
+        let rates: Vec<Vec<_>> = rates.collect();
         let mut motions = self.motions(graph, forced, &rates);
         for (motion, frames) in motions.iter_mut().zip(&self.frames) {
             *motion = frames.leave(graph, motion);
@@ -132,13 +150,14 @@ impl GramSchmidtTree {
     }
 }
 
-/// Of each rate how it moves the mass centres of the moving_bodies, root first.
+/// Of each unknown how it moves the mass centres of the moving_bodies, root first.
 fn motions_at_unit_rates(
     graph: &mut Graph,
     subspaces: &[MotionSubspace],
+    unknowns: &[Vec<usize>],
 ) -> Vec<BTreeMap<usize, SpatialVector>> {
     let mut motions: Vec<BTreeMap<usize, SpatialVector>> = Vec::new();
-    for subspace in subspaces {
+    for (subspace, unknowns) in subspaces.iter().zip(unknowns) {
         let arm = Arm::on_body(graph, subspace);
         for motion in &mut motions {
             let carried =
@@ -148,12 +167,12 @@ fn motions_at_unit_rates(
                 motion.insert(subspace.moving_body, arm.twist(graph, &at_joint));
             }
         }
-        motions.extend(
-            subspace
-                .free
-                .iter()
-                .map(|twist| BTreeMap::from([(subspace.moving_body, arm.twist(graph, twist))])),
-        );
+        for (twist, &unknown) in subspace.free.iter().zip(unknowns) {
+            let own = arm.twist(graph, twist);
+            motions.resize_with(motions.len().max(unknown + 1), BTreeMap::new);
+            let whole = motions[unknown].entry(subspace.moving_body).or_insert(SpatialVector::ZERO);
+            *whole = whole.plus(graph, &own);
+        }
     }
     motions
 }
@@ -186,9 +205,10 @@ impl Column {
             }
         }
         let share = graph.mul(taken, self.inverse);
-        for (moving_body, part) in &self.parts {
-            if let Some(motion) = motion.get_mut(moving_body) {
+        if share != Graph::ZERO {
+            for (&moving_body, part) in &self.parts {
                 let yielded = part.motion.scaled(graph, share).negated(graph);
+                let motion = motion.entry(moving_body).or_insert(SpatialVector::ZERO);
                 *motion = motion.plus(graph, &yielded);
             }
         }

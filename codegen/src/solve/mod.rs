@@ -1,5 +1,6 @@
 //! The equations of motion, the coordinate partition and the multipliers, solved.
 
+pub mod aggregate_joints;
 pub mod articulated_body;
 pub mod axis_bias;
 pub mod cancellation;

@@ -1,0 +1,166 @@
+//! Coordinates of the tree that couplers and drivers determine: they are put in wherever they occur, and neither a row
+//! nor a multiplier of them is left.
+
+use super::layout::{Layout, Place};
+use crate::derive::system::System;
+use crate::expr::definitions::{Definitions, Values};
+use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::symbol::Symbol;
+use gyro_model::{JointCoordinate, Model, Number, RowOwner};
+
+/// A coordinate that others or time determine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Determined {
+    pub coordinate: JointCoordinate,
+    pub by: Relation,
+}
+
+/// A row between coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// Index into the model's drivers.
+    Driver(usize),
+    /// Index into the model's couplers: its second coordinate by its first.
+    Forward(usize),
+    /// Its first coordinate by its second.
+    Backward(usize),
+}
+
+impl Relation {
+    /// The owner of its row.
+    pub fn owner(self) -> RowOwner {
+        match self {
+            Self::Driver(driver) => RowOwner::Driver(driver),
+            Self::Forward(coupler) | Self::Backward(coupler) => RowOwner::Coupler(coupler),
+        }
+    }
+
+    /// The coordinate that the determined one is a multiple of, but for an offset.
+    pub fn source(self, model: &Model) -> Option<JointCoordinate> {
+        match self {
+            Self::Driver(_) => None,
+            Self::Forward(coupler) => Some(model.couplers[coupler].first),
+            Self::Backward(coupler) => Some(model.couplers[coupler].second),
+        }
+    }
+}
+
+/// What couplers and drivers determine, sources before what follows from them; and the owners of the rows that no
+/// coordinate can be put in for.
+pub fn determined(
+    model: &Model,
+    is_on_tree: impl Fn(JointCoordinate) -> bool,
+) -> (Vec<Determined>, Vec<RowOwner>) {
+    let kept: Vec<_> = model.rows().into_iter().map(|row| row.owner).collect();
+    let drivers = (0..model.drivers.len()).map(RowOwner::Driver);
+    let mut open: Vec<_> = drivers
+        .chain((0..model.couplers.len()).map(RowOwner::Coupler))
+        .filter(|owner| kept.contains(owner))
+        .collect();
+    let mut found: Vec<Determined> = Vec::new();
+    // What a coordinate is a multiple of in the end.
+    let root = |found: &[Determined], mut on: JointCoordinate| {
+        while let Some(known) = found.iter().find(|known| known.coordinate == on) {
+            match known.by.source(model) {
+                Some(source) => on = source,
+                None => break,
+            }
+        }
+        on
+    };
+    loop {
+        let next = open.iter().enumerate().find_map(|(place, &owner)| {
+            let is_open =
+                |on: JointCoordinate| is_on_tree(on) && found.iter().all(|known| known.coordinate != on);
+            let by = match owner {
+                RowOwner::Driver(driver) => {
+                    let coordinate = model.drivers[driver].coordinate;
+                    is_open(coordinate).then_some(Determined { coordinate, by: Relation::Driver(driver) })
+                }
+                RowOwner::Coupler(coupler) => {
+                    let relation = &model.couplers[coupler];
+                    let is_tree = is_on_tree(relation.first) && is_on_tree(relation.second);
+                    let is_new = root(&found, relation.first) != root(&found, relation.second);
+                    let forward = Determined { coordinate: relation.second, by: Relation::Forward(coupler) };
+                    let backward = Determined { coordinate: relation.first, by: Relation::Backward(coupler) };
+                    match (is_open(relation.second), is_open(relation.first)) {
+                        _ if !(is_tree && is_new) => None,
+                        (true, _) => Some(forward),
+                        (false, true) if divides(&relation.ratio) => Some(backward),
+                        _ => None,
+                    }
+                }
+                _ => None,
+            };
+            by.map(|by| (place, by))
+        });
+        let Some((place, by)) = next else { return (sources_first(model, found), open) };
+        open.remove(place);
+        found.push(by);
+    }
+}
+
+/// Whether a ratio is known not to vanish.
+fn divides(ratio: &Number) -> bool {
+    matches!(ratio, Number::Exact(_)) && !ratio.is_zero()
+}
+
+fn sources_first(model: &Model, mut found: Vec<Determined>) -> Vec<Determined> {
+    let mut ordered: Vec<Determined> = Vec::new();
+    while !found.is_empty() {
+        let waits = |on: JointCoordinate| found.iter().any(|other| other.coordinate == on);
+        let next = found.iter().position(|known| !known.by.source(model).is_some_and(waits));
+        ordered.push(found.remove(next.expect("no coordinate determines itself")));
+    }
+    ordered
+}
+
+/// The determined coordinates, their rates and the rates' rates in terms of those of the state.
+pub fn values(system: &mut System, layout: &Layout) -> Values {
+    let mut values = Values::default();
+    for known in &layout.determined {
+        let place = place_of(layout, known.coordinate);
+        let [x, u, rate_of_rate] = match known.by {
+            Relation::Driver(driver) => {
+                let value = system.prescribed(&system.model.drivers[driver].motion);
+                let rate = by_time(&mut system.graph, value);
+                [value, rate, by_time(&mut system.graph, rate)]
+            }
+            Relation::Forward(coupler) | Relation::Backward(coupler) => {
+                let source = known.by.source(system.model).expect("a coupler has two coordinates");
+                let of_source = place_of(layout, source);
+                let relation = &system.model.couplers[coupler];
+                let [ratio, offset] = [&relation.ratio, &relation.offset].map(|number| system.number(number));
+                let graph = &mut system.graph;
+                let symbols = symbols(of_source)
+                    .map(|symbol| values.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol)));
+                if matches!(known.by, Relation::Forward(_)) {
+                    let scaled = symbols.map(|x| graph.mul(ratio, x));
+                    [graph.add(scaled[0], offset), scaled[1], scaled[2]]
+                } else {
+                    let shifted = graph.sub(symbols[0], offset);
+                    [shifted, symbols[1], symbols[2]].map(|x| graph.div(x, ratio))
+                }
+            }
+        };
+        for (symbol, value) in symbols(place).into_iter().zip([x, u, rate_of_rate]) {
+            values.insert(symbol, value);
+        }
+    }
+    values
+}
+
+/// The coordinate, its rate and the rate's rate.
+fn symbols(place: Place) -> [Symbol; 3] {
+    [Symbol::Coordinate(place.x), Symbol::Rate(place.u), Symbol::RateOfRate(place.u)]
+}
+
+pub fn place_of(layout: &Layout, on: JointCoordinate) -> Place {
+    layout.scalar(on).expect("joints of a tree have their coordinates").place
+}
+
+fn by_time(graph: &mut Graph, value: ExprId) -> ExprId {
+    let time = Direction::from([(Symbol::Time, Graph::ONE)]);
+    Derivative::new(&Definitions::default(), time).of(graph, value)
+}
