@@ -35,7 +35,7 @@ impl CoordinateKind {
         matches!(self, Self::Angle | Self::FirstAngle | Self::SecondAngle)
     }
 
-    /// The coordinate's name on the page and in outputs.
+    /// The coordinate's name in the model file and in outputs.
     pub fn name(self) -> &'static str {
         match self {
             Self::Angle => "angle",
@@ -131,7 +131,7 @@ pub enum ForceKind {
         stiffness: Number,
         /// N·m·s/rad or N·s/m.
         damping: Number,
-        /// Width over which the stop sets in, rad or m; greater than zero.
+        /// Distance over which the force of the stop builds up, rad or m; greater than zero.
         softness: Number,
     },
     /// `F = value`: a motor. Usually an input.
@@ -189,7 +189,7 @@ pub enum LoadFrame {
     Body,
 }
 
-/// Something that a generated module computes only because the page asks for it.
+/// Something that a generated module computes only because the model file asks for it.
 #[derive(Clone, Debug)]
 pub struct Output {
     /// Name, an identifier.

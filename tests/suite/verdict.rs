@@ -44,7 +44,7 @@ const FOLLOWED: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Form {
     Generated,
-    /// The assembled twin: careful where it can be, else dense.
+    /// the runtime-assembled model: careful where it can be, else dense.
     Twin,
 }
 

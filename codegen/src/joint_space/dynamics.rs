@@ -135,7 +135,7 @@ impl JointDynamics {
         Self { rates, subspaces, excitation, n_rates: layout.n_rates }
     }
 
-    /// u̇ through orthogonal motions.
+    /// u̇ by the Gram–Schmidt form.
     pub fn by_gram_schmidt(&self, system: &mut System) -> Vec<ExprId> {
         let tree = GramSchmidtTree::new(system, self.subspaces.clone(), Basis::Mixed);
         let response = tree.respond(&mut system.graph, &self.excitation);
@@ -329,7 +329,7 @@ pub fn local_subspace(system: &System, link_kinematics: &LinkKinematics) -> Moti
     MotionSubspace::of_tree(link_kinematics.moving_body, parent, link_kinematics.on_body, free)
 }
 
-/// w' of each moving_body, from the rates.
+/// w' of each moving body, from the rates.
 pub fn spins(system: &mut System, links: &[LinkKinematics]) -> Vec<Vec3> {
     let mut spins = vec![ZERO3; system.moving_bodies.len()];
     for link_kinematics in links {

@@ -3,7 +3,7 @@
 use crate::derive::system::System;
 use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
 
-/// The joint coordinates x and rates u of a tree: joints in the order of the page, then free bodies.
+/// The joint coordinates x and rates u of a tree: joints in the order of the model file, then free bodies.
 #[derive(Clone, Debug)]
 pub struct Layout {
     /// One for each link of the tree, root first.

@@ -329,7 +329,7 @@ pub fn coordinate_rates(system: &mut System, layout: &Layout) -> Vec<ExprId> {
     rates
 }
 
-/// Positions (r, p) of each moving_body, then velocities (s, w'), then turn references.
+/// Positions (r, p) of each moving body, then velocities (s, w'), then turn references.
 pub fn state(system: &mut System, layout: &Layout, values: &Values) -> Vec<ExprId> {
     let moving_bodies = 0..system.moving_bodies.len();
     let position = |moving_body, k| {

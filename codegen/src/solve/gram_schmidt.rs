@@ -22,9 +22,9 @@ pub const MAX_RATES: usize = 8;
 pub struct GramSchmidtTree {
     /// Root first.
     pub subspaces: Vec<MotionSubspace>,
-    /// Of each moving_body.
+    /// Of each moving body.
     frames: Vec<Frames>,
-    /// Of each moving_body.
+    /// Of each moving body.
     bodies: Vec<Inertia>,
     /// One for each free twist, root first.
     columns: Vec<Column>,
@@ -33,7 +33,7 @@ pub struct GramSchmidtTree {
 /// How a rate moves the mass centres while those further from the root yield.
 #[derive(Debug)]
 struct Column {
-    /// Of each moving_body that it moves.
+    /// Of each moving body that it moves.
     parts: BTreeMap<usize, Part>,
     /// Of what the motion takes along itself.
     inverse: ExprId,
@@ -108,7 +108,7 @@ impl GramSchmidtTree {
         Response { motions, rates }
     }
 
-    /// Of the mass centre of each moving_body, if the rates of each joint change like this.
+    /// Of the mass centre of each moving body, if the rates of each joint change like this.
     fn motions(
         &self,
         graph: &mut Graph,
@@ -132,7 +132,7 @@ impl GramSchmidtTree {
     }
 }
 
-/// Of each rate how it moves the mass centres of the moving_bodies, root first.
+/// Of each rate how it moves the mass centres of the moving bodies, root first.
 fn motions_at_unit_rates(
     graph: &mut Graph,
     subspaces: &[MotionSubspace],

@@ -30,10 +30,10 @@ pub(super) fn assemble(model: &Model) -> Result<Start, AssemblyError> {
     assembled(model, &guesses, &second).or(start)
 }
 
-/// The trees along which bodies may be guessed. What the page says of joints is heeded as far as it can be: joints that
-/// it tells nothing of close the loops, and those that it tells some coordinates of come before them. Which is the
-/// better guess of a body that only joints of which nothing is told and points on lines hold, the joint's zero or the
-/// body's own orientation, nothing tells.
+/// The trees along which bodies may be guessed. What the model file says of joints is taken into account as far as
+/// possible: joints that it tells nothing of close the loops, and those that it tells some coordinates of come before
+/// them. Which is the better guess of a body that only joints of which nothing is told and points on lines hold, the
+/// joint's zero or the body's own orientation, nothing tells.
 fn trees(model: &Model, guesses: &[Guess]) -> [Tree; 2] {
     let ranked = |untold_turns: u8, untold_lines: u8| {
         Tree::along(model, |joint| match (model.joints[joint].kind.turns(), guesses[joint].told()) {
@@ -93,7 +93,7 @@ struct Closing<'a> {
 }
 
 impl Closing<'_> {
-    /// The closed configuration nearest to the guess, with the coordinates held that the page holds.
+    /// The closed configuration nearest to the guess, with the coordinates held that the model file holds.
     fn positions(&self, guesses: &[Guess], guess: &Configuration) -> Result<Configuration, AssemblyError> {
         let rows = self.kinematics.equations();
         let held = held(guesses);
@@ -163,7 +163,7 @@ impl Closing<'_> {
     }
 }
 
-/// Equations of the coordinates that the page gives and does not call rough.
+/// Equations of the coordinates that the model file gives and does not call rough.
 fn held(guesses: &[Guess]) -> Vec<Equation> {
     let mut held = Vec::new();
     for (joint, guess) in guesses.iter().enumerate() {
