@@ -38,11 +38,11 @@ pub struct Diagnostic {
     pub span: Range<usize>,
     /// What is wrong, or what was expected.
     pub message: String,
-    /// A few words that are printed under the place itself.
+    /// A label, printed under the place itself.
     pub label: String,
     /// What to write instead.
     pub help: String,
-    /// Other places that have to do with it.
+    /// Other places that are involved.
     pub related: Vec<Related>,
 }
 
@@ -51,7 +51,7 @@ pub struct Diagnostic {
 pub struct Related {
     /// Where it is, in bytes of the model file's text.
     pub span: Range<usize>,
-    /// A few words that are printed under it.
+    /// A label, printed under it.
     pub label: String,
 }
 
@@ -191,7 +191,7 @@ fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|&k| text.is_char_boundary(k)).unwrap_or(0)
 }
 
-/// A message without what is too much of it.
+/// A message, shortened if it is too long.
 fn cut(message: &str) -> String {
     match message.char_indices().nth(LONGEST_MESSAGE) {
         None => message.to_owned(),

@@ -1,4 +1,4 @@
-//! What acts between and on bodies besides joints: couplers, drivers, forces; and what is asked for as output.
+//! What acts between and on bodies besides joints: couplers, drivers, forces; and outputs.
 
 use crate::{Motion, Number};
 
@@ -97,7 +97,7 @@ pub enum ForceKind {
         on: JointCoordinate,
         /// N·m/rad or N/m.
         stiffness: Number,
-        /// Coordinate at which it is free, rad or m.
+        /// Coordinate at which the spring is relaxed, rad or m.
         free: Number,
     },
     /// `F = −damping ẋ`.

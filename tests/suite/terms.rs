@@ -40,8 +40,8 @@ const ROUNDINGS: f64 = 1000.0;
 const LOST: f64 = 1e-8;
 
 /// Trees with bodies of very different masses or inertias, and what their states may lose, ten times what is seen: near
-/// gimbal lock only the lighter ones are left to take the motion up. (Twins lose more than generated code: `cargo xtask
-/// verify --rounding`.)
+/// gimbal lock only the lighter ones are left to take the motion up. (Runtime-assembled models lose more than generated
+/// code: `cargo xtask verify --rounding`.)
 const UNEVEN: [(&str, f64); 2] = [("gyroscope-heavy-rotor", 5e-7), ("gyroscope-light-rings", LOST)];
 
 /// The largest condition number of states that are looked at: a wrong formula is off by more than is lost then.

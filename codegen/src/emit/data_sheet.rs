@@ -184,7 +184,7 @@ fn spared(equations: &Equations) -> Vec<String> {
     }
     spared.extend(equations.joint_space.iter().flat_map(|space| &space.invariant).map(|&body| {
         let name = &equations.model.bodies[body].name;
-        format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
+        format!("the rotation of `{name}` about its own axis in u̇ (its inertia is symmetric about it)")
     }));
     spared
 }

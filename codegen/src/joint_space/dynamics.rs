@@ -267,7 +267,7 @@ impl JointDynamics {
         self.subspaces
             .iter()
             .position(|subspace| subspace.moving_body == moving_body)
-            .expect("every moving_body is a link")
+            .expect("every moving body is a link")
     }
 
     /// What drives each rate: forces less what the motion at constant rates takes.

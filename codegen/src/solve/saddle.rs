@@ -115,7 +115,7 @@ impl Place {
             (child_body(system, row.owner), true, row.unit == gyro_model::RowUnit::Pure)
         };
         let link = system.tree.links.iter().position(|link| link.body == system.moving_bodies[moving_body]);
-        let from_leaf = system.tree.links.len() - link.expect("every moving_body is a link of the tree");
+        let from_leaf = system.tree.links.len() - link.expect("every moving body is a link of the tree");
         Self { from_leaf, moving_body, is_multiplier, is_rotation }
     }
 }

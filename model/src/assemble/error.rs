@@ -1,4 +1,4 @@
-//! Why a model has no consistent start, or no freedom to move.
+//! Why a model has no consistent start, or cannot move.
 
 use std::fmt;
 
@@ -37,11 +37,11 @@ pub enum AssemblyError {
     },
     /// No pose near the guess satisfies all constraints.
     Impossible {
-        /// Whose row stays violated most.
+        /// The owner of the row that remains violated most.
         owner: RowOwner,
-        /// What and which that is: ``joint `x` ``.
+        /// Kind and name of the owner: ``joint `x` ``.
         name: String,
-        /// By how much at best.
+        /// The smallest violation that was reached.
         residual: f64,
         /// Unit of the residual.
         unit: RowUnit,
@@ -56,18 +56,18 @@ pub enum AssemblyError {
         coordinate: &'static str,
         /// By how much it would have to change: rad or m.
         off_by: f64,
-        /// Where the mechanism closes; nothing for an orientation.
+        /// Where the mechanism closes; `None` for an orientation.
         nearest: Option<f64>,
         /// Unit of both.
         unit: &'static str,
     },
-    /// The constraints are satisfied on the wrong side: two axes or zero directions point opposite ways.
+    /// The constraints are satisfied on the wrong side: two axes or zero directions point in opposite directions.
     Flipped {
         /// Index into [`crate::Model::joints`].
         joint: usize,
         /// Name of the joint.
         name: String,
-        /// What points the wrong way: `"axis"` or `"zero"`.
+        /// Which direction is reversed: `"axis"` or `"zero"`.
         direction: &'static str,
     },
     /// The mechanism closes only far from its guess.
@@ -83,11 +83,11 @@ pub enum AssemblyError {
     },
     /// No velocities satisfy the constraints together with the rates of the drivers and of the model file.
     Rate {
-        /// Whose rate is missed most.
+        /// The owner of the rate with the largest error.
         owner: RowOwner,
-        /// What and which that is: ``joint `x` ``.
+        /// Kind and name of the owner: ``joint `x` ``.
         name: String,
-        /// By how much at best: m/s or rad/s.
+        /// The smallest error that was reached, m/s or rad/s.
         residual: f64,
         /// Unit of the row: the residual is in this per second.
         unit: RowUnit,
@@ -119,9 +119,9 @@ pub enum AssemblyError {
     },
     /// Rows that depend on others at the start contradict them as time goes on: driven bodies are tied together.
     Contradiction {
-        /// Whose row is violated most.
+        /// The owner of the row that is violated most.
         owner: RowOwner,
-        /// What and which that is: ``joint `x` ``.
+        /// Kind and name of the owner: ``joint `x` ``.
         name: String,
         /// The time, s.
         time: f64,
@@ -133,7 +133,7 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// The part of the model file that is at fault, where it is one.
+    /// The part of the model file that is wrong, if there is one.
     pub(crate) fn place(&self) -> Option<Place> {
         match self {
             Self::AngularVelocity { body, .. } => Some(Place::body(*body, "angular_velocity")),

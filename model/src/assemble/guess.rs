@@ -28,7 +28,7 @@ pub(super) enum Source {
     Held,
     /// The model file guesses it, a driver sets it, or a coupler makes it follow another.
     Guessed,
-    /// Nothing says what it is.
+    /// It is unknown.
     Unknown,
 }
 
@@ -44,7 +44,7 @@ pub(super) enum Told {
 }
 
 impl Guess {
-    /// How much is known or guessed of where the joint is.
+    /// How much of the joint's coordinates is known or guessed.
     pub(super) fn told(&self) -> Told {
         let is_turned = !self.is_ball || self.orientation.is_some();
         let is_known = |source: &Source| *source != Source::Unknown;

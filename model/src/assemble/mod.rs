@@ -46,7 +46,7 @@ pub struct JointStart {
     pub rate: Vec<f64>,
 }
 
-/// How far the assembly moved something from where the model file put or guessed it.
+/// How far the assembly moved a joint or a body from where the model file placed it or guessed it to be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
     /// A joint or a body.
@@ -75,7 +75,7 @@ impl Model {
     /// that the model file gives.
     ///
     /// # Errors
-    /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a
+    /// An unconnected body; rows or given coordinates and rates that cannot be satisfied, naming the one with the largest error; a
     /// pose on the wrong branch (opposite axes) or a quarter turn away from the guess; a link whose ends coincide; a
     /// start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {

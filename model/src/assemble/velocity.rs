@@ -17,7 +17,7 @@ const GIVEN_TOLERANCE: f64 = 1e-9;
 struct Rates {
     matrix: DMatrix<f64>,
     right: DVector<f64>,
-    /// For each row whose it is.
+    /// The owner of each row.
     owners: Vec<(RowOwner, RowUnit)>,
 }
 
@@ -93,7 +93,7 @@ fn given(model: &Model, kinematics: &Kinematics, guesses: &[Guess], at: &Configu
     joints.and(spins(model))
 }
 
-/// The angular velocities that the model file gives bodies which are not free to have any.
+/// The angular velocities that the model file gives to bodies which are not free.
 fn spins(model: &Model) -> Rates {
     let moving_bodies = model.coordinate_bodies();
     let wanted =

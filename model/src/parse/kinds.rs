@@ -18,7 +18,7 @@ pub(super) const KINDS: [(&str, JointKind); 10] = [
     ("rod", JointKind::Rod),
 ];
 
-/// Keys that some kinds have and others have not.
+/// Keys that only some kinds have.
 const OF_KINDS: [&str; 17] = [
     "axis",
     "zero",

@@ -55,7 +55,7 @@ use reader::Reader;
 ///
 /// # Errors
 /// Every mistake of the model file: syntax, unknown and missing keys, wrong types, unknown names, unphysical numbers,
-/// bodies that hang together wrongly, and a start that the joints do not allow.
+/// bodies that are connected wrongly, and a start that the joints do not allow.
 pub fn read(file_name: &str, text: &str) -> Result<Model, Diagnostics> {
     read_with(file_name, text, &mut |_| {
         Err("this model file is read without its folder: see `read_with`".to_owned())
@@ -92,7 +92,7 @@ pub fn read(file_name: &str, text: &str) -> Result<Model, Diagnostics> {
 /// ```
 ///
 /// # Errors
-/// As [`read`], and tables that are missing or no tables.
+/// As [`read`], and missing or invalid tables.
 pub fn read_with(
     file_name: &str,
     text: &str,

@@ -2,7 +2,7 @@
 
 use super::synonyms;
 
-/// Words that Rust keeps for itself: a module or a field cannot have such a name.
+/// Keywords of Rust, which cannot be the name of a module or a field.
 const KEYWORDS: [&str; 51] = [
     "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
     "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",

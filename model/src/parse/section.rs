@@ -223,7 +223,7 @@ fn not_a_name(name: &str) -> [String; 3] {
     ]
 }
 
-/// The words for a name that Rust keeps for itself.
+/// The message for a name that is a keyword of Rust.
 pub(super) fn keyword(name: &str) -> [String; 3] {
     [
         format!("`{name}` is a keyword of Rust"),
