@@ -316,6 +316,6 @@ fn unknown_key(
         // The key that was meant is not reported as missing, too.
         reader.doubt(Place { owner, key });
     }
-    let words = [format!("unknown key `{written}` in {title}"), "unknown key".to_owned(), help];
+    let words = [format!("unknown key `{written}` in {title}"), "not a valid key".to_owned(), help];
     reader.unknown(key.span(), words);
 }
