@@ -77,7 +77,7 @@ fn rows(text: &str) -> Result<Vec<[f64; 2]>, String> {
         let row = row(&record).map_err(|words| format!("line {line}: {words}"))?;
         if let Some([before, _]) = rows.last().filter(|last| last[0] >= row[0]) {
             return Err(format!(
-                "line {line}: the time {:?} does not follow {before:?}: times must ascend",
+                "line {line}: the time {:?} is not after {before:?}: times must increase",
                 row[0]
             ));
         }
@@ -128,7 +128,7 @@ mod tests {
             ("0,1\n1,high\n", "line 2: found `high` in place of a finite number"),
             ("0,1\ninf,1\n", "line 2: found `inf` in place of a finite number"),
             ("0,1\n\n1,high\n", "line 3: found `high`"),
-            ("0,1\n# held\n0,2\n", "line 3: the time 0.0 does not follow 0.0: times must ascend"),
+            ("0,1\n# held\n0,2\n", "line 3: the time 0.0 is not after 0.0: times must increase"),
         ] {
             let found = rows(text).unwrap_err();
             assert!(found.starts_with(message), "{text:?}: {found}");

@@ -75,7 +75,7 @@ const fn row(kernel: Kernel, name: &'static str, computes: &'static str, source:
 /// All kernels, a row for each variant of [`Kernel`] in the same order.
 #[rustfmt::skip]
 const TABLE: &[Row] = &[
-    row(Kernel::ParameterSetup, "set_up", "what depends on parameters alone", Source::Parameters),
+    row(Kernel::ParameterSetup, "parameter_setup", "what depends on parameters alone", Source::Parameters),
     row(Kernel::Phi, "phi", "Φ", Source::Equations(|e| e.phi.clone().into())),
     row(Kernel::PhiQ, "phi_q", "Φ_q, non-zeros in (r, p)", Source::Equations(|e| e.phi_q.values().into())),
     row(Kernel::PhiPi, "phi_pi", "(Φ_r, Φ_π'), non-zeros", Source::Equations(|e| e.phi_pi.values().into())),
@@ -163,9 +163,9 @@ impl Kernels {
             chosen.roots = passes.applied(graph, &chosen.roots);
         }
         let roots = self.0.values_mut().map(|chosen| &mut chosen.roots);
-        let set_up = parameter_setup::separate(graph, roots);
-        if !set_up.is_empty() {
-            self.0.insert(Kernel::ParameterSetup, set_up.into());
+        let parameter_setup = parameter_setup::separate(graph, roots);
+        if !parameter_setup.is_empty() {
+            self.0.insert(Kernel::ParameterSetup, parameter_setup.into());
         }
     }
 
@@ -194,7 +194,7 @@ mod tests {
 
     /// Operations of some kernels together.
     fn cost(page: &str, elimination: Elimination, wanted: &[Kernel]) -> usize {
-        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let start = model.assemble().expect("a start");
         let mut equations = crate::equations(&model, elimination, &start);
         let mut kernels = Kernels::of(&equations);

@@ -1,6 +1,6 @@
 //! From the description of a mechanism to unrolled Rust.
 //!
-//! [`generate`] is a pure function: the text of a model page in, the text of a module out, byte for byte the same each
+//! [`generate`] is a pure function: the text of a model file in, the text of a module out, byte for byte the same each
 //! time. It does no I/O, so a `build.rs` can call it as well as `cargo xtask generate`:
 //!
 //! ```
@@ -87,14 +87,14 @@ impl Module {
     /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a
     /// module).
     pub fn as_item(&self) -> String {
-        format!("/// Generated from a model page.\npub mod {} {{\n{}}}\n", self.name, self.code)
+        format!("/// Generated from a model file.\npub mod {} {{\n{}}}\n", self.name, self.code)
     }
 }
 
-/// Why a page gives no module.
+/// Why a model file gives no module.
 #[derive(Clone)]
 pub enum Error {
-    /// Mistakes on the page.
+    /// Mistakes in the model file.
     Page(Diagnostics),
     /// No consistent start exists.
     Start(AssemblyError),
@@ -118,19 +118,20 @@ impl fmt::Debug for Error {
 
 impl std::error::Error for Error {}
 
-/// Writes the module of a model page. `file_name` is the page's name in messages and in the module's first line.
+/// Writes the module of a model file. `file_name` is the model file's name in messages and in the module's first line.
 ///
 /// # Errors
-/// All mistakes on the page at once, or why no consistent start exists.
+/// All mistakes in the model file at once, or why no consistent start exists.
 pub fn generate(file_name: &str, text: &str) -> Result<Module, Error> {
     let model = gyro_model::read(file_name, text).map_err(Error::Page)?;
     generate_model(file_name, &model)
 }
 
-/// The same for a page whose motions name tables: `load` gives the text of the file that the page calls by this name.
+/// The same for a model file whose motions name tables: `load` gives the text of the file that the model file calls by
+/// this name.
 ///
 /// # Errors
-/// All mistakes on the page at once, or why no consistent start exists.
+/// All mistakes in the model file at once, or why no consistent start exists.
 pub fn generate_with(
     file_name: &str,
     text: &str,

@@ -1,4 +1,4 @@
-//! Which numbers parameters may have: the rules of a model page that parameters can break, looked at again when they
+//! Which numbers parameters may have: the rules of a model file that parameters can break, looked at again when they
 //! are set.
 //!
 //! `cargo xtask simulate --set` decides them exactly, in rationals; here they are decided in floating point, and what
@@ -17,7 +17,7 @@
 use crate::Real;
 use core::fmt;
 
-/// A number of a page.
+/// A number of a model file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Number {
     /// Written out.
@@ -58,16 +58,17 @@ impl fmt::Display for Inadmissible {
 
 impl core::error::Error for Inadmissible {}
 
-/// The sizes that a number other than zero may have on a page.
+/// The sizes that a number other than zero may have in a model file.
 const SIZES: [f64; 2] = [1e-100, 1e100];
 
 /// What rounding may take from an inequality that is allowed to be an equality.
 const ROUNDING: f64 = 8.0;
 
-/// Whether parameters satisfy all rules, and are numbers that a page may have: 0, or of a size from 1e-100 to 1e100.
+/// Whether parameters satisfy all rules, and are numbers that a model file may have: 0, or of a size from 1e-100 to
+/// 1e100.
 ///
 /// # Errors
-/// [`Inadmissible`] names the first parameter that is no such number, or that is in a rule which is broken.
+/// [`Inadmissible`] names the first parameter that is not such a number, or that occurs in a rule which is broken.
 pub fn check<T: Real>(values: &[T], rules: &[Rule]) -> Result<(), Inadmissible> {
     let is_number = |value: &T| {
         let size = value.to_f64().abs();

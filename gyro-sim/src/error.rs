@@ -60,8 +60,8 @@ pub enum Error {
         /// Number of steps taken, rejected ones included.
         steps: u64,
     },
-    /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the scene is stiff
-    /// for it. An L-stable method such as [`Rodas4`](crate::Rodas4) does not have this limit.
+    /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the equations
+    /// are stiff for it. An L-stable method such as [`Rodas4`](crate::Rodas4) does not have this limit.
     Stiff {
         /// Time, s.
         t: f64,
@@ -105,18 +105,24 @@ impl fmt::Display for Error {
                 write!(f, "at t = {t} s the constraints of {owner:?} cannot be met: violation {violation:e}")
             }
             Self::Singular { t, pivot, owner: None } => {
-                write!(f, "at t = {t} s the dependent coordinates are singular: pivot {pivot:e}")
+                write!(f, "at t = {t} s the mechanism is in a singular pose: pivot {pivot:e}")
             }
             Self::Singular { t, pivot, owner: Some(owner) } => {
-                write!(f, "at t = {t} s the constraints of {owner:?} depend on others: pivot {pivot:e}")
+                write!(
+                    f,
+                    "at t = {t} s the mechanism is in a singular pose: the constraints of {owner:?} depend on others, pivot {pivot:e}"
+                )
             }
             Self::Jump { t, change, limit, owner } => write!(
                 f,
-                "at t = {t} s the constraints of {owner:?} need a change of {change:e} where {limit:e} is safe: it may lead to \
-                 another branch"
+                "at t = {t} s the constraints of {owner:?} need a correction of {change:e}, but only {limit:e} is safe: it may \
+                 lead to another branch"
             ),
             Self::StepTooShort { t, step, index } => {
-                write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
+                write!(
+                    f,
+                    "at t = {t} s the tolerance cannot be met: element {index} of the state would need steps as short as {step:e} s"
+                )
             }
             Self::Setting { setting, value } => write!(f, "{setting} = {value} s is not a valid step length"),
             Self::InvalidEndTime { t, t_end } => write!(
@@ -128,13 +134,13 @@ impl fmt::Display for Error {
             }
             Self::Stiff { t, rate, step } => write!(
                 f,
-                "at t = {t} s the scene is stiff for this method: a rate of {rate:e}/s allows steps of {step:e} s; use an \
-                 L-stable method"
+                "at t = {t} s the equations are stiff for this method: a rate of {rate:e}/s limits steps to {step:e} s; \
+                 use an L-stable method"
             ),
             Self::Tolerance { relative, absolute, smallest } => write!(
                 f,
-                "tolerances of {relative:e} (relative) and {absolute:e} (absolute) cannot be met: at least {smallest:e} and more \
-                 than 0"
+                "tolerances of {relative:e} (relative) and {absolute:e} (absolute) cannot be met: the former must be \
+                 at least {smallest:e}, the latter positive"
             ),
         }
     }

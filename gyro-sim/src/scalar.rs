@@ -66,7 +66,7 @@ pub trait Real: Scalar + PartialOrd {
 pub trait Lanes: Scalar {
     /// The number in one lane.
     type Lane: Real;
-    /// A truth value for each lane.
+    /// A boolean for each lane.
     type Mask: Copy
         + Debug
         + BitAnd<Output = Self::Mask>
@@ -106,6 +106,18 @@ pub trait Lanes: Scalar {
     fn follow_chart(vector: &[Self; 4], chart: &mut Self::Chart) -> u32;
     /// The unit four-vector of the special parameter.
     fn one_hot(chart: Self::Chart) -> [Self; 4];
+}
+
+/// The larger number in each lane; NaN is never larger.
+#[inline]
+pub(crate) fn larger<T: Lanes>(one: T, other: T) -> T {
+    T::select(other.greater(one), other, one)
+}
+
+/// The largest absolute value in each lane, NaN left out; zero if there is none.
+#[inline]
+pub(crate) fn largest_magnitude<T: Lanes>(numbers: impl IntoIterator<Item = T>) -> T {
+    numbers.into_iter().fold(T::constant(0.0), |largest, number| larger(largest, number.absolute()))
 }
 
 impl<T: Real> Lanes for T {

@@ -1,4 +1,4 @@
-//! Mistakes in a page, each shown where it is: file, line, column, what was expected and what to write instead.
+//! Mistakes in a model file, each shown where it is: file, line, column, what was expected and what to write instead.
 
 use std::fmt;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term::termcolor::Buffer;
 use codespan_reporting::term::{self, Chars, Config, Styles, StylesWriter};
 
-/// All mistakes of one page, in the order of the page.
+/// All mistakes of one model file, in the order of the model file.
 #[derive(Clone, Debug)]
 pub struct Diagnostics {
     file_name: String,
@@ -18,7 +18,7 @@ pub struct Diagnostics {
     starts: Vec<usize>,
 }
 
-/// Mistakes that are shown; how many more there are is said.
+/// Mistakes that are shown; of the others only the number.
 const SHOWN: usize = 30;
 
 /// Bytes of the longest line that is shown whole. Of a longer one only the part around the place is shown.
@@ -34,24 +34,24 @@ const LONGEST_MESSAGE: usize = 800;
 /// One mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Where it is, in bytes of the page's text.
+    /// Where it is, in bytes of the model file's text.
     pub span: Range<usize>,
     /// What is wrong, or what was expected.
     pub message: String,
-    /// A few words that are printed under the place itself.
+    /// A label, printed under the place itself.
     pub label: String,
     /// What to write instead.
     pub help: String,
-    /// Other places that have to do with it.
+    /// Other places that are involved.
     pub related: Vec<Related>,
 }
 
 /// A second place that a mistake refers to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Related {
-    /// Where it is, in bytes of the page's text.
+    /// Where it is, in bytes of the model file's text.
     pub span: Range<usize>,
-    /// A few words that are printed under it.
+    /// A label, printed under it.
     pub label: String,
 }
 
@@ -66,7 +66,7 @@ impl Diagnostics {
         Self { file_name: file_name.to_owned(), text: text.to_owned(), mistakes, starts }
     }
 
-    /// The mistakes in the order of the page.
+    /// The mistakes in the order of the model file.
     pub fn mistakes(&self) -> &[Diagnostic] {
         &self.mistakes
     }
@@ -101,7 +101,7 @@ impl Diagnostics {
     }
 }
 
-/// The page as the message about one place shows it.
+/// The model file as the message about one place shows it.
 struct Excerpt<'a> {
     page: &'a Diagnostics,
     /// The place, in bytes.
@@ -191,7 +191,7 @@ fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|&k| text.is_char_boundary(k)).unwrap_or(0)
 }
 
-/// A message without what is too much of it.
+/// A message, shortened if it is too long.
 fn cut(message: &str) -> String {
     match message.char_indices().nth(LONGEST_MESSAGE) {
         None => message.to_owned(),

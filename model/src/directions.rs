@@ -1,4 +1,5 @@
-//! Directions as pages write them: settled to a bounded number of digits, and compared with what may have been meant.
+//! Directions as model files write them: settled to a bounded number of digits, and compared with what may have been
+//! meant.
 //!
 //! Only the direction of an axis, a zero direction or Euler parameters counts, and formulas are derived from it
 //! exactly: what is written with a hundred digits, or a component of 1e-76, would go through every product of the

@@ -1,4 +1,4 @@
-//! What acts between and on bodies besides joints: couplers, drivers, forces; and what is asked for as output.
+//! What acts between and on bodies besides joints: couplers, drivers, forces; and outputs.
 
 use crate::{Motion, Number};
 
@@ -35,7 +35,7 @@ impl CoordinateKind {
         matches!(self, Self::Angle | Self::FirstAngle | Self::SecondAngle)
     }
 
-    /// The coordinate's name on the page and in outputs.
+    /// The coordinate's name in the model file and in outputs.
     pub fn name(self) -> &'static str {
         match self {
             Self::Angle => "angle",
@@ -97,7 +97,7 @@ pub enum ForceKind {
         on: JointCoordinate,
         /// N·m/rad or N/m.
         stiffness: Number,
-        /// Coordinate at which it is free, rad or m.
+        /// Coordinate at which the spring is relaxed, rad or m.
         free: Number,
     },
     /// `F = −damping ẋ`.
@@ -131,7 +131,7 @@ pub enum ForceKind {
         stiffness: Number,
         /// N·m·s/rad or N·s/m.
         damping: Number,
-        /// Width over which the stop sets in, rad or m; greater than zero.
+        /// Distance over which the force of the stop builds up, rad or m; greater than zero.
         softness: Number,
     },
     /// `F = value`: a motor. Usually an input.
@@ -189,7 +189,7 @@ pub enum LoadFrame {
     Body,
 }
 
-/// Something that a generated module computes only because the page asks for it.
+/// Something that a generated module computes only because the model file asks for it.
 #[derive(Clone, Debug)]
 pub struct Output {
     /// Name, an identifier.

@@ -1,10 +1,10 @@
-//! The description of a mechanism: one TOML page of bodies and joints, read, checked and assembled.
+//! The description of a mechanism: one TOML file of bodies and joints, read, checked and assembled.
 //!
-//! [`read`] turns the text of a page into a [`Model`] or reports every mistake in it at once. [`Model::assemble`]
+//! [`read`] turns the text of a model file into a [`Model`] or reports every mistake in it at once. [`Model::assemble`]
 //! finds the start: consistent positions and velocities from joint angles, rates and angular velocities. The crate
-//! knows nothing of code: the generator and the runtime-assembled twin both start from a [`Model`].
+//! knows nothing of code: the generator and the runtime-assembled model both start from a [`Model`].
 //!
-//! A number in the page is the rational that its decimal text denotes, so that the generator can fold it exactly.
+//! A number in the model file is the rational that its decimal text denotes, so that the generator can fold it exactly.
 
 #![deny(missing_docs)]
 
@@ -39,21 +39,21 @@ pub use spline::Spline;
 pub use tree::{Attachment, Link, Tree};
 pub use validate::ParameterRule;
 
-/// A mechanism as its page describes it, checked: indices are in range, axes are not zero, inertias are physical and
-/// every body that moves is connected to a fixed, a driven or a free one.
+/// A mechanism as its model file describes it, checked: indices are in range, axes are not zero, inertias are physical
+/// and every body that moves is connected to a fixed, a driven or a free one.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Name of the mechanism, an identifier in `snake_case`, used for the generated module.
     pub name: String,
     /// Acceleration of gravity in the global frame, m/s².
     pub gravity: [Number; 3],
-    /// The numbers that stay tunable, in the order of the page.
+    /// The numbers that stay tunable, in the order of the model file.
     pub parameters: Vec<Parameter>,
     /// Numbers that the caller sets at every step (motor torques), with their values until then. Only forces use them.
     pub inputs: Vec<Parameter>,
-    /// All bodies, fixed ones included, in the order of the page.
+    /// All bodies, fixed ones included, in the order of the model file.
     pub bodies: Vec<Body>,
-    /// All joints in the order of the page.
+    /// All joints in the order of the model file.
     pub joints: Vec<Joint>,
     /// Gears and other couplings of two joint coordinates.
     pub couplers: Vec<Coupler>,
@@ -63,18 +63,18 @@ pub struct Model {
     pub forces: Vec<Force>,
     /// What is to be computed besides the motion.
     pub outputs: Vec<Output>,
-    /// Constraint rows that depend on others and were dropped: found by rank when the page was read.
+    /// Constraint rows that depend on others and were dropped: found by rank when the model file was read.
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].
     pub counts_work: bool,
-    /// What the page writes nearly, but not exactly, as a coordinate direction or a right angle, and what to write if
-    /// that is meant: a sentence for each. Formulas are shorter where it is.
+    /// What the model file writes nearly, but not exactly, as a coordinate direction or a right angle, and what to
+    /// write if that is meant: a sentence for each. Formulas are shorter where it is.
     pub nearly_exact: Vec<String>,
-    /// How the page asks to be simulated.
+    /// How the model file asks to be simulated.
     pub simulation: Simulation,
 }
 
-/// A tunable number of the page with its default.
+/// A tunable number of the model file with its default.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// Identifier in `snake_case`.
@@ -101,7 +101,7 @@ pub struct Body {
     pub orientation: [Number; 4],
     /// Start of a free body: velocity of the mass centre in the global frame, m/s.
     pub velocity: [Number; 3],
-    /// Start: absolute angular velocity in the body frame, rad/s, where the page gives one.
+    /// Start: absolute angular velocity in the body frame, rad/s, where the model file gives one.
     pub angular_velocity: Option<[Number; 3]>,
     /// Of a driven body, its motion.
     pub motion: Option<BodyMotion>,
@@ -137,7 +137,7 @@ pub struct Joint {
     pub second: JointEnd,
     /// Viscous friction: torque on the second body is `-friction` times the relative rate (N·m·s/rad). Zero if absent.
     pub friction: Number,
-    /// Start of the joint's coordinate, as far as the page gives one.
+    /// Start of the joint's coordinate, as far as the model file gives one.
     pub start: JointStartSpec,
     /// Screw: advance along the axis per radian, m/rad. Zero otherwise.
     pub lead: Number,
@@ -183,10 +183,11 @@ pub struct JointEnd {
     pub zero: [Number; 3],
 }
 
-/// What the page says of a joint's start.
+/// What the model file says of a joint's start.
 #[derive(Clone, Debug, Default)]
 pub struct JointStartSpec {
-    /// For each of the joint's scalar coordinates its value where the page gives one: rad (may exceed a turn) or m.
+    /// For each of the joint's scalar coordinates its value where the model file gives one: rad (may exceed a turn) or
+    /// m.
     pub position: Vec<Option<Number>>,
     /// One number for each scalar coordinate; spherical: the second body's angular velocity relative to the first in
     /// the second body's frame.
@@ -206,7 +207,7 @@ pub struct Simulation {
     pub step: f64,
     /// Interval between corrections.
     pub correct_every: f64,
-    /// Interval between samples; a thousandth of the run where the page gives none.
+    /// Interval between samples; a thousandth of the run where the model file gives none.
     pub sample_every: f64,
     /// Algorithm.
     pub method: Method,

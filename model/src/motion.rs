@@ -121,7 +121,7 @@ impl BodyMotion {
 }
 
 impl Body {
-    /// The page's orientation at unit length, the identity where it has none.
+    /// The model file's orientation at unit length, the identity where it has none.
     pub(crate) fn given_orientation(&self, model: &Model) -> Quaternion {
         let exact = self.orientation.each_ref().map(|e| model.exact(e));
         Quaternion::unit(&exact).unwrap_or(Quaternion::IDENTITY)

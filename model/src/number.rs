@@ -1,4 +1,4 @@
-//! Numbers of the page: exact rationals, or references to parameters.
+//! Numbers of the model file: exact rationals, or references to parameters.
 
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -6,7 +6,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 /// An exact rational of any size.
 pub type Rational = num_rational::BigRational;
 
-/// A number as the page gives it.
+/// A number as the model file gives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Number {
     /// The rational that the decimal text denotes.

@@ -72,7 +72,7 @@ impl JointKind {
 }
 
 impl Model {
-    /// The value of a number of the page with the model's parameters as they are.
+    /// The value of a number of the model file with the model's parameters as they are.
     pub fn exact(&self, number: &Number) -> Rational {
         match number {
             Number::Exact(value) => value.clone(),
@@ -93,7 +93,7 @@ impl Model {
         std::array::from_fn(|k| self.value(&numbers[k]))
     }
 
-    /// Indices of the bodies that have coordinates, in the order of the page: moving_body `s` of the generalised
+    /// Indices of the bodies that have coordinates, in the order of the model file: moving body `s` of the generalised
     /// coordinates is body `coordinate_bodies()[s]`, with `q[7s..7s + 7] = (r, p)` and velocities `v[6s..6s + 6] = (s,
     /// w')`.
     pub fn coordinate_bodies(&self) -> Vec<usize> {
@@ -205,7 +205,7 @@ impl Model {
     /// drivers.
     ///
     /// Such a model carries the work done so far as one more element of its state, after positions and velocities,
-    /// unless the page asks to leave it out (`count_work = false`).
+    /// unless the model file asks to leave it out (`count_work = false`).
     pub fn has_work(&self) -> bool {
         self.counts_work && self.is_worked_on()
     }
@@ -235,8 +235,8 @@ impl Model {
         }
         let (now, before) = (found.redundant.len(), self.redundant.len());
         Err(format!(
-            "with these parameters other constraint rows are redundant ({now} in place of {before}): write the numbers \
-             into the page"
+            "with these parameters different constraint rows are redundant ({now} instead of {before}): write the \
+             numbers into the model file"
         ))
     }
 
@@ -252,7 +252,7 @@ impl Model {
         crate::validate::physical(&model).map_or(Ok(()), Err)
     }
 
-    /// The same model with parameters set anew. Start over from the page's start: assemble it again.
+    /// The same model with parameters set anew. Start over from the model file's start: assemble it again.
     ///
     /// # Errors
     /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical,

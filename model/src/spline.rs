@@ -34,7 +34,7 @@ impl Spline {
         }
         if let Some(row) = points.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
             let (before, after) = (points[row].0, points[row + 1].0);
-            return Err(format!("times must ascend, but row {} has {after} s after {before} s", row + 2));
+            return Err(format!("times must increase, but row {} has {after} s after {before} s", row + 2));
         }
         let curvature = curvatures(points);
         let piece = |(pair, bend): (&[(f64, f64)], &[f64])| {
@@ -157,7 +157,7 @@ mod tests {
     fn bad_points_are_refused() {
         for (points, word) in [
             (&[(0.0, 0.0)][..], "too few"),
-            (&[(0.0, 0.0), (0.0, 1.0)], "ascend"),
+            (&[(0.0, 0.0), (0.0, 1.0)], "increase"),
             (&[(0.0, 0.0), (2.0, 1.0), (1.0, 1.0)], "row 3"),
             (&[(0.0, 0.0), (1.0, f64::NAN)], "row 2"),
             (&[(0.0, 1e300), (1e-300, -1e300)], "too close"),

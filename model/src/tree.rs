@@ -43,11 +43,11 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Walks the joints breadth first from the roots; bodies and joints are met in the order of the page.
+    /// Walks the joints breadth first from the roots; bodies and joints are met in the order of the model file.
     ///
     /// Joints that do not say how a body is turned come last: only where the walk ends before every body is reached
-    /// does it go on over the first point on a line of the page that leads to another body, and only where there is
-    /// none from the first body that a rod ties to one that is reached.
+    /// does it go on over the first point on a line of the model file that leads to another body, and only where there
+    /// is none from the first body that a rod ties to one that is reached.
     pub fn of(model: &Model) -> Self {
         Self::along(model, |joint| u8::from(!model.joints[joint].kind.turns()))
     }
@@ -119,7 +119,7 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// Whether a body could be hung on the first joint, by rank and page, that leads to one.
+    /// Whether a body could be hung on the first joint, by rank and model file, that leads to one.
     fn follow_one(&mut self, rank: impl Fn(usize) -> u8) -> bool {
         let next = self.ways(JointKind::carries).min_by_key(|&(joint, ..)| rank(joint));
         if let Some((joint, parent, body)) = next {

@@ -122,7 +122,7 @@ const FAULTS: &[Fault] = &[
     fault("solve/reduced_mass_matrix.rs", "gyroscope-combined-offsets", "let linear = «graph.mul(body.mass, linear)»;", "linear"),
     fault("solve/reduced_mass_matrix.rs", "gyroscope-combined-offsets", "let product = «graph.mul(inertia, cosine)»;", "Graph::ZERO"),
     fault("solve/reduced_mass_matrix.rs", "gyroscope-combined-offsets", "taken[parent.moving_body] = «taken[parent.moving_body].plus(graph, &carried)»;", "carried"),
-    // Orthogonal motions.
+    // Gram–Schmidt.
     fault("solve/gram_schmidt.rs", "gyroscope-light-rings", "let yielded = «part.motion.scaled(graph, share).negated(graph)»;", "part.motion.scaled(graph, share)"),
     fault("solve/gram_schmidt.rs", "gyroscope-light-rings", "let yielded = graph.mul(share, all[rate]);\n                all[other] = «graph.sub(all[other], yielded)»;", "all[other]"),
     fault("solve/gram_schmidt.rs", "carried", "let passed_on = graph.mul(share, forces[other]);\n                forces[rate] = «graph.sub(forces[rate], passed_on)»;", "forces[rate]"),

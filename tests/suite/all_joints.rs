@@ -1,5 +1,5 @@
 //! Every kind of joint, force and output in one mechanism with loops, a coupler and a driver: generated code against
-//! the twin.
+//! the runtime-assembled model.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::{Model, to_f64};
@@ -7,7 +7,7 @@ use gyro_runner::{Input, JointSample, Sample, Settings};
 use gyro_sim_suite::generated::all_joints::{AllJoints, Parameters};
 use gyro_sim_suite::{Engine, Run, dense, fed, generated, model, simulate, worst};
 
-/// Long enough for all of it to move, at the page's step.
+/// Long enough for all of it to move, at the model file's step.
 const SETTINGS: Settings = Settings { t_end: 0.3, step: 1e-3, correct_every: Some(5e-3), sample_every: 0.03 };
 
 /// Coordinates (rad, m), rates, and outputs over their largest: the same algorithm on both sides, but for the order of
@@ -68,7 +68,7 @@ fn both_engines_move_alike() {
 
 #[test]
 fn parameters_change_the_mechanism() {
-    // Half the gear's ratio and a heavier puck: what the page says with other numbers, and the parameters of the
+    // Half the gear's ratio and a heavier puck: what the model file says with other numbers, and the parameters of the
     // generated type.
     let text = ["gear_ratio", "puck_mass"].map(str::to_owned);
     let [ratio, mass] = ["-0.25", "0.9"].map(|x| gyro_model::parse_decimal(x).unwrap());

@@ -153,7 +153,8 @@ fn every_integrator_with_every_correction_allocates_nothing() {
 
 #[test]
 fn the_counter_counts() {
-    // The check must be able to fail: the careful twin allocates its buffers, the dense one in every evaluation.
+    // The check must be able to fail: the careful runtime-assembled model allocates its buffers, the dense one in every
+    // evaluation.
     let page = model("gyroscope");
     let (careful, dense) = (Careful::new(&page).unwrap(), Dense::new(&page).unwrap());
     let of_buffers = allocations(|| simulation(&careful, 2)).0;

@@ -81,7 +81,7 @@ impl Linkage {
         }
     }
 
-    /// Bodies in the order of the page.
+    /// Bodies in the order of the model file.
     fn bodies(&self) -> Vec<Bar> {
         match self {
             Self::Parallelograms { bars, couplers, .. } => [bars.clone(), couplers.clone()].concat(),
@@ -136,7 +136,7 @@ impl Linkage {
     /// What the angle's kinetic energy is half of, over its rate squared, and the potential energy.
     fn inertia_and_potential(&self, angle: f64) -> [f64; 2] {
         if matches!(self, Self::InLine) {
-            // The head of the page: I = 0.0507 kg.m2, G = 2.7468 N.m.
+            // The head of the model file: I = 0.0507 kg.m2, G = 2.7468 N.m.
             return [0.0507, 2.7468 * angle.sin()];
         }
         let (poses, slopes) = (self.poses(angle), self.slopes(angle));

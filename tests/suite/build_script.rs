@@ -89,7 +89,7 @@ debug = false
     folder
 }
 
-/// The state that the twin reaches in this process.
+/// The state that the runtime-assembled model reaches in this process.
 fn twin(model: &Model, corrections: u32) -> Vec<f64> {
     let mechanism = Careful::<f64>::new(model).unwrap();
     let mut state = mechanism.start();
@@ -125,13 +125,13 @@ fn a_package_outside_generates_its_own_mechanisms() {
         assert!(error <= AGREEMENT && error > 0.0, "{name}: off by {error:e}:\n{found:?}\n{expected:?}");
     }
     assert_eq!(found.len(), expected.len());
-    // The check must be able to fail: with the page's own bob the motion is another.
+    // The check must be able to fail: with the model file's own bob the motion is another.
     assert!(difference(&found[0], &twin(&read(&page), 100), 0.0) > 1e-3);
-    // And a page with a mistake does not build, but says where it is wrong.
+    // And a model file with a mistake does not build, but says where it is wrong.
     let refused = cargo(&package(&page.replace("mass = 0.5", "mass = -0.5")), &target, "run", &[]);
     assert!(!refused.is_success);
     assert!(refused.stderr.contains("mass"), "{}", refused.stderr);
-    // Nor does one whose module is not what the page says.
+    // Nor does one whose module is not what the model file says.
     let wrong = package(&page);
     let built = fs::read_to_string(wrong.join("build.rs"))
         .unwrap()

@@ -1,4 +1,4 @@
-//! Motions that mathematics knows: each page of `models/` states its closed form.
+//! Motions that mathematics knows: each model file of `models/` states its closed form.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
@@ -160,8 +160,8 @@ const DRIFT_OF_SINGULAR: f64 = 1e-7;
 const UP_TO_POSE: [&str; 2] = ["peaucellier", "two-four-bars"];
 const BEFORE_POSE: f64 = 0.2;
 
-/// The paper's second; where a page asks for shorter steps, as many of those; through the pose in line, the page's own,
-/// as there shorter ones lose more.
+/// The paper's second; where a model file asks for shorter steps, as many of those; through the pose in line, the model
+/// file's own, as there shorter ones lose more.
 fn settings(page: &str, model: &Model) -> Settings {
     let asked = &model.simulation;
     if page == "four-bar-in-line" {
@@ -182,7 +182,7 @@ fn settings(page: &str, model: &Model) -> Settings {
     }
 }
 
-/// What gains or loses energy accounts for it, all others keep it. Returns whether the page does.
+/// What gains or loses energy accounts for it, all others keep it. Returns whether the model file does.
 fn accounts_for_energy(page: &str, mechanism: &Engine) -> bool {
     let model = model(page);
     let run = simulate(mechanism, &model, &settings(page, &model));

@@ -20,7 +20,7 @@ pub struct Deviation {
 
 impl Deviation {
     fn add(&mut self, error: f64, size: f64) {
-        // What is no number stays.
+        // NaN stays NaN.
         self.error = if error <= self.error || self.error.is_nan() { self.error } else { error };
         self.size = self.size.max(size);
     }
@@ -59,7 +59,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The reference of a page at the times of samples.
+/// The reference of a model file at the times of samples.
 pub fn expected(page: &str, settings: &Settings) -> Vec<JointRow> {
     let n = (settings.t_end / settings.sample_every).round() as u32;
     let times: Vec<f64> = (0..=n).map(|k| f64::from(k) * settings.sample_every).collect();
@@ -79,7 +79,7 @@ pub fn estimate(
     Some(differences(samples, &other))
 }
 
-/// Steps of a page's own length, and samples of a run.
+/// Steps of a model file's own length, and samples of a run.
 const STEPS: f64 = 1000.0;
 const SAMPLES: f64 = 10.0;
 
@@ -90,10 +90,10 @@ const TOO_LARGE: f64 = 100.0;
 /// Errors smaller than a hundred units in the last place are rounding, and not estimated.
 const ULPS: f64 = 100.0 * f64::EPSILON;
 
-/// A page whose motion leads through a singular pose, where a run may end.
+/// A model file whose motion leads through a singular pose, where a run may end.
 const SINGULAR: &str = "four-bar-in-line";
 
-/// A page, and the companions that it has had.
+/// A model file, and the companions that it has had.
 struct Page {
     name: String,
     engine: Engine,
@@ -107,7 +107,7 @@ struct Page {
 }
 
 impl Page {
-    /// `None` for a page that has no reference.
+    /// `None` for a model file that has no reference.
     fn new(name: &str) -> Option<Self> {
         scene(name)?;
         let step = model(name).simulation.step;
@@ -130,7 +130,7 @@ impl Page {
         if EXTREME.contains(&self.name.as_str()) { duals(&self.name) } else { Duals::none() }
     }
 
-    /// A run by an approach in steps of so many times the page's own.
+    /// A run by an approach in steps of so many times the model file's own.
     fn check<T: Real + 'static>(&mut self, engine: &Engine<T>, times: f64, approach: &Approach) {
         let (step, start) = (times * self.settings.step, start_of(&model(&self.name)));
         let settings = Settings { step, correct_every: Some(5.0 * step), ..self.settings };
@@ -209,7 +209,8 @@ fn the_estimate_is_of_the_size_of_the_error() {
 
 #[test]
 fn an_estimate_of_another_error_does_not_pass() {
-    // The check must be able to fail: the error against the reference of another page is not what companions estimate.
+    // The check must be able to fail: the error against the reference of another model file is not what companions
+    // estimate.
     let mut page = Page::new("gyroscope").expect("it has a reference");
     page.rows = expected("gyroscope-light-rings", &page.settings);
     let engine = page.engine.clone();

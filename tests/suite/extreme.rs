@@ -24,7 +24,7 @@ const AGREEMENT: f64 = 1e-8;
 /// What stays zero is compared with this instead, rad and rad/s.
 const NOTHING: f64 = 1e-6;
 
-/// A page and how far to follow it in steps of which length, s.
+/// A model file and how far to follow it in steps of which length, s.
 struct Extreme {
     page: &'static str,
     t_end: f64,
@@ -46,7 +46,7 @@ const EXTREMES: [Extreme; 10] = [
 ];
 
 fn extreme(page: &str) -> &'static Extreme {
-    EXTREMES.iter().find(|extreme| extreme.page == page).expect("a page of the list")
+    EXTREMES.iter().find(|extreme| extreme.page == page).expect("a model file of the list")
 }
 
 impl Extreme {

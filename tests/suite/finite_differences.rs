@@ -3,7 +3,7 @@
 //! Along a line Φ is a polynomial of at most the fourth degree (each body's Euler parameters enter squared, at most two
 //! bodies in a product), and so is the velocity residual at constant velocities. The five-point formula is exact for
 //! those at any step: the tolerance below is for rounding alone. Angles that something acts on and prescribed motions
-//! are no polynomials; there the step is small and the formula's own error allowed for.
+//! are not polynomials; there the step is small and the formula's own error allowed for.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;

@@ -6,7 +6,7 @@ use gyro_sim_suite::{
     Run, as_paged, check, coordinate, fed, generated, model, output, pair, played, simulate, times,
 };
 
-/// Coordinates (rad, m) and rates at the pages' steps.
+/// Coordinates (rad, m) and rates at the model files' steps.
 const MOTION: f64 = 1e-9;
 
 /// Work and energy, J, of order one to ten.
@@ -24,8 +24,8 @@ fn check_axis(what: &str, run: &Run, index: usize, allowed: f64, reference: &[Ax
     });
 }
 
-/// The page's disc reaches a hundred radians a second, and its Euler parameters turn half as fast: steps are shorter
-/// than it asks for.
+/// The model file's disc reaches a hundred radians a second, and its Euler parameters turn half as fast: steps are
+/// shorter than it asks for.
 fn torsion() -> Run {
     let model = model("torsion");
     let settings = Settings { step: 5e-5, correct_every: Some(2.5e-4), ..as_paged(&model, 0.2) };

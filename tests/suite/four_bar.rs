@@ -35,7 +35,7 @@ const BRANCH: f64 = 1e-4;
 /// small numbers.
 const STEPS: [(f64, f64); 4] = [(2e-2, 1e-1), (5e-3, 1e-2), (1e-3, 1e-4), (2e-4, 1e-4)];
 
-/// Half the page's step.
+/// Half the model file's step.
 fn settings(model: &Model) -> Settings {
     Settings { step: 1e-4, correct_every: Some(5e-4), ..as_paged(model, 0.1) }
 }

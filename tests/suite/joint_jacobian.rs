@@ -1,4 +1,5 @@
-//! The Jacobian of the joint form against differences of the dense twin's accelerations, by state, time and inputs.
+//! The Jacobian of the joint form against differences of the dense runtime-assembled model's accelerations, by state,
+//! time and inputs.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::joint_space::random_state;
@@ -25,7 +26,7 @@ fn slope(step: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Vec<f64> {
     (0..a.len()).map(|k| (a[k] - d[k] + 8.0 * (c[k] - b[k])) / (12.0 * step)).collect()
 }
 
-/// The joint form as the twin has it.
+/// The joint form as the runtime-assembled model has it.
 struct Twin<'a, M> {
     mechanism: &'a M,
     dense: Engine,
@@ -46,7 +47,8 @@ impl<M: JointSpace<Scalar = f64>> Twin<'_, M> {
         self.maximal(t, x)[7 * n..13 * n].to_vec()
     }
 
-    /// u̇ is what makes of the velocities `v = B u + v₀(x, t)` the accelerations that the twin solves eq. (17) for.
+    /// u̇ is what makes of the velocities `v = B u + v₀(x, t)` the accelerations that the runtime-assembled model
+    /// solves eq. (17) for.
     fn derivative(&self, t: f64, x: &[f64]) -> Vec<f64> {
         let (mut joints, mut dx) = (self.mechanism.joint_start(), self.mechanism.joint_start());
         joints.as_mut().copy_from_slice(x);

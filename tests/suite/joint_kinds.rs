@@ -12,8 +12,8 @@ use gyro_sim_suite::{
     pair, played, reference_body, simulate, times, worst,
 };
 
-/// Coordinates (rad, m) and rates: RK4 at the pages' steps, some ten radians a second over a second or two, is good for
-/// this.
+/// Coordinates (rad, m) and rates: RK4 at the model files' steps, some ten radians a second over a second or two, is
+/// good for this.
 const MOTION: f64 = 1e-9;
 
 /// Forces and torques, N and N·m, of order ten: they follow from the motion.
@@ -25,7 +25,7 @@ const REACTION_OF_TOP: f64 = 1e-6;
 /// Tolerance on the position of the top, m: the truncation error of the step is below it.
 const TOP: f64 = 1e-8;
 
-/// Each page with its degrees of freedom.
+/// Each model file with its degrees of freedom.
 const FREEDOMS: [(&str, usize); 14] = [
     ("pendulum", 1),
     ("weld", 1),
@@ -319,7 +319,7 @@ fn spherical() {
 fn the_benchmark_top_is_where_it_should_be_after_a_second() {
     let model = model("spinning-top");
     let settings = as_paged(&model, model.simulation.t_end / 20.0);
-    // At the page's own step it is 1.04e-8 m off.
+    // At the model file's own step it is 1.04e-8 m off.
     let settings = Settings { step: settings.step / 2.0, ..settings };
     let run = simulate(&generated("spinning-top"), &model, &settings);
     let reference = HeavyTop::benchmark().solve(&times(&run));

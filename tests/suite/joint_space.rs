@@ -8,7 +8,7 @@ use gyro_sim_suite::Random;
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::model;
 
-/// What coordinates the joints of a page have.
+/// What coordinates the joints of a model file have.
 enum Kind {
     Angle,
     Length,

@@ -126,8 +126,8 @@ where
     (P::Scalar::COUNT - solver.failures().count(), switches)
 }
 
-/// Free and on joints of each kind, at rest and on a base that moves, with friction, with parameters: not every page,
-/// as each costs its compilation.
+/// Free and on joints of each kind, at rest and on a base that moves, with friction, with parameters: not every model
+/// file, as each costs its compilation.
 macro_rules! each_tree {
     ($check:ident) => {{
         let trees = [
@@ -211,7 +211,7 @@ fn lanes_converge_one_by_one() {
     let (scalar, packs) = (Gyroscope::<f64>::default(), Gyroscope::<f64x8>::default());
     let state = |lane: usize| {
         let mut y = scalar.start();
-        // From a state that meets the constraints to one from which there is no way back.
+        // From a state that meets the constraints to one that cannot be corrected.
         let away = [0.0, 1e-14, 1e-9, 1e-6, 1e-4, 1e-2, 0.1, 3.0][lane];
         (0u8..21).for_each(|k| y[usize::from(k)] += away * f64::from(k + 1).sin());
         y

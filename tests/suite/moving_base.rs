@@ -65,7 +65,7 @@ fn another_motion_of_the_base_does_not_pass() {
     assert!(std::panic::catch_unwind(wrong).is_err());
 }
 
-/// The page `carried`: springs and dampers between what moves and what is moved.
+/// The model file `carried`: springs and dampers between what moves and what is moved.
 fn arm_and_slider() -> Chain<2> {
     let wave = |amplitude, angular_frequency, phase| Sinusoid { amplitude, angular_frequency, phase };
     let base = BaseMotion {

@@ -5,7 +5,7 @@ use gyro_model::Model;
 use gyro_reference::{DoubleDouble, Sample, Scene, tabulated};
 use gyro_sim_suite::{Engine, PAPER, Run, careful, coordinate, dense, generated, model, simulate};
 
-/// Which scene of the table each page shows.
+/// Which scene of the table each model file shows.
 const PAGES: [(&str, &str); 7] = [
     ("gyroscope", "paper"),
     ("gyroscope-maximal", "paper"),
@@ -57,7 +57,8 @@ fn errors(scene: &Scene, run: &Run) -> [(f64, f64); 3] {
 }
 
 fn check(page: &str, run: &Run) {
-    let (_, name) = PAGES.into_iter().find(|(known, _)| *known == page).expect("the page shows a scene");
+    let (_, name) =
+        PAGES.into_iter().find(|(known, _)| *known == page).expect("the model file shows a scene");
     let errors = errors(&scene(name), run);
     println!("{page}: {errors:?}, violation {:.1e}", run.summary.position_violation);
     let rings = if name == "free-nutation" { RINGS_IN_FREE_NUTATION } else { RINGS };
@@ -94,7 +95,7 @@ fn the_dense_twin_follows_the_table() {
 #[test]
 fn every_tabulated_scene_is_shipped() {
     for scene in tabulated() {
-        assert!(PAGES.iter().any(|(_, name)| *name == scene.name), "no page shows {}", scene.name);
+        assert!(PAGES.iter().any(|(_, name)| *name == scene.name), "no model file shows {}", scene.name);
         assert_eq!(scene.samples.last().map(|s| s.t.to_f64()), Some(PAPER.t_end), "{}", scene.name);
     }
 }

@@ -160,7 +160,7 @@ fn generated_code_passes_by_every_integrator() {
     let model = model("four-bar-in-line");
     let (engine, builder) =
         (generated("four-bar-in-line"), generated("four-bar-in-line").builder(duals("four-bar-in-line")));
-    // The head of the page: I = 0.0507 kg.m2, G = 2.7468 N.m, from -60 degrees with 12 rad/s.
+    // The head of the model file: I = 0.0507 kg.m2, G = 2.7468 N.m, from -60 degrees with 12 rad/s.
     let pendulum = Pendulum {
         mass: 1.4,
         inertia: 0.0507 - 1.4 * 0.2 * 0.2,

@@ -1,4 +1,4 @@
-//! The recursive form of the twin against its dense form, on every page that it does.
+//! The recursive form of the runtime-assembled model against its dense form, in every model file that it does.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_assembled::{Dense, Recursive};
@@ -63,11 +63,11 @@ fn trees_are_supported_and_nothing_else() {
         JointKind::Screw,
         JointKind::PointOnLine,
     ] {
-        assert!(kinds.contains(&kind), "no page has {kind:?}");
+        assert!(kinds.contains(&kind), "no model file has {kind:?}");
     }
     let supports: Vec<Support> = supported().flat_map(|(_, m)| m.bodies).map(|body| body.support).collect();
     for support in [Support::Free, Support::Constrained, Support::Fixed, Support::Driven] {
-        assert!(supports.contains(&support), "no page has {support:?}");
+        assert!(supports.contains(&support), "no model file has {support:?}");
     }
 }
 

@@ -1,14 +1,15 @@
-//! Every shipped page has its reference solution and sets out as it says: right numbers, joints in the right order.
+//! Every shipped model file has its reference solution and starts as it says: right numbers, joints in the right
+//! order.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_reference::{JointRow, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim_suite::{fixture_folders, generated, model, rotation, simulate, times};
 
-/// Steps of the page's own length.
+/// Steps of the model file's own length.
 const STEPS: f64 = 20.0;
 
-/// Over one and the value. Most pages take steps of a hundredth of a radian, the torsional spring of several.
+/// Over one and the value. Most model files take steps of a hundredth of a radian, the torsional spring of several.
 const AGREEMENT: f64 = 1e-8;
 
 /// Positions and rates of all joints, orientations as rotation matrices.
@@ -35,7 +36,7 @@ fn expected(row: &JointRow) -> Vec<f64> {
     row.positions.iter().chain(&row.rates).copied().chain(orientations).collect()
 }
 
-/// The worst error of a page in its first steps; `None` if it has no reference.
+/// The worst error of a model file in its first steps; `None` if it has no reference.
 fn error(page: &str, reference: &str) -> Option<f64> {
     let (scene, model) = (scene(reference)?, model(page));
     let step = model.simulation.step;

@@ -18,7 +18,7 @@ use std::time::Duration;
 /// Samples of a run.
 const SAMPLES: f64 = 10.0;
 
-/// A page, how far to follow it and in which steps, s, where they are fixed.
+/// A model file, how far to follow it and in which steps, s, where they are fixed.
 struct Scene {
     page: &'static str,
     t_end: f64,
@@ -165,7 +165,7 @@ impl<'a> Judge<'a> {
         Self::by(scene, scene.page, tally)
     }
 
-    /// By the reference of another page.
+    /// By the reference of another model file.
     fn by(scene: &'a Scene, page: &str, tally: &'a mut Tally) -> Self {
         let start = start_of(&model(scene.page));
         let rows = expected(page, &scene.settings(1.0));

@@ -1,5 +1,5 @@
-//! Every term of the equations of motion of every model: what the generator derived against what the twin has typed by
-//! hand, on random states that violate the joints.
+//! Every term of the equations of motion of every model: what the generator derived against what the runtime-assembled
+//! model has typed by hand, on random states that violate the joints.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
@@ -12,7 +12,7 @@ use gyro_sim_suite::{
 };
 use nalgebra::{DMatrix, Matrix3, Matrix6};
 
-/// States of each shipped model, and of each page that only tests need.
+/// States of each shipped model, and of each model file that only tests need.
 const STATES: usize = 1000;
 const STATES_OF_TEST_PAGES: usize = 200;
 
@@ -40,8 +40,8 @@ const ROUNDINGS: f64 = 1000.0;
 const LOST: f64 = 1e-8;
 
 /// Trees with bodies of very different masses or inertias, and what their states may lose, ten times what is seen: near
-/// gimbal lock only the lighter ones are left to take the motion up. (Twins lose more than generated code: `cargo xtask
-/// verify --rounding`.)
+/// gimbal lock only the lighter ones are left to take the motion up. (Runtime-assembled models lose more than generated
+/// code: `cargo xtask verify --rounding`.)
 const UNEVEN: [(&str, f64); 2] = [("gyroscope-heavy-rotor", 5e-7), ("gyroscope-light-rings", LOST)];
 
 /// The largest condition number of states that are looked at: a wrong formula is off by more than is lost then.
@@ -277,7 +277,7 @@ impl Worst {
     }
 }
 
-/// Compares with both forms of the twin.
+/// Compares with both forms of the runtime-assembled model.
 fn compare(page: &str, mechanism: &Engine) {
     let model = model(page);
     let careful = Careful::<f64>::supports(&model).ok().map(|()| careful(&model));
@@ -321,7 +321,7 @@ fn generated_terms_of_test_pages_agree_with_the_twins() {
     all_agree(1);
 }
 
-/// All pages of a folder.
+/// All model files of a folder.
 fn all_agree(folder: usize) {
     let (mut failed, pages) = (Vec::new(), fixture_folders()[folder].pages());
     for_each_generated(|page, mechanism| {
@@ -338,7 +338,7 @@ fn all_agree(folder: usize) {
 
 #[test]
 fn a_wrong_offset_is_noticed() {
-    // The check must be able to fail: the twin's rotor is a hundredth of a nanometre off.
+    // The check must be able to fail: the runtime-assembled model's rotor is a hundredth of a nanometre off.
     let text = gyro_sim_suite::page("gyroscope").replace("0.000125", "0.00012500001");
     let (right, wrong) = (model("gyroscope"), gyro_model::read("wrong.toml", &text).unwrap());
     let (a, b) = (careful(&right), careful(&wrong));

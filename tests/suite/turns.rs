@@ -35,7 +35,7 @@ const TURNED_F32: f64 = 0.3;
 /// What steps of more than a radian may change of a rate that nothing changes, parts of it.
 const COARSE: f64 = 1e-2;
 
-/// A page, where it says at which angle it starts, and its speed there, rad/s.
+/// A model file, where it says at which angle it starts, and its speed there, rad/s.
 struct Train {
     page: &'static str,
     start: &'static str,
@@ -52,7 +52,7 @@ const TRAINS: [Train; 5] = [
 ];
 
 impl Train {
-    /// The page as it is after so many turns.
+    /// The model file as it is after so many turns.
     fn after(&self, turns: f64) -> Model {
         let text = page(self.page);
         assert!(text.contains(self.start), "{}", self.page);

@@ -23,7 +23,8 @@ const MOST_STEPS: f64 = 4000.0;
 const BUDGET: u64 = 4000;
 const IMPLICIT_BUDGET: u64 = 300;
 
-/// Runs of the seeded sample; `GYRO_VERDICTS` asks for another number. Twins are slow: fewer runs, of fewer steps.
+/// Runs of the seeded sample; `GYRO_VERDICTS` asks for another number. Runtime-assembled models are slow: fewer runs,
+/// of fewer steps.
 const RUNS: usize = 104;
 const RUNS_OF_TWINS: usize = 26;
 const MOST_STEPS_OF_TWINS: f64 = 400.0;
@@ -44,7 +45,7 @@ const FOLLOWED: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Form {
     Generated,
-    /// The assembled twin: careful where it can be, else dense.
+    /// the runtime-assembled model: careful where it can be, else dense.
     Twin,
 }
 

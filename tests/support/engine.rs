@@ -77,7 +77,7 @@ impl<T: Real + 'static> Duals<T> {
         Self(Some(Box::new(mechanism)))
     }
 
-    /// For what Rodas does not integrate in maximal coordinates: each page costs its compilation.
+    /// For what Rodas does not integrate in maximal coordinates: each model file costs its compilation.
     pub fn none() -> Self {
         Self(None)
     }
@@ -135,7 +135,7 @@ impl<T: Real + 'static> Mechanism for Duals<T> {
     }
 }
 
-const NO_DUALS: &str = "this page has no dual numbers here: add it to `duals`";
+const NO_DUALS: &str = "this model file has no dual numbers here: add it to `duals`";
 
 impl<T: Real + 'static> Mechanism for Engine<T> {
     type Scalar = T;
@@ -308,5 +308,5 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     }
 }
 
-/// Each kernel of each page costs its compilation.
+/// Each kernel of each model file costs its compilation.
 const NOT_FORWARDED: &str = "ask the mechanism itself: an engine does not have it";

@@ -1,4 +1,4 @@
-//! The pages of models with their generated mechanisms: those that are shipped and those for tests alone.
+//! The model files of models with their generated mechanisms: those that are shipped and those for tests alone.
 
 use crate::generated as own;
 use crate::{Duals, Engine};
@@ -9,21 +9,21 @@ use gyro_model::{Model, Tree};
 use gyro_sim::Real;
 use std::path::{Path, PathBuf};
 
-/// A folder of pages.
+/// A folder of model files.
 #[derive(Clone, Debug)]
 pub struct FixtureFolder(PathBuf);
 
-/// Does something with the generated mechanism of every page, shipped or not.
+/// Does something with the generated mechanism of every model file, shipped or not.
 pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
     for page in pages() {
         check(&page, &generated(&page));
     }
 }
 
-/// The generated mechanism of a page.
+/// The generated mechanism of a model file.
 ///
 /// # Panics
-/// If the page has no generated mechanism here: every page must have one.
+/// If the model file has no generated mechanism here: every model file must have one.
 pub fn generated(page: &str) -> Engine {
     match page {
         "all-joints" => Engine::new(own::all_joints::AllJoints::default()),
@@ -110,7 +110,7 @@ pub fn generated(page: &str) -> Engine {
 }
 
 /// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them, but not
-/// every page, as each costs its compilation.
+/// every model file, as each costs its compilation.
 pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
     vec![
         ("cam", Engine::new(own::cam::Cam::default())),
@@ -211,7 +211,7 @@ pub fn duals<T: Real + 'static>(page: &str) -> Duals<T> {
     }
 }
 
-/// The careful twin of a model.
+/// The careful runtime-assembled model of a model.
 ///
 /// # Panics
 /// If it does not support the model.
@@ -219,7 +219,7 @@ pub fn careful(model: &Model) -> Engine {
     Engine::new(Careful::<f64>::new(model).unwrap_or_else(|error| panic!("{}: {error}", model.name)))
 }
 
-/// The dense twin of a model.
+/// The dense runtime-assembled model of a model.
 ///
 /// # Panics
 /// If the model cannot be assembled.
@@ -227,13 +227,13 @@ pub fn dense(model: &Model) -> Engine {
     Engine::new(Dense::<f64>::new(model).unwrap_or_else(|error| panic!("{}: {error}", model.name)))
 }
 
-/// Where pages are: the shipped ones, then those for tests.
+/// Where model files are: the shipped ones, then those for tests.
 pub fn fixture_folders() -> [FixtureFolder; 2] {
     ["models", "tests/models"].map(|folder| FixtureFolder(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)))
 }
 
 impl FixtureFolder {
-    /// Its pages in the order of their names, without extension.
+    /// Its model files in the order of their names, without extension.
     pub fn pages(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.0).expect("the folder is part of the project");
         let mut pages: Vec<String> = entries
@@ -246,23 +246,23 @@ impl FixtureFolder {
     }
 }
 
-/// All pages, those for tests last.
+/// All model files, those for tests last.
 pub fn pages() -> Vec<String> {
     fixture_folders().iter().flat_map(FixtureFolder::pages).collect()
 }
 
-/// The text of a page.
+/// The text of a model file.
 pub fn page(name: &str) -> String {
     text(&path(name))
 }
 
-/// The model of a page.
+/// The model of a model file.
 pub fn model(name: &str) -> Model {
     let model = gyro_model::read_with(&file_name(name), &page(name), &mut |table| Ok(table_of(name, table)));
     model.unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
-/// The generated module of a page.
+/// The generated module of a model file.
 pub fn module(name: &str) -> Module {
     let load = &mut |table: &str| Ok(table_of(name, table));
     let module = gyro_codegen::generate_with(&file_name(name), &page(name), load);
@@ -274,7 +274,7 @@ pub fn is_open(model: &Model) -> bool {
     Tree::of(model).loop_joints.is_empty() && model.couplers.is_empty() && model.drivers.is_empty()
 }
 
-/// As `cargo xtask generate` names the page in its module's first line.
+/// As `cargo xtask generate` names the model file in its module's first line.
 fn file_name(page: &str) -> String {
     format!("{page}.toml")
 }
@@ -282,10 +282,10 @@ fn file_name(page: &str) -> String {
 fn path(page: &str) -> PathBuf {
     let paths = fixture_folders().map(|folder| folder.0.join(file_name(page)));
     let found = paths.into_iter().find(|path| path.exists());
-    found.unwrap_or_else(|| panic!("there is no page {page}.toml"))
+    found.unwrap_or_else(|| panic!("there is no model file {page}.toml"))
 }
 
-/// The text of a table that a page names.
+/// The text of a table that a model file names.
 fn table_of(page: &str, table: &str) -> String {
     text(&path(page).with_file_name(table))
 }

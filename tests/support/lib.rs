@@ -1,4 +1,4 @@
-//! What the integration tests share: the pages with their mechanisms, seeded random states, runs, nested builds.
+//! What the integration tests share: the model files with their mechanisms, seeded random states, runs, nested builds.
 
 mod against;
 mod engine;

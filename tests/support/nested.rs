@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// What a finished program has said.
+/// The output of a finished program.
 #[derive(Clone, Debug)]
 pub struct Said {
     /// Whether it succeeded.

@@ -104,13 +104,13 @@ pub fn moved<T: Real + 'static>(
     (samples, outcome)
 }
 
-/// The settings that a page asks for, with samples so far apart.
+/// The settings that a model file asks for, with samples so far apart.
 pub fn as_paged(model: &Model, sample_every: f64) -> Settings {
     let asked = &model.simulation;
     Settings { t_end: asked.t_end, step: asked.step, correct_every: Some(asked.correct_every), sample_every }
 }
 
-/// Runs the mechanism of a page as the page asks, sampled twenty times.
+/// Runs the mechanism of a model file as the model file asks, sampled twenty times.
 pub fn played(mechanism: &Engine, model: &Model) -> Run {
     simulate(mechanism, model, &as_paged(model, model.simulation.t_end / 20.0))
 }

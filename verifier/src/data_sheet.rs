@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 /// Of each function its name on the data sheet, what it computes, and how its documentation begins.
 const WORDS: [(&str, &str, &str); 28] = [
-    ("set_up", "what depends on parameters alone", "What depends on parameters alone"),
+    ("parameter_setup", "what depends on parameters alone", "What depends on parameters alone"),
     ("phi", "Φ", "Writes Φ"),
     ("phi_q", "Φ_q, non-zeros in (r, p)", "Writes the non-zeros of Φ_q"),
     ("phi_pi", "(Φ_r, Φ_π'), non-zeros", "Writes the non-zeros of (Φ_r, Φ_π')"),
@@ -186,7 +186,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
             "the work of non-conservative forces (count_work = false)",
         ),
         (model.parameters.is_empty(), "parameters (all numbers are folded)"),
-        (model.outputs.is_empty(), "outputs (the page asks for none)"),
+        (model.outputs.is_empty(), "outputs (the model file asks for none)"),
     ];
     left_out
         .extend(missing.into_iter().filter(|(is_missing, _)| *is_missing).map(|(_, what)| what.to_owned()));
@@ -263,7 +263,7 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
         " The mechanism with these parameters.",
         " The parameters.",
         " Sets all parameters, and computes what depends on them alone.",
-        " Whether the mechanism can have these parameters, as the model page's rules decide.",
+        " Whether the mechanism can have these parameters, as the model file's rules decide.",
         " The assembled start, with all parameters at their defaults.",
         " Polynomials between them, from each point's own time.",
     ];

@@ -1,7 +1,7 @@
 //! What a module divides by: what cannot be zero, and the list of all else.
 
 use crate::joints::JointLayout;
-use crate::module::{Module, SET_UP};
+use crate::module::{Module, PARAMETER_SETUP};
 use crate::program::{Function, Node, Program, Source};
 use gyro_model::{Model, Number};
 
@@ -18,12 +18,12 @@ pub struct Divisor {
 
 /// All divisions of a module, function by function.
 pub fn divisors(model: &Model, module: &Module) -> Vec<Divisor> {
-    let set_up: Vec<Range> = module.written.get(SET_UP).map_or_else(Vec::new, |program| {
+    let parameter_setup: Vec<Range> = module.written.get(PARAMETER_SETUP).map_or_else(Vec::new, |program| {
         let all = ranges(module, program, &|source| given(model, module, source));
         program.results.iter().map(|&id| all[id]).collect()
     });
     let given = |source| match source {
-        Source::SetUp(place) => set_up[place],
+        Source::ParameterSetup(place) => parameter_setup[place],
         source => given(model, module, source),
     };
     let of_function = |(function, program): (&String, &Program)| {

@@ -117,7 +117,7 @@ fn read<F: Field>(source: Source, given: &Given<F>) -> F {
         Source::Chart(chart, k) => given.charts[chart][k].clone(),
         Source::Change(k) => given.changes[k].clone(),
         Source::Joint(k) => given.joints[k].clone(),
-        Source::SetUp(_) => unreachable!("`set_up` is part of what reads it"),
+        Source::ParameterSetup(_) => unreachable!("`parameter_setup` is part of what reads it"),
         Source::Factor(_) | Source::Motion(_) | Source::Before(_) => {
             unreachable!("no module reads what claims vary")
         }

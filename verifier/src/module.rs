@@ -28,7 +28,7 @@ pub struct Module {
     pub data_sheet: Vec<String>,
     /// The functions that compute something, by name, as they are written.
     pub written: BTreeMap<String, Program>,
-    /// What each of them computes from parameters, time and state: `set_up` is part of those that read what it
+    /// What each of them computes from parameters, time and state: `parameter_setup` is part of those that read what it
     /// computes.
     pub programs: BTreeMap<String, Program>,
     /// What each function's documentation says of it.
@@ -56,11 +56,11 @@ pub struct Module {
 }
 
 /// The function that computes what depends on parameters alone.
-pub(crate) const SET_UP: &str = "set_up";
+pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
 const FUNCTIONS: [(&str, Form); 29] = [
-    (SET_UP, Form::Filling),
+    (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
     ("velocity_residual", Form::Filling),
@@ -171,7 +171,7 @@ impl Module {
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let jacobian = text.contains("fn joint_jacobian(");
-        let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };
+        let has = Has { choice, jacobian, parameter_setup: text.contains("fn parameter_setup(") };
         let joints = JointLayout::of(model);
         let name = type_name(&model.name);
         let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
@@ -209,7 +209,7 @@ impl Module {
                 _ => n_accelerations,
             };
             // What is set up does not read what is set up.
-            let derived = if name == SET_UP { 0 } else { sizes.derived };
+            let derived = if name == PARAMETER_SETUP { 0 } else { sizes.derived };
             let (sizes, before) = (Sizes { accelerations, derived, ..sizes }, of_function(&BEFORE, name));
             let mut reader = Reader::new(model, &mut occurrences, sizes, before);
             if hole.arguments.is_empty() {
@@ -229,9 +229,11 @@ impl Module {
         }
         let places = constants.places(&occurrences)?;
         written.values_mut().for_each(|program| program.name_constants(&places));
-        let recurring = written.iter().filter(|(name, _)| *name != SET_UP);
-        let programs = match written.get(SET_UP) {
-            Some(set_up) => recurring.map(|(name, p)| (name.clone(), p.after(set_up))).collect(),
+        let recurring = written.iter().filter(|(name, _)| *name != PARAMETER_SETUP);
+        let programs = match written.get(PARAMETER_SETUP) {
+            Some(parameter_setup) => {
+                recurring.map(|(name, p)| (name.clone(), p.after(parameter_setup))).collect()
+            }
             None => written.clone(),
         };
         let pattern = |name: &str| block::pattern(&block(&matched.holes[name])?);
@@ -270,7 +272,7 @@ impl Module {
         let has = |function: &str| self.programs.contains_key(function);
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
-            (SET_UP, number("derived")),
+            (PARAMETER_SETUP, number("derived")),
             ("derivative", n_state(model)),
             ("phi", rows + n),
             ("velocity_residual", rows),

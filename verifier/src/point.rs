@@ -38,7 +38,7 @@ impl<F: Field> Point<F> {
             Source::State(k) => self.state.get(k),
             Source::Parameter(k) => self.parameters.get(k),
             Source::Input(k) => self.inputs.get(k),
-            Source::SetUp(_)
+            Source::ParameterSetup(_)
             | Source::Acceleration(_)
             | Source::Joint(_)
             | Source::Chart(..)

@@ -44,8 +44,8 @@ pub enum Source {
     State(usize),
     /// A parameter.
     Parameter(usize),
-    /// What `set_up` gives in this place.
-    SetUp(usize),
+    /// What `parameter_setup` gives in this place.
+    ParameterSetup(usize),
     /// An input.
     Input(usize),
     /// What the function has another one compute first, or is given: an element of `Equations::Accelerations`,
@@ -143,21 +143,21 @@ impl Program {
 
     /// The program with another one before it, in place of what it reads of that one's results.
     #[must_use]
-    pub fn after(&self, set_up: &Program) -> Self {
+    pub fn after(&self, parameter_setup: &Program) -> Self {
         let mut joined = Self { places: self.places.clone(), unused: self.unused.clone(), ..Self::default() };
-        let of_set_up = joined.append(set_up, &[]);
-        let given: Vec<Id> = set_up.results.iter().map(|&id| of_set_up[id]).collect();
+        let of_parameter_setup = joined.append(parameter_setup, &[]);
+        let given: Vec<Id> = parameter_setup.results.iter().map(|&id| of_parameter_setup[id]).collect();
         let own = joined.append(self, &given);
         joined.results = self.results.iter().map(|&id| own[id]).collect();
         joined
     }
 
     /// Adds the nodes of a program; gives their places here.
-    fn append(&mut self, other: &Program, set_up: &[Id]) -> Vec<Id> {
+    fn append(&mut self, other: &Program, parameter_setup: &[Id]) -> Vec<Id> {
         let mut places: Vec<Id> = Vec::with_capacity(other.nodes.len());
         for (node, &line) in other.nodes.iter().zip(&other.lines) {
             let place = match *node {
-                Node::Read(Source::SetUp(k)) => set_up[k],
+                Node::Read(Source::ParameterSetup(k)) => parameter_setup[k],
                 node => self.push(node.with_operands(|id| places[id]), line),
             };
             places.push(place);

@@ -1,7 +1,7 @@
 //! What the text of a module is like: nothing unused, nothing computed twice, counted as its data sheet says.
 
 use crate::data_sheet;
-use crate::module::{Module, SET_UP};
+use crate::module::{Module, PARAMETER_SETUP};
 use crate::program::{Node, Program, Source};
 use crate::refusal::Refusal;
 use gyro_model::Model;
@@ -26,13 +26,13 @@ pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
 
 /// What is set up and never read.
 fn unread(module: &Module) -> Option<Refusal> {
-    let set_up = module.written.get(SET_UP)?;
+    let parameter_setup = module.written.get(PARAMETER_SETUP)?;
     let nodes = module.written.values().flat_map(|program| &program.nodes);
     let read: HashSet<Node> = nodes.copied().filter(|node| matches!(node, Node::Read(_))).collect();
-    let is_unread = |&place: &usize| !read.contains(&Node::Read(Source::SetUp(place)));
-    let place = (0..set_up.results.len()).find(is_unread)?;
-    let line = set_up.lines[set_up.results[place]];
-    Some(Refusal::new(line, format!("`{SET_UP}` computes derived[{place}], which nothing reads")))
+    let is_unread = |&place: &usize| !read.contains(&Node::Read(Source::ParameterSetup(place)));
+    let place = (0..parameter_setup.results.len()).find(is_unread)?;
+    let line = parameter_setup.lines[parameter_setup.results[place]];
+    Some(Refusal::new(line, format!("`{PARAMETER_SETUP}` computes derived[{place}], which nothing reads")))
 }
 
 /// A value up to its sign: which one, and whether it is negated.

@@ -128,7 +128,7 @@ fn bad_inputs_are_told_with_their_line() {
     for (page, inputs, message) in [
         ("motor.toml", &["torqe=1"][..], "unknown input `torqe`: write `torque`; there are `torque`, `push`"),
         ("motor.toml", &["torque=none.csv"], "--input torque=none.csv: the file cannot be read"),
-        ("motor.toml", &["torque=back.csv"], "torque=back.csv: line 4: the time 1.0 does not follow 1.0"),
+        ("motor.toml", &["torque=back.csv"], "torque=back.csv: line 4: the time 1.0 is not after 1.0"),
         ("motor.toml", &["torque=word.csv"], "torque=word.csv: line 2: found `zero`"),
         ("motor.toml", &["torque=1", "torque=2"], "--input gives `torque` twice"),
         (&gyroscope, &["torque=1"], "has no inputs"),

@@ -62,7 +62,7 @@ fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
     system.graph.sub(lag, offset)
 }
 
-/// `pᵀp − 1` of each moving_body, eq. (12).
+/// `pᵀp − 1` of each moving body, eq. (12).
 pub fn normalisations(system: &mut System) -> Vec<ExprId> {
     let one = Graph::ONE;
     let euler: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body].p).collect();

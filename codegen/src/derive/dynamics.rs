@@ -11,9 +11,9 @@ use crate::expr::vector::{Mat3, Vec3};
 /// The terms of eq. (17) that do not come from Φ.
 #[derive(Debug)]
 pub struct Dynamics {
-    /// diag(m, m, m, J') of each moving_body, by rows.
+    /// diag(m, m, m, J') of each moving body, by rows.
     pub mass_matrix: Matrix,
-    /// (f, n' − w̃'J'w') of each moving_body.
+    /// (f, n' − w̃'J'w') of each moving body.
     pub applied_force: Vec<ExprId>,
     /// What acts on each body besides gravity and forces along joint coordinates.
     pub other_loads: Vec<Load>,
@@ -30,7 +30,7 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
-    /// Minus (f, n' − w̃'J'w') of a moving_body.
+    /// Minus (f, n' − w̃'J'w') of a moving body.
     pub fn minus_applied_force(&self, graph: &mut Graph, moving_body: usize) -> SpatialVector {
         let force = |k: usize| self.applied_force[6 * moving_body + k];
         let applied =

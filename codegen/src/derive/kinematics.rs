@@ -53,7 +53,7 @@ impl Kinematics {
         Self { phi, normalisations, phi_q, phi_pi, velocity_residual, nu, gamma }
     }
 
-    /// Columns π' of a moving_body in a row of Φ_π'.
+    /// Columns π' of a moving body in a row of Φ_π'.
     pub fn rotation(&self, row: usize, moving_body: usize) -> Vec3 {
         std::array::from_fn(|k| self.phi_pi[row][6 * moving_body + 3 + k])
     }
@@ -79,7 +79,7 @@ fn motion_derivative(system: &mut System, rows: &[ExprId]) -> Vec<ExprId> {
     along(system, rows, direction)
 }
 
-/// Unit directions of r and p of each moving_body. A and A_iᵀA_j then differentiate as their definitions.
+/// Unit directions of r and p of each moving body. A and A_iᵀA_j then differentiate as their definitions.
 fn coordinate_directions(n_moving_bodies: usize) -> Vec<Direction> {
     let symbol = |moving_body, k| {
         if k < 3 { Symbol::Position { moving_body, k } } else { Symbol::Euler { moving_body, k: k - 3 } }
@@ -89,7 +89,7 @@ fn coordinate_directions(n_moving_bodies: usize) -> Vec<Direction> {
         .collect()
 }
 
-/// The derivatives of some rows along directions, equally many for each moving_body, of rows in which the moving_body
+/// The derivatives of some rows along directions, equally many for each moving body, of rows in which the moving body
 /// occurs: others do not change.
 fn columns(
     system: &mut System,
@@ -108,7 +108,7 @@ fn columns(
     matrix
 }
 
-/// For each moving_body the rows that depend on where its body is.
+/// For each moving body the rows that depend on where its body is.
 fn rows_of_moving_bodies(system: &System, rows: &[ExprId]) -> Vec<Vec<usize>> {
     let (mut rows_of_moving_bodies, mut known) =
         (vec![Vec::new(); system.moving_bodies.len()], HashMap::default());
@@ -120,7 +120,7 @@ fn rows_of_moving_bodies(system: &System, rows: &[ExprId]) -> Vec<Vec<usize>> {
     rows_of_moving_bodies
 }
 
-/// The moving_bodies whose coordinates an expression depends on, symbols being what they stand for.
+/// The moving bodies whose coordinates an expression depends on, symbols being what they stand for.
 fn slots_of(system: &System, root: ExprId, known: &mut HashMap<Symbol, BTreeSet<usize>>) -> BTreeSet<usize> {
     let mut moving_bodies = BTreeSet::new();
     for id in system.graph.reachable(&[root]) {

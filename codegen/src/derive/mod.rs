@@ -42,7 +42,7 @@ pub struct Observed {
     /// Rates of the turn references.
     pub turn_rates: Vec<ExprId>,
     pub readings: Vec<ExprId>,
-    /// (ṙ, ṗ) of each moving_body by eqs. (16) and (14).
+    /// (ṙ, ṗ) of each moving body by eqs. (16) and (14).
     pub position_rates: Vec<ExprId>,
 }
 

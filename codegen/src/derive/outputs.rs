@@ -1,4 +1,4 @@
-//! The outputs that the page asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
+//! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
 use crate::derive::dynamics::Dynamics;
 use crate::derive::forces::PointOfBody;

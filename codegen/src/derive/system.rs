@@ -27,7 +27,7 @@ pub struct System<'m> {
     pub tree: Tree,
     pub graph: Graph,
     pub definitions: Definitions,
-    /// Bodies with coordinates: moving_body to index into the model's bodies.
+    /// Bodies with coordinates: moving body to index into the model's bodies.
     pub moving_bodies: Vec<usize>,
     /// One for each body of the model.
     pub poses: Vec<Pose>,
@@ -80,7 +80,7 @@ impl<'m> System<'m> {
         self.moving_bodies.iter().position(|&b| b == body)
     }
 
-    /// A number of the model page.
+    /// A number of the model file.
     pub fn number(&mut self, number: &Number) -> ExprId {
         match number {
             Number::Exact(value) => self.graph.rational(value.clone()),
@@ -155,7 +155,7 @@ impl<'m> System<'m> {
         JointFrames { kind: description.kind, first, second, relative, lead, length }
     }
 
-    /// A_iᵀ A_j, eq. (4). Against a body without coordinates it is no quantity of its own.
+    /// A_iᵀ A_j, eq. (4). For a body without coordinates it follows from the other matrix alone.
     fn relative_rotation(&mut self, joint: usize, first: usize, second: usize) -> Mat3 {
         let (a_i, a_j) = (self.poses[first].a, self.poses[second].a);
         let both_move = self.moving_body_of(first).is_some() && self.moving_body_of(second).is_some();
@@ -177,7 +177,7 @@ impl<'m> System<'m> {
         let (axis, zero) = (self.numbers(&end.axis), self.numbers(&end.zero));
         let point = self.numbers(&end.point);
         let graph = &mut self.graph;
-        // g ∥ h × z and f ∥ g × h, in products of the page's own numbers: of these, those that cancel are written
+        // g ∥ h × z and f ∥ g × h, in products of the model file's own numbers: of these, those that cancel are written
         // alike, so a component that is zero whatever the parameters are is seen to be zero.
         let normal = graph.cross(&axis, &zero);
         let across = graph.cross(&normal, &axis);
@@ -192,13 +192,13 @@ impl<'m> System<'m> {
         End { body: end.body, point, f, g, h }
     }
 
-    /// What the symbols change by along a motion with the given velocities of each moving_body, paper eqs. (14) and
+    /// What the symbols change by along a motion with the given velocities of each moving body, paper eqs. (14) and
     /// (16): `ṙ = s`, `ṗ = ½ Gᵀ w'`, `Ȧ = A w̃'` and, between bodies, `(A_iᵀA_j)˙ = A_iᵀA_j w̃'_j − w̃'_i A_iᵀA_j`.
     pub fn direction(&mut self, motion: &[(Vec3, Vec3)]) -> Direction {
         self.direction_of(motion, 0..self.moving_bodies.len(), 0..self.joints.len())
     }
 
-    /// No motion but a unit velocity or virtual rotation: column `k` of moving_body `moving_body`, of (r, π'). What
+    /// No motion but a unit velocity or virtual rotation: column `k` of moving body `moving_body`, of (r, π'). What
     /// does not change with it is not named.
     pub fn unit_direction(&mut self, moving_body: usize, k: usize) -> Direction {
         let mut motion = vec![(ZERO3, ZERO3); self.moving_bodies.len()];
@@ -212,7 +212,7 @@ impl<'m> System<'m> {
         self.direction_of(&motion, [moving_body], joints)
     }
 
-    /// What the symbols of some moving_bodies and joints change by.
+    /// What the symbols of some moving bodies and joints change by.
     fn direction_of(
         &mut self,
         motion: &[(Vec3, Vec3)],
@@ -321,7 +321,7 @@ impl<'m> System<'m> {
         Expansion::with_values(&self.definitions, values.clone()).all(&mut self.graph, roots)
     }
 
-    /// The velocities (s, w') of each moving_body.
+    /// The velocities (s, w') of each moving body.
     pub fn velocities(&self) -> Vec<(Vec3, Vec3)> {
         self.moving_bodies.iter().map(|&body| (self.poses[body].s, self.poses[body].w)).collect()
     }

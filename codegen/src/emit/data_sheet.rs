@@ -23,9 +23,9 @@ pub struct DataSheet {
     pub phi_q: usize,
     /// Entries of (Φ_r, Φ_π') that are not zero.
     pub phi_pi: usize,
-    /// What the mechanism could have had and has not, so that no instruction is spent on it.
+    /// What other mechanisms have and this one does not, so that no instruction is spent on it.
     pub left_out: Vec<String>,
-    /// The same, where only the derivation knows of it: what a verifier cannot see is not said in the module.
+    /// The same, where only the derivation knows of it: the module does not state what the verifier cannot check.
     pub spared: Vec<String>,
     /// The functions that compute something.
     pub functions: Vec<Function>,
@@ -40,7 +40,7 @@ pub struct Function {
     pub operations: Operations,
     /// What is left after each pass.
     pub passes: Passes,
-    /// How many numbers it gives.
+    /// How many numbers it computes.
     pub results: usize,
     /// How many of them are zero whatever the state.
     pub zeros: usize,
@@ -76,7 +76,7 @@ impl DataSheet {
         self.rows + self.bodies.len()
     }
 
-    /// Degrees of subspace.
+    /// Degrees of freedom.
     pub fn degrees_of_freedom(&self) -> usize {
         (6 * self.bodies.len()).saturating_sub(self.rows)
     }
@@ -176,7 +176,7 @@ pub fn printable(name: &str) -> String {
     name.chars().map(|c| if plain(c) { c.to_string() } else { c.escape_default().to_string() }).collect()
 }
 
-/// What only the derivation knows to have been spared.
+/// What was saved and only the derivation can tell.
 fn spared(equations: &Equations) -> Vec<String> {
     let mut spared = Vec::new();
     if equations.n_vanishing > 0 {
@@ -184,7 +184,7 @@ fn spared(equations: &Equations) -> Vec<String> {
     }
     spared.extend(equations.joint_space.iter().flat_map(|space| &space.invariant).map(|&body| {
         let name = &equations.model.bodies[body].name;
-        format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
+        format!("the rotation of `{name}` about its own axis in u̇ (its inertia is symmetric about it)")
     }));
     spared
 }
@@ -227,7 +227,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
         left_out.push("parameters (all numbers are folded)".into());
     }
     if model.outputs.is_empty() {
-        left_out.push("outputs (the page asks for none)".into());
+        left_out.push("outputs (the model file asks for none)".into());
     }
     left_out
 }

@@ -219,7 +219,7 @@ impl<V: Variables> Writer<'_, V> {
         (self.expression(x, Binding::Sum), self.expression(y, Binding::Sum))
     }
 
-    /// The factors of a product that is written where it is used, and is no quotient.
+    /// The factors of a product that is written where it is used, and is not a quotient.
     fn fusible(&self, id: ExprId) -> Option<(ExprId, ExprId)> {
         match self.graph.node(id) {
             Node::Mul(a, b)
@@ -242,7 +242,7 @@ impl<V: Variables> Writer<'_, V> {
         quote! { #a * #b }
     }
 
-    /// A difference that is not needed elsewhere is turned round instead of negated.
+    /// A difference that is not needed elsewhere has its operands swapped instead of being negated.
     fn negation(&self, a: ExprId) -> (TokenStream, Binding) {
         if let Node::Add(x, y) = self.graph.node(a)
             && let Node::Neg(y) = self.graph.node(*y)

@@ -48,13 +48,13 @@ pub struct Equations<'m> {
     pub gamma: Vec<ExprId>,
     pub velocity_residual: Vec<ExprId>,
     pub applied_force: Vec<ExprId>,
-    /// (s̈, ẇ') of each moving_body, then the multipliers that are found with them.
+    /// (s̈, ẇ') of each moving body, then the multipliers that are found with them.
     pub solved: Chosen,
-    /// (δr, δπ') of each moving_body that change the rows as given.
+    /// (δr, δπ') of each moving body that change the rows as given.
     pub projection: Chosen,
     /// All multipliers, the accelerations being known.
     pub lambda: Vec<ExprId>,
-    /// (ṙ, ṗ) of each moving_body.
+    /// (ṙ, ṗ) of each moving body.
     pub position_rates: Vec<ExprId>,
     /// Power of non-conservative forces and drivers, where the state carries their work; the accelerations being known.
     pub power: Option<ExprId>,
@@ -86,7 +86,7 @@ pub struct Parts {
     pub textbook: Textbook,
     pub solution: Solution,
     pub observed: Observed,
-    /// The smallest (δr, δπ') of each moving_body that change the rows as given.
+    /// The smallest (δr, δπ') of each moving body that change the rows as given.
     pub projection: Vec<ExprId>,
     /// Where charts cover the mechanism.
     pub partition: Option<Partition>,
@@ -151,7 +151,7 @@ impl<'m> Equations<'m> {
         self.lambda.len()
     }
 
-    /// Length of (s̈, ẇ') of all moving_bodies.
+    /// Length of (s̈, ẇ') of all moving bodies.
     pub fn n_velocities(&self) -> usize {
         6 * self.n_moving_bodies()
     }

@@ -72,7 +72,7 @@ impl<'d> Rotations<'d> {
     }
 }
 
-/// A(p) of each moving_body by way of 2p.
+/// A(p) of each moving body by way of 2p.
 fn by_doubles(system: &mut System) -> Values {
     let mut values = Values::default();
     for (moving_body, &body) in system.moving_bodies.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Exact constants: a rational times the square root of a whole number.
 //!
-//! Every number of a model page is rational, and normalising an axis adds one square root, so products, quotients and
+//! Every number of a model file is rational, and normalising an axis adds one square root, so products, quotients and
 //! like sums of these constants stay exact. Rounding happens once, at emission. The parts of a rough direction have
 //! hundreds of digits after a few products, and most of the time of a generation may go into bringing them to lowest
 //! terms: hence a library of numbers whose greatest common divisors are quick.
@@ -140,7 +140,7 @@ impl Constant {
     }
 }
 
-/// The root of a square and one, or one and what is no square.
+/// The root of a perfect square and one; otherwise one and the number itself.
 fn whole_root(n: UBig) -> (UBig, UBig) {
     let root = n.sqrt();
     if root.sqr() == n { (root, UBig::ONE) } else { (UBig::ONE, n) }

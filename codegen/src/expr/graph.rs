@@ -101,7 +101,7 @@ impl Graph {
     }
 
     /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see
-    /// `set_up`).
+    /// `parameter_setup`).
     pub fn is_settled(&self, id: ExprId) -> bool {
         self.changes[id.0 as usize] == Changes::WithParameters
     }
@@ -337,7 +337,7 @@ impl Graph {
         if negative { self.neg(sum) } else { sum }
     }
 
-    /// A product that is no product: 1 · b, x · 1/x, √x · √x.
+    /// A product that simplifies to something else: 1 · b, x · 1/x, √x · √x.
     fn reduced_product(&self, a: ExprId, b: ExprId) -> Option<ExprId> {
         match (self.node(a), self.node(b)) {
             _ if a == Self::ONE => Some(b),

@@ -64,7 +64,7 @@ impl fmt::Display for Operations {
 }
 
 /// Operations on the way to a program, + − × ÷ together. Constants are folded and zeros and ones vanish as expressions
-/// are built: there is no pass before that.
+/// are built: no pass comes before that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Passes {
     /// Every expression written out wherever it is used; the largest number if there are more.

@@ -28,7 +28,7 @@ pub enum Symbol {
     Angle(usize),
     /// Value (order 0) or a derivative of a table's curve at t.
     Table { table: usize, order: usize },
-    /// Component of (s̈, ẇ') of a moving_body, where accelerations are known.
+    /// Component of (s̈, ẇ') of a moving body, where accelerations are known.
     Acceleration { moving_body: usize, k: usize },
     /// Multiplier of a row that closes a loop, where accelerations are known.
     LoopMultiplier(usize),

@@ -1,4 +1,4 @@
-//! The forms of the rates' rates that are compared.
+//! The forms of u̇, the derivatives of the rates, that are compared.
 
 use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
@@ -16,7 +16,7 @@ use crate::solve::gram_schmidt;
 /// A form of u̇ and what it is called, in symbols that are yet to be expanded.
 pub type Candidate = (&'static str, Vec<ExprId>);
 
-/// The forms of u̇. Those on the bodies' spins are of use where a maximal state has the angular velocities at hand.
+/// The forms of u̇. Those on the bodies' spins are useful where a maximal state provides the angular velocities.
 #[derive(Debug)]
 pub struct Candidates {
     /// What u̇ is the solution of, angular velocities made of rates.
@@ -54,9 +54,9 @@ impl Candidates {
         let on_spins = JointDynamics::new(system, links, &spins, loads, along, embedding);
         let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
         let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns);
-        let by_gram_schmidt = is_small.then(|| ("orthogonal motions", balance.by_gram_schmidt(system)));
+        let by_gram_schmidt = is_small.then(|| ("Gram–Schmidt", balance.by_gram_schmidt(system)));
         let by_gram_schmidt_on_spins =
-            is_small.then(|| ("orthogonal motions on the bodies' spins", on_spins.by_gram_schmidt(system)));
+            is_small.then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));
         Self {
             balance,
             balance_of_tree,
@@ -84,12 +84,12 @@ impl Candidates {
         self.eliminated_on_spins.retain(keeps);
     }
 
-    /// Those that have rates at hand, in given terms.
+    /// Those in terms of rates, expanded with the given values.
     pub fn on_rates(&self, system: &mut System, values: &Values) -> Vec<(String, Vec<ExprId>)> {
         expanded(system, values, self.eliminated.iter().chain(&self.by_gram_schmidt))
     }
 
-    /// All, in given terms.
+    /// All of them, expanded with the given values.
     pub fn all(&self, system: &mut System, values: &Values) -> Vec<(String, Vec<ExprId>)> {
         let eliminated = self.eliminated.iter().chain(&self.eliminated_on_spins);
         expanded(
@@ -126,7 +126,7 @@ fn inaccurate(
     ways.iter().filter(|(_, roots)| loses(roots)).map(|(name, _)| name.clone()).collect()
 }
 
-/// w' of each moving_body as a maximal state has it, but of bodies whose frame does not turn with them.
+/// w' of each moving body as a maximal state has it, but of bodies whose frame does not turn with them.
 fn spins_at_hand(system: &mut System, coordinates: &Coordinates) -> Vec<Vec3> {
     let own: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body].w).collect();
     let mut spins = own.clone();

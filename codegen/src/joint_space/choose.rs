@@ -24,11 +24,11 @@ pub struct JointSpace {
     pub derivative: Vec<ExprId>,
     /// u̇ in terms of a maximal state that satisfies the constraints.
     pub accelerations_at: Chosen,
-    /// (s̈, ẇ') of each moving_body at such a state.
+    /// (s̈, ẇ') of each moving body at such a state.
     pub corrected: Chosen,
     /// λ at such a state, in terms of [`Symbol::Acceleration`].
     pub multipliers: Vec<ExprId>,
-    /// (s̈, ẇ') of each moving_body at such a state, then λ.
+    /// (s̈, ẇ') of each moving body at such a state, then λ.
     pub solution: Vec<ExprId>,
     /// Maximal positions, velocities and turn references in terms of joint coordinates and rates.
     pub maximal: Vec<ExprId>,

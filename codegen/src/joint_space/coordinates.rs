@@ -19,7 +19,7 @@ pub struct Coordinates {
     pub layout: Layout,
     /// How each body moves on its carrier.
     pub links: Vec<LinkKinematics>,
-    /// The same, but that a body which looks the same all around its axis is described in a frame that does not turn
+    /// The same, but a body whose inertia is symmetric about its axis is described in a frame that does not turn
     /// with it.
     pub links_of_dynamics: Vec<LinkKinematics>,
     /// The angles that turn such bodies, by their places in x.
@@ -104,7 +104,7 @@ fn links_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turne
     layout.links.iter().map(|link| LinkKinematics::of(system, link, turned)).collect()
 }
 
-/// Angles that turn nothing but a body that looks the same whatever the angle is: a leaf with a single axis, its mass
+/// Angles that turn nothing but a body whose inertia is the same at every angle: a leaf with a single axis, its mass
 /// centre on the axis and its inertia symmetric about it, that no load acts on. The body is then described in a frame
 /// that does not turn with it.
 fn invariant_angles(

@@ -162,7 +162,7 @@ impl JointDynamics {
         self.unknowns.iter().flatten().count() > self.places.len()
     }
 
-    /// The accelerations of all rates of the tree through orthogonal motions.
+    /// The accelerations of all rates of the tree by the Gram–Schmidt form.
     pub fn by_gram_schmidt(&self, system: &mut System) -> Vec<ExprId> {
         let (subspaces, unknowns) = (self.subspaces.clone(), self.unknowns.clone());
         let tree = GramSchmidtTree::of_unknowns(system, subspaces, unknowns, Basis::Mixed);
@@ -329,7 +329,7 @@ impl JointDynamics {
         self.subspaces
             .iter()
             .position(|subspace| subspace.moving_body == moving_body)
-            .expect("every moving_body is a link")
+            .expect("every moving body is a link")
     }
 
     /// What drives each unknown: forces less what the motion at constant rates takes.
@@ -446,7 +446,7 @@ pub fn local_subspace(system: &System, link_kinematics: &LinkKinematics) -> Moti
     MotionSubspace::of_tree(link_kinematics.moving_body, parent, link_kinematics.on_body, free)
 }
 
-/// w' of each moving_body, from the rates.
+/// w' of each moving body, from the rates.
 pub fn spins(system: &mut System, links: &[LinkKinematics]) -> Vec<Vec3> {
     let mut spins = vec![ZERO3; system.moving_bodies.len()];
     for link_kinematics in links {

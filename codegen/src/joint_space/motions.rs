@@ -12,13 +12,13 @@ use crate::expr::vector::{UNIT3, ZERO3, transposed};
 use crate::solve::articulated_body::Arm;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
 
-/// (s̈, ẇ') of each moving_body by the symbols that stand for them.
+/// (s̈, ẇ') of each moving body by the symbols that stand for them.
 pub fn accelerations_by_symbol(accelerations: &[ExprId]) -> Values {
     let symbol = |index: usize| Symbol::Acceleration { moving_body: index / 6, k: index % 6 };
     accelerations.iter().enumerate().map(|(index, &value)| (symbol(index), value)).collect()
 }
 
-/// (s̈, ẇ') of each moving_body from the rates' rates: translations in each body's own frame, or in the global one.
+/// (s̈, ẇ') of each moving body from the rates' rates: translations in each body's own frame, or in the global one.
 pub fn outward(system: &mut System, coordinates: &Coordinates, rates: &[ExprId]) -> [Vec<ExprId>; 2] {
     [false, true].map(|is_global| {
         let motions = motions(system, &coordinates.links, rates, is_global);
@@ -26,7 +26,7 @@ pub fn outward(system: &mut System, coordinates: &Coordinates, rates: &[ExprId])
     })
 }
 
-/// (s̈, ẇ') of each moving_body from the rates' rates, with translations in the global frame or in each body's own.
+/// (s̈, ẇ') of each moving body from the rates' rates, with translations in the global frame or in each body's own.
 pub fn motions(
     system: &mut System,
     links: &[LinkKinematics],

@@ -24,7 +24,7 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Of each moving_body.
+    /// Of each moving body.
     pub fn frames(self, system: &System) -> Vec<Frames> {
         let of = |&body: &usize| match self {
             Self::Mixed => Frames { t: UNIT3, rho: UNIT3 },
@@ -60,14 +60,14 @@ impl Frames {
 pub struct EliminatedTree {
     /// Root first.
     pub joints: Vec<EliminatedJoint>,
-    /// Of each moving_body.
+    /// Of each moving body.
     frames: Vec<Frames>,
 }
 
 /// What sets a tree in motion.
 #[derive(Debug)]
 pub struct Excitation {
-    /// On the mass centre of each moving_body: minus the applied wrench.
+    /// On the mass centre of each moving body: minus the applied wrench.
     pub bias: Vec<SpatialVector>,
     /// On each joint, root first: the acceleration forced upon it.
     pub forced: Vec<SpatialVector>,
@@ -78,7 +78,7 @@ pub struct Excitation {
 /// How a tree moves.
 #[derive(Debug)]
 pub struct Response {
-    /// The acceleration of each moving_body's mass centre.
+    /// The acceleration of each moving body's mass centre.
     pub motions: Vec<SpatialVector>,
     /// For each joint, root first: how fast each of its free twists accelerates.
     pub rates: Vec<Vec<ExprId>>,

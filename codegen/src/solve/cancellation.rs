@@ -123,7 +123,7 @@ fn inertial_parameters(system: &System) -> BTreeSet<usize> {
     numbers.filter_map(index).collect()
 }
 
-/// Makes the Euler parameters of a moving_body a unit vector.
+/// Makes the Euler parameters of a moving body a unit vector.
 fn to_length_one(values: &mut HashMap<Symbol, f64>, moving_body: usize) {
     let p = [0, 1, 2, 3].map(|k| Symbol::Euler { moving_body, k });
     let square: f64 = p.iter().filter_map(|symbol| values.get(symbol)).map(|x| x * x).sum();
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     fn at_stake(page: &str) -> bool {
-        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         may_matter(&mut System::new(&model))
     }
 
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn the_difference_of_large_sums_loses_digits_and_a_product_does_not() {
         let page = include_str!("../../../models/gyroscope-parameters.toml");
-        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let mut system = System::new(&model);
         let inertial: Vec<_> = inertial_parameters(&system).into_iter().collect();
         let graph = &mut system.graph;

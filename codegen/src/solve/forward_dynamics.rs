@@ -99,7 +99,7 @@ impl ForwardDynamics {
         }
     }
 
-    /// The smallest (δr, δπ') of each moving_body, in the metric of the masses, that change the rows by
+    /// The smallest (δr, δπ') of each moving body, in the metric of the masses, that change the rows by
     /// [`Symbol::Change`]: eq. (17) without forces and with these changes for γ.
     pub fn projection(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
         let changes: Vec<_> =
@@ -202,7 +202,7 @@ fn accurate(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprId]) ->
         .collect()
 }
 
-/// The components of the motions of all moving_bodies.
+/// The components of the motions of all moving bodies.
 fn listed(motions: &[SpatialVector]) -> Vec<ExprId> {
     motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect()
 }
@@ -216,10 +216,10 @@ mod tests {
     /// A thousand operations on numbers of order one, and a solve.
     const ROUNDING: f64 = 1e-9;
 
-    /// Through the reduced mass matrix, by elimination and by orthogonal motions, in every basis, the accelerations are
+    /// Through the reduced mass matrix, by elimination and by Gram–Schmidt, in every basis, the accelerations are
     /// the same.
     fn check(page: &str) {
-        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
+        let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let mut system = System::new(&model);
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
@@ -264,7 +264,7 @@ mod tests {
              first = {{ body = \"rod\", point = [0, -1.2, 0], axis = [1, 0, 0], zero = [0, 0, 1] }}\nsecond = {{ body = \"wall\" }}\n\
              [[force]]\nname = \"pull\"\nkind = \"spring\"\njoint = \"j\"\nstiffness = 1\n{others}"
         );
-        let model = gyro_model::read("page.toml", &page).expect("a page without mistakes");
+        let model = gyro_model::read("page.toml", &page).expect("a model file without mistakes");
         let mut system = System::new(&model);
         let textbook = Textbook::derive(&mut system);
         let trees = ForwardDynamics::of(&mut system, &textbook.kinematics);

@@ -22,9 +22,9 @@ pub const MAX_RATES: usize = 8;
 pub struct GramSchmidtTree {
     /// Root first.
     pub subspaces: Vec<MotionSubspace>,
-    /// Of each moving_body.
+    /// Of each moving body.
     frames: Vec<Frames>,
-    /// Of each moving_body.
+    /// Of each moving body.
     bodies: Vec<Inertia>,
     /// Of each subspace the unknowns that its free twists are parts of.
     unknowns: Vec<Vec<usize>>,
@@ -35,7 +35,7 @@ pub struct GramSchmidtTree {
 /// How a rate moves the mass centres while those further from the root yield.
 #[derive(Debug)]
 struct Column {
-    /// Of each moving_body that it moves.
+    /// Of each moving body that it moves.
     parts: BTreeMap<usize, Part>,
     /// Of what the motion takes along itself.
     inverse: ExprId,
@@ -126,7 +126,7 @@ impl GramSchmidtTree {
         Response { motions, rates }
     }
 
-    /// Of the mass centre of each moving_body, if the rates of each joint change like this.
+    /// Of the mass centre of each moving body, if the rates of each joint change like this.
     fn motions(
         &self,
         graph: &mut Graph,

@@ -9,7 +9,7 @@ use crate::solve::articulated_body::{EliminatedTree, Excitation};
 use crate::solve::ldl::Elimination;
 use std::collections::BTreeMap;
 
-/// What a row's unit multiplier takes from each moving_body: its row of (Φ_r, Φ_π').
+/// What a row's unit multiplier takes from each moving body: its row of (Φ_r, Φ_π').
 pub fn gradient(kinematics: &Kinematics, row: usize) -> Vec<SpatialVector> {
     let columns = kinematics.phi_pi[row].chunks_exact(6);
     columns.map(|c| SpatialVector { t: [c[0], c[1], c[2]], rho: [c[3], c[4], c[5]] }).collect()

@@ -23,7 +23,7 @@ use forward_dynamics::ForwardDynamics;
 /// The solution of eq. (17), in symbols that are yet to be expanded.
 #[derive(Debug)]
 pub struct Solution {
-    /// (s̈, ẇ') of each moving_body, then the multipliers of the rows that close loops or couple joints, those that no
+    /// (s̈, ẇ') of each moving body, then the multipliers of the rows that close loops or couple joints, those that no
     /// joint of the tree owns.
     pub solved: Vec<ExprId>,
     /// The multiplier of each row, in terms of known accelerations and loop multipliers.

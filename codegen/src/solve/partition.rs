@@ -23,9 +23,9 @@ use std::array::from_fn;
 pub struct Partition {
     /// For each chart the vector whose largest component is the special Euler parameter: see `gyro_sim::charts`.
     pub chart_vectors: Vec<Vec4>,
-    /// Positions (r, p) of each moving_body after one Newton step.
+    /// Positions (r, p) of each moving body after one Newton step.
     pub positions: Vec<ExprId>,
-    /// Velocities (s, w') of each moving_body that satisfy eq. (19).
+    /// Velocities (s, w') of each moving body that satisfy eq. (19).
     pub velocities: Vec<ExprId>,
 }
 
@@ -278,7 +278,7 @@ fn as_vec3(rows: &[ExprId]) -> Vec3 {
     rows.try_into().expect("dot-1 rows and chart make three rows")
 }
 
-/// Whether a moving_body's attachment leaves its orientation partly free, so that it needs a chart.
+/// Whether a moving body's attachment leaves its orientation partly free, so that it needs a chart.
 fn needs_chart(system: &System, attachment: Attachment) -> bool {
     match attachment {
         Attachment::Free => true,

@@ -37,9 +37,9 @@ pub struct ReducedTree {
     subspaces: Vec<MotionSubspace>,
     /// Of those of them that hold a joint point to a body at rest or with coordinates.
     held: Vec<Option<HeldPoint>>,
-    /// Of each moving_body.
+    /// Of each moving body.
     bodies: Vec<Body>,
-    /// Of each moving_body how it moves at unit rates of those free twists that move it.
+    /// Of each moving body how it moves at unit rates of those free twists that move it.
     columns: Vec<Vec<(usize, SpatialVector)>>,
     /// Lower triangle.
     matrix: BTreeMap<(usize, usize), ExprId>,

@@ -115,12 +115,12 @@ impl Place {
             (child_body(system, row.owner), true, row.unit == gyro_model::RowUnit::Pure)
         };
         let link = system.tree.links.iter().position(|link| link.body == system.moving_bodies[moving_body]);
-        let from_leaf = system.tree.links.len() - link.expect("every moving_body is a link of the tree");
+        let from_leaf = system.tree.links.len() - link.expect("every moving body is a link of the tree");
         Self { from_leaf, moving_body, is_multiplier, is_rotation }
     }
 }
 
-/// The moving_body of the body that hangs on a row: the child of its joint.
+/// The moving body of the body that hangs on a row: the child of its joint.
 fn child_body(system: &System, owner: RowOwner) -> usize {
     let hangs_on = |attachment: Attachment| match owner {
         RowOwner::Joint(index) => matches!(attachment, Attachment::Joint { joint, .. } if joint == index),
@@ -169,7 +169,7 @@ mod tests {
     /// Every order solves the same system: put back into it, the solution leaves no residual.
     #[test]
     fn every_order_recomposes_the_system() {
-        let model = gyro_model::read("gyroscope.toml", PAGE).expect("the page is good");
+        let model = gyro_model::read("gyroscope.toml", PAGE).expect("the model file is good");
         let mut system = System::new(&model);
         let n = 6 * system.moving_bodies.len();
         let n_rows = model.rows().len();
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn no_multiplier_comes_before_the_velocities_of_its_child() {
-        let model = gyro_model::read("gyroscope.toml", PAGE).expect("the page is good");
+        let model = gyro_model::read("gyroscope.toml", PAGE).expect("the model file is good");
         let system = System::new(&model);
         let (n, n_rows) = (6 * system.moving_bodies.len(), model.rows().len());
         let places: Vec<_> = (0..n + n_rows).map(|unknown| Place::of(&system, unknown)).collect();

@@ -75,7 +75,7 @@ impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
         check_finite(t, y.as_ref())
     }
 
-    /// Whether a singular pose is so near that rounding is all that the rows' rates can say.
+    /// Whether a singular pose is so near that the rows' rates are nothing but rounding.
     fn is_noise(&self, mechanism: &M, t: M::Scalar, y: &M::State) -> bool {
         if !self.has_poses {
             return false;

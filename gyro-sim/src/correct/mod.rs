@@ -19,8 +19,9 @@ pub use closed_form::ClosedForm;
 pub use mass_weighted::MassWeighted;
 pub use partition::{Direct, Partitioned, Partitioning};
 
+use crate::scalar::largest_magnitude;
 use crate::violation::constraint_violation;
-use crate::{Clearance, Error, Mechanism, Ode, Partition, Real, Scalar, refer_turns};
+use crate::{Clearance, Error, Lanes, Mechanism, Ode, Partition, Real, Scalar, refer_turns};
 
 /// A way back onto the constraints, for the equations `D` of a model `M`: a correction implements this for the
 /// equations that it admits.
@@ -118,11 +119,9 @@ pub(crate) const MAX_ITERATIONS: u32 = 10;
 pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
 /// The largest coordinate of a mass centre in units of the mechanism's size.
-fn reach<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
+pub(crate) fn reach<M: Mechanism<Scalar: Lanes>>(mechanism: &M, y: &M::State) -> M::Scalar {
     let bodies = y.as_ref().chunks_exact(7).take(mechanism.description().bodies.len());
-    let coordinates = bodies.flat_map(|body| body.iter().take(3));
-    let zero = M::Scalar::constant(0.0);
-    coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
+    largest_magnitude(bodies.flat_map(|body| body.iter().take(3)).copied()) / mechanism.size()
 }
 
 /// Refuses start and end times that are not finite: equations that do not depend on time would not reveal them.

@@ -1,5 +1,5 @@
-//! The paper's scene, written by `cargo xtask generate` from `models/gyroscope.toml`. This door is written by hand. The other models'
-//! mechanisms are in the package `gyro-mechanisms`.
+//! The paper's scene, written by `cargo xtask generate` from `models/gyroscope.toml`. This door is written by hand. The
+//! other models' mechanisms are in the package `gyro-mechanisms`.
 #![allow(
     clippy::all,
     clippy::pedantic,

@@ -5,8 +5,8 @@ use crate::Real;
 /// Replaces a matrix by its factors and writes into `pivots` which row came to stand in each place; returns the
 /// smallest pivot's size.
 ///
-/// Pivots are row numbers in the matrix's own number type, because no other buffer of the right length is at hand in a
-/// crate that allocates nothing.
+/// Pivots are row numbers in the matrix's own number type, because no other buffer of the right length is available in
+/// a crate that allocates nothing.
 #[inline(always)]
 pub(super) fn factorise<T: Real>(matrix: &mut [T], pivots: &mut [T]) -> T {
     let n = pivots.len();

@@ -57,7 +57,7 @@ const fn all<T: Lanes>() -> u32 {
 
 /// Where all of these numbers are finite.
 fn are_finite<T: Lanes>(numbers: &[T]) -> T::Mask {
-    // Zero times anything else is no number, and stays none in a sum.
+    // Zero times infinity or NaN is NaN, and stays NaN in a sum.
     let zero = T::constant(0.0);
     numbers.iter().fold(zero, |sum, x| T::fused(*x, zero, sum)).finite()
 }

@@ -3,7 +3,8 @@
 
 use super::{Failures, are_finite, keep};
 use crate::contract::Storage;
-use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS};
+use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS, reach};
+use crate::scalar::larger;
 use crate::violation::constraint_violation;
 use crate::{Corrected, Error, Lanes, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
 
@@ -132,15 +133,4 @@ fn violation<M: Mechanism<Scalar: Lanes>>(
     // The largest of quotients by one number is the quotient of the largest.
     let [number, length] = worst;
     (larger(number, length / mechanism.size()), are_finite(phi))
-}
-
-/// The largest coordinate of a mass centre in units of the mechanism's size.
-fn reach<M: Mechanism<Scalar: Lanes>>(mechanism: &M, y: &M::State) -> M::Scalar {
-    let bodies = y.as_ref().chunks_exact(7).take(mechanism.description().bodies.len());
-    let coordinates = bodies.flat_map(|body| body.iter().take(3));
-    coordinates.fold(M::Scalar::constant(0.0), |largest, r| larger(largest, r.absolute())) / mechanism.size()
-}
-
-fn larger<T: Lanes>(one: T, other: T) -> T {
-    T::select(other.greater(one), other, one)
 }

@@ -51,6 +51,7 @@ pub use rounding::is_met;
 pub(crate) use rounding::silence;
 
 use crate::contract::Storage;
+use crate::scalar::largest_magnitude;
 use crate::violation::constraint_violation;
 use crate::{Clearance, Equations, Error, Mechanism, Owner, Real, Scalar};
 use elimination::Elimination;
@@ -152,8 +153,8 @@ where
 /// Exchanges coordinates until no dependent one changes more than [`POOR`] times as fast as an independent one; returns
 /// the number of exchanges.
 ///
-/// A choice that cannot be solved for at all is replaced by that of [`independent`]. Of a state that is not finite
-/// nothing can be told: the choice is kept.
+/// A choice that cannot be solved for at all is replaced by that of [`independent`]. If the
+/// state is not finite, the choice is kept.
 pub fn follow<M, const NC: usize, const NQ: usize>(
     mechanism: &M,
     t: M::Scalar,
@@ -201,7 +202,7 @@ where
     let least = elimination.reduce(NC);
     refuse_singular(mechanism, t, least)?;
     let change = elimination.solution();
-    let largest = change.iter().fold(M::Scalar::constant(0.0), |m, x| if x.abs() > m { x.abs() } else { m });
+    let largest = largest_magnitude(change);
     let limit = least.value * M::Scalar::constant(TRUSTED);
     if largest > limit {
         let owner = constraint_violation(mechanism, phi.as_ref(), |x| x).owner.unwrap_or(Owner::Body(0));
@@ -252,10 +253,7 @@ pub(crate) fn fastest<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -
         .skip(7 * mechanism.description().bodies.len())
         .take(6 * mechanism.description().bodies.len());
     let rates = velocities.enumerate().map(|(k, v)| if k % 6 < 3 { *v / mechanism.size() } else { *v });
-    rates.fold(
-        M::Scalar::constant(0.0),
-        |fastest, rate| if rate.abs() > fastest { rate.abs() } else { fastest },
-    )
+    largest_magnitude(rates)
 }
 
 /// Adds a change of `q̇ = (ṙ, ṗ)`, lengths in units of the size, to the velocities `(s, w')` of the state.

@@ -7,6 +7,7 @@
 
 use super::Solver;
 use crate::contract::Storage;
+use crate::scalar::largest_magnitude;
 use crate::{Clearance, Correction, Error, Ode, Owner, Real};
 
 /// The way to a singular pose.
@@ -139,9 +140,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the
     /// pivot, and so velocities, along what the pivot belongs to, to one over its square.
     fn rounding(&self, pivot: T) -> T {
-        let zero = T::constant(0.0);
-        let size = self.y.as_ref().iter().fold(zero, |size, y| if y.abs() > size { y.abs() } else { size });
-        T::EPSILON * size / (pivot * pivot)
+        T::EPSILON * largest_magnitude(self.y.as_ref().iter().copied()) / (pivot * pivot)
     }
 
     /// By how much a correction has changed the trial, not counting so much of each element: the root mean square in

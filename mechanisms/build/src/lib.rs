@@ -30,7 +30,7 @@ pub fn pages(folder: &Path) -> io::Result<Vec<PathBuf>> {
 /// Generates the modules of model files, on all cores, and `modules.rs`, which declares them.
 ///
 /// # Errors
-/// What is wrong with a page or a file, and which one it is.
+/// What is wrong with a model file or another file, and which one it is.
 pub fn generate(pages: &[PathBuf]) -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: this is for build scripts")?);
     let next = AtomicUsize::new(0);
@@ -48,7 +48,7 @@ pub fn generate(pages: &[PathBuf]) -> Result<(), Box<dyn Error>> {
     renew(&out.join("modules.rs"), &modules.concat()).map_err(Into::into)
 }
 
-/// Generates the module of a page; gives its declaration.
+/// Generates the module of a model file; gives its declaration.
 fn generate_one(page: &Path, out: &Path) -> Result<String, String> {
     println!("cargo::rerun-if-changed={}", page.display());
     let read = |path: &Path| fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()));

@@ -1,4 +1,4 @@
-//! The pose must be the one that is meant: not flipped, not far from its guess.
+//! Checks that the pose is the intended one: not flipped, not far from its guess.
 
 use super::error::AssemblyError;
 use super::projection::{Configuration, rotation_vector};
@@ -59,7 +59,7 @@ pub(crate) fn flipped(kinematics: &Kinematics, at: &Configuration) -> Option<(us
     (0..kinematics.joints().len()).find_map(|joint| of(joint).map(|direction| (joint, direction)))
 }
 
-/// Where the joints of a body are, as the end of a sentence.
+/// The coordinates of the joints of a body, as the end of a message.
 fn coordinates_of(model: &Model, body: usize, at: &Configuration) -> String {
     let own = model.joints.iter().zip(&at.near).filter(|(joint, position)| {
         (joint.first.body == body || joint.second.body == body) && !position.is_empty()

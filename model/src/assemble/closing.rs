@@ -16,7 +16,7 @@ const ATTEMPTS: usize = 6;
 /// How far the first of them is from the guess, rad or parts of the size; the next ones are farther by as much.
 const SCATTER: f64 = 0.05;
 
-/// Moves below this (rad or parts of the size) are not worth telling.
+/// Moves below this (rad or parts of the size) are not reported.
 const MOVED: f64 = 1e-9;
 
 /// The start of a mechanism whose trees alone do not place it, from the first guess from which it closes.
@@ -30,10 +30,10 @@ pub(super) fn assemble(model: &Model) -> Result<Start, AssemblyError> {
     assembled(model, &guesses, &second).or(start)
 }
 
-/// The trees along which bodies may be guessed. What the page says of joints is heeded as far as it can be: joints that
-/// it tells nothing of close the loops, and those that it tells some coordinates of come before them. Which is the
-/// better guess of a body that only joints of which nothing is told and points on lines hold, the joint's zero or the
-/// body's own orientation, nothing tells.
+/// The trees along which bodies may be guessed. What the model file says of joints is taken into account as far as
+/// possible: joints without a start close the loops, and joints with some of their coordinates given are preferred to
+/// them. For a body that only joints without a start and points on lines hold, the better guess may be the joint's zero
+/// or the body's own orientation: both are tried.
 fn trees(model: &Model, guesses: &[Guess]) -> [Tree; 2] {
     let ranked = |untold_turns: u8, untold_lines: u8| {
         Tree::along(model, |joint| match (model.joints[joint].kind.turns(), guesses[joint].told()) {
@@ -67,8 +67,8 @@ fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, Ass
     Ok(Start { q: at.q, v, joints, moved })
 }
 
-/// The guessed pose, with the turns of angles as they are guessed; a screw of which nothing is known is on the turn
-/// that its displacement tells.
+/// The guessed pose, with the turns of angles as they are guessed; a screw without a given angle is on the turn that
+/// follows from its displacement.
 fn configuration(kinematics: &Kinematics, tree: &Tree, guesses: &[Guess], walk: &Walk<'_>) -> Configuration {
     let q = walk.layout().0;
     let mut near: Vec<Vec<f64>> = guesses.iter().map(|guess| guess.position.clone()).collect();
@@ -93,7 +93,7 @@ struct Closing<'a> {
 }
 
 impl Closing<'_> {
-    /// The closed configuration nearest to the guess, with the coordinates held that the page holds.
+    /// The closed configuration nearest to the guess, with the coordinates held that the model file holds.
     fn positions(&self, guesses: &[Guess], guess: &Configuration) -> Result<Configuration, AssemblyError> {
         let rows = self.kinematics.equations();
         let held = held(guesses);
@@ -108,7 +108,7 @@ impl Closing<'_> {
         }
     }
 
-    /// Meets the equations from the guess or from near it; else how near one comes.
+    /// Satisfies the equations from the guess or from near it; otherwise tells how close it came.
     fn close(&self, system: &System<'_>, guess: &Configuration) -> Result<Configuration, Configuration> {
         let mut best: Option<(f64, Configuration)> = None;
         for attempt in 0..=ATTEMPTS {
@@ -125,7 +125,7 @@ impl Closing<'_> {
         Err(best.map_or_else(|| guess.clone(), |(_, closed)| closed))
     }
 
-    /// Names the row that stays violated most.
+    /// Names the row that remains violated most.
     fn impossible(&self, system: &System<'_>, at: &Configuration) -> AssemblyError {
         let (scaled, phi) = (system.residual(at), self.kinematics.phi(&at.q, &at.near));
         let worst = scaled.iamax();
@@ -163,7 +163,7 @@ impl Closing<'_> {
     }
 }
 
-/// Equations of the coordinates that the page gives and does not call rough.
+/// Equations of the coordinates that the model file gives and does not call rough.
 fn held(guesses: &[Guess]) -> Vec<Equation> {
     let mut held = Vec::new();
     for (joint, guess) in guesses.iter().enumerate() {

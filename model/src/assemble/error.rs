@@ -1,4 +1,4 @@
-//! Why a model has no consistent start, or no freedom to move.
+//! Why a model has no consistent start, or cannot move.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::{RowOwner, RowUnit};
 /// Why a model has no consistent start, or cannot be simulated from it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblyError {
-    /// No rate of its joint gives a body the angular velocity that the page asks for.
+    /// No rate of its joint gives a body the angular velocity that the model file asks for.
     AngularVelocity {
         /// Index into [`crate::Model::bodies`].
         body: usize,
@@ -37,16 +37,16 @@ pub enum AssemblyError {
     },
     /// No pose near the guess satisfies all constraints.
     Impossible {
-        /// Whose row stays violated most.
+        /// The owner of the row that remains violated most.
         owner: RowOwner,
-        /// What and which that is: ``joint `x` ``.
+        /// Kind and name of the owner: ``joint `x` ``.
         name: String,
-        /// By how much at best.
+        /// The smallest violation that was reached.
         residual: f64,
         /// Unit of the residual.
         unit: RowUnit,
     },
-    /// The mechanism closes, but not with a joint's coordinate where the page holds it.
+    /// The mechanism closes, but not with a joint's coordinate where the model file holds it.
     Held {
         /// Index into [`crate::Model::joints`].
         joint: usize,
@@ -56,18 +56,18 @@ pub enum AssemblyError {
         coordinate: &'static str,
         /// By how much it would have to change: rad or m.
         off_by: f64,
-        /// Where the mechanism closes; nothing for an orientation.
+        /// Where the mechanism closes; `None` for an orientation.
         nearest: Option<f64>,
         /// Unit of both.
         unit: &'static str,
     },
-    /// The constraints are satisfied on the wrong side: two axes or zero directions point opposite ways.
+    /// The constraints are satisfied on the wrong side: two axes or zero directions point in opposite directions.
     Flipped {
         /// Index into [`crate::Model::joints`].
         joint: usize,
         /// Name of the joint.
         name: String,
-        /// What points the wrong way: `"axis"` or `"zero"`.
+        /// Which direction is reversed: `"axis"` or `"zero"`.
         direction: &'static str,
     },
     /// The mechanism closes only far from its guess.
@@ -81,17 +81,17 @@ pub enum AssemblyError {
         /// Joint coordinates where it would close, as text for a message.
         coordinates: String,
     },
-    /// No velocities satisfy the constraints together with the rates of the drivers and of the page.
+    /// No velocities satisfy the constraints together with the rates of the drivers and of the model file.
     Rate {
-        /// Whose rate is missed most.
+        /// The owner of the rate with the largest error.
         owner: RowOwner,
-        /// What and which that is: ``joint `x` ``.
+        /// Kind and name of the owner: ``joint `x` ``.
         name: String,
-        /// By how much at best: m/s or rad/s.
+        /// The smallest error that was reached, m/s or rad/s.
         residual: f64,
         /// Unit of the row: the residual is in this per second.
         unit: RowUnit,
-        /// Whether a rate that the page gives is at fault, rather than the constraints themselves.
+        /// Whether a rate that the model file gives is at fault, rather than the constraints themselves.
         is_given: bool,
     },
     /// The two ends of a link coincide, so that its force has no direction.
@@ -119,9 +119,9 @@ pub enum AssemblyError {
     },
     /// Rows that depend on others at the start contradict them as time goes on: driven bodies are tied together.
     Contradiction {
-        /// Whose row is violated most.
+        /// The owner of the row that is violated most.
         owner: RowOwner,
-        /// What and which that is: ``joint `x` ``.
+        /// Kind and name of the owner: ``joint `x` ``.
         name: String,
         /// The time, s.
         time: f64,
@@ -133,7 +133,7 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// The part of the page that is at fault, where it is one.
+    /// The part of the model file that is wrong, if there is one.
     pub(crate) fn place(&self) -> Option<Place> {
         match self {
             Self::AngularVelocity { body, .. } => Some(Place::body(*body, "angular_velocity")),
@@ -162,29 +162,29 @@ impl AssemblyError {
             Self::Unconnected { .. } => "add a [[joint]] that leads to it".to_owned(),
             Self::NotFinite { .. } => "give the joints that lead to it moderate lengths and rates".to_owned(),
             Self::Impossible { .. } => {
-                "check lengths, points and axes; if the mechanism can close, give its joints starts nearer to that pose"
+                "check lengths, points and axes; if the mechanism can close, start its joints closer to that pose"
                     .to_owned()
             }
-            Self::Held { .. } => "correct it, leave it out, or write rough = true: then it is only a guess".to_owned(),
+            Self::Held { .. } => "correct it, leave it out, or write rough = true to make it an initial guess".to_owned(),
             Self::Flipped { direction: "axis", .. } => {
-                "turn the axis of one end round, or start the joints near the pose that is meant".to_owned()
+                "reverse the axis of one end, or start the joints near the intended pose".to_owned()
             }
             Self::Flipped { .. } => {
-                "turn the zero direction of one end, or start the joints near the pose that is meant".to_owned()
+                "reverse the zero direction of one end, or start the joints near the intended pose".to_owned()
             }
             Self::Jump { .. } => {
-                "start the joints near the pose that is meant; with rough = true they are guesses".to_owned()
+                "start the joints near the intended pose; rough = true makes their values initial guesses".to_owned()
             }
             Self::Rate { is_given: true, .. } => "correct the rate, or leave it out".to_owned(),
-            Self::Rate { .. } => "start the mechanism elsewhere: from this pose it cannot follow".to_owned(),
-            Self::Link { .. } => "start the mechanism where the ends are apart, or move one of them; where they stay together, write a \
+            Self::Rate { .. } => "choose another start: from this pose no velocities are possible".to_owned(),
+            Self::Link { .. } => "start the mechanism where the ends are apart, or move one of them; if they never separate, write a \
                                   force along the joint's coordinate (\"spring\" or \"damper\") instead"
                 .to_owned(),
             Self::OverConstrained { .. } => {
-                "use joints with more freedom, or check that axes and lengths agree exactly".to_owned()
+                "use joints with more degrees of freedom, or check that axes and lengths agree exactly".to_owned()
             }
-            Self::Driver { .. } => "remove the driver, or what else fixes its coordinate".to_owned(),
-            Self::Contradiction { .. } => "let the driven bodies move independently: use joints with more freedom".to_owned(),
+            Self::Driver { .. } => "remove the driver, or whatever else fixes its coordinate".to_owned(),
+            Self::Contradiction { .. } => "let the driven bodies move independently: use joints with more degrees of freedom".to_owned(),
         }
     }
 }
@@ -215,13 +215,13 @@ impl fmt::Display for AssemblyError {
                 "body `{name}` cannot start with angular velocity {wanted:?} rad/s: joint `{joint}` allows \
                  {nearest:?} at best"
             ),
-            Self::Unconnected { name, .. } => write!(f, "body `{name}` is connected to nothing"),
+            Self::Unconnected { name, .. } => write!(f, "body `{name}` is not connected"),
             Self::NotFinite { name, .. } => {
                 write!(f, "the start of body `{name}` is too large to compute with")
             }
             Self::Impossible { name, residual, unit, .. } => write!(
                 f,
-                "the mechanism cannot be assembled from this start: {name} stays violated by {}",
+                "the mechanism cannot be assembled from this start: {name} remains violated by {}",
                 shown(*residual, *unit)
             ),
             Self::Held { name, coordinate, off_by, nearest, unit, .. } => {
@@ -234,12 +234,12 @@ impl fmt::Display for AssemblyError {
             Self::Flipped { name, direction: "axis", .. } => {
                 write!(
                     f,
-                    "joint `{name}` would be assembled the wrong way round: its axes point opposite ways"
+                    "joint `{name}` would be assembled the wrong way round: its axes would point in opposite directions"
                 )
             }
             Self::Flipped { name, .. } => write!(
                 f,
-                "joint `{name}` would be assembled the wrong way round: half a turn about its axis away"
+                "joint `{name}` would be assembled the wrong way round: off by half a turn about its axis"
             ),
             Self::Jump { name, turned, coordinates, .. } => write!(
                 f,
@@ -250,7 +250,7 @@ impl fmt::Display for AssemblyError {
                 let unit = if *unit == RowUnit::Length { "m/s" } else { "rad/s" };
                 let what =
                     if *is_given { "the start does not allow the rate of" } else { "no velocity satisfies" };
-                write!(f, "{what} {name}: it is missed by {:.3e} {unit}", residual.abs())
+                write!(f, "{what} {name}: off by {:.3e} {unit}", residual.abs())
             }
             Self::Link { name, .. } => {
                 write!(f, "the two ends of link `{name}` coincide at the start: its force has no direction")
@@ -262,7 +262,7 @@ impl fmt::Display for AssemblyError {
             ),
             Self::Driver { name, with, .. } => write!(
                 f,
-                "driver `{name}` prescribes a coordinate that is fixed without it, by {}",
+                "driver `{name}` prescribes a coordinate that is already fixed by {}",
                 with.join(", ")
             ),
             Self::Contradiction { name, time, residual, unit, .. } => write!(

@@ -1,4 +1,4 @@
-//! What the page says of the joints' coordinates at the start: values held, guesses, rates.
+//! What the model file says of the joints' coordinates at the start: values held, guesses, rates.
 
 use crate::kinematics::exact;
 use crate::{JointCoordinate, JointKind, Model, Quaternion};
@@ -10,11 +10,11 @@ pub(super) struct Guess {
     pub(super) position: Vec<f64>,
     /// For each of them where the value comes from.
     pub(super) source: Vec<Source>,
-    /// Second body in the first body's frame, where the page gives it.
+    /// Second body in the first body's frame, where the model file gives it.
     pub(super) orientation: Option<Quaternion>,
     /// Whether the joint is spherical.
     pub(super) is_ball: bool,
-    /// Whether the page gives guesses only.
+    /// Whether the model file gives guesses only.
     pub(super) is_rough: bool,
     /// For each scalar coordinate (spherical: for each component of the relative angular velocity) its rate, where it
     /// is given or driven.
@@ -24,11 +24,11 @@ pub(super) struct Guess {
 /// Where the value of a coordinate comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The page gives it, and the assembly must keep it.
+    /// The model file gives it, and the assembly must keep it.
     Held,
-    /// The page guesses it, a driver sets it, or a coupler makes it follow another.
+    /// The model file guesses it, a driver sets it, or a coupler makes it follow another.
     Guessed,
-    /// Nothing says what it is.
+    /// It is unknown.
     Unknown,
 }
 
@@ -44,7 +44,7 @@ pub(super) enum Told {
 }
 
 impl Guess {
-    /// How much is known or guessed of where the joint is.
+    /// How much of the joint's coordinates is known or guessed.
     pub(super) fn told(&self) -> Told {
         let is_turned = !self.is_ball || self.orientation.is_some();
         let is_known = |source: &Source| *source != Source::Unknown;
@@ -58,8 +58,8 @@ impl Guess {
 
 /// The guesses of all joints.
 ///
-/// A driven coordinate starts where its driver is at t = 0; the page's value comes next; a coordinate that is coupled
-/// to a known one follows it; the rest is zero.
+/// A driven coordinate starts where its driver is at t = 0; the model file's value comes next; a coordinate that is
+/// coupled to a known one follows it; the rest is zero.
 pub(super) fn guesses(model: &Model) -> Vec<Guess> {
     let mut guesses: Vec<Guess> = (0..model.joints.len()).map(|joint| of_page(model, joint)).collect();
     for driver in &model.drivers {

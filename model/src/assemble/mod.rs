@@ -46,7 +46,7 @@ pub struct JointStart {
     pub rate: Vec<f64>,
 }
 
-/// How far the assembly moved something from where the page put or guessed it.
+/// How far the assembly moved a joint or a body from where the model file placed it or guessed it to be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
     /// A joint or a body.
@@ -71,13 +71,13 @@ impl Model {
     ///
     /// Otherwise that pose is a guess. It is moved by the least change (rotations in rad, lengths by [`Model::size`],
     /// both by the root of [`crate::Body::assembly_weight`]) that satisfies all rows, redundant ones too, and keeps the
-    /// coordinates that the page gives and does not call rough. The same holds for the velocities, with all rates that
-    /// the page gives.
+    /// coordinates that the model file gives and does not call rough. The same holds for the velocities, with all rates
+    /// that the model file gives.
     ///
     /// # Errors
-    /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a
-    /// pose on the wrong branch (opposite axes) or a quarter turn away from the guess; a link whose ends coincide; a
-    /// start beyond `f64`.
+    /// An unconnected body; rows or given coordinates and rates that cannot be satisfied, naming the one with the
+    /// largest error; a pose on the wrong branch (opposite axes) or a quarter turn away from the guess; a link whose
+    /// ends coincide; a start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {
         let tree = Tree::of(self);
         if let Some(&body) = tree.unreached.first() {

@@ -1,4 +1,4 @@
-//! How exactly a start meets the constraints: one tolerance for all who ask.
+//! How exactly a start satisfies the constraints: one tolerance for every use.
 
 use super::Start;
 use crate::kinematics::{Equation, Kinematics};
@@ -58,7 +58,7 @@ impl Model {
     }
 }
 
-/// Of a row `Σ_j J_j v_j − ν` the size is `(1 + Σ_j |J_j|) · fastest + |ν|`, lengths in units of the size.
+/// For a row `Σ_j J_j v_j − ν` the size is `(1 + Σ_j |J_j|) · fastest + |ν|`, lengths in units of the size.
 fn rate_tolerances(
     kinematics: &Kinematics,
     start: &Start,

@@ -1,4 +1,4 @@
-//! Velocities of least change that satisfy Φ_q q̇ = ν and the rates that the page gives.
+//! Velocities of least change that satisfy Φ_q q̇ = ν and the rates that the model file gives.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,15 +9,15 @@ use super::projection::{Configuration, Scales, nearest_solution, scale_rows_and_
 use crate::kinematics::{Equation, Kinematics};
 use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, RowUnit, Support};
 
-/// What a rate that the page gives may be missed by, as a part of what its equation adds up: a page rounds its numbers.
-/// The rows of Φ are met to [`START_TOLERANCE`].
+/// What a rate that the model file gives may be missed by, as a part of what its equation adds up: a model file rounds
+/// its numbers. The rows of Φ are met to [`START_TOLERANCE`].
 const GIVEN_TOLERANCE: f64 = 1e-9;
 
 /// Linear equations among the velocities.
 struct Rates {
     matrix: DMatrix<f64>,
     right: DVector<f64>,
-    /// For each row whose it is.
+    /// The owner of each row.
     owners: Vec<(RowOwner, RowUnit)>,
 }
 
@@ -37,13 +37,13 @@ pub(super) fn velocities(
     let (rows, given) = (all.first(n_rows), all.after(n_rows));
     let mut found = nearest_solution(&all.matrix, &all.right, &from);
     if rows.missed(&found, START_TOLERANCE).is_some() {
-        // Rates that the page rounds may be off a little: then they give way.
+        // Rates that the model file rounds may be off a little: then they give way.
         found = nearest_solution(&rows.matrix, &rows.right, &found);
     }
     if rows.missed(&found, START_TOLERANCE).is_none() && given.missed(&found, GIVEN_TOLERANCE).is_none() {
         return Ok(found.component_mul(&scales.columns).as_slice().to_vec());
     }
-    // Whether the rows themselves are at fault, or what the page wants besides.
+    // Whether the rows themselves are at fault, or what the model file wants besides.
     let alone = nearest_solution(&rows.matrix, &rows.right, &from);
     let (missed, is_given) = match rows.missed(&alone, START_TOLERANCE) {
         Some(missed) => (missed, false),
@@ -63,7 +63,7 @@ fn rows(kinematics: &Kinematics, at: &Configuration) -> Rates {
     }
 }
 
-/// The rates of joints and the angular velocities of bodies that the page gives.
+/// The rates of joints and the angular velocities of bodies that the model file gives.
 fn given(model: &Model, kinematics: &Kinematics, guesses: &[Guess], at: &Configuration) -> Rates {
     let (mut equations, mut right, mut owners) = (Vec::new(), Vec::new(), Vec::new());
     for (joint, guess) in guesses.iter().enumerate() {
@@ -93,7 +93,7 @@ fn given(model: &Model, kinematics: &Kinematics, guesses: &[Guess], at: &Configu
     joints.and(spins(model))
 }
 
-/// The angular velocities that the page gives bodies which are not free to have any.
+/// The angular velocities that the model file gives to bodies which are not free.
 fn spins(model: &Model) -> Rates {
     let moving_bodies = model.coordinate_bodies();
     let wanted =

@@ -15,7 +15,7 @@ pub(super) struct State {
     pub(super) p: Quaternion,
     /// Velocity of the mass centre, global.
     pub(super) s: Vector,
-    /// Angular velocity w', body frame: kept there, so that what the page gives stays as it is.
+    /// Angular velocity w', body frame: kept there, so that what the model file gives stays as it is.
     pub(super) w: Vector,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Walk<'m> {
     pub(super) states: Vec<State>,
     /// The joints of the trees.
     pub(super) joints: Vec<JointStart>,
-    /// The first body whose joint does not allow the angular velocity that the page wants.
+    /// The first body whose joint does not allow the angular velocity that the model file gives.
     pub(super) missed: Option<AssemblyError>,
 }
 
@@ -48,7 +48,8 @@ const RATE_TOLERANCE: f64 = 1e-9;
 const CROSSED: Quaternion =
     Quaternion([0.0, std::f64::consts::FRAC_1_SQRT_2, 0.0, std::f64::consts::FRAC_1_SQRT_2]);
 
-/// Every body as the page places it; only fixed, driven and free ones, and those that only rods hold, mean it.
+/// Every body as the model file places it; this counts only for fixed, driven and free ones and for those that only
+/// rods hold.
 pub(super) fn roots(model: &Model, tree: &Tree) -> Vec<State> {
     let state = |(index, body): (usize, &crate::Body)| {
         if let Some(motion) = &body.motion {
@@ -157,8 +158,8 @@ impl<'m> Walk<'m> {
         relative(&self.states, geometry).0.to_vec()
     }
 
-    /// The child's w', from the joint's rate or from what the page wants of the child; leaves the rate with the joint.
-    /// `step` is the child's orientation in its parent's frame.
+    /// The child's w', from the joint's rate or from what the model file gives for the child; leaves the rate with the
+    /// joint. `step` is the child's orientation in its parent's frame.
     fn angular_velocity(&mut self, hanging: Hanging, step: Quaternion) -> Vector {
         let carried = step.rotate_back(self.states[hanging.parent].w);
         let wanted = self.model.bodies[hanging.body].angular_velocity.as_ref().map(|w| vector(self.model, w));

@@ -118,7 +118,7 @@ impl Kinematics {
         }
     }
 
-    /// Position against the page's, and the vector part of `p0* p`: paper eqs. (5) and (6).
+    /// Position against the model file's, and the vector part of `p0* p`: paper eqs. (5) and (6).
     fn body_rows<D: Scalar>(&self, body: usize, pose: &Pose<D>) -> Vec<D> {
         let Place::Slot { held: Some(held), .. } = self.places[body] else { return Vec::new() };
         let [_, x, y, z] = product(Quaternion(held.p).conjugate().0.map(D::from), pose.p);

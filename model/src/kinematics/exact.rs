@@ -2,7 +2,7 @@
 
 use crate::{Model, Number, Rational};
 
-/// Numbers of the page with the model's parameters as they are.
+/// Numbers of the model file with the model's parameters as they are.
 pub(crate) fn exact<const N: usize>(model: &Model, numbers: &[Number; N]) -> [Rational; N] {
     std::array::from_fn(|k| model.exact(&numbers[k]))
 }

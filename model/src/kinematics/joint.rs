@@ -31,7 +31,7 @@ pub(crate) struct EndGeometry {
 
 impl EndGeometry {
     /// The zero direction loses its part along the axis exactly: `h × zero` and `(h × zero) × h` are formed in
-    /// rationals. Where the page's directions make no frame, which validation refuses, it is that of the body.
+    /// rationals. Where the model file's directions make no frame, which validation refuses, it is that of the body.
     fn of(model: &Model, end: &JointEnd) -> Self {
         let (axis, zero) = (exact(model, &end.axis), exact(model, &end.zero));
         let side = cross(&axis, &zero);

@@ -1,7 +1,7 @@
 //! The kinematics of any model in `f64`: Φ written once, plainly, its derivatives by dual numbers.
 //!
 //! This is what assembles the start and counts degrees of freedom. It is not fast and shares no derivation with the
-//! generator or the twin.
+//! generator or the runtime-assembled model.
 
 mod equation;
 mod exact;
@@ -45,7 +45,7 @@ use crate::{CoordinateKind, JointCoordinate, Model, Quaternion, Row, RowOwner, S
 ///     second = { body = "bob", point = [0, 1, 0] }
 ///     angle = 7
 /// "#;
-/// let model = gyro_model::read("pendulum.toml", page).expect("a good page");
+/// let model = gyro_model::read("pendulum.toml", page).expect("a good model file");
 /// let start = model.assemble().expect("a start");
 /// let kinematics = gyro_model::Kinematics::at(&model, 0.0);
 /// let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
@@ -65,7 +65,7 @@ pub struct Kinematics {
 /// Where a body's pose comes from.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// From this moving_body of the coordinates. A constrained body is held at the pose.
+    /// From this moving body of the coordinates. A constrained body is held at the pose.
     Slot { moving_body: usize, held: Option<Pose<f64>> },
     /// Fixed or driven: the pose with its derivative in time.
     Folded(Pose<Dual64>),
@@ -192,7 +192,7 @@ impl CouplerNumbers {
     }
 }
 
-/// The pose that the page gives a body: constant, or prescribed in time.
+/// The pose that the model file gives a body: constant, or prescribed in time.
 fn folded(model: &Model, index: usize, t: f64) -> Pose<Dual64> {
     let body = &model.bodies[index];
     match &body.motion {

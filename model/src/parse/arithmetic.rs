@@ -1,4 +1,4 @@
-//! Texts that want to be computed: a page has numbers and names, and does no arithmetic.
+//! Strings with arithmetic in them: a model file has numbers and names only.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ use crate::validate::Place;
 const FUNCTIONS: [&str; 12] =
     ["pi", "tau", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "radians", "abs"];
 
-/// The words for a text with arithmetic in it; `None` for other texts.
+/// The message for a string with arithmetic in it; `None` for other strings.
 pub(super) fn refused(reader: &Reader<'_>, place: Place, text: &str) -> Option<[String; 3]> {
     if !is_arithmetic(reader, text) {
         return None;
@@ -26,8 +26,8 @@ pub(super) fn refused(reader: &Reader<'_>, place: Place, text: &str) -> Option<[
         None => "write the result as a number".to_owned(),
     };
     Some([
-        format!("`{}` is a number or the name of one: arithmetic is not supported", place.key),
-        "would have to be computed".to_owned(),
+        format!("`{}` must be a number or a name: arithmetic is not supported", place.key),
+        "an expression".to_owned(),
         help,
     ])
 }
@@ -60,7 +60,7 @@ fn is_known(reader: &Reader<'_>, name: &str) -> bool {
     reader.parameters.iter().chain(&reader.inputs).any(|known| known == name)
 }
 
-/// The words in a text.
+/// The words in a string.
 fn names(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
         .filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic()))

@@ -26,7 +26,12 @@ const KEYS: [&str; 11] = [
 
 /// Reads all bodies. Their names are with the reader before any joint refers to them.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
-    page.require(reader, "body", "the page", "[[body]] on a line of its own, then the keys of the body");
+    page.require(
+        reader,
+        "body",
+        "the model file",
+        "[[body]] on a line of its own, then the keys of the body",
+    );
     let tables = tables::tables(reader, page, "body");
     if let Some((first, _)) = tables.first() {
         reader.mark(page.place("body"), first.clone());
@@ -106,7 +111,7 @@ fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, name: &str, 
         Support::Driven => ("driven", "remove the line: its motion is prescribed by `driven`"),
     };
     for key in ["velocity", "angular_velocity", "assembly_weight"] {
-        let message = format!("body `{name}` is {is} and has no {}", key.replace('_', " "));
+        let message = format!("body `{name}` is {is} and takes no {}", key.replace('_', " "));
         section.refuse(reader, key, &message, help);
     }
 }

@@ -13,7 +13,8 @@ const COUPLER_KEYS: [&str; 5] = ["name", "first", "second", "ratio", "offset"];
 const COUPLER_END_KEYS: [&str; 2] = ["joint", "coordinate"];
 const DRIVER_KEYS: [&str; 4] = ["name", "joint", "coordinate", "motion"];
 
-/// Stands for a coordinate that the page does not name well: the reader knows, and no joint has this index.
+/// Stands for a coordinate that the model file does not name correctly: the mistake is reported, and no joint has this
+/// index.
 pub(super) const NO_COORDINATE: JointCoordinate = JointCoordinate { joint: usize::MAX, coordinate: 0 };
 
 /// Reads all couplers.

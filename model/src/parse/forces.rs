@@ -37,7 +37,7 @@ const END_KEYS: [&str; 2] = ["body", "point"];
 const SIDES: [(&str, StopSide); 2] = [("lower", StopSide::Lower), ("upper", StopSide::Upper)];
 const FRAMES: [(&str, LoadFrame); 2] = [("global", LoadFrame::Global), ("body", LoadFrame::Body)];
 
-/// The kinds on the page.
+/// The kinds in the model file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Spring,
@@ -150,7 +150,11 @@ impl Reading<'_, '_> {
             side: side.unwrap_or(StopSide::Upper),
             stiffness: self.number(reader, "stiffness", "in N.m/rad or N/m"),
             damping: self.strength_or_zero(reader, "damping"),
-            softness: self.number(reader, "softness", "in rad or m: the width over which the stop sets in"),
+            softness: self.number(
+                reader,
+                "softness",
+                "in rad or m: the distance over which the force of the stop builds up",
+            ),
         }
     }
 

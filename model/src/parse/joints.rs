@@ -116,7 +116,7 @@ fn require_directions(reader: &mut Reader<'_>, section: &Section<'_>, title: &st
     if !sides.is_empty() {
         require_direction(reader, section, title, ("axis", "the joint's axis", sides));
         let meaning = match kind {
-            JointKind::Prismatic | JointKind::PointOnLine => "a direction across the axis",
+            JointKind::Prismatic | JointKind::PointOnLine => "a direction that is not parallel to the axis",
             _ => "the direction from which the angle is measured",
         };
         require_direction(reader, section, title, ("zero", meaning, sides));
@@ -213,12 +213,12 @@ fn refuse_directions(reader: &mut Reader<'_>, joint: &Shared<'_, '_>, section: &
     for key in ["axis", "zero"] {
         let (message, help) = match kind {
             JointKind::PointOnLine => (
-                format!("the second body of a point_on_line joint has no `{key}`"),
+                format!("the second body of a point_on_line joint takes no `{key}`"),
                 "remove it: its point stays on the axis of the first body",
             ),
-            JointKind::Rod => (format!("a rod has no `{key}`"), "remove it: a rod only joins two points"),
+            JointKind::Rod => (format!("a rod takes no `{key}`"), "remove it: a rod only joins two points"),
             _ => (
-                format!("a spherical joint has no `{key}`"),
+                format!("a spherical joint takes no `{key}`"),
                 "remove it: a spherical joint only makes two points coincide",
             ),
         };

@@ -1,4 +1,4 @@
-//! The kinds of joint on the page, and which keys each of them has.
+//! The kinds of joint in the model file, and which keys each of them has.
 
 use super::reader::Reader;
 use super::section::Section;
@@ -18,7 +18,7 @@ pub(super) const KINDS: [(&str, JointKind); 10] = [
     ("rod", JointKind::Rod),
 ];
 
-/// Keys that some kinds have and others have not.
+/// Keys that only some kinds have.
 const OF_KINDS: [&str; 17] = [
     "axis",
     "zero",
@@ -65,7 +65,7 @@ pub(super) fn directed_sides(kind: JointKind) -> &'static [crate::validate::Side
 pub(super) fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, kind: JointKind) {
     for key in OF_KINDS.into_iter().chain(["rough"]) {
         if !has(kind, key) {
-            let message = format!("a {} has no `{key}`", title(kind));
+            let message = format!("a {} takes no `{key}`", title(kind));
             section.refuse(reader, key, &message, &help(kind, key));
         }
     }

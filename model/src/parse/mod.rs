@@ -1,4 +1,4 @@
-//! The reader: from the text of a page to a checked [`Model`], or to every mistake in it at once.
+//! The reader: from the text of a model file to a checked [`Model`], or to every mistake in it at once.
 
 mod arithmetic;
 mod bodies;
@@ -32,7 +32,7 @@ use crate::directions;
 use crate::validate::{coordinate_problems, number_problems, topology_problems};
 use reader::Reader;
 
-/// Reads a page. The file's name is used in messages only.
+/// Reads a model file. The file's name is used in messages only.
 ///
 /// ```
 /// let page = r#"
@@ -45,7 +45,7 @@ use reader::Reader;
 /// inertia = [1e-4, 1e-4, 2e-4]
 /// angular_velocity = [0, 1, 50]
 /// "#;
-/// let model = gyro_model::read("plate.toml", page).expect("a good page");
+/// let model = gyro_model::read("plate.toml", page).expect("a good model file");
 /// assert_eq!(model.bodies[0].name, "plate");
 /// assert_eq!(model.assemble().expect("a free body has a start").v[5], 50.0);
 ///
@@ -54,18 +54,18 @@ use reader::Reader;
 /// ```
 ///
 /// # Errors
-/// Every mistake of the page: syntax, unknown and missing keys, wrong types, unknown names, unphysical numbers, bodies
-/// that hang together wrongly, and a start that the joints do not allow.
+/// Every mistake of the model file: syntax, unknown and missing keys, wrong types, unknown names, unphysical numbers,
+/// bodies that are connected wrongly, and a start that the joints do not allow.
 pub fn read(file_name: &str, text: &str) -> Result<Model, Diagnostics> {
     read_with(file_name, text, &mut |_| {
-        Err("this page is read without its folder: see `read_with`".to_owned())
+        Err("this model file is read without its folder: see `read_with`".to_owned())
     })
 }
 
-/// Reads a page whose motions may be tables in files beside it.
+/// Reads a model file whose motions may be tables in files beside it.
 ///
-/// `load` gets the path of a table as the page writes it and returns the text of the CSV file, or why it cannot be
-/// read.
+/// `load` gets the path of a table as the model file writes it and returns the text of the CSV file, or why it cannot
+/// be read.
 ///
 /// ```
 /// let page = r#"
@@ -87,12 +87,12 @@ pub fn read(file_name: &str, text: &str) -> Result<Model, Diagnostics> {
 /// second = { body = "plate" }
 /// "#;
 /// let mut load = |_: &str| Ok("t,x\n0,0\n1,0.01\n2,0".to_owned());
-/// let model = gyro_model::read_with("shaken.toml", page, &mut load).expect("a good page");
+/// let model = gyro_model::read_with("shaken.toml", page, &mut load).expect("a good model file");
 /// assert!(model.bodies[0].motion.is_some());
 /// ```
 ///
 /// # Errors
-/// As [`read`], and tables that are missing or no tables.
+/// As [`read`], and missing or invalid tables.
 pub fn read_with(
     file_name: &str,
     text: &str,
@@ -142,8 +142,9 @@ fn syntax_mistakes(text: &str, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
         // As much as a header takes: all that follows, for each of many errors, would be a square of it.
         let written = written.char_indices().nth(20).map_or(written, |(end, _)| &written[..end]);
         let help = syntax_help(error.message(), written).to_owned();
-        let message = format!("TOML syntax: {}", error.message().trim_end_matches(", expected nothing"));
-        Diagnostic { span, message, label: "not understood".to_owned(), help, related: Vec::new() }
+        let message =
+            format!("TOML syntax error: {}", error.message().trim_end_matches(", expected nothing"));
+        Diagnostic { span, message, label: "cannot be parsed".to_owned(), help, related: Vec::new() }
     };
     errors.iter().map(mistake).collect()
 }
@@ -158,12 +159,12 @@ fn syntax_help(message: &str, written: &str) -> &'static str {
             Some(("driver", _)) => "write [[driver]] above each driver",
             Some(("force", _)) => "write [[force]] above each force",
             Some(("output", _)) => "write [[output]] above each output",
-            _ => "a key may be written once: remove one of the two",
+            _ => "a key may appear only once: remove one of the two",
         }
     } else if written.starts_with(',') {
-        "write numbers with a decimal point, and several of them between brackets"
+        "write numbers with a decimal point, and lists of numbers in brackets"
     } else if message.contains("quoted") {
-        "put text between double quotes"
+        "put strings in double quotes"
     } else {
         "a line is `key = value`, `[table]` or `[[table]]`; see docs/model-format.md"
     }

@@ -25,7 +25,7 @@ pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
         DeValue::Table(table) => form(reader, item, table),
         DeValue::Array(_) => {
             let words = [
-                "a motion is a number or a table".to_owned(),
+                "a motion must be a number or a table".to_owned(),
                 format!("found {}", found(item.value.get_ref())),
                 "write a constant such as 0.5, or { polynomial = [c0, c1] }".to_owned(),
             ];
@@ -69,13 +69,13 @@ fn not_one_form(section: &Section<'_>) -> [String; 3] {
         given => format!("has {}", names::list(given)),
     };
     let help = format!("write one of {}; `sum` and `product` combine several motions", names::list(&FORMS));
-    ["a motion has one form".to_owned(), label, help]
+    ["a motion must have exactly one form".to_owned(), label, help]
 }
 
 fn polynomial(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
     let elements = item.value.get_ref().as_array().filter(|elements| !elements.is_empty());
     let Some(elements) = elements else {
-        let expected = "an array of coefficients, as many as written: a degree cannot be a parameter";
+        let expected = "an array of coefficients: the degree cannot be a parameter";
         item.wrong_type(reader, expected, "polynomial = [c0, c1, c2], for c0 + c1 t + c2 t^2");
         return None;
     };

@@ -2,7 +2,7 @@
 
 use super::synonyms;
 
-/// Words that Rust keeps for itself: a module or a field cannot have such a name.
+/// Keywords of Rust, which cannot be the name of a module or a field.
 const KEYWORDS: [&str; 51] = [
     "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
     "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",
@@ -46,7 +46,7 @@ pub(super) fn snake_case(written: &str) -> String {
     if is_snake_case(name) { name.to_owned() } else { format!("a{name}") }
 }
 
-/// The known name that was meant: what another program's word stands for, or else the nearest in letters.
+/// The known name that was meant: what the word of another program stands for, or else the nearest in letters.
 pub(super) fn meant<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
     synonyms::meant(written, known).or_else(|| nearest(written, known))
 }

@@ -1,4 +1,4 @@
-//! Numbers, vectors and tensors of a page.
+//! Numbers, vectors and tensors of a model file.
 
 use num_bigint::BigInt;
 use toml::de::DeValue;
@@ -42,7 +42,7 @@ impl Section<'_> {
     }
 }
 
-/// A number: a decimal, or a text that names a parameter.
+/// A number: a decimal, or a string that names a parameter.
 pub(super) fn number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
     referring(reader, item, Names::Parameters)
 }
@@ -82,7 +82,7 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
     value.map_err(|words| item.wrong(reader, words)).ok()
 }
 
-/// The words for a text in place of a number that must be written out.
+/// The message for a string in place of a number that must be written out.
 fn not_plain(reader: &Reader<'_>, place: Place, text: &str) -> [String; 3] {
     let key = place.key;
     let name = text.trim_start_matches('-');
@@ -96,7 +96,7 @@ fn not_plain(reader: &Reader<'_>, place: Place, text: &str) -> [String; 3] {
                 .unwrap_or_else(|| {
                     [
                         format!("expected a number for `{key}`"),
-                        format!("found the text {text:?}"),
+                        format!("found the string {text:?}"),
                         "write a number such as 0.5 or 100e-7".to_owned(),
                     ]
                 });
@@ -230,7 +230,7 @@ fn not_an_input(key: &str, name: &str) -> [String; 3] {
     ]
 }
 
-/// A text that neither names a number nor is one with a unit.
+/// A string that neither names a number nor is one with a unit.
 fn unknown_name(reader: &Reader<'_>, key: &str, text: &str, allowed: Names) -> [String; 3] {
     let name = text.strip_prefix('-').unwrap_or(text);
     let mut known: Vec<&str> = reader.parameters.iter().map(String::as_str).collect();
@@ -248,7 +248,7 @@ fn unknown_name(reader: &Reader<'_>, key: &str, text: &str, allowed: Names) -> [
     } else {
         format!("{}, or declare `{name}` under {tables}", names::instead(name, &known))
     };
-    [format!("unknown {what} `{name}`"), format!("text in place of the number `{key}`"), help]
+    [format!("unknown {what} `{name}`"), format!("a string instead of the number `{key}`"), help]
 }
 
 /// A decimal with point or exponent.
@@ -281,7 +281,7 @@ fn sized(text: &str, value: Option<Rational>) -> Result<Rational, [String; 3]> {
         };
         [
             message.to_owned(),
-            "cannot be computed with".to_owned(),
+            "outside the supported range".to_owned(),
             format!(
                 "a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}, in at most \
                  {MAX_DIGITS} characters"

@@ -10,7 +10,7 @@ use crate::{Number, Output, OutputKind};
 
 const KEYS: [&str; 6] = ["name", "kind", "body", "point", "joint", "driver"];
 
-/// The kinds on the page.
+/// The kinds in the model file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Pose,

@@ -1,4 +1,4 @@
-//! The page as a whole: format, name, gravity and simulation.
+//! The model file as a whole: format, name, gravity and simulation.
 
 use num_traits::One;
 use toml::de::DeTable;
@@ -32,7 +32,7 @@ const METHODS: [(&str, Method); 2] = [("partitioned", Method::Partitioned), ("di
 /// Reads everything. Where something is wrong the reader knows, and a default stands in the model.
 pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     reader.mark(Place { owner: Owner::Page, key: "" }, 0..0);
-    let page = Section::open(reader, Owner::Page, "the page", table, &KEYS);
+    let page = Section::open(reader, Owner::Page, "the model file", table, &KEYS);
     format(reader, &page);
     let name = name(reader, &page);
     let (parameters, inputs) = parameters::read(reader, &page);
@@ -65,17 +65,19 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
 }
 
 fn format(reader: &mut Reader<'_>, page: &Section<'_>) {
-    let Some(item) = page.require(reader, "format", "the page", "format = 1 on top") else { return };
+    let Some(item) = page.require(reader, "format", "the model file", "format = 1 at the top") else {
+        return;
+    };
     let version = plain_number(reader, item);
     if version.is_some_and(|version| !version.is_one()) {
-        let words = ["this format is not known", "this reader knows format 1", "write format = 1"];
+        let words = ["unknown format", "only format 1 is supported", "write format = 1"];
         item.wrong(reader, words.map(str::to_owned));
     }
 }
 
 fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
     let example = "name = \"some_name\", the name of the generated module";
-    let Some(item) = page.require(reader, "name", "the page", example) else { return String::new() };
+    let Some(item) = page.require(reader, "name", "the model file", example) else { return String::new() };
     let name = item.name(reader).unwrap_or_default();
     if names::is_keyword(name) {
         item.wrong(reader, keyword(name));

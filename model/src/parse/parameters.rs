@@ -21,7 +21,7 @@ const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
 /// Names that were met, with where they stand and in which table.
 type Seen = Vec<(String, Range<usize>, &'static str)>;
 
-/// Reads both tables, in the order of the page. All names are known before any number refers to one.
+/// Reads both tables, in the order of the model file. All names are known before any number refers to one.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> (Vec<Parameter>, Vec<Parameter>) {
     let mut seen = Seen::new();
     let parameters = table(reader, page, &mut seen, ("parameters", Owner::Parameter));
@@ -63,7 +63,7 @@ fn clash(reader: &mut Reader<'_>, place: Place, seen: &Seen, key: &Spanned<DeStr
     let words = [
         format!("`{name}` is both a parameter and an input"),
         "used again".to_owned(),
-        "write another name for one of them".to_owned(),
+        "rename one of them".to_owned(),
     ];
     reader.clash(place, key.span(), related, words);
 }
@@ -71,9 +71,9 @@ fn clash(reader: &mut Reader<'_>, place: Place, seen: &Seen, key: &Spanned<DeStr
 /// The words for an input that would be such a field.
 fn own_field(name: &str) -> [String; 3] {
     [
-        format!("the input `{name}` would be a field of the generated mechanism, which has one of this name"),
-        "cannot name an input".to_owned(),
-        format!("write another name, such as `{name}_0`"),
+        format!("the input `{name}` clashes with a field of the generated mechanism"),
+        "cannot be the name of an input".to_owned(),
+        format!("choose another name, such as `{name}_0`"),
     ]
 }
 

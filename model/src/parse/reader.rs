@@ -1,4 +1,4 @@
-//! What is found while a page is walked: mistakes, and the place of everything in the text.
+//! What is found while a model file is walked: mistakes, and the place of everything in the text.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
@@ -7,7 +7,7 @@ use crate::JointKind;
 use crate::diagnostics::{Diagnostic, Related};
 use crate::validate::{Owner, Place, Problem};
 
-/// Gets the text of a table by the path that the page gives.
+/// Gets the text of a table by the path that the model file gives.
 pub(super) type Load<'t> = dyn FnMut(&str) -> Result<String, String> + 't;
 
 /// The state of a walk.
@@ -17,21 +17,21 @@ pub(super) struct Reader<'t> {
     mistakes: Vec<Mistake>,
     spans: HashMap<Place, Range<usize>>,
     broken: HashSet<Place>,
-    /// Names of the page's parameters; numbers may refer to them.
+    /// Names of the model file's parameters; numbers may refer to them.
     pub(super) parameters: Vec<String>,
-    /// Names of the page's inputs; forces may refer to them.
+    /// Names of the model file's inputs; forces may refer to them.
     pub(super) inputs: Vec<String>,
-    /// Names of the page's bodies; joints refer to them.
+    /// Names of the model file's bodies; joints refer to them.
     pub(super) bodies: Vec<Option<String>>,
-    /// Names and kinds of the page's joints; couplers, drivers, forces and outputs refer to them.
+    /// Names and kinds of the model file's joints; couplers, drivers, forces and outputs refer to them.
     pub(super) joints: Vec<NamedJoint>,
-    /// Names of the page's drivers; outputs refer to them.
+    /// Names of the model file's drivers; outputs refer to them.
     pub(super) drivers: Vec<Option<String>>,
     /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
     taken: HashMap<String, (Range<usize>, &'static str)>,
 }
 
-/// What others need to know of a joint to refer to it, as far as the page says it well.
+/// What others need to know of a joint to refer to it, as far as the model file states it correctly.
 #[derive(Clone, Debug)]
 pub(super) struct NamedJoint {
     pub(super) name: Option<String>,
@@ -43,7 +43,7 @@ struct Mistake {
     diagnostic: Diagnostic,
 }
 
-/// How sure one can be of a mistake while the page has syntax errors.
+/// How certain a mistake is while the model file has syntax errors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Nature {
     /// Something written is wrong.
@@ -81,7 +81,7 @@ impl<'t> Reader<'t> {
             let words = [
                 format!("`{name}` names a {kind} and a {what}").replace("a output", "an output"),
                 "used again".to_owned(),
-                "write another name: joints, couplers, drivers and outputs share theirs in results and messages"
+                "choose another name: joints, couplers, drivers and outputs share one set of names"
                     .to_owned(),
             ];
             self.clash(place, span.clone(), related, words);
@@ -165,7 +165,7 @@ impl<'t> Reader<'t> {
         self.broken.iter().any(names_bodies)
     }
 
-    /// Whether the page has a place.
+    /// Whether the model file has a place.
     pub(super) fn is_written(&self, place: Place) -> bool {
         self.spans.contains_key(&place)
     }
@@ -179,7 +179,7 @@ impl<'t> Reader<'t> {
         self.mistakes.is_empty()
     }
 
-    /// The mistakes of a page without syntax errors.
+    /// The mistakes of a model file without syntax errors.
     pub(super) fn into_mistakes(self) -> Vec<Diagnostic> {
         self.mistakes.into_iter().map(|m| m.diagnostic).collect()
     }
@@ -201,7 +201,7 @@ impl<'t> Reader<'t> {
         self.mistakes.push(Mistake { nature, diagnostic });
     }
 
-    /// Where a place is, or the nearest thing around it that the page has.
+    /// Where a place is, or the nearest thing around it that the model file has.
     fn span(&self, place: Place) -> Range<usize> {
         let around = std::iter::successors(Some(place), |p| p.fallback());
         around.filter_map(|p| self.spans.get(&p)).next().cloned().unwrap_or_default()

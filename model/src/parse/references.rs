@@ -1,11 +1,11 @@
-//! Names that refer to other parts of the page: bodies, joints and their coordinates, drivers.
+//! Names that refer to other parts of the model file: bodies, joints and their coordinates, drivers.
 
 use super::names;
 use super::reader::{NamedJoint, Reader};
 use super::section::{Item, Section};
 use crate::{CoordinateKind, JointCoordinate, JointKind};
 
-/// Stands for a thing that the page does not name well: the reader knows, and nothing has this index.
+/// Stands for a thing that the model file does not name correctly: the mistake is reported, and nothing has this index.
 pub(super) const NOTHING: usize = usize::MAX;
 
 /// Index of the body that a section names under `body`.

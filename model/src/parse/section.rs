@@ -1,4 +1,4 @@
-//! A table of the page under the eye of the reader: its known keys, and a complaint about any other.
+//! A table of the model file with its known keys; every other key is reported.
 
 use std::ops::Range;
 
@@ -114,7 +114,7 @@ impl<'t> Section<'t> {
     /// Refuses a key that is known but out of place here.
     pub(super) fn refuse(&self, reader: &mut Reader<'_>, key: &'static str, message: &str, help: &str) {
         if let Some(item) = self.get(key) {
-            item.wrong(reader, [message.to_owned(), "out of place".to_owned(), help.to_owned()]);
+            item.wrong(reader, [message.to_owned(), "not allowed here".to_owned(), help.to_owned()]);
         }
     }
 }
@@ -150,7 +150,7 @@ impl<'t> Item<'t> {
     pub(super) fn text(&self, reader: &mut Reader<'_>, example: &str) -> Option<&'t str> {
         let text = self.value.get_ref().as_str();
         if text.is_none() {
-            self.wrong_type(reader, "a text", example);
+            self.wrong_type(reader, "a string", example);
         }
         text
     }
@@ -181,7 +181,7 @@ impl<'t> Item<'t> {
         found
     }
 
-    /// A truth value.
+    /// A boolean.
     pub(super) fn flag(&self, reader: &mut Reader<'_>) -> Option<bool> {
         let flag = self.value.get_ref().as_bool();
         if flag.is_none() {
@@ -209,26 +209,26 @@ pub(super) fn unfit(name: &str) -> Option<[String; 3]> {
         let (length, most) = (name.len(), names::MOST_CHARACTERS);
         [
             format!("a name of {length} characters is too long"),
-            format!("a name has at most {most} characters: files are named by it"),
-            format!("write `{}`, or what is clearer", name[..most / 4].trim_end_matches('_')),
+            format!("a name has at most {most} characters: it is used in file names"),
+            format!("write `{}`, or something clearer", name[..most / 4].trim_end_matches('_')),
         ]
     })
 }
 
 fn not_a_name(name: &str) -> [String; 3] {
     [
-        format!("`{name}` is not a name"),
-        "a name is a lowercase letter, then lowercase letters, digits and `_`".to_owned(),
+        format!("`{name}` is not a valid name"),
+        "a name starts with a lowercase letter, followed by lowercase letters, digits and `_`".to_owned(),
         format!("write `{}`", names::snake_case(name)),
     ]
 }
 
-/// The words for a name that Rust keeps for itself.
+/// The message for a name that is a keyword of Rust.
 pub(super) fn keyword(name: &str) -> [String; 3] {
     [
-        format!("`{name}` is a word of the Rust language"),
-        "cannot name a module or a field".to_owned(),
-        format!("write another name, such as `{name}_0`"),
+        format!("`{name}` is a keyword of Rust"),
+        "cannot be the name of a module or a field".to_owned(),
+        format!("choose another name, such as `{name}_0`"),
     ]
 }
 
@@ -246,10 +246,10 @@ fn choice_example<T>(key: &str, known: &[(&'static str, T)]) -> String {
 /// What a value is, with its article.
 pub(super) fn found(value: &DeValue<'_>) -> String {
     match value {
-        DeValue::String(text) => format!("the text {text:?}"),
+        DeValue::String(text) => format!("the string {text:?}"),
         DeValue::Integer(number) => format!("the number {number}"),
         DeValue::Float(number) => format!("the number {number}"),
-        DeValue::Boolean(value) => format!("the truth value {value}"),
+        DeValue::Boolean(value) => format!("the boolean {value}"),
         DeValue::Datetime(_) => "a date or time".to_owned(),
         DeValue::Array(elements) => format!("an array of {}", elements.len()),
         DeValue::Table(_) => "a table".to_owned(),
@@ -283,7 +283,12 @@ pub(super) fn refuse_others(
             (None, []) => "remove it: it has no keys of its own".to_owned(),
             (None, own) => format!("remove it: its keys are {}", names::list(own)),
         };
-        section.refuse(reader, key, &format!("{} of kind \"{kind}\" has no `{key}`", section.noun()), &help);
+        section.refuse(
+            reader,
+            key,
+            &format!("{} of kind \"{kind}\" takes no `{key}`", section.noun()),
+            &help,
+        );
     }
     if other.is_some() {
         own.iter().for_each(|key| reader.doubt(section.place(key)));
@@ -311,6 +316,6 @@ fn unknown_key(
         // The key that was meant is not reported as missing, too.
         reader.doubt(Place { owner, key });
     }
-    let words = [format!("unknown key `{written}` in {title}"), "not known here".to_owned(), help];
+    let words = [format!("unknown key `{written}` in {title}"), "not a valid key".to_owned(), help];
     reader.unknown(key.span(), words);
 }

@@ -1,4 +1,4 @@
-//! The start must be given where it counts, and exist: the page's angular velocities must be ones that the joints
+//! The start must be given where it counts, and exist: the model file's angular velocities must be ones that the joints
 //! allow.
 
 use super::kinds::start_keys;
@@ -6,7 +6,7 @@ use super::reader::Reader;
 use crate::validate::{Owner, Place, Problem};
 use crate::{Attachment, Driver, JointKind, Link, Model, Tree, analyse};
 
-/// Reports starts that nothing would heed: of bodies that their joints place, and of coordinates that are driven.
+/// Reports starts that would have no effect: of bodies that their joints place, and of coordinates that are driven.
 pub(super) fn misplaced(reader: &mut Reader<'_>, model: &Model) {
     let mut found = Vec::new();
     for link in &Tree::of(model).links {
@@ -41,7 +41,7 @@ fn of_hanging(reader: &Reader<'_>, model: &Model, link: &Link, kind: JointKind) 
         place: Place::body(link.body, key),
         also: None,
         message: format!("the {key} of body `{name}` follows from its joints"),
-        label: "out of place".to_owned(),
+        label: "not allowed here".to_owned(),
         help: help.to_owned(),
     };
     written.map(problem).collect()
@@ -65,7 +65,7 @@ fn of_driven(reader: &Reader<'_>, model: &Model, index: usize, driver: &Driver) 
             "the start of joint `{}` is given by driver `{}`",
             model.joints[joint].name, driver.name
         ),
-        label: "out of place".to_owned(),
+        label: "not allowed here".to_owned(),
         help: format!("remove `{key}`: the driver's motion says where the joint starts and how fast"),
     };
     written.map(problem).collect()

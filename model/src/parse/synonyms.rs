@@ -1,7 +1,7 @@
 //! What other programs and formats call things that have another name here: URDF, SDF, MuJoCo's MJCF, Simscape, Adams,
 //! Modelica.
 //!
-//! One word may stand for several of ours; which is meant, the place says, that knows its own words.
+//! One word may stand for several of ours; which is meant depends on the keys that are known in its place.
 
 /// Words of others, each with those of ours that it may stand for, the likeliest first.
 const WORDS: [(&[&str], &[&str]); 62] = [
@@ -42,7 +42,7 @@ const WORDS: [(&[&str], &[&str]); 62] = [
     (&["acc", "accel"], &["acceleration"]),
     (&["imu", "accelerometer", "gyro", "gyroscope", "sensor"], &["inertial"]),
     (&["constraint_force", "joint_force", "reaction_force"], &["reaction"]),
-    // Keys of the page and of its settings.
+    // Keys of the model file and of its settings.
     (&["g", "gravitational_acceleration"], &["gravity"]),
     (&["bodies", "link", "links", "rigid_body", "part"], &["body"]),
     (&["joints", "constraint", "constraints"], &["joint"]),
@@ -91,7 +91,7 @@ const WORDS: [(&[&str], &[&str]); 62] = [
     (&["tau", "torque", "effort", "amplitude"], &["value", "level"]),
 ];
 
-/// Of the known words the one that this word of others stands for.
+/// The known word that a word of another program stands for.
 pub(super) fn meant<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
     let written = written.to_lowercase().replace([' ', '-'], "_");
     let of_ours = WORDS.iter().filter(|(theirs, _)| theirs.contains(&&*written)).flat_map(|(_, ours)| *ours);
@@ -113,9 +113,9 @@ pub(super) fn elsewhere(written: &str, known: &[&str]) -> Option<&'static str> {
             "remove it: a body's frame has its origin at the mass centre, from where joints' points are measured"
         }
         "rpy" | "euler" | "euler_angles" if is_body || is_end => {
-            "turns are given by Euler parameters, orientation = [e0, e1, e2, e3], or by a joint's `axis` and `zero`"
+            "rotations are given by Euler parameters, orientation = [e0, e1, e2, e3], or by a joint's `axis` and `zero`"
         }
-        "orientation" | "quat" if is_end => "an end is turned by its own `axis` and `zero`",
+        "orientation" | "quat" if is_end => "the orientation of an end is given by its own `axis` and `zero`",
         "stiffness" | "springref" if is_joint => "add a [[force]] of kind \"spring\" on this joint",
         "limit" | "limits" | "range" | "lower" | "upper" if is_joint => {
             "add a [[force]] of kind \"stop\" on this joint for each end of its range"
@@ -133,7 +133,7 @@ pub(super) fn elsewhere(written: &str, known: &[&str]) -> Option<&'static str> {
     Some(help)
 }
 
-/// What to do about a kind of others that is no kind here, but something else.
+/// What to write instead of a kind that other programs have and that is something else here.
 pub(super) fn no_kind(written: &str, what: &str) -> Option<&'static str> {
     let help = match (what, written.to_lowercase().as_str()) {
         (
@@ -149,9 +149,9 @@ pub(super) fn no_kind(written: &str, what: &str) -> Option<&'static str> {
         ("kind of joint", "motion" | "driver" | "actuator") => {
             "write a [[driver]] for a coordinate of a joint"
         }
-        ("kind of force", "gravity") => "write gravity = [...] on top of the page",
+        ("kind of force", "gravity") => "write gravity = [...] at the top of the model file",
         ("kind of output", "angle" | "position" | "rate" | "joint" | "coordinate") => {
-            "remove it: joints' coordinates and rates are always there"
+            "remove it: joints' coordinates and rates are always among the results"
         }
         _ => return None,
     };

@@ -5,7 +5,7 @@ use super::reader::Reader;
 use super::section::{Item, Section};
 use crate::Spline;
 
-/// A table that cannot be used: what is wrong, a few words for the place in the page, and what to do.
+/// A table that cannot be used: what is wrong, a few words for the place in the model file, and what to do.
 type Refusal = [String; 3];
 
 /// Reads the table that a motion names, through the caller's `load`.
@@ -18,7 +18,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_
     };
     let spline = reader.load(path).map_err(|reason| not_loaded(path, &reason)).and_then(|text| {
         let points = points(path, &text, columns)?;
-        let help = "write times that ascend, with values of moderate size";
+        let help = "write increasing times, and values of moderate size";
         Spline::natural(path.to_owned(), &points).map_err(|reason| refusal(path, &reason, help))
     });
     spline.map_err(|words| item.wrong(reader, words)).ok()
@@ -49,11 +49,8 @@ fn points(path: &str, text: &str, columns: Option<[&str; 2]>) -> Result<Vec<(f64
         let line = record.position().map_or(0, csv::Position::line);
         let point = (field(path, &record, time, line)?, field(path, &record, value, line)?);
         if points.last().is_some_and(|last| last.0 >= point.0) {
-            let reason = format!(
-                "line {line}: the time {:?} does not follow {:?}",
-                point.0,
-                points[points.len() - 1].0
-            );
+            let reason =
+                format!("line {line}: the time {:?} is not after {:?}", point.0, points[points.len() - 1].0);
             return Err(refusal(path, &reason, "sort the rows by time and keep one row for each time"));
         }
         points.push(point);
@@ -90,7 +87,7 @@ fn find_columns(
     }
     if known.iter().all(|name| name.parse::<f64>().is_ok()) {
         let help = "write the names of the columns on the first line, such as `t,angle`";
-        return Err(refusal(path, "its first line has numbers in place of names", help));
+        return Err(refusal(path, "its first line has numbers instead of names", help));
     }
     let Some(columns) = columns else {
         let help = format!(
@@ -115,13 +112,13 @@ fn field(path: &str, record: &csv::StringRecord, column: usize, line: u64) -> Re
     match text.parse::<f64>() {
         Ok(value) if in_range(value) => Ok(value),
         _ => {
-            let reason = format!("line {line}: found `{text}` in place of a number");
+            let reason = format!("line {line}: found `{text}` instead of a number");
             Err(refusal(path, &reason, "write finite decimals of moderate size"))
         }
     }
 }
 
-/// The sizes that numbers of a page may have.
+/// The sizes that numbers of a model file may have.
 fn in_range(value: f64) -> bool {
     value == 0.0 || (1e-100..=1e100).contains(&value.abs())
 }
@@ -131,6 +128,6 @@ fn refusal(path: &str, reason: &str, help: &str) -> Refusal {
 }
 
 fn not_loaded(path: &str, reason: &str) -> Refusal {
-    let help = "write the path of a CSV file, from the folder of the page";
+    let help = "write the path of a CSV file, relative to the folder of the model file";
     [format!("table `{path}` cannot be read"), reason.to_owned(), help.to_owned()]
 }

@@ -31,7 +31,7 @@ pub(super) fn tables<'t>(
     tables
 }
 
-/// Reads the names of all things of a kind and reports those that are missing, repeated or no names.
+/// Reads the names of all things of a kind and reports those that are missing, repeated or not valid.
 pub(super) fn names(
     reader: &mut Reader<'_>,
     tables: &[(Range<usize>, &DeTable<'_>)],
@@ -51,8 +51,8 @@ pub(super) fn names(
         let earlier = seen.iter().find(|(other, _)| name.is_some() && name == other.as_deref());
         if let (Some(name), Some((_, first))) = (name, earlier) {
             let related = Related { span: first.clone(), label: "first used here".to_owned() };
-            let help = "write another name".to_owned();
-            let words = [format!("{what} `{name}` is written twice"), "used again".to_owned(), help];
+            let help = "choose another name".to_owned();
+            let words = [format!("{what} `{name}` is defined twice"), "used again".to_owned(), help];
             reader.clash(place, span.clone(), related, words);
         } else if let Some(name) = name {
             reader.take(place, &span, name, what);

@@ -82,7 +82,7 @@ fn tensor_of_rows(
         if rows[i][j] != rows[j][i] {
             let axes = ["x", "y", "z"];
             let words = [
-                "an inertia tensor is symmetric".to_owned(),
+                "an inertia tensor must be symmetric".to_owned(),
                 format!("{0}{1} differs from {1}{0}", axes[i], axes[j]),
                 format!(
                     "write the same number in row {}, column {} and in row {1}, column {0}",

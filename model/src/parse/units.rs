@@ -12,19 +12,19 @@ pub(super) fn pi() -> Rational {
     parse_decimal(PI).expect("π is a decimal")
 }
 
-/// The words for a number that is written as a text with its unit; `None` for other texts.
+/// The message for a number that is written as a string with its unit; `None` for other strings.
 pub(super) fn with_unit(place: Place, text: &str) -> Option<[String; 3]> {
     let key = place.key;
     let (number, unit) = split(text)?;
     let expected = of_key(key);
     let message = match expected {
-        Some(expected) => format!("`{key}` is a number in {expected}, written without a unit"),
-        None => format!("`{key}` is a number, written without a unit"),
+        Some(expected) => format!("`{key}` must be a number in {expected}, without a unit"),
+        None => format!("`{key}` must be a number, without a unit"),
     };
     let in_base = known(unit).map(|(base, factor)| (base, &number * factor));
     let label = match &in_base {
-        Some(_) => format!("text with the unit `{unit}`"),
-        None => format!("text with the unknown unit `{unit}`"),
+        Some(_) => format!("a string with the unit `{unit}`"),
+        None => format!("a string with the unknown unit `{unit}`"),
     };
     let help = match (in_base, expected) {
         (Some((base, value)), Some(expected)) if expected.split(" or ").any(|unit| unit == base) => {
@@ -52,7 +52,7 @@ fn split(text: &str) -> Option<(Rational, &str)> {
     longest.filter(|(_, unit)| !unit.is_empty())
 }
 
-/// What follows a number at the start of a text.
+/// What follows a number at the start of a string.
 pub(super) fn rest(text: &str) -> Option<&str> {
     split(text).map(|(_, rest)| rest)
 }

@@ -23,7 +23,7 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     found
 }
 
-/// Whether a coordinate is one of the model's; others stand for what the page does not name well.
+/// Whether a coordinate is one of the model's; others stand for what the model file does not name correctly.
 fn exists(model: &Model, coordinate: JointCoordinate) -> bool {
     coordinate.joint < model.joints.len()
 }
@@ -98,7 +98,7 @@ fn cycle(model: &Model, groups: &Groups, index: usize) -> Problem {
             shown(model, coupler.first),
             shown(model, coupler.second)
         ),
-        help: "remove a coupler of the cycle: with it the coordinates would be held twice".to_owned(),
+        help: "remove a coupler of the cycle: with it the coordinates would be coupled twice".to_owned(),
     }
 }
 

@@ -78,10 +78,7 @@ fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Probl
     }
     vanishes(&cross(&axis, &zero)).then(|| {
         let message = format!("the zero direction of {of} is parallel to its axis");
-        let help = format!(
-            "angles are measured across the axis: write a direction off it, such as zero = {}",
-            off(0)
-        );
+        let help = format!("choose a direction that is not parallel to the axis, such as zero = {}", off(0));
         let also = Some((place("axis"), "the axis".to_owned()));
         Problem { also, ..problem("zero", message, "parallel to the axis", help) }
     })

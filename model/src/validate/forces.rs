@@ -41,16 +41,16 @@ pub(super) fn conditions(kind: &ForceKind) -> Vec<Condition<'_>> {
         ForceKind::Damper { damping, .. } => vec![("damping", damping, NotNegative, DRIVES)],
         ForceKind::Coulomb { level, rate, .. } => vec![
             ("level", level, NotNegative, DRIVES),
-            ("rate", rate, Positive, "friction would jump where the motion turns back"),
+            ("rate", rate, Positive, "friction would jump where the velocity changes sign"),
         ],
         ForceKind::Stop { stiffness, damping, softness, .. } => vec![
-            ("stiffness", stiffness, Positive, "the stop would not hold"),
+            ("stiffness", stiffness, Positive, "the stop would exert no force"),
             ("damping", damping, NotNegative, DRIVES),
-            ("softness", softness, Positive, "the stop would set in with a jump"),
+            ("softness", softness, Positive, "the force of the stop would jump"),
         ],
         ForceKind::Link { damping, free_length, .. } => vec![
             ("damping", damping, NotNegative, DRIVES),
-            ("free_length", free_length, NotNegative, "lengths are not negative"),
+            ("free_length", free_length, NotNegative, "lengths cannot be negative"),
         ],
         ForceKind::Spring { .. } | ForceKind::Motor { .. } | ForceKind::Load { .. } => Vec::new(),
     }

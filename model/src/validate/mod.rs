@@ -1,4 +1,5 @@
-//! What must hold of a model beyond its syntax. Problems name places of the page; only the parser knows their spans.
+//! What must hold of a model beyond its syntax. Problems name places of the model file; only the parser knows their
+//! spans.
 
 mod coordinates;
 mod directions;
@@ -15,7 +16,7 @@ pub(crate) use topology::problems as topology_problems;
 
 use crate::{Model, Rational, to_f64};
 
-/// A place of the page: a key of something, or the thing itself where the key is empty.
+/// A place of the model file: a key of something, or the thing itself where the key is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Place {
     pub(crate) owner: Owner,
@@ -77,7 +78,7 @@ impl Place {
         Self { owner: Owner::End(joint, side), key }
     }
 
-    /// Where to look next if the page does not have this place: the joint for its end, the whole for its key.
+    /// Where to look next if the model file does not have this place: the joint for its end, the whole for its key.
     pub(crate) fn fallback(self) -> Option<Self> {
         match (self.owner, self.key) {
             (Owner::Page, "") => None,

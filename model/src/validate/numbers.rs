@@ -6,7 +6,7 @@ use super::{Owner, Place, Problem, directions, forces, inertia, shown};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::{Body, Coupler, Joint, JointKind, Model, Parameter};
 
-/// Every unphysical number, in the order of the page.
+/// Every unphysical number, in the order of the model file.
 pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     let mut found: Vec<Problem> = sizes("parameter", &model.parameters, Owner::Parameter).collect();
     found.extend(sizes("input", &model.inputs, Owner::Input));
@@ -31,7 +31,7 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     found
 }
 
-/// Parameters and inputs can be set from outside; the numbers of the page were checked as they were read.
+/// Parameters and inputs can be set from outside; the numbers of the model file were checked as they were read.
 fn sizes<'m>(
     what: &'m str,
     parameters: &'m [Parameter],

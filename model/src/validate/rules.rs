@@ -1,4 +1,4 @@
-//! What parameters must satisfy, for those who set them where this crate is not at hand.
+//! What parameters must satisfy, for code that sets them without this crate.
 
 use super::forces::{Sign, conditions};
 use super::inertia::is_left_out;
@@ -32,7 +32,7 @@ impl ParameterRule<'_> {
 }
 
 impl Model {
-    /// The rules that the values of parameters can break, in the order of the page.
+    /// The rules that the values of parameters can break, in the order of the model file.
     pub fn parameter_rules(&self) -> Vec<ParameterRule<'_>> {
         use ParameterRule::{Inertia, NotNegative, NotParallel, NotZero, Positive};
         let mut rules = Vec::new();

@@ -4,7 +4,7 @@
 use super::{Place, Problem, Side};
 use crate::{Attachment, Body, Joint, JointKind, Link, Model, Support, Tree};
 
-/// Everything that is wrong, in the order of the page within each kind.
+/// Everything that is wrong, in the order of the model file within each kind.
 pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     let tree = Tree::of(model);
     let mut found = Vec::new();
@@ -31,7 +31,7 @@ fn is_held(model: &Model, body: usize) -> bool {
     matches!(model.bodies[body].support, Support::Fixed | Support::Constrained | Support::Driven)
 }
 
-/// A joint among bodies that nothing leads to is no loop yet.
+/// A joint among bodies that nothing leads to is not a loop yet.
 fn is_reached(tree: &Tree, joint: &Joint) -> bool {
     !tree.unreached.contains(&joint.first.body)
 }
@@ -83,7 +83,7 @@ fn between_held(model: &Model, index: usize) -> Problem {
     }
 }
 
-/// A joint between the tree of a free body and another root. Bodies that only rods hold are no roots that could hold
+/// A joint between the tree of a free body and another root. Bodies that only rods hold are not roots that could hold
 /// it.
 fn ties_free_root(model: &Model, tree: &Tree, index: usize) -> Option<Problem> {
     let joint = &model.joints[index];
@@ -96,8 +96,11 @@ fn ties_free_root(model: &Model, tree: &Tree, index: usize) -> Option<Problem> {
     Some(Problem {
         place: Place::joint(index, ""),
         also: Some((Place::body(free, "free"), "the free body".to_owned())),
-        message: format!("joint `{}` ties the free body `{name}` to another root", joint.name),
-        label: "leads to a body that is held otherwise".to_owned(),
+        message: format!(
+            "joint `{}` connects the free body `{name}` to a body that is already held",
+            joint.name
+        ),
+        label: "leads to another fixed, driven or free body".to_owned(),
         help: format!("remove `free` of body `{name}`: its joints place it"),
     })
 }
@@ -114,11 +117,12 @@ fn root(tree: &Tree, body: usize) -> usize {
 fn unconnected(model: &Model, body: usize) -> Problem {
     let name = &model.bodies[body].name;
     let has_joint = model.joints.iter().any(|j| j.first.body == body || j.second.body == body);
-    let label = if has_joint { "its joints lead to no fixed or free body" } else { "no joint names it" };
+    let label =
+        if has_joint { "its joints lead to no fixed, driven or free body" } else { "no joint refers to it" };
     Problem {
         place: Place::body(body, ""),
         also: None,
-        message: format!("body `{name}` is connected to nothing"),
+        message: format!("body `{name}` is not connected"),
         label: label.to_owned(),
         help:
             "add a [[joint]] that leads to it from a fixed body, or write free = true if it floats in space"
@@ -135,11 +139,11 @@ fn twice_started(model: &Model, link: &Link) -> Option<Problem> {
     }
     Some(Problem {
         place: Place::joint(index, "rate"),
-        also: Some((Place::body(link.body, "angular_velocity"), "and its own angular velocity".to_owned())),
+        also: Some((Place::body(link.body, "angular_velocity"), "and its angular velocity".to_owned())),
         message: format!("the start of body `{}` is given twice", body.name),
         label: format!("the rate of the joint that holds `{}`", body.name),
         help: format!(
-            "write the `rate` of joint `{}` or the `angular_velocity` of body `{}`",
+            "give either the `rate` of joint `{}` or the `angular_velocity` of body `{}`",
             joint.name, body.name
         ),
     })

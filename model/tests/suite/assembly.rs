@@ -79,7 +79,7 @@ fn branch() -> impl Strategy<Value = Branch> {
     })
 }
 
-/// Coordinates of a joint on its page, the angles of up to three turns, and its rates.
+/// Coordinates of a joint in its model file, the angles of up to three turns, and its rates.
 fn start_of(branch: &Branch, kind: &str, without_rate: bool) -> String {
     let keys: &[&str] = match kind {
         "revolute" => &["angle"],
@@ -110,7 +110,7 @@ fn start_of(branch: &Branch, kind: &str, without_rate: bool) -> String {
     start
 }
 
-/// A page of a random tree. Body `k` hangs on an earlier one; the last `wanted` replaces its joint's rate.
+/// A model file of a random tree. Body `k` hangs on an earlier one; the last `wanted` replaces its joint's rate.
 fn page(root: &str, branches: &[Branch], wanted: Option<[f64; 3]>) -> String {
     let mut page = format!("format = 1\nname = \"tree\"\n[[body]]\nname = \"b0\"\n{root}\n");
     for (index, branch) in branches.iter().enumerate() {

@@ -1,11 +1,11 @@
-//! Every page in `tests/bad-models` is refused with the message beside it. `UPDATE_EXPECT=1` writes the messages anew:
-//! read them before they are kept.
+//! Every model file in `tests/bad-models` is refused with the message beside it. `UPDATE_EXPECT=1` writes the messages
+//! anew: read them before they are kept.
 
 use std::path::Path;
 
 use gyro_model::{Diagnostics, Model, read_with};
 
-/// Reads a page with the tables beside it.
+/// Reads a model file with the tables beside it.
 fn read_beside(path: &Path, text: &str) -> Result<Model, Diagnostics> {
     let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
     let folder = path.parent().expect("a folder");
@@ -14,7 +14,7 @@ fn read_beside(path: &Path, text: &str) -> Result<Model, Diagnostics> {
     })
 }
 
-/// What is wrong with the message of one page, if anything.
+/// What is wrong with the message of one model file, if anything.
 fn difference(path: &Path, text: &str) -> Option<String> {
     let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
     let Err(mistakes) = read_beside(path, text) else {

@@ -18,7 +18,7 @@ const KNEE: usize = 3;
 
 fn page(stem: &str) -> Model {
     let path = format!("{}/../models/{stem}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("a shipped page");
+    let text = std::fs::read_to_string(path).expect("a shipped model file");
     read(stem, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
@@ -157,7 +157,7 @@ fn coordinates_that_contradict_are_named() {
     assert_eq!((*coordinate, *unit), ("angle", "rad"));
     assert!(["crank_pivot", "rocker_pivot"].contains(&name.as_str()), "{name}");
     assert!(*off_by > 0.01 && nearest.is_some(), "{error}");
-    // Rounded to the page's digits they do not contradict if they are rough.
+    // Rounded to the model file's digits they do not contradict if they are rough.
     set(&mut model, ROCKER, 1.453, true);
     assembled(&model);
 }
@@ -354,7 +354,7 @@ fn gears_turn_many_times() {
     let mut model = wheels();
     set(&mut model, 0, 20.0, false);
     model.joints[0].start.rate = Some(vec![number(4.0)]);
-    // The last wheel is told by the middle one, in either order of the page.
+    // The last wheel is told by the middle one, in either order of the model file.
     model.couplers = vec![gear("late", 1, 2, 0.5, 0.0), gear("early", 0, 1, -2.0, 0.25)];
     let start = assembled(&model);
     for (joint, position, rate) in [(0, 20.0, 4.0), (1, -39.75, -8.0), (2, -19.875, -4.0)] {

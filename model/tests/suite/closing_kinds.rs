@@ -146,8 +146,8 @@ fn every_kind_closes_a_loop_on_random_frames() {
     }
 }
 
-/// The model of a page whose loop may be over-constrained, which reading refuses: the closing joint is read with the
-/// first body of the chain free, and added.
+/// The model of a model file whose loop may be over-constrained, which reading refuses: the closing joint is read with
+/// the first body of the chain free, and added.
 fn closed(page: &str) -> Model {
     match read("chain", page) {
         Ok(model) => model,

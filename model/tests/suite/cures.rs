@@ -1,12 +1,12 @@
-//! What a message says to write is written, and then the page is read again: the mistake is gone, and what was written
-//! is no mistake itself. Of cures that offer several ways each is tried.
+//! What a message says to write is written, and then the model file is read again: the mistake is gone, and what was
+//! written is no mistake itself. Of cures that offer several ways each is tried.
 
 use std::ops::Range;
 use std::path::Path;
 
 use gyro_model::{Diagnostic, Diagnostics, Model, read_with};
 
-/// A page in which something was written: the text, and where.
+/// A model file in which something was written: the text, and where.
 struct Cured {
     text: String,
     written: Range<usize>,
@@ -21,7 +21,7 @@ fn read_beside(path: &Path, text: &str) -> Result<Model, Diagnostics> {
     })
 }
 
-/// The page with each of the cures that a message offers; none where its words are for a human.
+/// The model file with each of the cures that a message offers; none where its words are for a human.
 fn cures(text: &str, mistake: &Diagnostic) -> Vec<Cured> {
     let (help, span) = (mistake.help.as_str(), mistake.span.clone());
     let replaced = |span: Range<usize>, with: &str| replaced(text, span, with);
@@ -38,7 +38,7 @@ fn cures(text: &str, mistake: &Diagnostic) -> Vec<Cured> {
             vec![]
         };
     }
-    // A table lies in a file of its own, and which number stands behind a name the page says elsewhere.
+    // A table lies in a file of its own, and which number stands behind a name the model file says elsewhere.
     if mistake.message.starts_with("table `") || help.starts_with("write the number itself") {
         return Vec::new();
     }
@@ -119,7 +119,7 @@ fn assigned(text: &str, span: &Range<usize>, key: &str, value: &str) -> Cured {
         None if is_inline => replaced(text, span.start + 1..span.start + 1, &format!(" {key} = {value}, ")),
         None => {
             let line = text[span.start..].find('\n').map_or(text.len(), |at| span.start + at + 1);
-            // What is missing of the page as a whole belongs before its first table.
+            // What is missing of the model file as a whole belongs before its first table.
             let line = if span.is_empty() { 0 } else { line };
             replaced(text, line..line, &format!("{key} = {value}\n"))
         }
@@ -185,9 +185,9 @@ fn without(text: &str, at: usize) -> Cured {
     replaced(text, span, "")
 }
 
-/// How many cures of a page were tried, and which of them are none.
+/// How many cures of a model file were tried, and which of them are none.
 fn failures(path: &Path, text: &str) -> (usize, Vec<String>) {
-    let mistakes = read_beside(path, text).expect_err("a page with mistakes");
+    let mistakes = read_beside(path, text).expect_err("a model file with mistakes");
     let (mut tried, mut failures) = (0, Vec::new());
     for mistake in mistakes.mistakes() {
         for cured in cures(text, mistake) {
@@ -234,7 +234,7 @@ fn every_cure_cures() {
     assert!(tried > 120, "{tried} cures");
 }
 
-/// A page without mistakes, to be written as a stranger would.
+/// A model file without mistakes, to be written as a stranger would.
 const STRANGER_S: &str = r#"format = 1
 name = "crank"
 gravity = [0, 0, -9.81]

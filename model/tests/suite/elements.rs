@@ -1,4 +1,4 @@
-//! What the page says of motions, couplers, drivers, forces, outputs and inputs is what the model holds.
+//! What the model file says of motions, couplers, drivers, forces, outputs and inputs is what the model holds.
 
 use std::f64::consts::{PI, TAU};
 
@@ -182,7 +182,8 @@ fn a_page_with_tables_is_not_read_without_its_folder() {
 #[test]
 fn other_parameters_may_not_change_which_rows_are_redundant() {
     let pages = crate::support::pages("models");
-    let (_, page) = pages.iter().find(|(path, _)| path.ends_with("four-bar-revolute.toml")).expect("a page");
+    let (_, page) =
+        pages.iter().find(|(path, _)| path.ends_with("four-bar-revolute.toml")).expect("a model file");
     let page = page.replacen("[[body]]", "[parameters]\ntilt = 0\n[[body]]", 1).replacen(
         "axis = [0, 0, 1]",
         "axis = [0, \"tilt\", 1]",

@@ -6,16 +6,16 @@ use gyro_model::{Diagnostics, ForceKind, JointKind, Model, OutputKind, Support, 
 
 fn page() -> String {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/model-format.md");
-    std::fs::read_to_string(path).expect("the format's page")
+    std::fs::read_to_string(path).expect("docs/model-format.md")
 }
 
-/// The text between the page's first fences of a kind.
+/// The text between the document's first fences of a kind.
 fn fenced<'p>(page: &'p str, kind: &str) -> &'p str {
     let (_, rest) = page.split_once(&format!("```{kind}\n")).expect("an example");
     rest.split_once("```").expect("its end").0
 }
 
-/// Reads a page with the table that the format's page shows.
+/// Reads a model file with the table that the document of the format shows.
 fn read(text: &str) -> Result<Model, Diagnostics> {
     let page = page();
     read_with("page.toml", text, &mut |table| match table {

@@ -4,7 +4,7 @@ use gyro_model::{ForceKind, JointCoordinate, Model, OutputKind, Rational, RowOwn
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// Words that pages are made of, and numbers at the ends of what can be read.
+/// Words that model files are made of, and numbers at the ends of what can be read.
 const TOKENS: [&str; 110] = [
     "format",
     "name",
@@ -197,7 +197,7 @@ fn check(text: &str) {
 fn check_with(text: &str, table: &str) {
     match read_with("fuzz.toml", text, &mut |_| Ok(table.to_owned())) {
         Ok(model) => {
-            let start = model.assemble().expect("an accepted page has a start");
+            let start = model.assemble().expect("an accepted model file has a start");
             let joints = start.joints.iter().flat_map(|j| j.position.iter().chain(&j.rate));
             assert!(start.q.iter().chain(&start.v).chain(joints).all(|x| x.is_finite()), "{text}");
             assert!(model.size().is_finite() && model.size() > 0.0, "{text}");
@@ -281,7 +281,7 @@ proptest! {
     #[test]
     fn parameters_of_any_value_give_a_start_or_a_message(numerator: i64, exponent in -250..250_i32, which in 0..5_usize) {
         let pages = crate::support::pages("models");
-        let (_, text) = pages.iter().find(|(p, _)| p.ends_with("gyroscope-parameters.toml")).expect("a page");
+        let (_, text) = pages.iter().find(|(p, _)| p.ends_with("gyroscope-parameters.toml")).expect("a model file");
         let model = read("gyroscope-parameters.toml", text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         let power = Rational::from_integer(10.into()).pow(exponent);
         let setting = (model.parameters[which].name.clone(), Rational::from_integer(numerator.into()) * power);

@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-8;
 fn model(stem: &str) -> Model {
     let folders = ["models", "tests/models"];
     let paths = folders.map(|folder| format!("{}/../{folder}/{stem}.toml", env!("CARGO_MANIFEST_DIR")));
-    let text = paths.iter().find_map(|path| std::fs::read_to_string(path).ok()).expect("a page");
+    let text = paths.iter().find_map(|path| std::fs::read_to_string(path).ok()).expect("a model file");
     read(stem, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 

@@ -8,7 +8,7 @@ use gyro_model::{
 fn page(stem: &str) -> Model {
     let folders = ["models", "tests/models"];
     let paths = folders.map(|folder| format!("{}/../{folder}/{stem}.toml", env!("CARGO_MANIFEST_DIR")));
-    let text = paths.iter().find_map(|path| std::fs::read_to_string(path).ok()).expect("a page");
+    let text = paths.iter().find_map(|path| std::fs::read_to_string(path).ok()).expect("a model file");
     read(stem, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
@@ -16,7 +16,7 @@ fn number(x: f64) -> Number {
     Number::Exact(Rational::from_float(x).expect("finite"))
 }
 
-/// Where a revolute joint is in the pose of the page, and which bodies it joins.
+/// Where a revolute joint is in the pose of the model file, and which bodies it joins.
 #[derive(Clone, Copy)]
 struct Pin {
     bodies: [usize; 2],
@@ -203,7 +203,7 @@ fn bennetts_linkage_moves() {
     assert!(matches!(&error, AssemblyError::OverConstrained { .. }), "{error}");
 }
 
-/// A model that no page can give, as reading refuses what cannot move: its last joint is added afterwards.
+/// A model that no model file can give, as reading refuses what cannot move: its last joint is added afterwards.
 fn rigid(n_bodies: usize, pins: &[Pin]) -> Model {
     let (last, before) = pins.split_last().expect("pins");
     let mut model = model(&pinned(n_bodies, before));

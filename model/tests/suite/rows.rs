@@ -72,7 +72,7 @@ pub(crate) fn states(model: &Model, start: &Start) -> Vec<State> {
     (0..model.bodies.len()).map(of).collect()
 }
 
-/// A fixed body where the page puts it.
+/// A fixed body where the model file puts it.
 pub(crate) fn placed(model: &Model, body: usize) -> State {
     let p = model.values(&model.bodies[body].orientation);
     let norm = p.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! The pages in `models/` are good, named after their files, and start as their sources say.
+//! The model files in `models/` are good, named after their files, and start as their sources say.
 
 use gyro_model::{JointKind, JointStart, Model, OutputKind, RowOwner, Start, Support, read};
 
@@ -8,12 +8,12 @@ fn model(stem: &str) -> Model {
 
 fn model_in(folder: &str, stem: &str) -> Model {
     let path = crate::support::folder(folder).join(format!("{stem}.toml"));
-    let text = std::fs::read_to_string(path).expect("a shipped page");
+    let text = std::fs::read_to_string(path).expect("a shipped model file");
     read(stem, &text).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
 fn start(stem: &str) -> Start {
-    model(stem).assemble().expect("a shipped page has a start")
+    model(stem).assemble().expect("a shipped model file has a start")
 }
 
 fn rates(stem: &str) -> Vec<f64> {
@@ -229,7 +229,7 @@ fn shipped_pages_write_exactly_what_they_mean() {
     }
 }
 
-/// A page on which everything is nearly a right angle.
+/// A model file on which everything is nearly a right angle.
 const ROUGH: &str = r#"
 format = 1
 name = "rough"

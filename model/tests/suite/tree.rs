@@ -6,7 +6,7 @@ use gyro_model::{
     Attachment, Driver, JointCoordinate, Kinematics, Model, Motion, Number, Rational, Tree, analyse, read,
 };
 
-/// A page of so many moving bodies on the ground, body 0, and joints of kinds between bodies.
+/// A model file of so many moving bodies on the ground, body 0, and joints of kinds between bodies.
 fn page(n_bodies: usize, joints: &[(&str, [usize; 2])]) -> Model {
     let mut page = "format = 1\nname = \"graph\"\n[[body]]\nname = \"b0\"\nfixed = true\n".to_owned();
     for body in 1..=n_bodies {

@@ -12,16 +12,16 @@ use std::panic::{self, AssertUnwindSafe};
 
 /// What is fed to whom.
 pub enum Case {
-    /// A page and the table that all its motions name; it is generated and proved too if it is good and small.
+    /// A model file and the table that all its motions name; it is generated and proved too if it is good and small.
     Page { text: String, table: String },
-    /// A page's module, and its constants, not as they were written.
+    /// A model file's module, and its constants, not as they were written.
     Module { page: String, module: String, constants: String },
 }
 
-/// Bodies of the largest page that is generated: what is larger takes seconds, which others make better use of.
+/// Bodies of the largest model file that is generated: what is larger takes seconds, which others make better use of.
 const GENERATED: usize = 3;
 
-/// What became of a good page whose module the verifier calls wrong.
+/// What became of a good model file whose module the verifier calls wrong.
 pub const REFUTED: &str = "generated and refuted";
 
 impl Case {
@@ -52,7 +52,7 @@ impl Case {
                 Some(model) => generate(&model),
             },
             Self::Module { page, module, constants } => {
-                let model = read(page, TABLE).expect("a shipped page is good");
+                let model = read(page, TABLE).expect("a shipped model file is good");
                 let report = verify(&model, module, constants, Depth::Quick);
                 let lines = module.lines().count().max(constants.lines().count()).max(1);
                 let is_placed = |line: usize| (1..=lines).contains(&line);
@@ -67,7 +67,7 @@ impl Case {
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Page { text, table } => write!(f, "--- page\n{text}\n--- table\n{table}\n---"),
+            Self::Page { text, table } => write!(f, "--- model file\n{text}\n--- table\n{table}\n---"),
             Self::Module { module, constants, .. } => {
                 write!(f, "--- module\n{module}\n--- constants\n{constants}\n---")
             }
@@ -85,11 +85,11 @@ fn tampered(random: &mut ChaCha8Rng, emitted: &Emitted) -> Case {
     }
 }
 
-/// The model of a page, if it is good.
+/// The model of a model file, if it is good.
 fn read(text: &str, table: &str) -> Option<Model> {
     match read_with("fuzz.toml", text, &mut |_| Ok(table.to_owned())) {
         Ok(model) => {
-            let start = model.assemble().expect("an accepted page has a start");
+            let start = model.assemble().expect("an accepted model file has a start");
             assert!(start.q.iter().chain(&start.v).all(|x| x.is_finite()), "the start is finite");
             Some(model)
         }
@@ -120,7 +120,7 @@ fn generate(model: &Model) -> &'static str {
 }
 
 thread_local! {
-    /// Where the last panic was, and what it said.
+    /// Where the last panic was, and its message.
     static PANIC: RefCell<String> = const { RefCell::new(String::new()) };
 }
 

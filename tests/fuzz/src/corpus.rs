@@ -1,17 +1,18 @@
-//! What is mutated: the pages of the workspace, and the modules that are generated from them.
+//! What is mutated: the model files of the workspace, and the modules that are generated from them.
 
 use gyro_model::{Model, read_with};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// Pages by their names, and modules.
+/// Model files by their names, and modules.
 pub struct Corpus {
     pub pages: Vec<(String, String)>,
     pub modules: Vec<Emitted>,
 }
 
-/// A page with its module and the exact constants of its literals, which are generated when they are first asked for.
+/// A model file with its module and the exact constants of its literals, which are generated when they are first asked
+/// for.
 pub struct Emitted {
     pub page: String,
     module: OnceLock<[String; 2]>,
@@ -20,7 +21,7 @@ pub struct Emitted {
 /// What every motion by a table follows.
 pub const TABLE: &str = "t,x\n0,0\n1,0.5\n2,1\n";
 
-/// Bodies of the largest page whose module is tampered with: the others take generator and verifier seconds.
+/// Bodies of the largest model file whose module is tampered with: the others take generator and verifier seconds.
 const BODIES: usize = 3;
 
 impl Corpus {
@@ -34,14 +35,14 @@ impl Corpus {
         let corpus = Self { pages: pages.map(|(path, text)| (name(&path), text)).collect(), modules };
         assert!(
             !corpus.pages.is_empty() && !corpus.modules.is_empty(),
-            "the workspace has pages and modules"
+            "the workspace has model files and modules"
         );
         corpus
     }
 }
 
 impl Emitted {
-    /// The module of a page that is small enough.
+    /// The module of a model file that is small enough.
     fn of(page: &str) -> Option<Self> {
         let model = model(page);
         (model.coordinate_bodies().len() <= BODIES)
@@ -52,15 +53,16 @@ impl Emitted {
     pub fn module(&self) -> &[String; 2] {
         self.module.get_or_init(|| {
             let module = gyro_codegen::generate_model("fuzz.toml", &model(&self.page));
-            let module = module.expect("a page of the workspace has a module");
+            let module = module.expect("a model file of the workspace has a module");
             [module.code, module.constants]
         })
     }
 }
 
-/// The model of a page of the workspace.
+/// The model of a model file of the workspace.
 fn model(page: &str) -> Model {
-    read_with("fuzz.toml", page, &mut |_| Ok(TABLE.to_owned())).expect("a page of the workspace is good")
+    read_with("fuzz.toml", page, &mut |_| Ok(TABLE.to_owned()))
+        .expect("a model file of the workspace is good")
 }
 
 fn name(path: &Path) -> String {

@@ -1,4 +1,4 @@
-//! Feeds mutated pages to the reader and the generator, and tampered modules to the verifier, for a fixed time.
+//! Feeds mutated model files to the reader and the generator, and tampered modules to the verifier, for a fixed time.
 //!
 //! ```text
 //! cargo run --package gyro-fuzz -- --seconds 60            a minute, from a seed that is printed

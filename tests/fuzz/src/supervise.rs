@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// How long one case may take of a processor, or of time where that is not known. All but a few take milliseconds, good
-/// pages seconds.
+/// model files seconds.
 pub const PATIENCE: Duration = Duration::from_secs(40);
 
 /// How long one case may take on a machine that is busy with other things.
@@ -29,7 +29,7 @@ struct Tally {
     outcomes: BTreeMap<String, u64>,
     /// Case and what is wrong with it.
     findings: Vec<(u64, String)>,
-    /// Good pages whose modules are called wrong. Which of them are is not for this program to say.
+    /// Good model files whose modules are called wrong. Which of them are is not for this program to say.
     refuted: Vec<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! Changes to a page as TOML: what comes out has no error of syntax.
+//! Changes to a model file as TOML: what comes out has no error of syntax.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -83,7 +83,7 @@ fn change(random: &mut ChaCha8Rng, value: &mut Value, other: Value) {
             key.map(|key| table.remove(&key));
         }
         (1, Value::Table(table)) => {
-            // A value under a key that may be known: those of the page.
+            // A value under a key that may be known: those of the model file.
             let key = table.keys().nth(random.random_range(0..table.len().max(1))).cloned();
             table.insert(key.unwrap_or_else(|| "mass".to_owned()), other);
         }

@@ -15,7 +15,7 @@ use std::path::Path;
 mod faults {
     include!("../faults.rs");
 
-    /// Where each fault is, the page that shows it, and why it does no harm if that is so.
+    /// Where each fault is, the model file that shows it, and why it does no harm if that is so.
     pub fn all() -> impl Iterator<Item = (String, &'static str, Option<&'static str>)> {
         FAULTS.iter().map(|fault| {
             let what = format!("{}: {} -> {}", fault.file, fault.place, fault.wrong);
@@ -29,11 +29,11 @@ fn page(name: &str) -> Model {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = ["models", "tests/models", "tests/mutants"].map(|folder| root.join(folder));
     let path = folders.iter().map(|f| f.join(format!("{name}.toml"))).find(|path| path.exists());
-    let path = path.unwrap_or_else(|| panic!("no page {name}"));
-    let text = std::fs::read_to_string(&path).expect("a page");
+    let path = path.unwrap_or_else(|| panic!("no model file {name}"));
+    let text = std::fs::read_to_string(&path).expect("a model file");
     let mut load =
         |file: &str| std::fs::read_to_string(path.with_file_name(file)).map_err(|error| error.to_string());
-    gyro_model::read_with(name, &text, &mut load).expect("a good page")
+    gyro_model::read_with(name, &text, &mut load).expect("a good model file")
 }
 
 /// What the generator writes with a fault; `None` if it writes nothing.

@@ -1,4 +1,4 @@
-//! The faults are still faults of the generator as it is: quick to know, so that a plain test run says it.
+//! The faults still apply to the generator as it is. This is quick to check, so plain test runs include it.
 
 use gyro_mutants::STALE;
 

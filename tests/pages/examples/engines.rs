@@ -1,5 +1,5 @@
-//! Compares many random pages in every engine: `engines [FILE...] [FIRST_SEED COUNT]`; with `--compile` generated
-//! modules are compiled and run by the solvers, thirty pages to a program.
+//! Compares many random model files in every engine: `engines [FILE...] [FIRST_SEED COUNT]`; with `--compile` generated
+//! modules are compiled and run by the solvers, thirty model files to a program.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 #[path = "../tests/support/engines.rs"]
@@ -13,7 +13,7 @@ use support::compare;
 
 fn main() {
     for file in std::env::args().skip(1).filter(|argument| argument.ends_with(".toml")) {
-        let comparison = compare(&std::fs::read_to_string(&file).expect("a page"));
+        let comparison = compare(&std::fs::read_to_string(&file).expect("a model file"));
         println!("{file}: {:?}", comparison.map(|comparison| comparison.found));
     }
     let numbers: Vec<u64> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
@@ -36,11 +36,11 @@ fn main() {
         }
     }
     println!(
-        "{n_compared} pages in {n_forms} forms, {n_wrong} disagree, at worst {worst:.1e} of what is allowed"
+        "{n_compared} model files in {n_forms} forms, {n_wrong} disagree, at worst {worst:.1e} of what is allowed"
     );
 }
 
-/// Pages to a program: compiling takes longer than running.
+/// Model files to a program: compiling takes longer than running.
 const BATCH: u64 = 30;
 
 fn compile(first: u64, count: u64) {
@@ -56,6 +56,6 @@ fn compile(first: u64, count: u64) {
         }
     }
     println!(
-        "{count} pages, {n_runs} runs compared, {n_wrong} disagree, at worst {worst:.1e} of what is allowed"
+        "{count} model files, {n_runs} runs compared, {n_wrong} disagree, at worst {worst:.1e} of what is allowed"
     );
 }

@@ -1,5 +1,5 @@
-//! Generates and proves many random pages, or pages given as files: `pages [--seed N] [--count N] [--print] [--read]
-//! [--module] [FILE...]`.
+//! Generates and proves many random model files, or model files given as files:
+//! `pages [--seed N] [--count N] [--print] [--read] [--module] [FILE...]`.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_verifier::{Depth, verify};
@@ -24,10 +24,10 @@ fn main() {
         }
     }
     if reads {
-        // A page that is refused panics while its start is planted.
+        // A model file that is refused panics while its start is planted.
         let refused = |seed: &u64| catch_unwind(|| gyro_pages::page(*seed)).is_err();
         let refused: Vec<u64> = (seed..seed + count).filter(refused).collect();
-        return println!("{} of {count} pages are not correct: {refused:?}", refused.len());
+        return println!("{} of {count} model files are not correct: {refused:?}", refused.len());
     }
     if prints {
         return (seed..seed + count).for_each(|seed| println!("{}", gyro_pages::page(seed)));
@@ -52,18 +52,18 @@ fn main() {
         }
         fates.entry(kind(&fate)).or_default().push(seed);
     }
-    println!("{count} pages in {:.0} s", start.elapsed().as_secs_f64());
+    println!("{count} model files in {:.0} s", start.elapsed().as_secs_f64());
     for (kind, seeds) in fates {
         println!("{:6} {kind}: {:?}", seeds.len(), &seeds[..seeds.len().min(8)]);
     }
 }
 
-/// A page that takes longer is named.
+/// A model file that takes longer is named.
 const SLOW: Duration = Duration::from_secs(10);
 
 const PROVED: &str = "proved";
 
-/// The module of a page, proved or not.
+/// The module of a model file, proved or not.
 fn module(seed: u64) -> String {
     let model = gyro_model::read_with("page.toml", &gyro_pages::page(seed), &mut gyro_pages::load);
     let model = model.unwrap_or_else(|problems| panic!("{problems}"));
@@ -73,11 +73,11 @@ fn module(seed: u64) -> String {
 fn of_file(path: &Path) -> String {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut load = |name: &str| std::fs::read_to_string(folder.join(name)).map_err(|error| error.to_string());
-    let (text, start) = (std::fs::read_to_string(path).expect("a page"), Instant::now());
+    let (text, start) = (std::fs::read_to_string(path).expect("a model file"), Instant::now());
     format!("{} ({:.1} s)", fate(&text, &mut load), start.elapsed().as_secs_f64())
 }
 
-/// What becomes of a page.
+/// What becomes of a model file.
 fn fate(text: &str, load: &mut dyn FnMut(&str) -> Result<String, String>) -> String {
     let start = Instant::now();
     let model = match gyro_model::read_with("page.toml", text, load) {

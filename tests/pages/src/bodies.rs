@@ -117,7 +117,7 @@ impl Page {
 
     fn frame(&mut self) -> String {
         loop {
-            // Several frames with long numbers take the generator minutes: one on a page is enough to be wrong.
+            // Several frames with long numbers take the generator minutes: one in a model file is enough to be wrong.
             let is_rough = self.n_rough == 0 && self.dice.once_in(30);
             let direction = if is_rough { Dice::rough_direction } else { Dice::direction };
             let (axis, zero) = (direction(&mut self.dice), self.dice.direction());

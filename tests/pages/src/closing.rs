@@ -78,7 +78,7 @@ impl Closing {
         Self { kind, length, ends: ends.map(|(body, point, frame)| End { body, point, frame }) }
     }
 
-    /// The joint for the page, the bodies being where they are.
+    /// The joint for the model file, the bodies being where they are.
     pub fn joint(&self, root: usize) -> Joint {
         let mut text = format!("kind = {:?}\n", self.kind.name);
         if self.kind.name == "rod" {

@@ -1,14 +1,14 @@
-//! Random model pages: correct mechanisms with everything that the format has, written as people and programs write
+//! Random model files: correct mechanisms with everything that the format has, written as people and programs write
 //! them.
 //!
 //! Trees of one to four bodies with joints of all kinds, roots that are fixed, driven, free or held by rows of their
 //! own, loops, couplers, drivers, forces and outputs; numbers that a program printed, that somebody shortened, that
 //! differ by less than a float can tell. A start is planted: joints that close loops are put where the bodies already
-//! are. So no page should be refused by anybody.
+//! are. So no model file should be refused by anybody.
 //!
 //! ```
 //! let text = gyro_pages::page(7);
-//! let model = gyro_model::read_with("page.toml", &text, &mut gyro_pages::load).expect("a correct page");
+//! let model = gyro_model::read_with("page.toml", &text, &mut gyro_pages::load).expect("a correct model file");
 //! assert!(model.assemble().is_ok());
 //! ```
 #![deny(missing_docs)]
@@ -23,7 +23,7 @@ mod vector;
 
 use page::Page;
 
-/// The page of a seed, always the same.
+/// The model file of a seed, always the same.
 pub fn page(seed: u64) -> String {
     let mut page = Page::new(seed);
     page.tree();
@@ -41,7 +41,7 @@ pub fn page(seed: u64) -> String {
     page.text()
 }
 
-/// The one table that pages name.
+/// The one table that model files name.
 ///
 /// # Errors
 /// Any other.

@@ -118,7 +118,7 @@ impl Page {
             .then(|| Closing::between(kind, bodies, places, points, [axis, zero]))?
     }
 
-    /// The page as far as it has come.
+    /// The model file as far as it has come.
     ///
     /// # Panics
     /// If it is refused: nothing on it should be wrong.

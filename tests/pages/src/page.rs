@@ -1,4 +1,4 @@
-//! A page in the making.
+//! A model file in the making.
 
 use crate::dice::{Dice, value};
 use std::collections::BTreeMap;
@@ -146,7 +146,7 @@ impl Page {
         list(&numbers.map(|number| self.tunable(number)))
     }
 
-    /// The page's text.
+    /// The model file's text.
     pub fn text(&self) -> String {
         let mut text = format!("format = 1\nname = {:?}\ngravity = {}\n", self.name, list(&self.gravity));
         for (table, entries) in [("parameters", &self.parameters), ("inputs", &self.inputs)] {

@@ -1,12 +1,12 @@
-//! A sample of random pages is generated and proved. `cargo run --release -p gyro-pages --example pages -- --count
-//! 10000` does more.
+//! A sample of random model files is generated and proved.
+//! `cargo run --release -p gyro-pages --example pages -- --count 10000` does more.
 
 use gyro_verifier::{Depth, verify};
 
-/// Seeds of the sample. Any will do: pages are short, and a few of a thousand take long.
+/// Seeds of the sample. Any will do: model files are short, and a few of a thousand take long.
 const SEEDS: std::ops::Range<u64> = 2000..2015;
 
-/// What is wrong with a page; nothing if it is generated and proved.
+/// What is wrong with a model file; nothing if it is generated and proved.
 fn refused(seed: u64) -> Option<String> {
     let text = gyro_pages::page(seed);
     let model = match gyro_model::read_with("page.toml", &text, &mut gyro_pages::load) {
@@ -31,11 +31,11 @@ fn random_pages_are_proved() {
         let threads = [0, 1].map(|parity| scope.spawn(move || all(parity)));
         threads.map(|thread| thread.join().expect("no panic")).concat()
     });
-    let words: Vec<_> = refused.iter().map(|(seed, why)| format!("page {seed}: {why}")).collect();
-    assert!(words.is_empty(), "{} of {} pages:\n{}", words.len(), SEEDS.count(), words.join("\n"));
+    let words: Vec<_> = refused.iter().map(|(seed, why)| format!("model file {seed}: {why}")).collect();
+    assert!(words.is_empty(), "{} of {} model files:\n{}", words.len(), SEEDS.count(), words.join("\n"));
 }
 
-/// The same seed gives the same page, and pages have all that there is.
+/// The same seed gives the same model file, and model files have all that there is.
 #[test]
 fn pages_have_everything() {
     assert_eq!(gyro_pages::page(5), gyro_pages::page(5));
@@ -85,6 +85,6 @@ fn pages_have_everything() {
     ];
     for thing in things {
         let count = pages.iter().filter(|page| page.contains(thing)).count();
-        assert!(count >= 3, "{thing}: on {count} of {} pages", pages.len());
+        assert!(count >= 3, "{thing}: on {count} of {} model files", pages.len());
     }
 }

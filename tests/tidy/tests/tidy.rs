@@ -94,7 +94,7 @@ fn no_line_of_prose_is_long() {
 
 #[test]
 fn architecture_names_every_folder() {
-    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a document");
     let entries = fs::read_dir(root()).expect("the root").map(|entry| entry.expect("an entry"));
     let folders = entries.filter(|entry| entry.path().is_dir());
     let names = folders.map(|folder| folder.file_name().to_string_lossy().into_owned());

@@ -89,7 +89,7 @@ impl Reader<'_> {
             if text(&index.expr) != "self . derived" || place >= self.sizes.derived {
                 return Err(refused(index));
             }
-            return Ok(self.push(Node::Read(Source::SetUp(place)), index.span()));
+            return Ok(self.push(Node::Read(Source::ParameterSetup(place)), index.span()));
         }
         let node = match self.known(&index.expr)? {
             Known::Curve { table, time } if place < 3 => Node::Curve { table, order: place, time },

@@ -26,7 +26,7 @@ pub struct Has {
     /// The Jacobian of the joint form.
     pub jacobian: bool,
     /// A function of what depends on parameters alone.
-    pub set_up: bool,
+    pub parameter_setup: bool,
 }
 
 /// The expected text.
@@ -39,7 +39,7 @@ pub fn text(
 ) -> String {
     [
         constants(tables),
-        definition(model, type_name, has.set_up),
+        definition(model, type_name, has.parameter_setup),
         mechanism(model, type_name, joints.is_some()),
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),

@@ -50,7 +50,7 @@ impl ModuleWriter<'_> {
         } else {
             (quote! { Self::new(Parameters::default()) }, self.set_parameters(&at_first))
         };
-        let (parameters, set_up) = (self.parameters(), self.set_up());
+        let (parameters, parameter_setup) = (self.parameters(), self.parameter_setup());
         quote! {
             #parameters
 
@@ -68,7 +68,7 @@ impl ModuleWriter<'_> {
 
             impl<T: gyro_sim::Scalar> #name<T> {
                 #set_parameters
-                #set_up
+                #parameter_setup
             }
         }
     }
@@ -99,7 +99,7 @@ impl ModuleWriter<'_> {
             }
 
             impl<T: gyro_sim::Real> Parameters<T> {
-                /// Whether the mechanism can have these parameters, as the model page's rules decide.
+                /// Whether the mechanism can have these parameters, as the model file's rules decide.
                 pub fn check(&self) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
                     gyro_sim::admissible::check(&[#(self.#names),*], &[#(#rules),*])
                 }
@@ -124,10 +124,10 @@ impl ModuleWriter<'_> {
         let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
         let strings = parameters.iter().map(|p| &p.name);
         let (count, places) = (index(parameters.len()), (0..parameters.len()).map(index));
-        let set_up = (!self.kernels.roots(Kernel::ParameterSetup).is_empty()).then(|| {
+        let parameter_setup = (!self.kernels.roots(Kernel::ParameterSetup).is_empty()).then(|| {
             quote! {
                 let mut derived = self.derived;
-                self.set_up(&mut derived);
+                self.parameter_setup(&mut derived);
                 self.derived = derived;
             }
         });
@@ -150,7 +150,7 @@ impl ModuleWriter<'_> {
             /// Sets all parameters, and computes what depends on them alone.
             pub fn set_parameters(&mut self, parameters: Parameters<T>) {
                 self.parameters = parameters;
-                #set_up
+                #parameter_setup
             }
 
             /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
@@ -167,14 +167,14 @@ impl ModuleWriter<'_> {
     }
 
     /// Nothing if nothing depends on parameters alone.
-    fn set_up(&self) -> Option<TokenStream> {
+    fn parameter_setup(&self) -> Option<TokenStream> {
         let roots = self.kernels.roots(Kernel::ParameterSetup);
         let n = index(roots.len());
         (!roots.is_empty()).then(|| {
             self.function("What depends on parameters alone", roots, |body, _, _| {
                 let (statements, values) = (&body.statements, &body.values);
                 quote! {
-                    fn set_up(&self, out: &mut [T; #n]) {
+                    fn parameter_setup(&self, out: &mut [T; #n]) {
                         #statements
                         *out = [#(#values),*];
                     }

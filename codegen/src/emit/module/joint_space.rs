@@ -9,7 +9,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    /// Nothing for mechanisms that are no trees.
+    /// Empty for mechanisms that are not trees.
     pub fn joint_space(&self) -> Option<TokenStream> {
         let space = self.equations.joint_space.as_ref()?;
         let name = ident(self.type_name);
@@ -91,7 +91,7 @@ impl ModuleWriter<'_> {
         n_joints * n_joints
     }
 
-    /// Nothing for mechanisms that are no trees, or too large.
+    /// Empty for mechanisms that are not trees or are too large.
     fn joint_jacobian(&self) -> Option<TokenStream> {
         let space = self.equations.joint_space.as_ref()?;
         space.jacobian.as_ref()?;

@@ -33,7 +33,7 @@ pub fn type_name(module_name: &str) -> String {
     if ["Self", "T", "Parameters"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
-/// The text of a module, the exact constants of its literals and its data data_sheet.
+/// The text of a module, the exact constants of its literals and its data sheet.
 pub struct Text {
     pub code: String,
     pub constants: String,

@@ -8,7 +8,7 @@ use crate::expr::symbol::Symbol;
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
-/// A function that is no polynomial.
+/// A function that is not a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Function {
     Recip,

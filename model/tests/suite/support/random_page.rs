@@ -1,5 +1,5 @@
-//! Pages with elements of every kind that refer to each other at random. Tame pages are good as far as that can be
-//! arranged, wild ones seldom; neither may make the reader panic.
+//! Model files with elements of every kind that refer to each other at random. Tame model files are good as far as that
+//! can be arranged, wild ones seldom; neither may make the reader panic.
 
 use std::fmt::Write as _;
 
@@ -20,7 +20,7 @@ const KINDS: [(&str, &[&str]); 10] = [
 ];
 const ROWS: [&str; 10] = ["0,0", "1,0.5", "1,0.5", "2,1", "2.5,-1", "3,NaN", "x", "", "1e99,1e99", "4,1"];
 
-/// A whole page.
+/// A whole model file.
 pub(crate) fn page() -> impl Strategy<Value = String> {
     let wildness = prop_oneof![Just(0), Just(0), Just(8), Just(40)];
     let rolls = prop::collection::vec(any::<u8>(), 40..400);
@@ -106,7 +106,7 @@ impl Dice {
     }
 }
 
-/// A page in the making: the joints' coordinates, as far as it has come.
+/// A model file in the making: the joints' coordinates, as far as it has come.
 struct Page {
     text: String,
     n_bodies: usize,

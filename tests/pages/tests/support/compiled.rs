@@ -1,5 +1,5 @@
-//! Many random pages compiled by rustc into one program and run, beside the forms of the assembled twin by the same
-//! solvers.
+//! Many random model files compiled by rustc into one program and run, beside the forms of the
+//! runtime-assembled model by the same solvers.
 
 #[path = "runs.rs"]
 mod runs;
@@ -18,7 +18,7 @@ use std::process::Command;
 /// roundings of each step.
 const ALLOWED: f64 = 16.0;
 
-/// How often the twin is run anew from starts that differ by a rounding.
+/// How often the runtime-assembled model is run anew from starts that differ by a rounding.
 const DITHERS: u64 = 3;
 
 /// Roundings of the largest number that each of the steps makes.
@@ -27,7 +27,7 @@ const ROUNDINGS: f64 = 100.0 * f64::EPSILON;
 /// What was compared, and by how much it differs in terms of what is allowed.
 pub type Found = Vec<(String, f64)>;
 
-/// Generates, compiles and runs the pages of these seeds.
+/// Generates, compiles and runs the model files of these seeds.
 pub fn compare(seeds: std::ops::Range<u64>) -> Found {
     let pages: Vec<(u64, Model, Module)> = seeds.clone().map(page).collect();
     let folder = std::env::temp_dir().join("gyro-pages");
@@ -53,7 +53,7 @@ fn page(seed: u64) -> (u64, Model, Module) {
     (seed, model, module)
 }
 
-/// A package with a module for each page.
+/// A package with a module for each model file.
 fn write_package(folder: &Path, pages: &[(u64, Model, Module)]) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut main = include_str!("runs.rs").replace("//!", "//");
@@ -85,7 +85,7 @@ fn write_package(folder: &Path, pages: &[(u64, Model, Module)]) {
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's versions");
 }
 
-/// The forms of the twin beside what the program has printed.
+/// The forms of the runtime-assembled model beside what the program has printed.
 fn of_page(seed: u64, model: &Model, lines: &[Vec<&str>]) -> Found {
     let mut forms = vec![("dense", Twin::of(Dense::<f64>::new(model).expect("it does every model")))];
     if Careful::<f64>::supports(model).is_ok() {
@@ -148,7 +148,7 @@ impl Twin {
             (end, _) => {
                 let end = end.as_ref().map_or_else(ToString::to_string, |_| "runs".to_owned());
                 println!(
-                    "{}, {name}: the twin: {end}; generated: {}",
+                    "{}, {name}: the runtime-assembled model: {end}; generated: {}",
                     line[0],
                     &line[3][..60.min(line[3].len())]
                 );

@@ -1,5 +1,5 @@
-//! One page in every engine and in all coordinates: generated formulas as they were emitted, read back and run in
-//! `f64`, beside the forms of the assembled twin, all held against the same formulas in 384 bits.
+//! One model file in every engine and in all coordinates: generated formulas as they were emitted, read back and run in
+//! `f64`, beside the forms of the runtime-assembled model, all held against the same formulas in 384 bits.
 
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_model::{Model, to_f64};
@@ -44,7 +44,7 @@ impl Comparison {
     }
 }
 
-/// Generates, builds and compares; `None` where the page is refused.
+/// Generates, builds and compares; `None` where the model file is refused.
 pub fn compare(text: &str) -> Option<Comparison> {
     let model = gyro_model::read_with("page.toml", text, &mut gyro_pages::load).ok()?;
     let module = gyro_codegen::generate_model("page.toml", &model).ok()?;

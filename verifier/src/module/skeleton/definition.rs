@@ -11,7 +11,7 @@ pub(super) fn constants(tables: &[Spline]) -> String {
     }))
 }
 
-pub(super) fn definition(model: &Model, name: &str, has_set_up: bool) -> String {
+pub(super) fn definition(model: &Model, name: &str, has_parameter_setup: bool) -> String {
     let (parameters, inputs) = (&model.parameters, &model.inputs);
     let public =
         |fields: &[Parameter]| fields.iter().map(|f| format!("pub {}: T", f.name)).collect::<Vec<_>>();
@@ -44,12 +44,12 @@ pub(super) fn definition(model: &Model, name: &str, has_set_up: bool) -> String 
     let with_values = |own: &str, values: &str, inputs: Vec<String>| {
         list([own, values].map(str::to_owned).into_iter().filter(|field| !field.is_empty()).chain(inputs))
     };
-    let [declared_values, first_values, set_up, set_up_values] = if has_set_up {
+    let [declared_values, first_values, parameter_setup, parameter_setup_values] = if has_parameter_setup {
         [
             "derived: [T; INT_derived]",
             "derived: [T::constant(0.0); INT_derived]",
-            "fn set_up(&self, ANY_out: &mut [T; INT_derived]) { HOLE_set_up }",
-            "let mut derived = self.derived; self.set_up(&mut derived); self.derived = derived;",
+            "fn parameter_setup(&self, ANY_out: &mut [T; INT_derived]) { HOLE_parameter_setup }",
+            "let mut derived = self.derived; self.parameter_setup(&mut derived); self.derived = derived;",
         ]
     } else {
         [""; 4]
@@ -87,10 +87,10 @@ pub(super) fn definition(model: &Model, name: &str, has_set_up: bool) -> String 
             pub fn parameters(&self) -> &Parameters<T> {{ &self.parameters }}
             pub fn set_parameters(&mut self, parameters: Parameters<T>) {{
                 self.parameters = parameters;
-                {set_up_values}
+                {parameter_setup_values}
             }}
             {set_one}
-            {set_up}
+            {parameter_setup}
         }}",
     )
 }
