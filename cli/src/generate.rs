@@ -2,6 +2,7 @@
 
 use crate::args::GenerateArgs;
 use crate::failure::Failure;
+use crate::invocation::program;
 use crate::places::{Place, all_pages, listing, module_path, place_of};
 use crate::verify::proved;
 use crate::words::count;
@@ -188,7 +189,7 @@ fn check(outputs: &Outputs, mend: &str) -> Result<(), Failure> {
 fn mend(args: &GenerateArgs) -> String {
     let models = args.models.iter().map(|m| format!(" {}", m.display()));
     let out = args.out.iter().map(|o| format!(" --out {}", o.display()));
-    format!("cargo xtask generate{}", models.chain(out).collect::<String>())
+    format!("{} generate{}", program(), models.chain(out).collect::<String>())
 }
 
 /// Lines of a difference that are shown.

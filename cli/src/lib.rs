@@ -12,6 +12,7 @@ mod folder;
 pub mod generate;
 mod inputs;
 mod inspect;
+mod invocation;
 mod json;
 mod linear;
 mod linearization;
@@ -39,6 +40,7 @@ pub mod write;
 
 pub use args::{Cli, Command, EXIT_CODES};
 use failure::Failure;
+pub use invocation::{named, parse};
 
 impl Command {
     /// Does what was asked for.

@@ -2,6 +2,7 @@
 
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
+use crate::invocation::program;
 use crate::places::{Place, all_pages, module_path};
 use crate::progress::Spinner;
 use crate::words::count;
@@ -65,7 +66,7 @@ fn read_page(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Fail
     let read = |path: &Path| {
         fs::read_to_string(path).map_err(|e| {
             let (path, page) = (path.display(), page.display());
-            Failure::Usage(format!("{path} cannot be read: {e}\nto write it: cargo xtask generate {page}"))
+            Failure::Usage(format!("{path} cannot be read: {e}\nto write it: {} generate {page}", program()))
         })
     };
     let texts = [read(&path)?, read(&path.with_extension("exact"))?];

@@ -62,4 +62,14 @@ mod tests {
     fn the_commands_are_consistent() {
         Cli::command().debug_assert();
     }
+
+    /// Including those of `gyro`.
+    #[test]
+    fn examples_of_all_commands_name_cargo_xtask() {
+        let mut command = gyro_cli::named(Cli::command());
+        let simulate = command.find_subcommand_mut("simulate").expect("a command of `gyro`");
+        assert!(
+            simulate.render_help().to_string().contains("\n  cargo xtask simulate models/gyroscope.toml\n")
+        );
+    }
 }

@@ -21,6 +21,20 @@ pub(crate) struct Effort {
     pub(crate) measure_for: f64,
 }
 
+impl Effort {
+    /// Of the paper's scene in a full report.
+    pub(crate) const FINE: Self =
+        Self { per_decade: 2, halvings: Halvings::AndBetween, longest_run: 0.2, measure_for: 0.02 };
+
+    /// Of other scenes in a full report.
+    pub(crate) const COARSE: Self =
+        Self { per_decade: 1, halvings: Halvings::Each, longest_run: 0.05, measure_for: 0.006 };
+
+    /// Of any scene in a quick report.
+    pub(crate) const SPARSE: Self =
+        Self { per_decade: 1, halvings: Halvings::EveryOther, longest_run: 0.02, measure_for: 0.005 };
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Halvings {
     /// Every halving.

@@ -50,7 +50,7 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     names.iter().try_for_each(|name| write::check(name, &folder))?;
     let twin = nested::twin()?;
     let machine = crate::machine::machine_in("release")?;
-    let effort = if args.quick { Effort::quick() } else { Effort::full() };
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let mut missed = Vec::new();
     for (index, path) in pages.iter().enumerate() {
         let progress = Count::new(format!("{} of {}", index + 1, pages.len()));
