@@ -9,23 +9,23 @@ use std::path::PathBuf;
 
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
-/// What every command returns.
+/// The exit codes of every command.
 pub const EXIT_CODES: &str = "Exit codes:
-  0  it is done
-  1  it was asked for correctly and did not succeed: a run that ends early, a refuted proof, a stale file under --check
-  2  it cannot be done as it was asked for: an option, a model or another file; nothing was begun
-  3  the run has come to its end, and its result is worthless; files and figures are written all the same";
+  0  success
+  1  the request was valid but failed: a run that ends early, a refuted proof, a stale file under --check
+  2  the request was invalid: an option, a model file or another file; nothing was started
+  3  the run completed, but its result is worthless; files and figures are written nevertheless";
 
 /// From a model file of bodies and joints to Rust code and to plots.
 #[derive(Debug, Parser)]
 #[command(name = "gyro", after_help = EXIT_CODES)]
 pub struct Cli {
-    /// What is to be done.
+    /// The command to run.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What there is to do.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Generate(GenerateArgs),
@@ -38,21 +38,21 @@ pub enum Command {
 
 /// Write the Rust modules of models and their data sheets
 ///
-/// The module of a model goes beside its model file, or where --out says. Of the models of this project the data sheets
-/// are kept (mechanisms/sheets, tests/sheets, embedded/sheets) and a few modules to be read (mechanisms/src/golden, and
-/// the paper's scene in gyro-sim/src/generated); all others are generated when they are compiled. Nothing is written
-/// unless every model is free of mistakes.
+/// The module of a model is written beside its model file, or to the path given by --out. Of the models of this
+/// project, the data sheets are committed (mechanisms/sheets, tests/sheets, embedded/sheets), and a few modules to be
+/// read (mechanisms/src/golden, and the paper's scene in gyro-sim/src/generated); all other modules are generated at
+/// build time. Nothing is written unless all models are valid.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  {program} generate                          what is kept of every model of this project
+  {program} generate                          the committed files of all models of this project
   {program} generate models/torsion.toml --out out/torsion.rs
-  {program} generate --check                  fail if a generated file is not fresh
+  {program} generate --check                  fail if a generated file is out of date
   {program} generate ~/gimbal.toml --out src/gimbal.rs")]
 pub struct GenerateArgs {
-    /// Model files; all of this project if none is given
+    /// Model files [default: all of this project]
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
-    /// Write nothing: exit with status 1 and show the difference if a file is not what its model says
+    /// Write nothing; exit with status 1 and show the difference if a file is out of date
     #[arg(long)]
     pub(crate) check: bool,
     /// Where to write the module of a single model
@@ -73,20 +73,20 @@ pub struct GenerateArgs {
   {program} verify ~/gimbal.toml              the module that `{program} generate` wrote beside the model
   {program} verify --json models/gyroscope.toml")]
 pub struct VerifyArgs {
-    /// Model files; all of the workspace if none is given
+    /// Model files [default: all of the workspace]
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
     /// Measure rounding instead: errors of generated code and of two runtime-assembled forms, against 384 bits
     #[arg(long, conflicts_with_all = ["quick", "json"])]
     pub(crate) rounding: bool,
     /// Measure the stability of trees instead: masses, inertias and joint points become parameters, and random
-    /// configurations of ten kinds are compared with 384 bits, beside the dense assembled form
+    /// configurations of ten kinds are compared with 384 bits, beside the dense runtime-assembled form
     #[arg(long, value_name = "CONFIGURATIONS", num_args = 0..=1, default_missing_value = "1000", conflicts_with_all = ["rounding", "quick", "json"])]
     pub(crate) stability: Option<NonZeroUsize>,
-    /// One point for each claim instead of two
+    /// Test each claim at one point instead of two
     #[arg(long)]
     pub(crate) quick: bool,
-    /// Test at the points of this seed, as another run has printed it; otherwise they are drawn anew
+    /// Seed of the test points, as printed by an earlier run [default: a new random seed]
     #[arg(long, value_name = "HEX", conflicts_with_all = ["rounding", "stability"])]
     pub(crate) seed: Option<Seed>,
     /// Print one JSON array and nothing else
@@ -102,13 +102,13 @@ pub struct VerifyArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   {program} inspect models/gyroscope.toml
-  {program} inspect ~/gimbal.toml --no-compile     no machine code: at once
+  {program} inspect ~/gimbal.toml --no-compile     without machine code: immediate
   {program} inspect models/four-bar.toml --json")]
 pub struct InspectArgs {
     /// Model file, anywhere on disk
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
-    /// Leave out the machine code, for which the module has to be compiled
+    /// Skip the machine code, which needs the module to be compiled
     #[arg(long)]
     pub(crate) no_compile: bool,
     /// Print one JSON object on standard output and nothing else
@@ -118,7 +118,7 @@ pub struct InspectArgs {
 
 /// Write the model file of a URDF robot
 ///
-/// Says what of the robot has no counterpart in the model file. Link frames become body frames at the mass centres;
+/// Reports what in the robot has no counterpart in a model file. Link frames become body frames at the mass centres;
 /// links without mass are merged with what they are fixed to.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -132,30 +132,31 @@ pub struct ImportArgs {
     /// Where to write the model file [default: beside the robot, with the extension toml]
     #[arg(long, value_name = "MODEL.toml")]
     pub(crate) out: Option<PathBuf>,
-    /// Let the root link float in place of fixing it to the ground
+    /// Let the root link float instead of fixing it to the ground
     #[arg(long)]
     pub(crate) floating: bool,
-    /// Replace a model file that an import has written
+    /// Overwrite a model file that an earlier import has written
     #[arg(long)]
     pub(crate) force: bool,
 }
 
 /// Report error against run time, drift and stability of scenes
 ///
-/// Runs each scene by every integrator, correction, coordinates and precision and by runtime-assembled models, counts
-/// errors from a reference solution of its own, and writes a page for each scene as Markdown and as one HTML file,
-/// figures, raw data as CSV and an index. All of it takes about twenty minutes; leave the machine alone meanwhile.
+/// Runs each scene with every integrator, correction, choice of coordinates and precision, and with runtime-assembled
+/// models; measures errors against the scene's reference solution; and writes a page for each scene as Markdown and as
+/// one HTML file, figures, raw data as CSV and an index. A full report takes about twenty minutes; keep the machine
+/// otherwise idle.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  {program} report                             every model in models/, to out/report; what is kept, to docs/report
+  {program} report                             every model in models/, to out/report; the committed part, to docs/report
   {program} report models/gyroscope.toml
   {program} report --quick                     a minute, to target/report
   {program} report ~/gimbal.toml --out ~/gimbal-report")]
 pub struct ReportArgs {
-    /// Model files; all of models/ if none is given
+    /// Model files [default: all of models/]
     #[arg(value_name = "MODEL")]
     pub(crate) models: Vec<PathBuf>,
-    /// Few points and short runs, and the paper's scene alone if none is given
+    /// Few points and short runs; only the paper's scene if no model is given
     #[arg(long)]
     pub(crate) quick: bool,
     /// Folder of the report [default: out/report; target/report with --quick]
@@ -250,7 +251,7 @@ mod tests {
             (&["--set", "mass=heavy"], "`heavy` is not a decimal number"),
             (&["--set", "mass=nan"], "`nan` is not a decimal number"),
             (&["--input", "motor"], "NAME=FILE.csv or NAME=NUMBER was expected"),
-            (&["--input", "motor="], "nothing stands after `motor=`"),
+            (&["--input", "motor="], "a value is missing after `motor=`"),
             (&["--input", "motor=nan"], "`nan` is not a finite number"),
             (&["--integrator", "euler"], "rk4, tsit5, dop853 or rodas4 was expected"),
             (&["--coordinates", "polar"], "maximal or joint was expected"),

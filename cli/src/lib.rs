@@ -43,10 +43,10 @@ use failure::Failure;
 pub use invocation::{named, parse};
 
 impl Command {
-    /// Does what was asked for.
+    /// Runs the command.
     ///
     /// # Errors
-    /// Why it was not done.
+    /// If the request is invalid, or the command fails.
     pub fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Generate(args) => generate::generate(args),

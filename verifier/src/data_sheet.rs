@@ -1,4 +1,4 @@
-//! What the words of a module must say: its data sheet, line by line, and the documentation of its parts.
+//! What the text of a module must say: its data sheet, line by line, and the documentation of its parts.
 //!
 //! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
 
@@ -73,7 +73,7 @@ fn words(function: &str) -> Option<&'static Words> {
 /// Where the section on the proof begins.
 pub const PROOF: &str = "# Proof";
 
-/// All that the words of a module say otherwise than it is; the section on the proof is for who has proved it.
+/// All statements of a module's text that are not true; the section on the proof is left to the caller.
 pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
     let mut problems = undocumented(module);
     problems.extend(unfounded(model, module));
@@ -97,7 +97,10 @@ pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
         problems.push(Refusal::new(1, words));
     }
     if let Some(line) = other.first().filter(|line| *line != PROOF) {
-        problems.push(Refusal::new(1, format!("the data sheet says `{line}`, which nobody knows")));
+        problems.push(Refusal::new(
+            1,
+            format!("the data sheet says `{line}`, which is not a line of a data sheet"),
+        ));
     }
     problems
 }
@@ -256,7 +259,7 @@ fn unfounded(model: &Model, module: &Module) -> Vec<Refusal> {
     unknown.map(|(line, text)| Refusal::new(*line, format!("`///{text}` is not what is here"))).collect()
 }
 
-/// The documentation of what is no function.
+/// The documentation of items other than functions.
 fn of_items(model: &Model, module: &Module) -> Vec<String> {
     let plain = [
         " The model has neither parameters nor inputs.",

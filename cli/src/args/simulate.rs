@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 /// Simulate a model
 ///
-/// Prints a summary and writes a CSV file and plots. What no option says, the model file's own table `simulation` says.
-/// Of an option that is given twice the last one counts. All times are in seconds.
+/// Prints a summary and writes a CSV file and plots. Settings that no option gives are taken from the table
+/// `simulation` of the model file. If an option is given twice, the last one counts. All times are in seconds.
 #[derive(Clone, Debug, Args)]
 #[command(
     args_override_self = true,
@@ -21,14 +21,13 @@ use std::path::PathBuf;
   {program} simulate my-gimbal.toml --set rotor_mass=0.085 --json
   {program} simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
 
-Exit codes: 0 done; 1 the run has failed; 2 it cannot be made as it was asked for; 3 it has come to its end, and the result is
-worthless"
+Exit codes: 0 success; 1 the run failed; 2 the request was invalid; 3 the run completed, but its result is worthless"
 )]
 pub struct SimulateArgs {
     /// Model file, anywhere on disk
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
-    /// What computes the motion
+    /// Engine that computes the motion
     #[arg(long, value_enum, default_value_t = Engine::Generated)]
     pub(crate) engine: Engine,
     /// Length of the run
@@ -46,25 +45,26 @@ pub struct SimulateArgs {
     /// The integrator: rk4 (fixed steps), tsit5, dop853, or rodas4 for stiff scenes
     #[arg(long, value_name = "NAME", value_parser = integrator, default_value = "rk4")]
     pub(crate) integrator: Integrator,
-    /// Error tolerated in each step, relative and absolute: steps are then as long as it allows
+    /// Error tolerance of each step, relative and absolute; the step size is then chosen automatically
     #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
     /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code
     /// only)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
     pub(crate) coordinates: Coordinates,
-    /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
+    /// How constraints are enforced: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
     /// model file's]
     #[arg(long, value_name = "NAME", value_parser = correction)]
     pub(crate) correction: Option<Correction>,
-    /// When they are corrected: steps=K or violation=SIZE [default: --correct-every; every step with --tolerance]
+    /// When constraints are corrected: steps=K or violation=SIZE [default: --correct-every; every step with
+    /// --tolerance]
     #[arg(long, value_name = "WHEN", value_parser = when, overrides_with = "correct_every")]
     pub(crate) correct_when: Option<When>,
-    /// Steps after which the run is given up [default: 10 million with --tolerance]. Fixed steps that would take more
-    /// than an hour are made only with a budget
+    /// Maximum number of steps [default: 10 million with --tolerance]. A run with fixed steps that would take more than
+    /// an hour needs a budget
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) budget: Option<u64>,
-    /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
+    /// Run a second time with a finer step or tolerance and report how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
     /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and
@@ -77,12 +77,12 @@ pub struct SimulateArgs {
     /// Interval between samples [default: the model file's, on the nearest whole number of corrections]
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) every: Option<f64>,
-    /// Value of one of the model's parameters; may be given several times. The start is assembled anew
+    /// Value of one of the model's parameters; may be given several times. The start is assembled again
     #[arg(long, value_name = "PARAMETER=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, Rational)>,
-    /// What one of the model's inputs is, once for each input: a number, or a CSV file with two columns, time and
-    /// value. Between rows the value is linear, beyond them it is held; each step has the value at its start. Other
-    /// inputs keep the model file's value
+    /// Value of one of the model's inputs, once for each input: a number, or a CSV file with two columns, time and
+    /// value. Values are interpolated linearly between rows and held before the first and after the last; each step
+    /// uses the value at its start. Inputs that are not set keep the model file's value
     #[arg(long, value_name = "NAME=FILE.csv|NUMBER", value_parser = set_input)]
     pub(crate) input: Vec<(String, InputSetting)>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
@@ -99,14 +99,15 @@ pub struct SimulateArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Engine {
-    /// Generated code, compiled for the purpose
+    /// Generated code, compiled on demand
     Generated,
-    /// The runtime-assembled model, as a careful engineer would make it where the mechanism allows (trees of revolute,
-    /// spherical and fixed joints): starts at once
+    /// The runtime-assembled model, in its careful form where the mechanism allows it (trees of revolute, spherical and
+    /// fixed joints); starts immediately
     Assembled,
     /// The runtime-assembled model in the paper's plain dense form
     Dense,
-    /// The same as a recursion in joint coordinates: for trees of any joints, and the quickest without compiling
+    /// The runtime-assembled model as a recursion in joint coordinates: for trees of any joints; the fastest engine
+    /// that needs no compilation
     Recursive,
 }
 
@@ -170,7 +171,7 @@ fn set_input(text: &str) -> Result<(String, InputSetting), String> {
     match value.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok((name, InputSetting::Number(number))),
         Ok(_) => Err(format!("`{value}` is not a finite number")),
-        Err(_) if value.is_empty() => Err(format!("nothing stands after `{name}=`")),
+        Err(_) if value.is_empty() => Err(format!("a value is missing after `{name}=`")),
         Err(_) => Ok((name, InputSetting::File(PathBuf::from(value)))),
     }
 }

@@ -54,7 +54,7 @@ pub(crate) struct Study {
     pub(crate) long: f64,
     pub(crate) knob: Knob,
     pub(crate) maps: Vec<Map>,
-    /// What could not be said of stability, in words.
+    /// What could not be determined about stability, as messages.
     pub(crate) troubles: Vec<String>,
     pub(crate) goals: Vec<Goal>,
     /// Seconds that all this has taken.
@@ -78,9 +78,14 @@ const PATIENCE: f64 = 60.0;
 const MOST_STEPS: [f64; 2] = [2e6, 3e5];
 
 impl Study {
-    pub(crate) fn new(path: &Path, twin: &Path, effort: &Effort, progress: &Count) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        path: &Path,
+        assembled: &Path,
+        effort: &Effort,
+        progress: &Count,
+    ) -> Result<Self, Failure> {
         let began = Instant::now();
-        let mut lab = Lab::new(path, twin)?;
+        let mut lab = Lab::new(path, assembled)?;
         let is_paper = lab.name == PAPER;
         progress.begin(&format!("{}: reference solution", lab.name), 1);
         let truth_began = Instant::now();
