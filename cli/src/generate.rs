@@ -336,7 +336,7 @@ inertia = [1e-4, 1e-4, 2e-4]
         let found = words(write(&outputs));
         assert!(found.contains("mod.rs: pub mod plate;"), "{found}");
         assert!(
-            found.contains("old.rs is of no model") && found.contains("older.txt is of no model"),
+            found.contains("old.rs belongs to no model") && found.contains("older.txt belongs to no model"),
             "{found}"
         );
     }

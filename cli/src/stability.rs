@@ -124,7 +124,7 @@ impl Subject {
         let module = Module::read(&model, &generated.code, &generated.constants)
             .map_err(|refusal| Failure::Run(refusal.to_string()))?;
         if module.joints.is_none() {
-            let words = format!("{} is no open tree: it has no joint coordinates", model.name);
+            let words = format!("{} is not an open tree: it has no joint coordinates", model.name);
             return Err(Failure::Usage(words));
         }
         Ok(Self { model, module })
