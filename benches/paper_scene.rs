@@ -1,4 +1,4 @@
-//! The paper's scene in one run of criterion: the floor, generated code, and the forms of the runtime-assembled twin.
+//! The paper's scene in one run of criterion: the floor, generated code, and the forms of the runtime-assembled model.
 //!
 //! All sides do the same work on the same state, in the same build, warmed up by criterion. Trust ratios, not
 //! nanoseconds, and rather those of `cargo bench --bench performance`, which measures in turns.

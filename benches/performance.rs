@@ -3,7 +3,7 @@
 //! Prints one line for each kernel, its cells separated by tabs: what, who, flops, ns, ratio to the floor. `cargo xtask
 //! performance` makes the tables of docs/performance.md of it. With `--count` nothing is timed: each kernel is called
 //! [`CALLS`] times within a function that callgrind can be told, in the order of the lines. With `--generate` it turns
-//! the page on standard input into a module on standard output, optimised as all of this is.
+//! the model file on standard input into a module on standard output, optimised as all of this is.
 
 use gyro_benches::{Clock, Kernel, Scene, counted, interleaved, kernels, runs};
 use std::io::{IsTerminal, Read, Write, stderr, stdin, stdout};
@@ -55,6 +55,6 @@ fn print(kernels: &mut [Kernel<'_>], rounds: usize, slice: (Duration, Clock)) ->
 fn generate() -> std::io::Result<()> {
     let mut page = String::new();
     stdin().read_to_string(&mut page)?;
-    let module = gyro_codegen::generate("page.toml", &page).map_err(std::io::Error::other)?;
+    let module = gyro_codegen::generate("model.toml", &page).map_err(std::io::Error::other)?;
     stdout().write_all(module.code.as_bytes())
 }

@@ -1,4 +1,5 @@
-//! The twin as a program that answers requests, optimised like the generated one beside which it is measured.
+//! The runtime-assembled model as a program that answers requests, optimised like the generated one beside which it is
+//! measured.
 
 use crate::{BuildError, Careful, Dense, Form, Precision, Recursive};
 use gyro_model::Model;

@@ -38,7 +38,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/gyroscope.toml");
 //! # let page = std::fs::read_to_string(path)?;
-//! let model = gyro_model::read("gyroscope.toml", &page).expect("a page without mistakes");
+//! let model = gyro_model::read("gyroscope.toml", &page).expect("a model file without mistakes");
 //! let mechanism = Careful::<f64>::new(&model)?;
 //! let mut state = mechanism.start();
 //! let mut solver = Partitioned::new(&mechanism, &state);

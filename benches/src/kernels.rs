@@ -179,7 +179,7 @@ where
     kernels
 }
 
-/// What is evaluated only; all forms of the twin have these in common.
+/// What is evaluated only; all forms of the runtime-assembled model have these in common.
 fn terms<'a, M>(
     side: &'static str,
     mechanism: &'a M,

@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 const AXES: [([i32; 3], [i32; 3]); 3] =
     [([1, 2, 2], [2, 1, -2]), ([2, -1, 2], [2, 2, -1]), ([-2, 1, 2], [2, 2, 1])];
 
-/// The page of a chain that hangs from the ground, its joints askew, at angles and rates.
-pub fn page(bodies: usize) -> String {
+/// The model file of a chain that hangs from the ground, its joints askew, at angles and rates.
+pub fn model_file(bodies: usize) -> String {
     let mut text = format!(
         "format = 1\nname = \"chain_{bodies}\"\ngravity = [0, 0, -9.81]\n\n[[body]]\nname = \"base\"\nfixed = true\n"
     );

@@ -74,11 +74,11 @@ pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static st
     }
 }
 
-/// The value of each input at a time: as it was fed in, or else the page's.
-pub(crate) fn inputs_at(model: &Model, fed: &[Input], t: f64) -> Vec<f64> {
+/// The value of each input at a time: as it was set, or else the model file's.
+pub(crate) fn inputs_at(model: &Model, set: &[Input], t: f64) -> Vec<f64> {
     let value = |(index, input): (usize, &Parameter)| {
-        let fed = fed.iter().find(|fed| fed.index == index);
-        fed.map_or_else(|| gyro_model::to_f64(&input.value), |fed| fed.at(t))
+        let set = set.iter().find(|set| set.index == index);
+        set.map_or_else(|| gyro_model::to_f64(&input.value), |set| set.at(t))
     };
     model.inputs.iter().enumerate().map(value).collect()
 }
@@ -104,10 +104,10 @@ pub(crate) fn input_unit(model: &Model, input: usize) -> &'static str {
 }
 
 /// The table of a run, in a fixed order: time, inputs, joints, outputs, free bodies, energy, violations, charts.
-pub(crate) fn columns(model: &Model, fed: &[Input], samples: &[Sample]) -> Vec<Column> {
+pub(crate) fn columns(model: &Model, set: &[Input], samples: &[Sample]) -> Vec<Column> {
     let mut table = Table { samples, columns: Vec::new() };
     table.add("t", "s", |s| s.t);
-    table.add_inputs(model, fed);
+    table.add_inputs(model, set);
     for (index, coordinate) in coordinates(model).iter().enumerate() {
         table.add_coordinate(index, coordinate);
     }
@@ -159,13 +159,13 @@ impl Table<'_> {
     }
 
     /// By their names; what has the name of a joint, an output or a body is called an input.
-    fn add_inputs(&mut self, model: &Model, fed: &[Input]) {
+    fn add_inputs(&mut self, model: &Model, set: &[Input]) {
         let joints = model.joints.iter().map(|joint| &joint.name);
         let taken: Vec<&String> = joints.chain(model.outputs.iter().map(|output| &output.name)).collect();
         for (index, input) in model.inputs.iter().enumerate() {
             let name = &input.name;
             let name = if taken.contains(&name) { format!("input {name}") } else { name.clone() };
-            self.add(&name, input_unit(model, index), |s| inputs_at(model, fed, s.t)[index]);
+            self.add(&name, input_unit(model, index), |s| inputs_at(model, set, s.t)[index]);
         }
     }
 

@@ -12,9 +12,9 @@ pub fn root() -> PathBuf {
     xtask.parent().unwrap_or(xtask).to_path_buf()
 }
 
-/// The largest page, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies
+/// The largest model file, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies
 /// takes.
-pub const LARGEST_PAGE: u64 = 4 << 20;
+pub const LARGEST_MODEL_FILE: u64 = 4 << 20;
 
 /// The largest table of a motion or an input that is read: two million rows and more.
 pub const LARGEST_TABLE: u64 = 64 << 20;
@@ -49,14 +49,14 @@ pub fn text(path: &Path, largest: u64) -> io::Result<String> {
     })
 }
 
-/// The text of a model page.
-pub fn read_page(path: &Path) -> Result<String, Failure> {
-    input(path, LARGEST_PAGE).map_err(|e| Failure::Usage(unreadable(path, &e)))
+/// The text of a model file.
+pub fn read_module(path: &Path) -> Result<String, Failure> {
+    input(path, LARGEST_MODEL_FILE).map_err(|e| Failure::Usage(unreadable(path, &e)))
 }
 
 /// The text of a page of the documentation that is to be brought up to date.
 pub fn read_template(path: &Path) -> Result<String, Failure> {
-    text(path, LARGEST_PAGE).map_err(|e| Failure::Usage(unreadable(path, &e)))
+    text(path, LARGEST_MODEL_FILE).map_err(|e| Failure::Usage(unreadable(path, &e)))
 }
 
 fn unreadable(path: &Path, error: &io::Error) -> String {
@@ -118,9 +118,9 @@ pub(crate) mod tests {
         let folder = Folder::new();
         let path = folder.0.join("x.toml");
         fs::write(&path, b"name = \"\xff\"").unwrap();
-        let Err(Failure::Usage(words)) = read_page(&path) else { panic!("not UTF-8") };
+        let Err(Failure::Usage(words)) = read_module(&path) else { panic!("not UTF-8") };
         assert!(words.contains("x.toml: not UTF-8 text: byte 8"), "{words}");
-        let Err(Failure::Usage(words)) = read_page(&folder.0.join("none.toml")) else { panic!("no file") };
+        let Err(Failure::Usage(words)) = read_module(&folder.0.join("none.toml")) else { panic!("no file") };
         assert!(words.contains("none.toml cannot be read"), "{words}");
     }
 

@@ -2,7 +2,8 @@
 
 use crate::args::GenerateArgs;
 use crate::failure::Failure;
-use crate::places::{Place, all_pages, listing, module_path, place_of};
+use crate::invocation::program;
+use crate::places::{Place, all_model_files, listing, module_path, place_of};
 use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
@@ -29,7 +30,7 @@ struct Outputs {
     files: Vec<Output>,
     /// What has to be done by hand.
     to_do: Vec<String>,
-    /// Pages of which no module is written.
+    /// Model files of which no module is written.
     without_module: Vec<PathBuf>,
 }
 
@@ -42,7 +43,7 @@ struct Output {
 
 /// Generates everything in memory: a mistake anywhere leaves all files as they are.
 fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
-    let pages = if args.models.is_empty() { all_pages(places)? } else { args.models.clone() };
+    let pages = if args.models.is_empty() { all_model_files(places)? } else { args.models.clone() };
     if args.out.is_some() && pages.len() != 1 {
         return Err(Failure::Usage("--out takes the module of a single MODEL: give one".to_owned()));
     }
@@ -54,8 +55,10 @@ fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
         let place = place_of(places, page).filter(|_| args.out.is_none());
         let path = args.out.clone().or_else(|| module_path(places, page, &module.name));
         let sheet = place.map(|place| place.sheet(&module.name));
-        let first =
-            sheet.clone().or_else(|| path.clone()).expect("a page from elsewhere has its module beside it");
+        let first = sheet
+            .clone()
+            .or_else(|| path.clone())
+            .expect("a model file from elsewhere has its module beside it");
         if let Some((_, other)) = sources.iter().find(|(known, _)| *known == first) {
             let (this, other) = (page.display(), other.display());
             return Err(Failure::Usage(format!("{this} and {other} have the same name `{}`", module.name)));
@@ -102,7 +105,7 @@ fn data_sheet(module: &Module) -> String {
     text + "\n"
 }
 
-/// The modules of pages, each proved and with the proof on its data sheet.
+/// The modules of model files, each proved and with the proof on its data sheet.
 pub fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let model = scene::read(page)?;
@@ -179,7 +182,7 @@ fn check(outputs: &Outputs, mend: &str) -> Result<(), Failure> {
         let _ = writeln!(words, "{to_do}");
     }
     if !stale.is_empty() {
-        let _ = write!(words, "to mend this: {mend}");
+        let _ = write!(words, "to fix this, run: {mend}");
     }
     Err(Failure::Run(words.trim_end().to_owned()))
 }
@@ -188,7 +191,7 @@ fn check(outputs: &Outputs, mend: &str) -> Result<(), Failure> {
 fn mend(args: &GenerateArgs) -> String {
     let models = args.models.iter().map(|m| format!(" {}", m.display()));
     let out = args.out.iter().map(|o| format!(" --out {}", o.display()));
-    format!("cargo xtask generate{}", models.chain(out).collect::<String>())
+    format!("{} generate{}", program(), models.chain(out).collect::<String>())
 }
 
 /// Lines of a difference that are shown.
@@ -205,7 +208,7 @@ fn difference(output: &Output) -> Option<String> {
     // Long texts of which nothing is alike would be compared for hours.
     let diff = TextDiff::configure().timeout(Duration::from_secs(2)).diff_lines(&found, &output.text);
     let unified = diff.unified_diff().context_radius(1).header("as it is", "as its model says").to_string();
-    let mut words = format!("{path} is not what its model says:\n");
+    let mut words = format!("{path} differs from what its model generates:\n");
     for line in unified.lines().take(SHOWN_LINES) {
         let _ = writeln!(words, "{line}");
     }
@@ -240,7 +243,7 @@ fn orphans(folder: &Path, extension: &str, is_known: impl Fn(&str) -> bool) -> R
     };
     let orphans = listing(folder)?.into_iter().filter(is_orphan);
     Ok(orphans
-        .map(|path| format!("{} is of no model that is kept here: delete it", path.display()))
+        .map(|path| format!("{} belongs to no model of this workspace: delete it", path.display()))
         .collect())
 }
 
@@ -298,7 +301,7 @@ inertia = [1e-4, 1e-4, 2e-4]
             fs::write(&path, format!("{fresh}// edited\n")).unwrap();
             let found = words(check(&outputs, mend));
             assert!(found.contains("-// edited"), "{found}");
-            assert!(found.ends_with("to mend this: cargo xtask generate"), "{found}");
+            assert!(found.ends_with("to fix this, run: cargo xtask generate"), "{found}");
             fs::write(&path, fresh).unwrap();
         }
     }
@@ -333,7 +336,7 @@ inertia = [1e-4, 1e-4, 2e-4]
         let found = words(write(&outputs));
         assert!(found.contains("mod.rs: pub mod plate;"), "{found}");
         assert!(
-            found.contains("old.rs is of no model") && found.contains("older.txt is of no model"),
+            found.contains("old.rs belongs to no model") && found.contains("older.txt belongs to no model"),
             "{found}"
         );
     }
@@ -381,7 +384,7 @@ inertia = [1e-4, 1e-4, 2e-4]
     fn a_mistake_in_any_page_writes_nothing() {
         let (_folder, places) = workspace("pub mod plate;\n");
         fs::write(places[0].models.join("zbad.toml"), PAGE.replace("mass = 0.1", "mass = -1")).unwrap();
-        assert!(matches!(outputs(&args(&[], None), &places), Err(Failure::Page(_))));
+        assert!(matches!(outputs(&args(&[], None), &places), Err(Failure::ModelFile(_))));
         assert!(!places[0].module("plate").unwrap().exists());
     }
 }

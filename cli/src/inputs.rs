@@ -1,6 +1,6 @@
-//! What `--input` feeds into a model.
+//! What `--input` sets the inputs of a model to.
 
-use crate::args::Feed;
+use crate::args::InputSetting;
 use crate::failure::Failure;
 use crate::{files, words};
 use gyro_model::{Model, Rational};
@@ -8,18 +8,18 @@ use gyro_runner::Input;
 use std::path::Path;
 
 /// The inputs that the command line gives.
-pub(crate) fn inputs(model: &Model, given: &[(String, Feed)]) -> Result<Vec<Input>, Failure> {
+pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<Vec<Input>, Failure> {
     let known: Vec<&str> = model.inputs.iter().map(|input| input.name.as_str()).collect();
     let mut inputs: Vec<Input> = Vec::new();
-    for (name, feed) in given {
+    for (name, setting) in given {
         let index =
             known.iter().position(|other| other == name).ok_or_else(|| unknown(model, name, &known))?;
         if inputs.iter().any(|input| input.index == index) {
             return Err(Failure::Usage(format!("--input gives `{name}` twice")));
         }
-        let rows = match feed {
-            Feed::Number(value) => vec![[0.0, *value]],
-            Feed::File(path) => read(path)
+        let rows = match setting {
+            InputSetting::Number(value) => vec![[0.0, *value]],
+            InputSetting::File(path) => read(path)
                 .map_err(|words| Failure::Usage(format!("--input {name}={}: {words}", path.display())))?,
         };
         check(model, index, &rows).map_err(|words| Failure::Usage(format!("--input {name}: {words}")))?;

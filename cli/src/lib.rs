@@ -12,6 +12,7 @@ mod folder;
 pub mod generate;
 mod inputs;
 mod inspect;
+mod invocation;
 mod json;
 mod linear;
 mod linearization;
@@ -39,12 +40,13 @@ pub mod write;
 
 pub use args::{Cli, Command, EXIT_CODES};
 use failure::Failure;
+pub use invocation::{named, parse};
 
 impl Command {
-    /// Does what was asked for.
+    /// Runs the command.
     ///
     /// # Errors
-    /// Why it was not done.
+    /// If the request is invalid, or the command fails.
     pub fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Generate(args) => generate::generate(args),

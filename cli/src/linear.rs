@@ -2,7 +2,7 @@
 //! start.
 //!
 //! With `x` the departure of joint angles and rates from there, `ẋ = f₀ + A x`; `f₀` and `A` are taken from the
-//! runtime-assembled twin, `A` by central differences of sixth order. At the start `x` holds the slow rates: a
+//! runtime-assembled model, `A` by central differences of sixth order. At the start `x` holds the slow rates: a
 //! gyroscope that is kicked departs from its spin. The response follows from the matrix exponential of `[A f₀; 0 0]`.
 //! Nothing here knows what the mechanism is.
 
@@ -125,8 +125,8 @@ impl Linear {
         Ok(())
     }
 
-    /// Compares the linear accelerations with the twin's where the linear motion has gone. An angle that nothing
-    /// depends on may turn without end.
+    /// Compares the linear accelerations with the runtime-assembled model's where the linear motion has gone. An angle
+    /// that nothing depends on may turn without end.
     fn refuse_curvature(&self, model: &Model, departures: &[DVector<f64>]) -> Result<(), String> {
         let (system, n) = (System { model, joints: &self.joints }, self.joints.len());
         let (mut scale, mut error) = (self.f0.rows(n, n).amax(), 0.0_f64);
@@ -162,7 +162,7 @@ fn revolute_joints(model: &Model) -> Result<Vec<usize>, String> {
     if joints.is_empty() { Err("there is no revolute joint".to_owned()) } else { Ok(joints) }
 }
 
-/// The twin in joint angles and rates.
+/// The runtime-assembled model in joint angles and rates.
 struct System<'a> {
     model: &'a Model,
     joints: &'a [usize],
@@ -174,14 +174,14 @@ impl System<'_> {
         let n = self.joints.len();
         let model = self.at(x)?;
         let start = model.assemble().map_err(|e| e.to_string())?;
-        let twin = Careful::<f64>::new(&model).map_err(|e| e.to_string())?;
-        let mut y = twin.start();
+        let careful = Careful::<f64>::new(&model).map_err(|e| e.to_string())?;
+        let mut y = careful.start();
         let state: &mut [f64] = y.as_mut();
         for (element, value) in state.iter_mut().zip(start.q.iter().chain(&start.v)) {
             *element = *value;
         }
         let mut dy = y.clone();
-        twin.derivative(0.0, &y, &mut dy);
+        careful.derivative(0.0, &y, &mut dy);
         let spins = body_accelerations(&model, y.as_ref(), dy.as_ref());
         let acceleration =
             |k: usize| joint_acceleration(&model, &model.joints[self.joints[k]], y.as_ref(), &spins);

@@ -1,11 +1,10 @@
 //! `gyro`: see `gyro --help`.
 
-use clap::Parser;
-use gyro_cli::Cli;
+use gyro_cli::{Cli, parse};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match Cli::parse().command.run() {
+    match parse::<Cli>().command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -48,10 +48,10 @@ pub(crate) fn program(page: &Model, module: &Module, precision: Precision) -> Re
     Ok(package.program_file())
 }
 
-/// Compiles the twin, optimised, into a program that takes the path of a page, the name of a form and of a precision
-/// and answers requests; returns where it is.
-pub(crate) fn twin() -> Result<PathBuf, Failure> {
-    let package = Package::twin();
+/// Compiles the runtime-assembled model, optimised, into a program that takes the path of a model file, the name of a
+/// form and of a precision and answers requests; returns where it is.
+pub(crate) fn assembled() -> Result<PathBuf, Failure> {
+    let package = Package::assembled();
     build(&package)?;
     Ok(package.program_file())
 }
@@ -70,7 +70,7 @@ struct Package {
     manifest: String,
     /// Name and text of the file at its root.
     root: (&'static str, String),
-    /// The generated module; none in a program of the twin.
+    /// The generated module; none in a program of the runtime-assembled model.
     mechanism: Option<String>,
     /// What rustc is told besides.
     options: &'static [&'static str],
@@ -89,10 +89,10 @@ impl Package {
         Self { manifest, name, root, mechanism: Some(module.code.clone()), options }
     }
 
-    fn twin() -> Self {
-        let name = "gyro-twin".to_owned();
+    fn assembled() -> Self {
+        let name = "gyro-assembled-program".to_owned();
         let manifest = manifest(&name, &["assembled", "model"]);
-        Self { manifest, name, root: ("main.rs", TWIN.to_owned()), mechanism: None, options: &[] }
+        Self { manifest, name, root: ("main.rs", ASSEMBLED.to_owned()), mechanism: None, options: &[] }
     }
 
     fn program_file(&self) -> PathBuf {
@@ -149,17 +149,17 @@ fn main() -> ::std::process::ExitCode {{
     )
 }
 
-/// The program of the twin.
-const TWIN: &str = r#"use gyro_assembled::{Form, Precision, child};
+/// The program of the runtime-assembled model.
+const ASSEMBLED: &str = r#"use gyro_assembled::{Form, Precision, child};
 use std::{env, fs, path::Path};
 
 fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = env::args().collect();
-    let [_, page, form, precision] = &arguments[..] else { panic!("a page, a form and a precision were expected") };
-    let folder = Path::new(page).parent().unwrap_or(Path::new(""));
-    let text = fs::read_to_string(page).expect("the page can be read");
+    let [_, file, form, precision] = &arguments[..] else { panic!("a model file, a form and a precision were expected") };
+    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+    let text = fs::read_to_string(file).expect("the model file can be read");
     let mut load = |table: &str| fs::read_to_string(folder.join(table)).map_err(|e| e.to_string());
-    let mut model = gyro_model::read_with(page, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
+    let mut model = gyro_model::read_with(file, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
     model.counts_work = true;
     let form = match form.as_str() {
         "recursive" => Form::Recursive,

@@ -1,14 +1,14 @@
-//! Where pages, their data sheets and the modules that are kept are in the workspace.
+//! Where model files, their data sheets and the modules that are kept are in the workspace.
 
 use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// A folder of pages, and what is kept in the repository of what is made of them.
+/// A folder of model files, and what is kept in the repository of what is made of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
     pub(crate) models: PathBuf,
-    /// The data sheet of every page.
+    /// The data sheet of every model file.
     pub(crate) sheets: PathBuf,
     /// Folders of modules, with the names of those that are in them. All others are generated when they are compiled.
     pub(crate) kept: Vec<(PathBuf, &'static [&'static str])>,
@@ -45,8 +45,8 @@ impl Place {
     }
 }
 
-/// The pages of the workspace, in the order of their names.
-pub(crate) fn all_pages(places: &[Place]) -> Result<Vec<PathBuf>, Failure> {
+/// The model files of the workspace, in the order of their names.
+pub(crate) fn all_model_files(places: &[Place]) -> Result<Vec<PathBuf>, Failure> {
     let mut pages = Vec::new();
     for place in places {
         pages.extend(
@@ -56,12 +56,12 @@ pub(crate) fn all_pages(places: &[Place]) -> Result<Vec<PathBuf>, Failure> {
     Ok(pages)
 }
 
-/// The place that a page belongs to, unless it is from elsewhere.
+/// The place that a model file belongs to, unless it is from elsewhere.
 pub(crate) fn place_of<'p>(places: &'p [Place], page: &Path) -> Option<&'p Place> {
     places.iter().find(|place| is_in(page, &place.models))
 }
 
-/// Where a page's module is: beside a page from elsewhere; nowhere if it is generated when it is compiled.
+/// Where a model file's module is: beside a model file from elsewhere; nowhere if it is generated when it is compiled.
 pub(crate) fn module_path(places: &[Place], page: &Path, name: &str) -> Option<PathBuf> {
     match place_of(places, page) {
         Some(place) => place.module(name),

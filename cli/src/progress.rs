@@ -59,7 +59,7 @@ impl Progress {
     }
 }
 
-/// A bar that draws on standard error, and nowhere if that is no terminal.
+/// A bar that draws on standard error, and nowhere if that is not a terminal.
 fn bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {eta} left");
     ProgressBar::new(DIVISIONS).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))

@@ -1,15 +1,15 @@
-//! What is to be said of a model besides its motion: redundant rows, and other warnings.
+//! Remarks on a model: redundant rows, and other warnings.
 
 use crate::failure::Failure;
 use crate::words::count;
 use gyro_model::{Model, OutputKind, RedundantRow, RowOwner};
 use std::io::Write as _;
 
-/// Remarks of one kind that are made of a page.
+/// Remarks of one kind that are made of a model file.
 const MOST: usize = 10;
 
-/// Says on standard error what of a page is nearly exact, and which rows were dropped; refuses the page if that is to
-/// be an error.
+/// Says on standard error what of a model file is nearly exact, and which rows were dropped; refuses the model file if
+/// that is to be an error.
 pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Result<(), Failure> {
     model.nearly_exact.iter().take(MOST).for_each(|words| note(&format!("{page}: {words}")));
     let lines: Vec<String> = model.redundant.iter().map(|row| describe(model, row)).collect();
@@ -36,7 +36,7 @@ pub(crate) fn note(words: &str) {
     let _ = writeln!(std::io::stderr(), "note: {words}");
 }
 
-/// A dropped row in words: whose it is, what it says, and whose multipliers are not unique without it.
+/// The message about a dropped row: whose it is, what it says, and whose multipliers are not unique without it.
 pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
     let row = dropped.row;
     let shared: Vec<String> =

@@ -1,8 +1,9 @@
-//! `cargo xtask verify --rounding`: what generated code and both forms of the twin lose by rounding, on the same
-//! states.
+//! `gyro verify --rounding`: what generated code and two forms of the runtime-assembled model lose by rounding, at the
+//! same states.
 
 use crate::failure::Failure;
 use gyro_assembled::{Careful, Dense};
+use gyro_codegen::Kernel;
 use gyro_model::Model;
 use gyro_sim::{Equations, Scalar};
 use gyro_verifier::field::{Precision, Real};
@@ -92,9 +93,11 @@ pub(crate) fn table(model: &Model, code: &str, constants: &str) -> Result<Table,
         let of_kind = |kind| of_function.clone().find(|row| row.kind == kind);
         let mut cells = [(); 4].map(|()| Vec::new());
         for row in Kind::ALL.map(of_kind) {
-            let careful =
-                careful.as_ref().zip(row).and_then(|(twin, row)| of_twin(&module, twin, &references, row));
-            let dense = row.and_then(|row| of_twin(&module, &dense, &references, row));
+            let careful = careful
+                .as_ref()
+                .zip(row)
+                .and_then(|(careful, row)| of_assembled(&module, careful, &references, row));
+            let dense = row.and_then(|row| of_assembled(&module, &dense, &references, row));
             if let Some((row, dense)) =
                 row.zip(dense).filter(|(r, dense)| r.double.worst > CONSPICUOUS * dense.worst)
             {
@@ -137,15 +140,28 @@ impl std::fmt::Display for Short {
     }
 }
 
-/// The errors of a twin in one function on the states of one kind; `None` if it has no such function.
-fn of_twin<M>(module: &Module, twin: &M, references: &[Reference<'_>], row: &Rounding) -> Option<Spread>
+/// The errors of a runtime-assembled model in one function on the states of one kind; `None` if it has no such
+/// function.
+fn of_assembled<M>(
+    module: &Module,
+    assembled: &M,
+    references: &[Reference<'_>],
+    row: &Rounding,
+) -> Option<Spread>
 where
     M: Equations<Scalar = f64>,
 {
+    let kernel = kernel(&row.function)?;
+    // A runtime-assembled model has no u̇: its v̇ stands beside it.
+    let counterpart = match kernel {
+        Kernel::JointAccelerationsAt => Kernel::CorrectedAccelerations.name(),
+        _ => &row.function,
+    };
     let of_kind = references.iter().filter(|reference| reference.sample.kind == row.kind);
     let errors = of_kind.filter_map(|reference| {
-        let computed = computed(module, twin, &row.function, reference)?;
-        let exact: &[Real<'_>] = reference.of(counterpart(&row.function))?;
+        let state = reference.state(&row.function);
+        let computed = computed(module, assembled, kernel, state, reference)?;
+        let exact: &[Real<'_>] = reference.of(counterpart)?;
         // What follows the accelerations is each implementation's own.
         let of_both = exact.len().min(computed.len());
         error(&exact[..of_both], &computed[..of_both], DOUBLE_DIGITS)
@@ -153,75 +169,97 @@ where
     Spread::of(errors.collect())
 }
 
-/// The function whose results a twin's are compared with: it has no u̇, so its v̇ stands beside it.
-fn counterpart(function: &str) -> &str {
-    if function == "joint_accelerations_at" { "corrected_accelerations" } else { function }
+/// What a function of a module computes. `corrected_derivative` computes the same as `derivative`, from other
+/// accelerations, and has no row of its own in the table of kernels.
+fn kernel(function: &str) -> Option<Kernel> {
+    if function == "corrected_derivative" {
+        return Some(Kernel::Derivative);
+    }
+    Kernel::all().find(|kernel| kernel.name() == function)
 }
 
-/// What a twin gives for a function of the module; `None` if its results have no meaning of their own, or the twin has
-/// no such function.
-fn computed<M>(module: &Module, twin: &M, function: &str, reference: &Reference<'_>) -> Option<Vec<f64>>
+/// What a runtime-assembled model gives for a kernel at a maximal state; `None` if it has no such function, or its
+/// results are not comparable.
+fn computed<M>(
+    module: &Module,
+    assembled: &M,
+    kernel: Kernel,
+    state: &[f64],
+    reference: &Reference<'_>,
+) -> Option<Vec<f64>>
 where
     M: Equations<Scalar = f64>,
 {
-    let (t, mut y) = (reference.sample.t, twin.start());
-    y.as_mut().iter_mut().zip(reference.state(function)).for_each(|(y, x)| *y = Scalar::constant(*x));
+    let (t, mut y) = (reference.sample.t, assembled.start());
+    y.as_mut().iter_mut().zip(state).for_each(|(y, x)| *y = Scalar::constant(*x));
     let rows = |write: &dyn Fn(&mut M::Rows)| {
-        let mut out = twin.buffers().rows;
+        let mut out = assembled.buffers().rows;
         write(&mut out);
         out.as_ref().to_vec()
     };
     let accelerations = || {
-        let mut out = twin.terms().accelerations;
-        twin.accelerations(t, &y, &mut out);
+        let mut out = assembled.terms().accelerations;
+        assembled.accelerations(t, &y, &mut out);
         out
     };
-    Some(match function {
-        "velocity_residual" => rows(&|out| twin.velocity_residual(t, &y, out)),
-        "gamma" => rows(&|out| twin.gamma(t, &y, out)),
-        "nu" => rows(&|out| twin.nu(t, &y, out)),
-        "multipliers" | "corrected_multipliers" => {
-            rows(&|out| twin.multipliers(t, &y, &accelerations(), out))
+    Some(match kernel {
+        Kernel::VelocityResidual => rows(&|out| assembled.velocity_residual(t, &y, out)),
+        Kernel::Gamma => rows(&|out| assembled.gamma(t, &y, out)),
+        Kernel::Nu => rows(&|out| assembled.nu(t, &y, out)),
+        Kernel::Multipliers | Kernel::CorrectedMultipliers => {
+            rows(&|out| assembled.multipliers(t, &y, &accelerations(), out))
         }
-        "accelerations" | "corrected_accelerations" | "joint_accelerations_at" => {
-            accelerations().as_ref()[..twin.terms().velocities.as_ref().len()].to_vec()
+        Kernel::Accelerations | Kernel::CorrectedAccelerations | Kernel::JointAccelerationsAt => {
+            accelerations().as_ref()[..assembled.terms().velocities.as_ref().len()].to_vec()
         }
-        "phi" => {
-            let mut out = twin.buffers().constraints;
-            twin.phi(t, &y, &mut out);
+        Kernel::Phi => {
+            let mut out = assembled.buffers().constraints;
+            assembled.phi(t, &y, &mut out);
             out.as_ref().to_vec()
         }
-        "phi_q" => {
-            let mut out = twin.terms().phi_q;
-            twin.phi_q(t, &y, &mut out);
-            at_places(&module.phi_q_pattern, twin.phi_q_pattern(), out.as_ref())
+        Kernel::PhiQ => {
+            let mut out = assembled.terms().phi_q;
+            assembled.phi_q(t, &y, &mut out);
+            at_places(&module.phi_q_pattern, assembled.phi_q_pattern(), out.as_ref())
         }
-        "phi_pi" => {
-            let mut out = twin.terms().phi_pi;
-            twin.phi_pi(t, &y, &mut out);
-            at_places(&module.phi_pi_pattern, twin.phi_pi_pattern(), out.as_ref())
+        Kernel::PhiPi => {
+            let mut out = assembled.terms().phi_pi;
+            assembled.phi_pi(t, &y, &mut out);
+            at_places(&module.phi_pi_pattern, assembled.phi_pi_pattern(), out.as_ref())
         }
-        "applied_force" => {
-            let mut out = twin.terms().velocities;
-            twin.applied_force(t, &y, &mut out);
+        Kernel::AppliedForce => {
+            let mut out = assembled.terms().velocities;
+            assembled.applied_force(t, &y, &mut out);
             out.as_ref().to_vec()
         }
-        "project" => {
-            let (mut rows, mut out) = (twin.buffers().rows, twin.terms().velocities);
+        Kernel::Project => {
+            let (mut rows, mut out) = (assembled.buffers().rows, assembled.terms().velocities);
             rows.as_mut().copy_from_slice(&reference.sample.changes);
-            twin.project(t, &y, &rows, &mut out);
+            assembled.project(t, &y, &rows, &mut out);
             out.as_ref().to_vec()
         }
-        "derivative" | "corrected_derivative" => {
-            let mut out = twin.start();
-            twin.derivative(t, &y, &mut out);
+        Kernel::Derivative => {
+            let mut out = assembled.start();
+            assembled.derivative(t, &y, &mut out);
             out.as_ref().to_vec()
         }
-        "energy" => {
-            let energy = twin.energy(t, &y);
+        Kernel::Energy => {
+            let energy = assembled.energy(t, &y);
             vec![energy.kinetic, energy.potential]
         }
-        _ => return None,
+        Kernel::ParameterSetup
+        | Kernel::ReadJoints
+        | Kernel::Outputs
+        | Kernel::ChartVectors
+        | Kernel::NewtonStep
+        | Kernel::SolveVelocities
+        | Kernel::JointAccelerations
+        | Kernel::JointDerivative
+        | Kernel::ToMaximal
+        | Kernel::ToJoints
+        | Kernel::CorrectedSolution
+        | Kernel::JointJacobian
+        | Kernel::JointInputJacobian => return None,
     })
 }
 

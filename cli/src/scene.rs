@@ -1,4 +1,4 @@
-//! What is to be simulated: a model page with the command line's changes.
+//! What is to be simulated: a model file with the command line's changes.
 
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
@@ -11,9 +11,9 @@ use std::path::Path;
 /// A run to be made.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
-    /// The model as its page gives it: what code is generated from.
+    /// The model as its model file gives it: what code is generated from.
     pub(crate) page: Model,
-    /// The page's name in generated code.
+    /// The model file's name in generated code.
     pub(crate) page_name: String,
     /// The model with the parameters of this run.
     pub(crate) model: Model,
@@ -24,14 +24,14 @@ pub(crate) struct Scene {
     /// Whether all work is accounted for, so that the energy's balance has to close.
     pub(crate) is_balanced: bool,
     pub(crate) start: Start,
-    /// How far the assembly has moved what the page gives of the start.
+    /// How far the assembly has moved what the model file gives of the start.
     pub(crate) moved: Vec<Move>,
     pub(crate) engine: Engine,
     pub(crate) precision: Precision,
 }
 
 impl Scene {
-    /// Reads the page, sets parameters, assembles the start and reads what is fed in.
+    /// Reads the model file, sets parameters, assembles the start and reads the inputs.
     pub(crate) fn new(args: &SimulateArgs) -> Result<Self, Failure> {
         let page = read_counting_work(&args.model)?;
         remarks::report_redundant(&page, &args.model.display().to_string(), args.strict)?;
@@ -79,19 +79,19 @@ impl Scene {
     }
 }
 
-/// Reads and checks a model page; tables of motions are beside it.
+/// Reads and checks a model file; tables of motions are beside it.
 pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
-    let text = files::read_page(path)?;
+    let text = files::read_module(path)?;
     let _spinner = Spinner::new(format!("reading {}", path.display()));
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut load = |table: &str| {
         let path = folder.join(table);
         files::input(&path, files::LARGEST_TABLE).map_err(|e| format!("{}: {e}", path.display()))
     };
-    gyro_model::read_with(&path.display().to_string(), &text, &mut load).map_err(Failure::Page)
+    gyro_model::read_with(&path.display().to_string(), &text, &mut load).map_err(Failure::ModelFile)
 }
 
-/// The same for a run, whose balance of energy needs the work even where the page leaves it out of the module.
+/// The same for a run, whose balance of energy needs the work even where the model file leaves it out of the module.
 pub(crate) fn read_counting_work(path: &Path) -> Result<Model, Failure> {
     read(path).map(|model| Model { counts_work: true, ..model })
 }
@@ -168,7 +168,7 @@ fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
     })
 }
 
-/// What cannot be done as it was asked for. Under error control the page's step is none of the run's.
+/// What cannot be done as it was asked for. Under error control the model file's step is none of the run's.
 fn refusal(offers: &Offers, settings: &Settings, approach: &Approach, args: &SimulateArgs) -> Option<String> {
     if args.linearize.is_some() && !offers.joint_space {
         let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
@@ -216,7 +216,7 @@ fn settings(model: &Model, args: &SimulateArgs) -> Settings {
     }
 }
 
-/// Samples that nobody asked for at other times fall on corrections (or steps): they shall not shorten a step.
+/// Samples that were not requested at other times fall on corrections (or steps): they shall not shorten a step.
 fn nearest_multiple(interval: f64, grid: f64) -> f64 {
     grid * (interval / grid).round().max(1.0)
 }

@@ -73,9 +73,9 @@ fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     };
     let summary = match scene.engine {
         Engine::Generated => nested::simulate(scene, &mut tell),
-        Engine::Assembled => twin(scene, Form::for_model(&scene.model), &mut tell),
-        Engine::Dense => twin(scene, Form::Dense, &mut tell),
-        Engine::Recursive => twin(scene, Form::Recursive, &mut tell),
+        Engine::Assembled => assembled(scene, Form::for_model(&scene.model), &mut tell),
+        Engine::Dense => assembled(scene, Form::Dense, &mut tell),
+        Engine::Recursive => assembled(scene, Form::Recursive, &mut tell),
     };
     progress.finish();
     outcome.summary = summary.map_err(|failure| with_link(scene, outcome, failure))?;
@@ -94,8 +94,8 @@ fn with_link(scene: &Scene, outcome: &Outcome, failure: Failure) -> Failure {
     }
 }
 
-/// Runs the runtime-assembled twin in this process.
-fn twin(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
+/// Runs the runtime-assembled model in this process.
+fn assembled(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let precision = match scene.precision {
         Precision::F32 => gyro_assembled::Precision::Single,
         Precision::F64 => gyro_assembled::Precision::Double,

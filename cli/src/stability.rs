@@ -1,5 +1,5 @@
 //! `cargo xtask verify --stability`: how much the solves of trees lose on extreme configurations, beside the dense
-//! twin.
+//! runtime-assembled model.
 
 use crate::failure::Failure;
 use crate::progress::Spinner;
@@ -62,8 +62,8 @@ const KINDS: [(Kind, &str); 10] = [
     (Kind::Everything, "all of it"),
 ];
 
-/// The whole report in Markdown; without pages, of the paper's gyroscope and of a chain of four bodies with skewed
-/// axes.
+/// The whole report in Markdown; without model files, of the paper's gyroscope and of a chain of four bodies with
+/// skewed axes.
 pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String, Failure> {
     let mut text = HEAD.replace("COUNT", &configurations.to_string());
     for model in models(pages)? {
@@ -74,8 +74,8 @@ pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String,
 
 fn models(pages: &[PathBuf]) -> Result<Vec<Model>, Failure> {
     if pages.is_empty() {
-        let chain =
-            gyro_model::read("chain.toml", &chain::page(4)).map_err(|e| Failure::Usage(e.to_string()))?;
+        let chain = gyro_model::read("chain.toml", &chain::model_file(4))
+            .map_err(|e| Failure::Usage(e.to_string()))?;
         return Ok(vec![scene::read(&crate::files::root().join("models/gyroscope.toml"))?, chain]);
     }
     pages.iter().map(|page| scene::read(page)).collect()
@@ -120,11 +120,11 @@ impl Subject {
     fn new(model: &Model) -> Result<Self, Failure> {
         let model = freed(model);
         let generated =
-            gyro_codegen::generate_model("page.toml", &model).map_err(|e| Failure::Usage(e.to_string()))?;
+            gyro_codegen::generate_model("model.toml", &model).map_err(|e| Failure::Usage(e.to_string()))?;
         let module = Module::read(&model, &generated.code, &generated.constants)
             .map_err(|refusal| Failure::Run(refusal.to_string()))?;
         if module.joints.is_none() {
-            let words = format!("{} is no open tree: it has no joint coordinates", model.name);
+            let words = format!("{} is not an open tree: it has no joint coordinates", model.name);
             return Err(Failure::Usage(words));
         }
         Ok(Self { model, module })
@@ -152,11 +152,11 @@ fn table(model: &Model, configurations: usize) -> Result<String, Failure> {
     );
     for (place, (_, words)) in KINDS.into_iter().enumerate() {
         let errors = subject.errors(place, configurations);
-        let twin = Column::of(errors.iter().map(|(_, twin)| *twin).collect());
+        let dense = Column::of(errors.iter().map(|(_, dense)| *dense).collect());
         for (k, kernel) in KERNELS.iter().enumerate() {
             let own = Column::of(errors.iter().map(|(own, _)| own[k]).collect());
             let words = if k == 0 { words } else { "" };
-            let _ = writeln!(text, "| {words} | {kernel} | {own} | {twin} |");
+            let _ = writeln!(text, "| {words} | {kernel} | {own} | {dense} |");
         }
     }
     text.push('\n');
@@ -229,11 +229,11 @@ impl Configuration {
         let precision = Precision::new();
         let Trial { state, errors, accelerations } =
             trial(&self.model, module, &precision, &self.joints, &self.violation)?;
-        let twin = Dense::<f64>::new(&self.model).ok()?;
-        let mut y = twin.start();
+        let dense = Dense::<f64>::new(&self.model).ok()?;
+        let mut y = dense.start();
         y.as_mut_slice().copy_from_slice(&state);
-        let mut out = twin.terms().accelerations;
-        twin.accelerations(0.0, &y, &mut out);
+        let mut out = dense.terms().accelerations;
+        dense.accelerations(0.0, &y, &mut out);
         let computed: &[f64] = out.as_ref();
         Some((errors, relative_error(&accelerations, &computed[..accelerations.len()], &[])))
     }
@@ -304,19 +304,19 @@ mod tests {
         for (place, (kind, words)) in KINDS.into_iter().enumerate() {
             let errors = subject.errors(place, 24);
             assert!(errors.len() >= 20, "{words}: {}", errors.len());
-            let twin = Column::of(errors.iter().map(|(_, twin)| *twin).collect());
+            let dense = Column::of(errors.iter().map(|(_, dense)| *dense).collect());
             for (k, kernel) in KERNELS.iter().enumerate() {
                 let column = Column::of(errors.iter().map(|(own, _)| own[k]).collect());
-                let words = format!("{}, {words}, {kernel}: {column}, twin {twin}", subject.model.name);
+                let words = format!("{}, {words}, {kernel}: {column}, dense {dense}", subject.model.name);
                 assert_eq!(column.failures, 0, "{words}");
                 // In gimbal lock with light rings half the digits are a maximal state's own to lose.
                 let is_lost = kind == Kind::GimbalLock && *kernel != "joint_accelerations";
                 // The multipliers follow from accelerations that are right in terms of the largest.
                 let is_balance = kind == Kind::Everything && *kernel == "corrected_solution";
-                let allowed = if is_lost || is_balance { MEDIAN.max(WORST * twin.median) } else { MEDIAN };
+                let allowed = if is_lost || is_balance { MEDIAN.max(WORST * dense.median) } else { MEDIAN };
                 assert!(column.median <= allowed, "{words}");
                 if kind != Kind::Everything {
-                    assert!(column.worst <= WORST * twin.worst, "{words}");
+                    assert!(column.worst <= WORST * dense.worst, "{words}");
                 }
             }
         }

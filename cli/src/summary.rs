@@ -91,7 +91,7 @@ fn engine(scene: &Scene) -> String {
     }
 }
 
-/// Degrees of freedom, and what is fed in.
+/// Degrees of freedom, and what inputs are set to.
 fn mechanism(scene: &Scene) -> String {
     let model = &scene.model;
     let freedom = model.degrees_of_freedom() as u64;
@@ -114,7 +114,7 @@ fn mechanism(scene: &Scene) -> String {
     text
 }
 
-/// How far the start is from where the page put it.
+/// How far the start is from where the model file put it.
 fn moved(moved: &[Move]) -> String {
     if moved.is_empty() {
         return String::new();

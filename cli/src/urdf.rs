@@ -1,4 +1,4 @@
-//! `cargo xtask import`: a robot of the Unified Robot Description Format as a model page.
+//! `cargo xtask import`: a robot of the Unified Robot Description Format as a model file.
 //!
 //! ```text
 //! arm.urdf ─robot─▶ links and joints ─merge─▶ bodies ─page─▶ arm.toml
@@ -21,10 +21,10 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// How an imported page begins.
+/// How an imported model file begins.
 const MARK: &str = "# Written by cargo xtask import";
 
-/// Writes the page and says what has no counterpart on it.
+/// Writes the model file and says what has no counterpart on it.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let out = args.out.clone().unwrap_or_else(|| args.file.with_extension("toml"));
     if out.exists() && !args.force {
@@ -34,13 +34,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
         )));
     }
     let file = args.file.display().to_string();
-    let text = files::input(&args.file, files::LARGEST_PAGE)
+    let text = files::input(&args.file, files::LARGEST_MODEL_FILE)
         .map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
     write::check(&out, Known::Mark(MARK))?;
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let (page, mut remarks) = convert(&file, &shown, &text, root).map_err(Failure::Usage)?;
-    let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::Page)?;
+    let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::ModelFile)?;
     write::write(&out, &page, Known::Mark(MARK))?;
     remarks.extend(model.nearly_exact.iter().cloned());
     // What was said is only about a file that is there already.
@@ -48,7 +48,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The page of a robot and what is not on it; or every mistake of the file, a line for each.
+/// The model file of a robot and what is not on it; or every mistake of the file, a line for each.
 fn convert(file: &str, shown: &str, text: &str, root: Root) -> Result<(String, Vec<String>), String> {
     let joined = |problems: Vec<String>| capped(&problems);
     let robot = robot::read(file, text).map_err(joined)?;

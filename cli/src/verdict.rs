@@ -172,7 +172,7 @@ fn until(judgement: &Judgement) -> String {
     }
 }
 
-/// Why the command ends with a status of its own, if it does: by the verdict, or, without one, by what the run tells
+/// Why the command ends with another exit status, if it does: by the verdict, or, without one, by what the run tells
 /// itself.
 pub(crate) fn worthless(scene: &Scene, outcome: &Outcome, verdict: Option<&Verdict>) -> Option<Failure> {
     let reason = match verdict {

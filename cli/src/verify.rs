@@ -2,7 +2,8 @@
 
 use crate::args::VerifyArgs;
 use crate::failure::Failure;
-use crate::places::{Place, all_pages, module_path};
+use crate::invocation::program;
+use crate::places::{Place, all_model_files, module_path};
 use crate::progress::Spinner;
 use crate::words::count;
 use crate::{files, remarks, rounding, scene, stability};
@@ -17,7 +18,7 @@ use std::{fs, io};
 /// Verifies the modules of the models, prints what was proved, and fails unless all was.
 pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     let places = Place::of_workspace(&files::root());
-    let pages = if args.models.is_empty() { all_pages(&places)? } else { args.models.clone() };
+    let pages = if args.models.is_empty() { all_model_files(&places)? } else { args.models.clone() };
     if args.rounding {
         let tables: Result<Vec<rounding::Table>, Failure> =
             pages.par_iter().map(|page| rounding_of(&places, page)).collect();
@@ -29,7 +30,7 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     let seed = args.seed.unwrap_or_else(Seed::fresh);
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =
-        pages.par_iter().map(|page| verify_page(&places, page, depth, seed)).collect();
+        pages.par_iter().map(|page| verify_model(&places, page, depth, seed)).collect();
     let reports = reports?;
     let text = if args.json {
         format!("{}\n", serde_json::Value::Array(reports.iter().map(Report::to_json).collect()))
@@ -44,18 +45,18 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     Err(Failure::Run(format!("{} not proved", count(n_unproved as u64, "module"))))
 }
 
-fn verify_page(places: &[Place], page: &Path, depth: Depth, seed: Seed) -> Result<Report, Failure> {
-    let (model, [code, constants]) = read_page(places, page)?;
+fn verify_model(places: &[Place], page: &Path, depth: Depth, seed: Seed) -> Result<Report, Failure> {
+    let (model, [code, constants]) = read_module(places, page)?;
     Ok(verify_at(&model, &code, &constants, depth, seed))
 }
 
 fn rounding_of(places: &[Place], page: &Path) -> Result<rounding::Table, Failure> {
-    let (model, [code, constants]) = read_page(places, page)?;
+    let (model, [code, constants]) = read_module(places, page)?;
     rounding::table(&model, &code, &constants)
 }
 
 /// A model with its module and exact constants: as they are on disk, or as they are generated where they are not kept.
-fn read_page(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Failure> {
+fn read_module(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Failure> {
     let model = scene::read(page)?;
     let Some(path) = module_path(places, page, &model.name) else {
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
@@ -65,7 +66,7 @@ fn read_page(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Fail
     let read = |path: &Path| {
         fs::read_to_string(path).map_err(|e| {
             let (path, page) = (path.display(), page.display());
-            Failure::Usage(format!("{path} cannot be read: {e}\nto write it: cargo xtask generate {page}"))
+            Failure::Usage(format!("{path} cannot be read: {e}\nto write it: {} generate {page}", program()))
         })
     };
     let texts = [read(&path)?, read(&path.with_extension("exact"))?];
@@ -77,7 +78,7 @@ fn say(text: &str) -> Result<(), Failure> {
 }
 
 /// Proves a module that was just made, for the commands that make one. What is refuted is refused; what is undecided is
-/// right as far as anybody knows, and said.
+/// not known to be wrong, and reported.
 pub(crate) fn verify_quickly(model: &Model, module: &Module) -> Result<(), Failure> {
     let spinner = Spinner::new(format!("proving {}", module.name));
     let report = verify(model, &module.code, &module.constants, Depth::Quick);

@@ -13,8 +13,8 @@ use std::sync::{Mutex, PoisonError};
 /// How a file that is to be replaced is known for the tool's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// By its place: in the workspace, where nobody else writes, or named by the user as the page to be brought up to
-    /// date.
+    /// By its place: in the workspace, where nobody else writes, or named by the user as the model file to be brought
+    /// up to date.
     Place,
     /// By how its text begins.
     Mark(&'static str),

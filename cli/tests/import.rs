@@ -1,4 +1,4 @@
-//! `cargo xtask import`: pages of robots stand where an independent forward kinematics puts them, and simulate.
+//! `cargo xtask import`: model files of robots stand where an independent forward kinematics puts them, and simulate.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use gyro_model::{Model, Number, Rational, Start};
@@ -58,7 +58,7 @@ fn rodrigues(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     ]
 }
 
-/// Rounding of a few rotations, and of the page's decimals.
+/// Rounding of a few rotations, and of the model file's decimals.
 const AGREES: f64 = 1e-13;
 
 /// The pose of a body at the start against the expected one.
@@ -103,7 +103,7 @@ fn xtask(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_gyro")).args(args).output().unwrap()
 }
 
-/// Imports one of the robots; its page's path, its model and what was said.
+/// Imports one of the robots; its model file's path, its model and what was said.
 fn import(folder: &Folder, robot: &str) -> (PathBuf, Model, String) {
     import_with(folder, robot, &[])
 }

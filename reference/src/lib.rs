@@ -21,7 +21,7 @@
 //! | [`Bead`], [`RodPendulum`] | a body that turns freely on a line or a rod |
 //! | [`Tether`] | a body on a spring-damper between two points |
 //!
-//! [`scene`] has one for each shipped page, by its name: the joint coordinates at any times.
+//! [`scene`] has one for each shipped model file, by its name: the joint coordinates at any times.
 //!
 //! The [`Gyroscope`] has three angles, all zero where every frame coincides with the global one:
 //!

@@ -73,7 +73,7 @@ pub struct OneAxis {
     pub rate: f64,
 }
 
-/// A force fed in, as a sampled controller does: at the start of each step of length `step` it takes the
+/// A force set as a sampled controller sets it: at the start of each step of length `step` it takes the
 /// value of the table (linear between rows, held beyond them) and keeps it over the step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledInput {

@@ -1,4 +1,4 @@
-//! One reference for each shipped page, by the name of the page.
+//! One reference for each shipped model file, by its name.
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
@@ -13,11 +13,11 @@ use crate::{
 pub struct JointRow {
     /// Time, s.
     pub t: f64,
-    /// Scalar coordinates in the order of the page's joints, rad or m; angles are continuous.
+    /// Scalar coordinates in the order of the model file's joints, rad or m; angles are continuous.
     pub positions: Vec<f64>,
     /// Their rates.
     pub rates: Vec<f64>,
-    /// What spherical joints show, in the order of the page.
+    /// What spherical joints show, in the order of the model file.
     pub orientations: Vec<Orientation>,
 }
 
@@ -30,7 +30,7 @@ pub struct Orientation {
     pub angular_velocity: [f64; 3],
 }
 
-/// The motion of a shipped page.
+/// The motion of a shipped model file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneReference(Motion);
 
@@ -59,8 +59,8 @@ enum Joints {
     UniversalAndSpherical,
 }
 
-/// The motion of the page of this name, such as `gyroscope-fast`; `None` if there is no such page or it has no
-/// joints.
+/// The motion of the model file of this name, such as `gyroscope-fast`; `None` if there is no such model file or it has
+/// no joints.
 #[must_use]
 pub fn scene(model_name: &str) -> Option<SceneReference> {
     let motion = match model_name {

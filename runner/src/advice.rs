@@ -7,7 +7,7 @@ use crate::{Approach, Coordinates, Correction, Integrator, Offers, Schedule, Set
 use gyro_sim::{Error, Statistics};
 use std::fmt;
 
-/// One option that is to be changed.
+/// One option to change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// Another step, s.
@@ -129,7 +129,7 @@ const FINEST_ULPS: f64 = 100.0;
 /// A tolerance at which singular poses are passed.
 const PASSING: f64 = 1e-9;
 
-/// More steps than this nobody waits for.
+/// More steps than this take too long to be advised.
 const MOST_STEPS: f64 = 1e10;
 
 /// A budget that would have to be this many times larger is not the way.

@@ -43,7 +43,7 @@ pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Sum
     if is_well { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs, and measures if that is asked for: the figures of the run, or in words why there are none.
+/// Runs, and measures if requested: the figures of the run, or the reason why there are none.
 ///
 /// # Errors
 /// The failure of the run or of its output.

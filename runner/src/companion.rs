@@ -82,7 +82,7 @@ pub fn differences(samples: &[Sample], others: &[Sample]) -> Vec<Difference> {
     worst
 }
 
-/// What is no number stays.
+/// What is not a number stays.
 fn larger(worst: f64, x: f64) -> f64 {
     if x <= worst || worst.is_nan() { worst } else { x }
 }

@@ -1,4 +1,4 @@
-//! Failures in words, with names instead of indices.
+//! Messages for failures, with names instead of indices.
 
 use crate::Coordinates;
 use crate::advice::{Advice, try_words};
@@ -8,7 +8,7 @@ use std::{fmt, io};
 /// Why a run has ended early.
 #[derive(Debug)]
 pub enum Failure {
-    /// It cannot be made as it was asked for: why, in words. No step has been taken.
+    /// The run cannot be made as requested: the reason. No step was taken.
     Refused(String),
     /// The run itself.
     Run {
@@ -49,7 +49,7 @@ impl Failure {
     }
 }
 
-/// An error of the solvers in words: when, whose and how much.
+/// The message of a solver error: when, which part and how much.
 pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
     describe_in(mechanism, Coordinates::Maximal, error)
 }

@@ -107,7 +107,7 @@ impl Reason {
             Self::Energy(drift) => (GOOD, LOST, drift),
             Self::Violation(violation) => (GOOD, APART, violation),
         };
-        // What is no number is worse than any.
+        // What is not a number is worse than any.
         if value <= good {
             Grade::Good
         } else if value <= lost {
@@ -323,7 +323,7 @@ impl Scale {
     }
 }
 
-/// No error is none, whatever it is held against; and what is no number is lost.
+/// Zero error is zero whatever its size is compared with; an undefined ratio counts as infinite.
 fn ratio(error: f64, size: f64) -> f64 {
     let ratio = if error == 0.0 { 0.0 } else { error / size };
     if ratio.is_nan() { f64::INFINITY } else { ratio }

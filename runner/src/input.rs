@@ -1,4 +1,4 @@
-//! Numbers that are fed in at every step.
+//! Numbers that inputs are set to at every step.
 
 use gyro_sim::{Mechanism, Scalar};
 

@@ -1,7 +1,7 @@
 //! Runs a mechanism to a schedule and streams samples: the loop that both engines share.
 //!
 //! [`run`] takes any [`gyro_sim::Partition`] from its start to the end of the run and hands out a [`Sample`] at each
-//! sample time. The command line calls it in its own process for the runtime-assembled twin; for generated code it
+//! sample time. The command line calls it in its own process for the runtime-assembled model; for generated code it
 //! compiles a small program around [`child::main`] and speaks with it in the words of [`protocol`]. [`time_by`] makes
 //! the same run for its time.
 //!

@@ -1,8 +1,8 @@
-//! What can be asked of a mechanism, and in words why something cannot.
+//! Which settings a mechanism supports, and messages for those that it does not.
 
 use crate::{Approach, Coordinates, Correction, Integrator, Settings};
 
-/// What a mechanism, the engine that moves it and what is fed into it allow.
+/// What a mechanism, the engine that moves it and the inputs that are set allow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offers {
     /// Joint coordinates, and the closed-form correction by way of them.
@@ -108,7 +108,7 @@ mod tests {
             Approach { integrator: Integrator::Dop853, tolerance: Some(1e-9), ..Approach::default() };
         let joint = Approach { coordinates: Coordinates::Joint, ..Approach::default() };
         let loops = Offers { joint_space: false, ..Offers::ALL };
-        let twin = Offers { derivatives: false, ..loops };
+        let assembled = Offers { derivatives: false, ..loops };
         let single = Offers { epsilon: f64::from(f32::EPSILON), ..Offers::ALL };
         let tolerance = |tolerance| Approach { tolerance: Some(tolerance), ..controlled };
         let stiff = Approach { integrator: Integrator::Rodas4, ..controlled };
@@ -121,7 +121,7 @@ mod tests {
             (Offers { inputs_vary: true, ..Offers::ALL }, controlled, "inputs that vary are held"),
             (loops, joint, "joint coordinates are for"),
             (loops, Approach { correction: Correction::ClosedForm, ..controlled }, "the closed form is for"),
-            (twin, stiff, "rodas4 needs derivatives"),
+            (assembled, stiff, "rodas4 needs derivatives"),
             (
                 Offers::ALL,
                 Approach { correction: Correction::Baumgarte(20.0), ..stiff },

@@ -21,7 +21,7 @@ pub struct Request {
     pub parameters: Vec<f64>,
     /// Where to start.
     pub start: Start,
-    /// How long the run may be repeated for its time, s; `None` if nobody asks for that.
+    /// How long the run may be repeated for its time, s; `None` if that is not requested.
     pub measure_for: Option<f64>,
 }
 
@@ -38,13 +38,13 @@ pub enum Reply {
     Progress(f64),
     /// How long the run will take.
     Forecast(Forecast),
-    /// What the run costs when nobody looks at it.
+    /// What the run costs if it is not sampled.
     Timed(Timing),
     /// The run is complete.
     Done(Summary),
-    /// The run has failed: why, in words.
+    /// The run failed: the reason.
     Failed(String),
-    /// The run cannot be made as it was asked for: why, in words.
+    /// The run cannot be made as requested: the reason.
     Refused(String),
 }
 

@@ -1,4 +1,4 @@
-//! What is to be said of a run that has come to its end, and what to try for a better one.
+//! Remarks on a completed run, and advice for a better one.
 
 use crate::advice::{Advice, Change, Plan, rounded};
 use crate::{Coordinates, Correction, Grade, Integrator, Judgement, Reason, Summary, When};
@@ -31,7 +31,7 @@ pub enum Promise {
 const VISIBLE_VIOLATION: f64 = 1e-9;
 const VIOLATION_ULPS: f64 = 1e3;
 
-/// A tolerance under which errors add up to more than this times itself is no measure of them.
+/// A tolerance under which errors add up to more than this times itself is not a measure of them.
 const ADDED_UP: f64 = 1e4;
 
 /// What relative error better steps aim at, and by how much they are shortened.

@@ -16,7 +16,7 @@ use gyro_sim::{Error, JointCoordinate, Partition, Real, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Where a run starts, what is fed into it and what is watched besides joints and outputs.
+/// Where a run starts, what its inputs are set to and what is watched besides joints and outputs.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Start {
     /// `(r, p)` of each body with coordinates.
@@ -226,7 +226,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     /// When the turns were last read, s.
     read_at: f64,
     observer: Observer<'a, M>,
-    /// Whether the state ends with the work, which is no state of a linearisation.
+    /// Whether the state ends with the work, which is not a state of a linearisation.
     counts_work: bool,
     summary: Summary,
 }
@@ -386,7 +386,7 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         Ok(self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches()))
     }
 
-    /// The continuous angle of each coordinate at the last reading; zero for what is no angle.
+    /// The continuous angle of each coordinate at the last reading; zero for what is not an angle.
     fn angles(&self) -> Vec<f64> {
         let joints = 0..self.mechanism.description().joints.len();
         let all = joints.flat_map(|joint| {

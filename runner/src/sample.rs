@@ -7,9 +7,9 @@ use gyro_sim::{JointCoordinate, Mechanism, Real, Scalar, Turns, violation};
 pub struct Sample {
     /// Time, s.
     pub t: f64,
-    /// Every coordinate of every joint, in the order of the page.
+    /// Every coordinate of every joint, in the order of the model file.
     pub coordinates: Vec<JointSample>,
-    /// Every number of every output, in the order of the page.
+    /// Every number of every output, in the order of the model file.
     pub outputs: Vec<f64>,
     /// The bodies that were asked for.
     pub bodies: Vec<BodySample>,

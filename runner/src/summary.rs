@@ -22,8 +22,8 @@ pub struct Summary {
     pub run_time_s: f64,
     /// What the steps have cost and met.
     pub statistics: Statistics,
-    /// The smallest pivot of the constraint Jacobian at any sample; `None` if nobody asked, or the engine does not
-    /// tell.
+    /// The smallest pivot of the constraint Jacobian at any sample; `None` if it was not requested, or the engine does
+    /// not tell.
     pub smallest_pivot: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl Tracker {
         summary.position_violation = self.position_violation;
         summary.velocity_violation = self.velocity_violation;
         summary.norm_violation = self.norm_violation;
-        // Where nothing moves, what rounding makes of that is no drift, and neither is 0/0.
+        // Where nothing moves, what rounding makes of that is not a drift, and neither is 0/0.
         let floor = ROUNDINGS * self.rounding;
         summary.energy_drift = if self.energy_error <= floor && self.energy_scale <= floor {
             0.0

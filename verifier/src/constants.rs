@@ -1,4 +1,4 @@
-//! The exact constants behind a module's literals: a text that the generator writes and nobody trusts.
+//! The exact constants behind a module's literals: a text that the generator writes and the verifier does not trust.
 //!
 //! One line a literal: `0.1 = 1/10`, `-0.7071067811865475 = -1/2*sqrt(2)`. Where several numbers round to one literal,
 //! the line says which of its occurrences in the module's text stand for which: by `0.1 = 1/10,

@@ -1,4 +1,4 @@
-//! What the words of a module must say: its data sheet, line by line, and the documentation of its parts.
+//! What the text of a module must say: its data sheet, line by line, and the documentation of its parts.
 //!
 //! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
 
@@ -8,70 +8,72 @@ use crate::refusal::Refusal;
 use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
 use std::collections::BTreeSet;
 
-/// Of each function its name on the data sheet, what it computes, and how its documentation begins.
-const WORDS: [(&str, &str, &str); 28] = [
-    ("parameter_setup", "what depends on parameters alone", "What depends on parameters alone"),
-    ("phi", "Φ", "Writes Φ"),
-    ("phi_q", "Φ_q, non-zeros in (r, p)", "Writes the non-zeros of Φ_q"),
-    ("phi_pi", "(Φ_r, Φ_π'), non-zeros", "Writes the non-zeros of (Φ_r, Φ_π')"),
-    ("nu", "ν", "Writes ν"),
-    ("gamma", "γ", "Writes γ"),
-    ("velocity_residual", "Φ_r s + Φ_π' w' − ν", "Writes Φ_r s + Φ_π' w' − ν"),
-    ("applied_force", "(f, n' − w̃'J'w')", "Writes (f, n' − w̃'J'w')"),
-    ("accelerations", "(s̈, ẇ'), eq. (17)", "Solves eq. (17)"),
-    ("multipliers", "λ, the accelerations being known", "Writes λ"),
-    (
-        "project",
-        "(δr, δπ') that changes the rows as given",
-        "Solves eq. (17) without forces, the changes of the rows for γ",
-    ),
-    (
-        "derivative",
-        "ẏ but for the accelerations: eqs. (14), (16)",
-        "Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes",
-    ),
-    ("energy", "T and V", "Kinetic and potential energy"),
-    ("read_joints", "joint coordinates and rates", "Writes the joint readings"),
-    ("outputs", "outputs, the accelerations being known", "Writes the outputs"),
-    (
-        "chart_vectors",
-        "for the choice of independent coordinates",
-        "The four-vectors whose largest components are the special Euler parameters",
-    ),
-    ("newton_step", "dependent positions, one Newton step", "One Newton step of the dependent positions"),
-    ("solve_velocities", "dependent velocities, eq. (19)", "Solves eq. (19) for the dependent velocities"),
-    ("joint_accelerations", "u̇ in joint coordinates", "Writes u̇"),
-    (
-        "joint_derivative",
-        "ẋ but for u̇",
-        "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes",
-    ),
-    ("to_maximal", "(q, v) of a joint state", "Writes the maximal state of a joint state"),
-    ("to_joints", "(x, u) of a maximal state", "Writes the joint state of a maximal state"),
-    (
-        "joint_accelerations_at",
-        "u̇ at a corrected maximal state",
-        "Writes u̇ at a state that satisfies the constraints",
-    ),
-    (
-        "corrected_accelerations",
-        "(s̈, ẇ') at a corrected state",
-        "Writes (s̈, ẇ') at a state that satisfies the constraints",
-    ),
-    ("corrected_multipliers", "λ at such a state and these accelerations", "Writes λ"),
-    ("corrected_solution", "both", "Writes (s̈, ẇ') and λ at a state that satisfies the constraints"),
-    ("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
-    ("joint_input_jacobian", "∂f/∂(inputs)", "Writes ∂f/∂(inputs)"),
+/// What a module says of one of its functions.
+struct Words {
+    function: &'static str,
+    /// What its row on the data sheet says that it computes; `None` if it has no row.
+    computes: Option<&'static str>,
+    /// How its documentation begins, unless that is the word `Writes` and what it computes.
+    documentation: Option<&'static str>,
+}
+
+/// A function whose documentation repeats its row.
+const fn writes(function: &'static str, computes: &'static str) -> Words {
+    Words { function, computes: Some(computes), documentation: None }
+}
+
+/// A function whose documentation has words of its own.
+const fn says(function: &'static str, computes: &'static str, documentation: &'static str) -> Words {
+    Words { function, computes: Some(computes), documentation: Some(documentation) }
+}
+
+#[rustfmt::skip]
+const WORDS: &[Words] = &[
+    says("parameter_setup", "what depends on parameters alone", "What depends on parameters alone"),
+    writes("phi", "Φ"),
+    says("phi_q", "Φ_q, non-zeros in (r, p)", "Writes the non-zeros of Φ_q"),
+    says("phi_pi", "(Φ_r, Φ_π'), non-zeros", "Writes the non-zeros of (Φ_r, Φ_π')"),
+    writes("nu", "ν"),
+    writes("gamma", "γ"),
+    writes("velocity_residual", "Φ_r s + Φ_π' w' − ν"),
+    writes("applied_force", "(f, n' − w̃'J'w')"),
+    says("accelerations", "(s̈, ẇ'), eq. (17)", "Solves eq. (17)"),
+    says("multipliers", "λ, the accelerations being known", "Writes λ"),
+    says("project", "(δr, δπ') that changes the rows as given", "Solves eq. (17) without forces, the changes of the rows for γ"),
+    says("derivative", "ẏ but for the accelerations: eqs. (14), (16)", "Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes"),
+    says("energy", "T and V", "Kinetic and potential energy"),
+    says("read_joints", "joint coordinates and rates", "Writes the joint readings"),
+    says("outputs", "outputs, the accelerations being known", "Writes the outputs"),
+    says("chart_vectors", "for the choice of independent coordinates", "The four-vectors whose largest components are the special Euler parameters"),
+    says("newton_step", "dependent positions, one Newton step", "One Newton step of the dependent positions"),
+    says("solve_velocities", "dependent velocities, eq. (19)", "Solves eq. (19) for the dependent velocities"),
+    says("joint_accelerations", "u̇ in joint coordinates", "Writes u̇"),
+    says("joint_derivative", "ẋ but for u̇", "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes"),
+    says("to_maximal", "(q, v) of a joint state", "Writes the maximal state of a joint state"),
+    says("to_joints", "(x, u) of a maximal state", "Writes the joint state of a maximal state"),
+    says("joint_accelerations_at", "u̇ at a corrected maximal state", "Writes u̇ at a state that satisfies the constraints"),
+    says("corrected_accelerations", "(s̈, ẇ') at a corrected state", "Writes (s̈, ẇ') at a state that satisfies the constraints"),
+    says("corrected_multipliers", "λ at such a state and these accelerations", "Writes λ"),
+    says("corrected_solution", "both", "Writes (s̈, ẇ') and λ at a state that satisfies the constraints"),
+    // The same continuation as in `derivative`, from other accelerations.
+    Words {
+        function: "corrected_derivative",
+        computes: None,
+        documentation: Some("Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes"),
+    },
+    says("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
+    writes("joint_input_jacobian", "∂f/∂(inputs)"),
 ];
 
-/// What goes on from other accelerations in the same way has no row of its own.
-const WITHOUT_ROW: (&str, &str) =
-    ("corrected_derivative", "Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes");
+/// What a module says of the function of this name; `None` if no module has such a function.
+fn words(function: &str) -> Option<&'static Words> {
+    WORDS.iter().find(|words| words.function == function)
+}
 
 /// Where the section on the proof begins.
 pub const PROOF: &str = "# Proof";
 
-/// All that the words of a module say otherwise than it is; the section on the proof is for who has proved it.
+/// All statements of a module's text that are not true; the section on the proof is left to the caller.
 pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
     let mut problems = undocumented(module);
     problems.extend(unfounded(model, module));
@@ -95,7 +97,10 @@ pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
         problems.push(Refusal::new(1, words));
     }
     if let Some(line) = other.first().filter(|line| *line != PROOF) {
-        problems.push(Refusal::new(1, format!("the data sheet says `{line}`, which nobody knows")));
+        problems.push(Refusal::new(
+            1,
+            format!("the data sheet says `{line}`, which is not a line of a data sheet"),
+        ));
     }
     problems
 }
@@ -195,7 +200,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
 
 /// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`; what gives no numbers has no row.
 fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<String> {
-    let (_, computes, _) = WORDS.iter().find(|(known, ..)| *known == name)?;
+    let computes = words(name)?.computes?;
     let operations = Operations::of(program);
     let is_zero = |id: usize| match program.nodes[id] {
         Node::Constant(place) => module.constants.values[place].literal == 0.0,
@@ -236,8 +241,9 @@ fn undocumented(module: &Module) -> Vec<Refusal> {
 
 /// ` Writes ν: 3 operations (1 ±, 2 ×, 0 ÷).`
 fn documentation(name: &str, program: &Program) -> Option<String> {
-    let words = WORDS.iter().map(|&(name, _, words)| (name, words)).chain([WITHOUT_ROW]);
-    let (_, words) = words.into_iter().find(|(known, _)| *known == name)?;
+    let Words { computes, documentation, .. } = words(name)?;
+    let words =
+        documentation.map_or_else(|| format!("Writes {}", computes.unwrap_or_default()), str::to_owned);
     let operations = Operations::of(program);
     let Operations { additions, multiplications, divisions, functions } = operations;
     let calls = if functions > 0 { format!(" and {functions} functions") } else { String::new() };
@@ -253,7 +259,7 @@ fn unfounded(model: &Model, module: &Module) -> Vec<Refusal> {
     unknown.map(|(line, text)| Refusal::new(*line, format!("`///{text}` is not what is here"))).collect()
 }
 
-/// The documentation of what is no function.
+/// The documentation of items other than functions.
 fn of_items(model: &Model, module: &Module) -> Vec<String> {
     let plain = [
         " The model has neither parameters nor inputs.",

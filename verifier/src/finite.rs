@@ -2,7 +2,7 @@
 //!
 //! Every function is run in `f64` where a mechanism starts, rests, is stretched out and folded, spins fast or is torn
 //! apart. What is not finite there is a mistake, unless the textbook's is not either: where eq. (17) has no solution,
-//! where a link has no length.
+//! where a link has zero length.
 
 use crate::atoms::Elementary;
 use crate::interpreter::{self, Given};

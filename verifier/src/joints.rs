@@ -2,7 +2,7 @@
 
 use gyro_model::{JointCoordinate, JointKind, Model, RowOwner, Support, Tree};
 
-/// The joint state of a tree, `(x, u [, work])`: joints in the order of the page, then free bodies.
+/// The joint state of a tree, `(x, u [, work])`: joints in the order of the model file, then free bodies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointLayout {
     /// What stands where.

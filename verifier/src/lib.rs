@@ -28,7 +28,7 @@
 //! # "#;
 //! use gyro_verifier::{Depth, verify};
 //!
-//! let model = gyro_model::read("pendulum.toml", page).expect("a good page");
+//! let model = gyro_model::read("pendulum.toml", page).expect("a good model file");
 //! let module = gyro_codegen::generate("pendulum.toml", page).expect("a module");
 //! let report = verify(&model, &module.code, &module.constants, Depth::Quick);
 //! assert!(report.is_proved(), "{report}");

@@ -21,7 +21,7 @@ pub struct Point<F: Field> {
 }
 
 impl<F: Field> Point<F> {
-    /// The value of a number of the page here.
+    /// The value of a number of the model file here.
     pub fn number(&self, number: &Number) -> F {
         let signed = |value: &F, negated: bool| if negated { value.neg() } else { value.clone() };
         match number {

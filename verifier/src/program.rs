@@ -61,8 +61,8 @@ pub enum Source {
     Factor(usize),
     /// Component of (δr, δπ') of any motion that a claim compares with; no module reads it.
     Motion(usize),
-    /// An element of a joint state that is no state of the mechanism, but what a buffer holds before; no module reads
-    /// it.
+    /// An element of a joint state that is not a state of the mechanism, but what a buffer holds before; no module
+    /// reads it.
     Before(usize),
 }
 

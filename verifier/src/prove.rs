@@ -1,4 +1,4 @@
-//! For build scripts: from the page and its module to yes or no.
+//! For build scripts: from the model file and its module to yes or no.
 
 use crate::report::Report;
 use crate::seed::Seed;
@@ -9,13 +9,13 @@ use std::fmt;
 /// Why a module is not proved.
 #[derive(Clone)]
 pub enum NotProved {
-    /// Mistakes on the page.
-    Page(Diagnostics),
+    /// Mistakes in the model file.
+    ModelFile(Diagnostics),
     /// Something in the module is refuted, refused or undecided.
     Module(Box<Report>),
 }
 
-/// Proves that a module computes what its page asks for, at one point that is drawn anew each time.
+/// Proves that a module computes what its model file asks for, at one point that is drawn anew each time.
 ///
 /// ```
 /// # let page = r#"
@@ -49,16 +49,17 @@ pub enum NotProved {
 /// What is right but flawed (a zero that is stored, say) is proved; [`Report::flaws`] tells.
 ///
 /// # Errors
-/// Mistakes on the page, or the report of a module that is not proved.
+/// Mistakes in the model file, or the report of a module that is not proved.
 pub fn prove(file_name: &str, page: &str, code: &str, constants: &str) -> Result<Report, NotProved> {
-    let model = gyro_model::read(file_name, page).map_err(NotProved::Page)?;
+    let model = gyro_model::read(file_name, page).map_err(NotProved::ModelFile)?;
     prove_model(&model, code, constants)
 }
 
-/// The same for a page whose motions name tables: `load` gives the text of the file that the page calls by this name.
+/// The same for a model file whose motions name tables: `load` gives the text of the file that the model file calls by
+/// this name.
 ///
 /// # Errors
-/// Mistakes on the page, or the report of a module that is not proved.
+/// Mistakes in the model file, or the report of a module that is not proved.
 pub fn prove_with(
     file_name: &str,
     page: &str,
@@ -66,7 +67,7 @@ pub fn prove_with(
     code: &str,
     constants: &str,
 ) -> Result<Report, NotProved> {
-    let model = gyro_model::read_with(file_name, page, load).map_err(NotProved::Page)?;
+    let model = gyro_model::read_with(file_name, page, load).map_err(NotProved::ModelFile)?;
     prove_model(&model, code, constants)
 }
 
@@ -78,7 +79,7 @@ fn prove_model(model: &gyro_model::Model, code: &str, constants: &str) -> Result
 impl fmt::Display for NotProved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Page(diagnostics) => diagnostics.fmt(f),
+            Self::ModelFile(diagnostics) => diagnostics.fmt(f),
             Self::Module(report) => report.fmt(f),
         }
     }

@@ -24,16 +24,16 @@ pub(crate) enum Command {
 ///
 /// Times every kernel of the paper's scene beside a floor derived by hand and the forms of the runtime-assembled
 /// model, in turns in one process; counts instructions where valgrind is installed; generates, compiles and runs
-/// chains of more and more bodies. All of it optimised. Takes several minutes; leave the machine alone meanwhile.
+/// chains of more and more bodies. Everything is optimised. Takes several minutes; keep the machine otherwise idle.
 #[derive(Debug, Args)]
 pub(crate) struct PerformanceArgs {
-    /// The document whose tables are to be replaced [default: docs/performance.md]
+    /// Document whose tables are replaced [default: docs/performance.md]
     #[arg(long, value_name = "FILE.md")]
     pub(crate) out: Option<PathBuf>,
-    /// Bodies of the longest chain; 0 leaves the chains and their table alone
+    /// Number of bodies of the longest chain; 0 skips the chains and their table
     #[arg(long, value_name = "N", default_value_t = 64)]
     pub(crate) bodies: usize,
-    /// Measure packs of lanes alone and leave the other tables alone
+    /// Measure only packs of lanes and keep the other tables
     #[arg(long, conflicts_with = "bodies")]
     pub(crate) only_lanes: bool,
 }
@@ -45,7 +45,7 @@ pub(crate) struct PerformanceArgs {
 /// docs/embedded.md anew. The tools come from embedded/setup.sh; nothing is fetched here.
 #[derive(Debug, Args)]
 pub(crate) struct EmbeddedArgs {
-    /// The document whose tables are to be replaced [default: docs/embedded.md]
+    /// Document whose tables are replaced [default: docs/embedded.md]
     #[arg(long, value_name = "FILE.md")]
     pub(crate) out: Option<PathBuf>,
     /// Print the tables instead, and write nothing
@@ -61,5 +61,15 @@ mod tests {
     #[test]
     fn the_commands_are_consistent() {
         Cli::command().debug_assert();
+    }
+
+    /// Including those of `gyro`.
+    #[test]
+    fn examples_of_all_commands_name_cargo_xtask() {
+        let mut command = gyro_cli::named(Cli::command());
+        let simulate = command.find_subcommand_mut("simulate").expect("a command of `gyro`");
+        assert!(
+            simulate.render_help().to_string().contains("\n  cargo xtask simulate models/gyroscope.toml\n")
+        );
     }
 }

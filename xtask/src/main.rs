@@ -7,11 +7,11 @@ mod performance;
 mod scaling;
 
 use args::{Cli, Command};
-use clap::Parser;
+use gyro_cli::parse;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let outcome = match parse::<Cli>().command {
         Command::Gyro(command) => command.run(),
         Command::Performance(args) => performance::performance(&args),
         Command::Embedded(args) => embedded::embedded(&args),

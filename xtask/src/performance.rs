@@ -1,5 +1,5 @@
-//! `cargo xtask performance`: measures generated code, the floor and the twins, and writes the tables of
-//! docs/performance.md.
+//! `cargo xtask performance`: measures generated code, the floor and the runtime-assembled models, and writes the
+//! tables of docs/performance.md.
 
 use crate::args::PerformanceArgs;
 use crate::lanes;

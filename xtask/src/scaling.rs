@@ -74,14 +74,14 @@ impl Place {
         files::write(&path, text).map(|_| ())
     }
 
-    /// Writes pages, modules and crates.
+    /// Writes model files, modules and crates.
     fn generate(&self, generator: &Path, sizes: &[usize]) -> Result<Vec<Chain>, Failure> {
         let mut chains = Vec::new();
         for &bodies in sizes {
             let _spinner = Spinner::new(format!("generating a chain of {bodies}"));
             let name = format!("chain_{bodies}");
-            self.write(&format!("{name}/page.toml"), &chain::page(bodies))?;
-            let page = self.folder.join(&name).join("page.toml");
+            self.write(&format!("{name}/model.toml"), &chain::model_file(bodies))?;
+            let page = self.folder.join(&name).join("model.toml");
             let file = fs::File::open(&page).map_err(|e| io_failure(&page, &e))?;
             let before = children_cpu_s();
             let module = Command::new(generator)
@@ -175,7 +175,7 @@ impl Place {
         let numbers: Vec<f64> = said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         let figures = numbers.as_chunks::<3>().0;
         if figures.len() != compiled().count() {
-            return Err(Failure::Run(format!("the chains ran and said {said}")));
+            return Err(Failure::Run(format!("the chains printed an unexpected result: {said}")));
         }
         let compiled = chains.iter_mut().filter(|chain| chain.release_s.is_some());
         compiled.zip(figures).for_each(|(chain, ns)| chain.ns = Some(*ns));
@@ -255,15 +255,15 @@ fn main() {
     for bodies in sizes {
         let _ = write!(
             text,
-            "    let model = gyro_model::read(\"page.toml\", include_str!(\"../../chain_{bodies}/page.toml\")).expect(\"a page\");
+            "    let model = gyro_model::read(\"model.toml\", include_str!(\"../../chain_{bodies}/model.toml\")).expect(\"a model file\");
     let y = chain_{bodies}::start();
     let mut out = chain_{bodies}::buffer();
     let chain = chain_{bodies}::Module::default();
     chain_{bodies}::accelerations(&chain, 0.0, &y, &mut out);
     let expected = out.as_ref()[..{n_v}].to_vec();
     kernels.push(Kernel::new(\"\", \"\", None, move || chain_{bodies}::accelerations(&chain, 0.0, black_box(&y), black_box(&mut out))));
-    kernels.push(twin(Recursive::<f64>::new(&model).expect(\"a tree\"), &expected));
-    kernels.push(twin(Careful::<f64>::new(&model).expect(\"a tree\"), &expected));
+    kernels.push(assembled(Recursive::<f64>::new(&model).expect(\"a tree\"), &expected));
+    kernels.push(assembled(Careful::<f64>::new(&model).expect(\"a tree\"), &expected));
 ",
             n_v = 6 * bodies
         );
@@ -273,14 +273,14 @@ fn main() {
     }
 }
 
-fn twin<M: Equations<Scalar = f64, State = Vec<f64>> + 'static>(twin: M, expected: &[f64]) -> Kernel<'static> {
-    let (y, mut out) = (twin.start(), twin.terms().accelerations);
-    twin.accelerations(0.0, &y, &mut out);
+fn assembled<M: Equations<Scalar = f64, State = Vec<f64>> + 'static>(assembled: M, expected: &[f64]) -> Kernel<'static> {
+    let (y, mut out) = (assembled.start(), assembled.terms().accelerations);
+    assembled.accelerations(0.0, &y, &mut out);
     let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     for (a, b) in out.as_ref().iter().zip(expected) {
         assert!((a - b).abs() < 1e-8 * largest, \"{a} {b} {largest}\");
     }
-    Kernel::new(\"\", \"\", None, move || twin.accelerations(0.0, black_box(&y), black_box(&mut out)))
+    Kernel::new(\"\", \"\", None, move || assembled.accelerations(0.0, black_box(&y), black_box(&mut out)))
 }
 ";
     text
@@ -312,7 +312,7 @@ mod tests {
     #[test]
     fn the_pages_are_chains() {
         for bodies in [1, 2, 8] {
-            let model = gyro_model::read("chain.toml", &chain::page(bodies)).unwrap();
+            let model = gyro_model::read("chain.toml", &chain::model_file(bodies)).unwrap();
             assert_eq!((model.degrees_of_freedom(), model.joints.len()), (bodies, bodies));
         }
     }

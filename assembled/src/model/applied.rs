@@ -16,7 +16,7 @@ impl<T: Number> Lowered<T> {
         self.add_page_force(at, out);
     }
 
-    /// Adds what friction and the page's forces exert: `(f, n')`, body after body.
+    /// Adds what friction and the model file's forces exert: `(f, n')`, body after body.
     pub(crate) fn add_page_force(&self, at: Moment<'_, T>, out: &mut [T]) {
         for element in &self.elements {
             element.exert(&self.scene, at, |place, _, wrench| {

@@ -92,7 +92,7 @@ fn table(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
 }
 
 impl DrivenBody {
-    /// The motion of a driven body; one of which the page says nothing stays where it is.
+    /// The motion of a driven body; one of which the model file says nothing stays where it is.
     pub(crate) fn new(model: &Model, body: usize) -> Self {
         let body = &model.bodies[body];
         let motion = body.motion.as_ref();
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn a_driven_body_moves_as_the_model_says() {
         let page = include_str!("../../tests/models/carried.toml");
-        let model = gyro_model::read("carried.toml", page).expect("a page without mistakes");
+        let model = gyro_model::read("carried.toml", page).expect("a model file without mistakes");
         let deck = &model.bodies[0];
         for t in [0.0, 0.3, 1.7] {
             let motion = DrivenBody::new(&model, 0).motion(t);

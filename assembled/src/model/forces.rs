@@ -1,4 +1,4 @@
-//! Applied forces, paper, eqs. (21) and (22): gravity, friction in the joints, and the forces of the page.
+//! Applied forces, paper, eqs. (21) and (22): gravity, friction in the joints, and the forces of the model file.
 
 use crate::model::joint::Joint;
 use crate::model::law::{Amount, Law};
@@ -29,7 +29,7 @@ pub(crate) enum Element<T> {
 }
 
 impl<T: Number> Element<T> {
-    /// Friction of the joints, then the forces of the page.
+    /// Friction of the joints, then the forces of the model file.
     pub(crate) fn all(model: &Model, places: &Places<T>, joints: &[Joint<T>]) -> Vec<Self> {
         let frictions = (0..joints.len()).filter_map(|joint| Self::friction(model, joints, joint));
         let forces = model.forces.iter().flat_map(|force| Self::new(model, places, joints, &force.kind));

@@ -61,7 +61,7 @@ impl<T: Number> Lowered<T> {
 }
 
 fn row_info(moving_bodies: &[usize], row: &gyro_model::Row) -> RowInfo {
-    let index = |index: usize| u16::try_from(index).expect("a model page has fewer than 65536 elements");
+    let index = |index: usize| u16::try_from(index).expect("a model file has fewer than 65536 elements");
     let owner = match row.owner {
         RowOwner::Body(body) => Owner::Body(index(
             moving_bodies.iter().position(|&b| b == body).expect("bodies with rows have coordinates"),

@@ -1,4 +1,4 @@
-//! The numbers of a page's outputs at a moment.
+//! The numbers of a model file's outputs at a moment.
 
 use crate::model::lowered::Lowered;
 use crate::model::motion::{Motion, along_pi};

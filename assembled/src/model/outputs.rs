@@ -1,4 +1,4 @@
-//! What a page asks for besides the motion: [`gyro_model::OutputKind`].
+//! What a model file asks for besides the motion: [`gyro_model::OutputKind`].
 
 use crate::model::place::{Place, Places, vector};
 use crate::number::Number;

@@ -55,7 +55,7 @@ impl<T: Number> Places<T> {
     }
 }
 
-/// A body that stays where the page puts it.
+/// A body that stays where the model file puts it.
 pub(crate) fn resting<T: Number>(model: &Model, body: usize) -> Motion<T> {
     let body = &model.bodies[body];
     let (p, zero) = (Vector4::from(model.values(&body.orientation)).normalize(), Vector3::zeros());

@@ -18,7 +18,7 @@ pub(crate) struct Limbs<T: Number> {
     pub(crate) screws: Vec<Screw<T>>,
     /// Slots of constrained bodies, in the order of [`Lowered::constrained`], and their rows.
     pub(crate) held: Vec<(usize, Range<usize>)>,
-    /// Fixed bodies where the page puts them, in the model's order.
+    /// Fixed bodies where the model file puts them, in the model's order.
     pub(crate) fixed: Vec<Motion<T>>,
     /// Of each row the moving_body of the body that it holds.
     pub(crate) children: Vec<usize>,

@@ -16,7 +16,7 @@ pub(crate) struct Space<T> {
     pub(crate) nodes: Vec<Node<T>>,
     /// What is known of each screw.
     pub(crate) turning: Vec<Free<T>>,
-    /// What the page's forces exert, body after body: `(f, n')`.
+    /// What the model file's forces exert, body after body: `(f, n')`.
     pub(crate) forces: Vec<T>,
     /// Of each row its derivative with respect to the child's and to the parent's `(r, π')`.
     pub(crate) gradients: Vec<[Six<T>; 2]>,

@@ -15,7 +15,7 @@ const STEPS: u32 = 200;
 const BALANCE: f64 = 1e-9;
 const SPIN: f64 = 1e-11;
 
-/// Checks the energy balance of a run of direct integration, in steps no longer than the page's own.
+/// Checks the energy balance of a run of direct integration, in steps no longer than the model file's own.
 fn check(what: &str, model: &Model, mechanism: &Dense<f64>) {
     let step = STEP.min(model.simulation.step);
     let mut y = mechanism.start();

@@ -1,7 +1,8 @@
 //! Φ_q, (Φ_r, Φ_π'), ν and γ against finite differences and against one another, on and off the constraints.
 
 use crate::support::{
-    Random, assert_close, dense_phi_pi, dense_phi_q, normalise, phi, state_near, twins, velocity_residual,
+    Random, assert_close, dense_models, dense_phi_pi, dense_phi_q, normalise, phi, state_near,
+    velocity_residual,
 };
 use gyro_assembled::Dense;
 use gyro_sim::{Equations, Mechanism};
@@ -20,7 +21,7 @@ const STEP: f64 = 1e-5;
 const DIFFERENCE: f64 = 2e-9;
 
 fn for_each_state(mut check: impl FnMut(&str, &Dense<f64>, Vec<f64>)) {
-    for (seed, (name, mechanism)) in (0..).zip(twins()) {
+    for (seed, (name, mechanism)) in (0..).zip(dense_models()) {
         let mut random = Random(seed);
         for state in 0..STATES {
             let y = state_near(&mechanism, 0.5, &mut random);

@@ -1,4 +1,5 @@
-//! The twin's formulas and solvers. One program: each of its parts would compile the whole twin anew.
+//! The runtime-assembled model's formulas and solvers. One program: each of its parts would compile the whole
+//! crate anew.
 
 #[path = "../support/mod.rs"]
 mod support;

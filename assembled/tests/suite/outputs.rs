@@ -59,7 +59,7 @@ fn singles() -> Vec<Model> {
         ("point_on_line", ""),
     ];
     let mut models = pages.map(|(kind, keys)| single_joint(kind, keys)).to_vec();
-    // A rod carries nothing, so no page has one alone: two free bodies.
+    // A rod carries nothing, so no model file has one alone: two free bodies.
     let mut rod = single_joint("spherical", "");
     rod.bodies[1].support = Support::Free;
     rod.bodies[1].position = [1, 0, 0].map(Number::integer);

@@ -1,7 +1,8 @@
 //! The partition of both forms: it restores the constraints, keeps the independent coordinates and follows the motion.
 
 use crate::support::{
-    Random, assert_close, careful_models, max_norm, model, models, phi, state_near, twins, velocity_residual,
+    Random, assert_close, careful_models, dense_models, max_norm, model, models, phi, state_near,
+    velocity_residual,
 };
 use gyro_assembled::{Careful, Dense};
 use gyro_model::{Attachment, JointKind, Tree};
@@ -40,7 +41,7 @@ fn check_restored<M: Partition<Scalar = f64, State = Vec<f64>>>(what: &str, mech
 
 #[test]
 fn a_correction_restores_positions_and_velocities() {
-    for (seed, (name, dense)) in (0..).zip(twins()) {
+    for (seed, (name, dense)) in (0..).zip(dense_models()) {
         check_restored(&name, &dense, seed);
     }
     for (seed, model) in (0..).zip(careful_models()) {
@@ -115,7 +116,7 @@ fn the_careful_partition_holds_what_the_joint_leaves_free_of_the_angular_velocit
 
 #[test]
 fn a_consistent_state_is_left_alone() {
-    for (name, dense) in twins() {
+    for (name, dense) in dense_models() {
         let mut y = dense.start();
         Partitioned::new(&dense, &y).correct(&dense, 0.0, &mut y).expect("it is consistent");
         assert_close(&name, &y, &dense.start(), 1.0, 1e-13);

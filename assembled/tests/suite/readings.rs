@@ -1,4 +1,4 @@
-//! What the joints of a start show is what the page asked for.
+//! What the joints of a start show is what the model file asked for.
 
 use crate::support::{assert_close, models};
 use gyro_assembled::Dense;

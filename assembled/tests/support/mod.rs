@@ -28,7 +28,7 @@ pub fn careful_models() -> Vec<Model> {
 }
 
 /// The dense form of every model.
-pub fn twins() -> Vec<(String, Dense<f64>)> {
+pub fn dense_models() -> Vec<(String, Dense<f64>)> {
     models().iter().map(|model| (model.name.clone(), dense(model))).collect()
 }
 
@@ -54,13 +54,13 @@ fn pages(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn read(page: &Path) -> Model {
-    let text = std::fs::read_to_string(page).expect("the page can be read");
-    let folder = page.parent().expect("a page is in a folder");
+    let text = std::fs::read_to_string(page).expect("the model file can be read");
+    let folder = page.parent().expect("a model file is in a folder");
     let mut load = |path: &str| std::fs::read_to_string(folder.join(path)).map_err(|error| error.to_string());
     analysed(gyro_model::read_with(&page.display().to_string(), &text, &mut load))
 }
 
-/// The model of a page.
+/// The model of a model file.
 pub fn read_text(page: &str) -> Model {
     analysed(gyro_model::read("page", page))
 }

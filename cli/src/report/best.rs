@@ -31,7 +31,8 @@ pub(crate) fn front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     front
 }
 
-/// Failures in words, each with how often it happened, the most frequent first. Numbers in them do not tell them apart.
+/// Messages of failures, each with how often it happened, the most frequent first. Numbers in them do not tell them
+/// apart.
 pub(crate) fn reasons<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<(usize, String)> {
     let mut reasons: Vec<(usize, String, String)> = Vec::new();
     for words in points.into_iter().filter_map(|point| point.outcome.as_ref().err()) {

@@ -1,4 +1,4 @@
-//! Long runs at the page's own settings: what each correction keeps of constraints, energy and motion.
+//! Long runs at the model file's own settings: what each correction keeps of constraints, energy and motion.
 
 use super::curve::Treatment;
 use super::lab::{Lab, Plan};
@@ -25,7 +25,7 @@ pub(crate) struct Course {
     pub(crate) seconds: f64,
 }
 
-/// RK4 by the page's step and interval of corrections.
+/// RK4 by the model file's step and interval of corrections.
 pub(crate) fn drift(lab: &mut Lab, treatment: Treatment, t_end: f64, truth: Option<&Truth>) -> Drift {
     let page = &lab.model.simulation;
     let (coordinates, correction) = match treatment {

@@ -21,6 +21,20 @@ pub(crate) struct Effort {
     pub(crate) measure_for: f64,
 }
 
+impl Effort {
+    /// Of the paper's scene in a full report.
+    pub(crate) const FINE: Self =
+        Self { per_decade: 2, halvings: Halvings::AndBetween, longest_run: 0.2, measure_for: 0.02 };
+
+    /// Of other scenes in a full report.
+    pub(crate) const COARSE: Self =
+        Self { per_decade: 1, halvings: Halvings::Each, longest_run: 0.05, measure_for: 0.006 };
+
+    /// Of any scene in a quick report.
+    pub(crate) const SPARSE: Self =
+        Self { per_decade: 1, halvings: Halvings::EveryOther, longest_run: 0.02, measure_for: 0.005 };
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Halvings {
     /// Every halving.
@@ -31,7 +45,7 @@ pub(crate) enum Halvings {
     EveryOther,
 }
 
-/// Every integrator × correction × coordinates × precision that is possible, and the twins.
+/// Every integrator × correction × coordinates × precision that is possible, and the runtime-assembled models.
 pub(crate) fn curves(lab: &Lab) -> Vec<Curve> {
     let mut curves = Vec::new();
     for precision in [Precision::F64, Precision::F32] {
@@ -42,7 +56,7 @@ pub(crate) fn curves(lab: &Lab) -> Vec<Curve> {
         }
     }
     let treatment = Treatment::Maximal(Correction::Partition);
-    for engine in twins(lab) {
+    for engine in assembled_forms(lab) {
         for &integrator in Integrator::ALL.iter().filter(|one| **one != Integrator::Rodas4) {
             curves.push(Curve { engine, precision: Precision::F64, integrator, treatment });
         }
@@ -68,17 +82,17 @@ pub(crate) fn treatments(lab: &Lab) -> Vec<Treatment> {
     treatments
 }
 
-/// The forms of the twin that a model can have.
-pub(crate) fn twins(lab: &Lab) -> Vec<Engine> {
-    let mut twins = Vec::new();
+/// The forms of the runtime-assembled model that a model can have.
+pub(crate) fn assembled_forms(lab: &Lab) -> Vec<Engine> {
+    let mut assembled_forms = Vec::new();
     if Recursive::<f64>::new(&lab.model).is_ok() {
-        twins.push(Engine::Recursive);
+        assembled_forms.push(Engine::Recursive);
     }
     if Careful::<f64>::supports(&lab.model).is_ok() {
-        twins.push(Engine::Assembled);
+        assembled_forms.push(Engine::Assembled);
     }
-    twins.push(Engine::Dense);
-    twins
+    assembled_forms.push(Engine::Dense);
+    assembled_forms
 }
 
 /// All points of a curve, by tolerance and by fixed step, from coarse to fine until runs take too long or rounding is

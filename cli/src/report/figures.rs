@@ -56,7 +56,7 @@ impl Work {
     }
 }
 
-/// Work-precision diagrams of one precision, a panel for each treatment and for each twin.
+/// Work-precision diagrams of one precision, a panel for each treatment and for each runtime-assembled model.
 pub(crate) fn work_precision(
     points: &[Point],
     (precision, work): (Precision, Work),

@@ -90,8 +90,8 @@ fn row(study: &Study) -> Vec<String> {
     let cell = |value: Option<f64>| value.map_or("-".to_owned(), |value| number(value, 3));
     let ours =
         |point: &Point| point.curve.engine == Engine::Generated && point.curve.precision == Precision::F64;
-    let twin = match (ratio(1e-6, CHOICES[3].1), ratio(1e-6, ours)) {
-        (Some(twin), Some(ours)) => Some(twin / ours),
+    let assembled = match (ratio(1e-6, CHOICES[3].1), ratio(1e-6, ours)) {
+        (Some(assembled), Some(ours)) => Some(assembled / ours),
         _ => None,
     };
     let single = smallest_error(study.points.iter().filter(|point| point.curve.precision == Precision::F32));
@@ -102,7 +102,7 @@ fn row(study: &Study) -> Vec<String> {
         cell(ratio(1e-6, CHOICES[1].1)),
         cell(ratio(1e-10, CHOICES[0].1)),
         cell(ratio(1e-10, CHOICES[1].1)),
-        cell(twin),
+        cell(assembled),
         cell(single),
         study.points.len().to_string(),
         failed.to_string(),

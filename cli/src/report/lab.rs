@@ -15,16 +15,16 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(crate) struct Lab {
     pub(crate) model: Model,
-    /// The page.
+    /// The model file.
     pub(crate) path: PathBuf,
-    /// The page's name, as its reference and its report are called.
+    /// The model file's name, as its reference and its report are called.
     pub(crate) name: String,
     pub(crate) t_end: f64,
     pub(crate) start: Start,
     parameters: Vec<f64>,
     /// The generated programs for `f64` and `f32`.
     programs: [PathBuf; 2],
-    twin: PathBuf,
+    assembled: PathBuf,
     sessions: Vec<((Engine, Precision), Session)>,
     has_joint_coordinates: bool,
 }
@@ -46,23 +46,28 @@ pub(crate) struct Plan {
 }
 
 impl Lab {
-    /// Reads a page and compiles what computes it.
-    pub(crate) fn new(path: &Path, twin: &Path) -> Result<Self, Failure> {
+    /// Reads a model file and compiles what computes it.
+    pub(crate) fn new(path: &Path, assembled: &Path) -> Result<Self, Failure> {
         let model = scene::read_counting_work(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let module = gyro_codegen::generate_model(&files::shown(path), &model)
             .map_err(|e| Failure::Usage(e.to_string()))?;
         let program = |precision| nested::program(&model, &module, precision);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
-        let lab = Self::with_programs(model, path, name, programs, twin)?;
+        let lab = Self::with_programs(model, path, name, programs, assembled)?;
         Ok(Self { has_joint_coordinates: module.code.contains("gyro_sim::JointSpace for"), ..lab })
     }
 
     /// The same scene, to be changed.
     pub(crate) fn again(&self) -> Result<Self, Failure> {
         let programs = self.programs.clone();
-        let lab =
-            Self::with_programs(self.model.clone(), &self.path, self.name.clone(), programs, &self.twin)?;
+        let lab = Self::with_programs(
+            self.model.clone(),
+            &self.path,
+            self.name.clone(),
+            programs,
+            &self.assembled,
+        )?;
         Ok(Self { has_joint_coordinates: self.has_joint_coordinates, ..lab })
     }
 
@@ -74,7 +79,7 @@ impl Lab {
             gyro_codegen::generate_model("map.toml", &model).map_err(|e| Failure::Usage(e.to_string()))?;
         let program = nested::program(&model, &module, Precision::F64)?;
         let programs = [program.clone(), program];
-        let lab = Self::with_programs(model, &self.path, self.name.clone(), programs, &self.twin)?;
+        let lab = Self::with_programs(model, &self.path, self.name.clone(), programs, &self.assembled)?;
         Ok(Self { parameters, has_joint_coordinates: self.has_joint_coordinates, ..lab })
     }
 
@@ -83,10 +88,10 @@ impl Lab {
         path: &Path,
         name: String,
         programs: [PathBuf; 2],
-        twin: &Path,
+        assembled: &Path,
     ) -> Result<Self, Failure> {
-        let assembled = model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
-        let start = scene::start(&model, &assembled);
+        let found = model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
+        let start = scene::start(&model, &found);
         let parameters = model.parameters.iter().map(|p| gyro_model::to_f64(&p.value)).collect();
         Ok(Self {
             t_end: model.simulation.t_end,
@@ -95,7 +100,7 @@ impl Lab {
             start,
             parameters,
             programs,
-            twin: twin.to_path_buf(),
+            assembled: assembled.to_path_buf(),
             sessions: Vec::new(),
             has_joint_coordinates: false,
             model,
@@ -137,7 +142,7 @@ impl Lab {
         Ok(Truth::of_samples(&self.model, (source, FLOOR), &run.samples))
     }
 
-    /// A page of this name elsewhere is another scene.
+    /// A model file of this name elsewhere is another scene.
     fn is_shipped(&self) -> bool {
         files::shown(&self.path) == format!("models/{}.toml", self.name)
     }
@@ -164,7 +169,7 @@ impl Lab {
         Plan { settings, approach: curve.approach(setting, budget), measure_for }
     }
 
-    /// Makes a run; in words why it is not complete.
+    /// Makes a run, or returns the reason why it is not complete.
     pub(crate) fn run(&mut self, who: (Engine, Precision), plan: &Plan) -> Result<Run, String> {
         let request = Request {
             settings: plan.settings,
@@ -215,7 +220,7 @@ impl Lab {
             Engine::Assembled => "careful",
             Engine::Dense => "dense",
         };
-        Session::open(&self.twin, &[&self.path.to_string_lossy(), form, precision.name()])
+        Session::open(&self.assembled, &[&self.path.to_string_lossy(), form, precision.name()])
     }
 
     /// A point of a curve.

@@ -51,7 +51,7 @@ pub(crate) fn amplification(integrator: Integrator, z: Complex<f64>) -> f64 {
 /// What a step may add to a motion that does not grow: what adds less takes more steps to show than a run has.
 const GROWTH: f64 = 1e-3;
 
-/// The largest |z| along the ray of an eigenvalue up to which a method is stable; `None` if there is no end to it.
+/// The largest |z| along the ray of an eigenvalue up to which a method is stable; `None` if it is unbounded.
 pub(crate) fn limit_along(integrator: Integrator, eigenvalue: Complex<f64>) -> Option<f64> {
     let direction = eigenvalue / eigenvalue.norm();
     let is_stable = |length: f64| {
@@ -126,7 +126,7 @@ impl Knob {
         }
     }
 
-    /// The page's own value.
+    /// The model file's own value.
     pub(crate) fn nominal(self) -> f64 {
         match self {
             Self::Damping(_, value) => value,
@@ -143,7 +143,7 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// At a value of the knob; in words why there is none.
+    /// At a value of the knob, or the reason why there is none.
     pub(crate) fn new(model: &Model, knob: Knob, value: f64) -> Result<Self, String> {
         let (mut model, mut factor) = (model.clone(), 1.0);
         match knob {
@@ -170,11 +170,11 @@ impl Spectrum {
     }
 }
 
-/// The Jacobian in maximal coordinates by central differences of sixth order of the dense twin.
+/// The Jacobian in maximal coordinates by central differences of sixth order of the dense runtime-assembled model.
 fn maximal(model: &Model, factor: f64) -> Result<DMatrix<f64>, String> {
     const WEIGHTS: [(f64, f64); 3] = [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)];
-    let twin = Dense::<f64>::new(model).map_err(|e| e.to_string())?;
-    let mut start = twin.start();
+    let dense = Dense::<f64>::new(model).map_err(|e| e.to_string())?;
+    let mut start = dense.start();
     let n_bodies = model.coordinate_bodies().len();
     let state: &mut [f64] = start.as_mut();
     state[7 * n_bodies..13 * n_bodies].iter_mut().for_each(|velocity| *velocity *= factor);
@@ -186,7 +186,7 @@ fn maximal(model: &Model, factor: f64) -> Result<DMatrix<f64>, String> {
             for side in [1.0, -1.0] {
                 let (mut y, mut dy) = (start.clone(), start.clone());
                 y[column] += side * distance * step;
-                twin.derivative(0.0, &y, &mut dy);
+                dense.derivative(0.0, &y, &mut dy);
                 for (row, slope) in dy.iter().enumerate() {
                     jacobian[(row, column)] += side * weight * slope / (60.0 * step);
                 }

@@ -1,7 +1,7 @@
 //! `cargo xtask report`: error against run time, drift and stability of scenes, as pages, figures and raw data.
 //!
 //! ```text
-//! page ─lab─▶ programs ─explore, drift, stability─▶ points, long runs, maps ─best, order, goals─▶ tables
+//! model file ─lab─▶ programs ─explore, drift, stability─▶ points, long runs, maps ─best, order, goals─▶ tables
 //!    ─figures, chart─▶ SVG ─page─▶ NAME.md, NAME.html ─data─▶ CSV ─index─▶ index.md, index.html
 //!    ─kept─▶ docs/report, if all scenes were measured
 //! ```
@@ -48,13 +48,13 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let folder = args.out.clone().unwrap_or(own);
     fs::create_dir_all(folder.join("images")).map_err(|e| unusable(&folder, &e))?;
     names.iter().try_for_each(|name| write::check(name, &folder))?;
-    let twin = nested::twin()?;
+    let assembled = nested::assembled()?;
     let machine = crate::machine::machine_in("release")?;
-    let effort = if args.quick { Effort::quick() } else { Effort::full() };
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let mut missed = Vec::new();
     for (index, path) in pages.iter().enumerate() {
         let progress = Count::new(format!("{} of {}", index + 1, pages.len()));
-        let study = Study::new(path, &twin, &effort, &progress)?;
+        let study = Study::new(path, &assembled, &effort, &progress)?;
         write::study(&study, &machine, &folder)?;
         index::add(&study, &machine, &folder)?;
         missed.extend(study.goals.into_iter().filter(|goal| !goal.is_met()));

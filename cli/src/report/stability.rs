@@ -24,7 +24,7 @@ pub(crate) struct Column {
 /// The explicit methods; Rodas has no limit.
 const INTEGRATORS: [Integrator; 3] = [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853];
 
-/// Maps of the explicit methods and in words what could not be found.
+/// Maps of the explicit methods, and messages about what could not be found.
 pub(crate) fn maps(lab: &Lab, knob: Knob, per_decade: u32) -> Result<(Vec<Map>, Vec<String>), Failure> {
     let mut turned = limits::turnable(lab, knob)?;
     let decades = knob.decades();

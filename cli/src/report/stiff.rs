@@ -8,8 +8,8 @@ use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use gyro_runner::{Coordinates, Integrator};
 
-/// A page, the steps that Rodas may take for its second, the limit of RK4 by the literature, and how much dearer RK4
-/// has to be there.
+/// A model file, the steps that Rodas may take for its second, the limit of RK4 by the literature, and how much dearer
+/// RK4 has to be there.
 const BEARINGS: [(&str, f64, f64, Option<f64>); 2] =
     [("gyroscope-stiff", 700.0, 2.267e-4, None), ("gyroscope-overdamped", 70.0, 1.682e-5, Some(80.0))];
 
@@ -25,7 +25,7 @@ const T_END: f64 = 1.0;
 /// Time for which runs are repeated, s.
 const MEASURE_FOR: f64 = 0.3;
 
-/// The goals of a page; of most there are none.
+/// The goals of a model file; of most there are none.
 pub(crate) fn goals(lab: &mut Lab) -> Result<Vec<Goal>, Failure> {
     let Some((_, steps, literature, dearer)) = BEARINGS.into_iter().find(|(name, ..)| *name == lab.name)
     else {

@@ -2,15 +2,14 @@
 
 use super::curve::{Curve, Point, Setting, Treatment};
 use super::drift::{Drift, drift};
-use super::explore::{self, Halvings};
-use super::goals::{Goal, Limit};
+use super::explore;
+use super::goals::{self, Goal, Limit};
 use super::lab::Lab;
 use super::limits::Knob;
 use super::order::{self, Order};
 use super::stability::{self, Map};
 use super::stiff;
 use super::truth::Truth;
-use super::{explore as ladders, goals};
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::progress::Count;
@@ -21,42 +20,26 @@ use std::time::Instant;
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
-    /// Of the paper's scene, and of others.
-    runs: [ladders::Effort; 2],
-    /// The longest long run, in lengths of the page's own.
+    /// Work-precision runs of the paper's scene, and of other scenes.
+    runs: [explore::Effort; 2],
+    /// The longest long run, as a multiple of the model file's own length.
     long: f64,
-    /// Values of the stability map in each decade.
+    /// Values of the stability map per decade.
     per_decade: u32,
     /// Whether goals that take long runs are judged.
     is_full: bool,
 }
 
 impl Effort {
-    pub(crate) fn full() -> Self {
-        let paper = ladders::Effort {
-            per_decade: 2,
-            halvings: Halvings::AndBetween,
-            longest_run: 0.2,
-            measure_for: 0.02,
-        };
-        let other = ladders::Effort {
-            per_decade: 1,
-            halvings: Halvings::Each,
-            longest_run: 0.05,
-            measure_for: 0.006,
-        };
-        Self { runs: [paper, other], long: 100.0, per_decade: 2, is_full: true }
-    }
+    pub(crate) const FULL: Self = Self {
+        runs: [explore::Effort::FINE, explore::Effort::COARSE],
+        long: 100.0,
+        per_decade: 2,
+        is_full: true,
+    };
 
-    pub(crate) fn quick() -> Self {
-        let runs = ladders::Effort {
-            per_decade: 1,
-            halvings: Halvings::EveryOther,
-            longest_run: 0.02,
-            measure_for: 0.005,
-        };
-        Self { runs: [runs, runs], long: 2.0, per_decade: 1, is_full: false }
-    }
+    pub(crate) const QUICK: Self =
+        Self { runs: [explore::Effort::SPARSE; 2], long: 2.0, per_decade: 1, is_full: false };
 }
 
 /// A scene and what was measured of it.
@@ -71,7 +54,7 @@ pub(crate) struct Study {
     pub(crate) long: f64,
     pub(crate) knob: Knob,
     pub(crate) maps: Vec<Map>,
-    /// What could not be said of stability, in words.
+    /// What could not be determined about stability, as messages.
     pub(crate) troubles: Vec<String>,
     pub(crate) goals: Vec<Goal>,
     /// Seconds that all this has taken.
@@ -79,7 +62,7 @@ pub(crate) struct Study {
     pub(crate) is_full: bool,
 }
 
-/// The page whose goals are the paper's.
+/// The model file whose goals are the paper's.
 pub(crate) const PAPER: &str = "gyroscope";
 
 /// The α error after a hundred seconds at the paper's step, by the correction.
@@ -95,9 +78,14 @@ const PATIENCE: f64 = 60.0;
 const MOST_STEPS: [f64; 2] = [2e6, 3e5];
 
 impl Study {
-    pub(crate) fn new(path: &Path, twin: &Path, effort: &Effort, progress: &Count) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        path: &Path,
+        assembled: &Path,
+        effort: &Effort,
+        progress: &Count,
+    ) -> Result<Self, Failure> {
         let began = Instant::now();
-        let mut lab = Lab::new(path, twin)?;
+        let mut lab = Lab::new(path, assembled)?;
         let is_paper = lab.name == PAPER;
         progress.begin(&format!("{}: reference solution", lab.name), 1);
         let truth_began = Instant::now();
@@ -132,14 +120,14 @@ impl Study {
 }
 
 /// All runs of the diagrams. What a run may take is measured by the cheapest good one, as scenes differ in length.
-fn points(lab: &mut Lab, truth: &Truth, effort: ladders::Effort, progress: &Count) -> Vec<Point> {
+fn points(lab: &mut Lab, truth: &Truth, effort: explore::Effort, progress: &Count) -> Vec<Point> {
     let curves = explore::curves(lab);
     progress.begin(&format!("{}: runs", lab.name), curves.len() as u64);
     let probe = Curve { integrator: Integrator::Dop853, ..curves[0] };
     let cheap = lab.point(truth, &probe, Setting::Tolerance(1e-6), (1_000_000, effort.measure_for));
     let seconds = cheap.outcome.map_or(0.0, |outcome| outcome.seconds);
     let longest_run = (4.0 * seconds).clamp(effort.longest_run, 6.0 * effort.longest_run);
-    let effort = ladders::Effort { longest_run, ..effort };
+    let effort = explore::Effort { longest_run, ..effort };
     let mut points = Vec::new();
     for curve in &curves {
         points.extend(explore::explore(lab, truth, curve, &effort));

@@ -45,7 +45,7 @@ pub(crate) fn times(t_end: f64) -> Vec<f64> {
 }
 
 impl Truth {
-    /// From the reference solution of a shipped page.
+    /// From the reference solution of a shipped model file.
     pub(crate) fn of_reference(model: &Model, reference: &SceneReference, t_end: f64) -> Self {
         let rows = reference.solve(&times(t_end)).iter().map(of_reference).collect();
         let source = "the reference solution of this scene (`gyro_reference::scene`): minimal coordinates, derived by hand and integrated in \

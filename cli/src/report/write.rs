@@ -127,14 +127,14 @@ fn choices(study: &Study, page: &mut Page) {
         match chosen.and_then(|point| Some((point, point.outcome.as_ref().ok()?))) {
             None => "not reached".to_owned(),
             Some((point, outcome)) => {
-                let twin = match point.curve.engine {
+                let form = match point.curve.engine {
                     Engine::Generated => String::new(),
                     engine => format!("{}, ", who(engine)),
                 };
                 let treatment = point.curve.treatment.name();
                 let treatment = treatment.strip_prefix("maximal, ").unwrap_or(&treatment);
                 format!(
-                    "**{} ms** ({}): {twin}{}, {treatment}, {}",
+                    "**{} ms** ({}): {form}{}, {treatment}, {}",
                     number(1e3 * outcome.seconds, 3),
                     number(outcome.ratio, 3),
                     point.curve.integrator,

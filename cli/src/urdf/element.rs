@@ -19,12 +19,12 @@ impl Findings<'_> {
         self.problems.push(line);
     }
 
-    /// Words on an element, with its place.
+    /// A message about an element, with its place.
     pub(super) fn at(&self, node: Node<'_, '_>, words: &str) -> String {
         format!("{}:{}: {}: {words}", self.file, self.line(node), title(node))
     }
 
-    /// Something at an element that the page does not have.
+    /// Something at an element that the model file does not have.
     pub(super) fn remark(&mut self, node: Node<'_, '_>, words: &str) {
         let line = format!("line {}: {}: {words}", self.line(node), title(node));
         self.remarks.push(line);

@@ -1,6 +1,6 @@
 //! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to a root that
-//! does not float is ground. Where a link's inertia is no rigid body's (a point's, a rod's) all links that are fixed to
-//! one another there become one body.
+//! does not float is ground. Where a link's inertia is not a rigid body's (a point's, a rod's) all links that are fixed
+//! to one another there become one body.
 
 use super::robot::{Inertial, Joint, Kind, Link, Robot, unphysical};
 use nalgebra::{IsometryMatrix3, Matrix3, Translation3, Vector3};

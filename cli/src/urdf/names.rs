@@ -1,4 +1,4 @@
-//! Names of the robot as names of a page.
+//! Names of the robot as names of a model file.
 
 /// Makes names in `snake_case`, each only once.
 #[derive(Debug, Default)]
@@ -9,7 +9,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// The name on the page of something with this name in the file.
+    /// The name in the model file of something with this name in the file.
     pub(super) fn name(&mut self, written: &str) -> String {
         let plain = snake_case(written);
         let mut name = plain.clone();

@@ -1,4 +1,4 @@
-//! The page of a robot as text.
+//! The model file of a robot as text.
 
 use super::MARK;
 use super::merge::{Body, Merged, Place, Root};
@@ -13,7 +13,7 @@ const COULOMB_RATE: f64 = 0.01;
 /// What rotations leave of a zero.
 const ROUNDING: f64 = 1e-15;
 
-/// Writes the page; adds what is worth knowing about it to the remarks.
+/// Writes the model file; adds what is worth knowing about it to the remarks.
 pub(super) fn write(
     file: &str,
     robot: &Robot,
@@ -42,7 +42,7 @@ pub(super) fn write(
 }
 
 /// What became of the root. A fixed one has its frame where its link's is, a free one at its mass centre, so that the
-/// one cannot be made of the other by a word on the page.
+/// one cannot be made of the other by a word in the model file.
 fn of_root(link: &Link, root: Root) -> String {
     let mass = if link.inertial.is_some() { ", its own mass left out" } else { "" };
     match root {
@@ -57,7 +57,7 @@ fn of_root(link: &Link, root: Root) -> String {
 struct Page<'a> {
     robot: &'a Robot,
     merged: &'a Merged,
-    /// Names on the page.
+    /// Names in the model file.
     bodies: Vec<String>,
     joints: Vec<String>,
 }

@@ -11,7 +11,7 @@ pub(super) struct Robot {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
-    /// What has no counterpart on a page.
+    /// What has no counterpart in a model file.
     pub(super) remarks: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Inertial {
     pub(super) mass: f64,
     /// Tensor elements xx, yy, zz, xy, xz, yz about the mass centre, in the frame of `origin`.
     pub(super) inertia: [f64; 6],
-    /// Why it is no rigid body's, if so: where it is written, and a cure.
+    /// Why it is not a rigid body's, if so: where it is written, and a cure.
     pub(super) flaw: Option<String>,
 }
 
@@ -179,7 +179,7 @@ fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Iner
 /// Principal moments that equal the sum of the others to this part are a lamina's, rounded.
 const LAMINA: f64 = 1e-9;
 
-/// Why a tensor is no inertia, if so, and what to do.
+/// Why a tensor is not an inertia, if so, and what to do.
 pub(super) fn unphysical([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<String> {
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let mut moments: Vec<f64> = tensor.symmetric_eigenvalues().iter().copied().collect();

@@ -164,8 +164,8 @@ fn what_has_no_counterpart_is_listed() {
     assert!(page.contains("# Link frame: its frame is at [0.0, 0.0, 0.0] in the body's"), "{page}");
 }
 
-/// The advice of earlier versions, to write `free = true` on the page, was wrong: points on a fixed root are in its
-/// link's frame.
+/// The advice of earlier versions, to write `free = true` in the model file, was wrong: points on a fixed root are in
+/// its link's frame.
 #[test]
 fn a_root_without_mass_cannot_float_and_a_fixed_one_is_not_called_free() {
     let found = convert("r.urdf", "r.urdf", &robot(JOINT), Root::Floating).unwrap_err();

@@ -141,7 +141,7 @@ fn bad_inputs_are_told_with_their_line() {
     }
 }
 
-/// A pendulum whose pivot is moved along x as a table beside the page says.
+/// A pendulum whose pivot is moved along x as a table beside the model file says.
 const SHAKEN: &str = r#"format = 1
 name = "shaken"
 [simulation]

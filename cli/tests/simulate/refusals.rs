@@ -153,7 +153,7 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
         assert!(words.contains(message), "{args:?}: {words}");
         assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{args:?}");
     }
-    // The same in the page, and said by the program that was compiled.
+    // The same in the model file, and said by the program that was compiled.
     let output = simulate(&folder, &["tiny.toml", "--out", "new"]);
     let words = String::from_utf8(output.stderr).unwrap();
     assert!(words.contains("will take about") && words.contains("give --budget"), "{words}");

@@ -131,7 +131,7 @@ extern "C" {
 enum GimbalStatus gimbal_init(struct Gimbal *gimbal);
 
 /**
- * Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is
+ * Sets a parameter; from the next step on. What the model file would refuse, such as a mass that is not positive, is
  * refused with `BadNumber`, and the parameter keeps its value.
  *
  * # Safety

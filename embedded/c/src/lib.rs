@@ -167,7 +167,7 @@ pub unsafe extern "C" fn gimbal_init(gimbal: *mut Gimbal) -> GimbalStatus {
     GimbalStatus::Ok
 }
 
-/// Sets a parameter; from the next step on. What the model page would refuse, such as a mass that is not positive, is
+/// Sets a parameter; from the next step on. What the model file would refuse, such as a mass that is not positive, is
 /// refused with `BadNumber`, and the parameter keeps its value.
 ///
 /// # Safety

@@ -103,7 +103,7 @@ fn a_fast_rotor_precesses_and_nutates_as_linear_theory_says() {
     let (about_y, about_z) = (1e-6 + 2e-6 + carried, 1e-6 + carried);
     let nutation = momentum / f64::sqrt(about_y * about_z);
     let (precession, size) = (torque / momentum, torque * about_y / (momentum * momentum));
-    for row in scene("gyroscope-fast").expect("a page").solve(&[1e-5, 1e-4, 1e-3]) {
+    for row in scene("gyroscope-fast").expect("a model file").solve(&[1e-5, 1e-4, 1e-3]) {
         let (sin, cos) = (nutation * row.t).sin_cos();
         let alpha = precession * (row.t - sin / nutation);
         assert!((row.positions[0] - alpha).abs() < LINEAR * precession * row.t, "{row:?} {alpha:e}");
@@ -123,7 +123,7 @@ fn at_rest_it_is_a_pendulum() {
         rate: 0.0,
     };
     let times = [0.3, 0.7, 1.1, 4.0];
-    let rows = scene("gyroscope-at-rest").expect("a page").solve(&times);
+    let rows = scene("gyroscope-at-rest").expect("a model file").solve(&times);
     for (row, expected) in rows.iter().zip(pendulum.solve(&times)) {
         let JointRow { positions, rates, .. } = row;
         assert_eq!([positions[0], positions[2], rates[0], rates[2]], [0.0; 4]);
@@ -179,7 +179,7 @@ fn stiff_bearings_move_as_along_the_chain() {
     // The chain takes a step from one time to the next.
     for (page, damping, spacing) in [("gyroscope-stiff", 1e-2, 4e-5), ("gyroscope-overdamped", 1.0, 5e-6)] {
         let times: Vec<f64> = (1..=20).map(|k| f64::from(k) * spacing).collect();
-        let rows = scene(page).expect("a page").solve(&times);
+        let rows = scene(page).expect("a model file").solve(&times);
         for (row, expected) in rows.iter().zip(sprung(damping).solve(&times)) {
             for k in 0..3 {
                 assert_near(row.positions[k], expected.positions[k], ROUNDING, page);
@@ -193,7 +193,7 @@ fn stiff_bearings_move_as_along_the_chain() {
 #[test]
 fn stiff_bearings_end_in_steady_precession() {
     for page in ["gyroscope-stiff", "gyroscope-overdamped"] {
-        let rows = scene(page).expect("a page").solve(&[0.1, 0.5, 1000.0]);
+        let rows = scene(page).expect("a model file").solve(&[0.1, 0.5, 1000.0]);
         let (first, last) = (&rows[0], &rows[2]);
         let (beta, rate) = (last.positions[1], last.rates[0]);
         let (sin, cos) = beta.sin_cos();

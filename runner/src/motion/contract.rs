@@ -39,7 +39,7 @@ pub trait Motion<M: Mechanism> {
 
 /// What there is to begin motions of a mechanism with: more for some than for others.
 pub trait MotionBuilder<M: Partition<Scalar: Real>> {
-    /// A motion from a maximal state at time zero; in words why there cannot be one.
+    /// A motion from a maximal state at time zero, or the reason why there is none.
     ///
     /// # Errors
     /// What the mechanism lacks for this approach.

@@ -94,7 +94,7 @@ impl<'p, const L: usize> Drawn<'p, L> {
         }
     }
 
-    /// `((1 − u²) / (1 + u²), 2 u / (1 + u²))`; `None` does not happen, as −1 is no square.
+    /// `((1 − u²) / (1 + u²), 2 u / (1 + u²))`; `None` does not happen, as −1 is not a square.
     fn circle_point(&self) -> Option<(Modular<'p, L>, Modular<'p, L>)> {
         let (u, one) = (self.draw(), Modular::one(self.prime));
         let square = u.mul(&u);

@@ -5,7 +5,7 @@ use gyro_model::Rational;
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
-/// A rational of any size; `None` where it is undefined: by a root that is no rational.
+/// A rational of any size; `None` where it is undefined: by a root that is not a rational.
 #[derive(Clone, Debug)]
 pub struct Exact(pub Option<Rational>);
 

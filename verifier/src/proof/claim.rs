@@ -39,7 +39,7 @@ pub enum Claim {
     Energy,
     /// `read_joints` gives the joint coordinates, also where |p| is not one.
     Readings,
-    /// `outputs` gives the outputs of the page.
+    /// `outputs` gives the outputs of the model file.
     Outputs,
     /// `chart_vectors` are the directions in which, or across which, a joint moves p.
     ChartVectors,

@@ -39,7 +39,7 @@ pub enum Verdict {
         /// Which of the residuals.
         residual: usize,
     },
-    /// The module divides by what is zero everywhere.
+    /// The module divides by an expression that is identically zero.
     Divides {
         /// Line of the module.
         line: usize,

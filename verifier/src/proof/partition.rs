@@ -101,7 +101,7 @@ pub fn chart_vectors<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         let p = euler(&case.point, body.moving_body);
         let expected = body.axis(case).map_or_else(|| p.to_vec(), |axis| turning(p, &axis).to_vec());
         residuals.extend(across(vector, &expected));
-        // One, unless the vector is zero everywhere: then it is no number.
+        // One, unless the vector is zero everywhere: then it is not a number.
         let square = dot(vector, vector);
         residuals.push(square.div(&square)?.sub(&Term::one(case.point.context)));
     }
@@ -184,7 +184,7 @@ fn lengths<'a>(
     }
 }
 
-/// Of a free body the position that it had; of a constrained one what the page gives.
+/// Of a free body the position that it had; of a constrained one what the model file gives.
 fn held_position<'a>(
     case: &Case<'a>,
     body: &Held,
@@ -202,7 +202,7 @@ fn held_position<'a>(
     }
 }
 
-/// The page's pose of a constrained body, Euler parameters of unit length with `e0` not negative.
+/// The model file's pose of a constrained body, Euler parameters of unit length with `e0` not negative.
 fn given_pose<'a>(case: &Case<'a>, moving_body: usize) -> Vec<Term<'a>> {
     let body = &case.model.bodies[case.model.coordinate_bodies()[moving_body]];
     debug_assert_eq!(body.support, Support::Constrained, "only these are given");

@@ -136,8 +136,8 @@ impl<'a> Statements<'a> {
         Some(prime)
     }
 
-    /// Whether roots of constants and parameters can exist at one point. Say 26 is no square: then of x and 26 x one is
-    /// none either, whatever x is.
+    /// Whether roots of constants and parameters can exist at one point. Say 26 is not a square: then of x and 26 x one
+    /// is not a square either, whatever x is.
     ///
     /// Of a product of numbers it can be told whether it is a square if it can of each: which roots are missed at
     /// points, as vectors modulo two, differ by sums of some vectors. If nothing missed is no such sum away from what
@@ -174,7 +174,7 @@ impl<'a> Statements<'a> {
     /// For each claim the logarithm to base two of the degree that decides it: of the numerator of any residual, of all
     /// denominators on the way, and of whatever makes two atoms one by accident. Each root doubles it (the norm of `f +
     /// g √x` is `f² − g² x`), and as it exists at half of the points or is drawn, there are twice as many ways for an
-    /// accident. `None` if the formulas divide by what is zero everywhere.
+    /// accident. `None` if the formulas divide by an expression that is identically zero.
     pub fn degrees_log2(&self) -> Vec<Option<f64>> {
         let Some(doublings) = self.doublings() else { return vec![None; self.claims.len()] };
         let all = vec![true; self.formulas.program.nodes.len()];

@@ -34,7 +34,7 @@ pub struct Trial<'c> {
 
 /// Tries a joint state `(x, u)`, the maximal state of it violated by as much as `violation` says for each of its
 /// numbers. The kernels of corrected states are tried on the state itself. `None` where a kernel divides by zero in 384
-/// bits, or for what is no tree.
+/// bits, or for a mechanism that is not a tree.
 pub fn trial<'c>(
     model: &Model,
     module: &Module,

@@ -19,7 +19,7 @@ pub struct Forces<F> {
 }
 
 impl<F: Field> Evaluation<'_, F> {
-    /// `None` where a force is not defined: at a link of no length.
+    /// `None` where a force is not defined: at a link of zero length.
     pub(super) fn forces(&self) -> Option<Forces<F>> {
         let model = self.textbook.model;
         let (none, zero) = (Load::none(&self.scope), self.scope.zero.clone());

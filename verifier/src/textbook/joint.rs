@@ -77,7 +77,7 @@ impl<F: Field> End<F> {
 impl<F: Field> Placed<F> {
     /// All rows of a joint in the order of [`gyro_model::Model::rows`]; a screw's angle is given for its advance.
     ///
-    /// `None` if a rod has no length.
+    /// `None` if a rod has zero length.
     pub fn rows(
         &self,
         scope: &Scope<'_, F>,

@@ -97,7 +97,7 @@ impl<'m> Textbook<'m> {
         self.blocks.last().map_or(0, |block| block.rows.end)
     }
 
-    /// The formulas at a point; `None` where an axis of joint or body has no length there.
+    /// The formulas at a point; `None` where an axis of a joint or body has zero length there.
     pub fn at<'a, F: Field>(
         &'a self,
         point: &'a Point<F>,

@@ -47,7 +47,7 @@ impl<F: Field> Scope<'_, F> {
         Some(pose)
     }
 
-    /// The pose that the page gives a body.
+    /// The pose that the model file gives a body.
     pub fn given(&self, body: &Body) -> Option<Pose<F>> {
         let p = self.unit(&body.orientation)?;
         Some(Pose { r: self.vector(&body.position), a: self.rotation(&p), p })

@@ -1,4 +1,4 @@
-//! What is read off a state, and the outputs of the page.
+//! What is read off a state, and the outputs of the model file.
 
 use super::Evaluation;
 use super::attitude::{compose, conjugate};

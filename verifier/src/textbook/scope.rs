@@ -1,4 +1,4 @@
-//! Numbers of the page and functions over jets.
+//! Numbers of the model file and functions over jets.
 
 use super::jet::Jet;
 use super::linear::Vector;
@@ -30,7 +30,7 @@ impl<'a, F: Field> Scope<'a, F> {
         }
     }
 
-    /// A number of the page.
+    /// A number of the model file.
     pub fn number(&self, number: &Number) -> Jet<F> {
         Jet::constant(self.point.number(number))
     }

@@ -458,10 +458,10 @@ fn seeds_make_other_points() {
 fn names_of_files_end_no_line() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
     let read = |file: &str| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string());
-    let page = read("cam.toml").expect("a page");
+    let page = read("cam.toml").expect("a model file");
     let odd = page.replace("\"cam.csv\"", "\"c\\nfn\\r\\u2028\\u202eam*/.csv\"");
     assert_ne!(page, odd);
-    let model = gyro_model::read_with("cam.toml", &odd, &mut |_| read("cam.csv")).expect("a good page");
+    let model = gyro_model::read_with("cam.toml", &odd, &mut |_| read("cam.csv")).expect("a good model file");
     let module = gyro_codegen::generate_model("ca\nm\u{2028}\u{202e}.toml", &model).expect("a module");
     let (text, report) = with_proof(&model, &module.code, &module.constants, Depth::Quick);
     assert!(report.is_proved(), "{report}");

@@ -13,7 +13,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 
-/// Pages whose modules are mutated, and how many mutants of each are tried.
+/// Model files whose modules are mutated, and how many mutants of each are tried.
 const MUTATED: [(&str, usize); 12] = [
     ("gyroscope", 100),
     ("gyroscope-maximal", 100),
@@ -219,7 +219,7 @@ fn edited(page: &Page) -> Vec<(String, String)> {
     edits.map(|(from, to)| (page.code.replacen(from, to, 1), format!("`{from}` became `{to}`"))).collect()
 }
 
-/// A module of a page that was changed since, or with other constants.
+/// A module of a model file that was changed since, or with other constants.
 #[test]
 fn stale_files_and_wrong_constants_are_not_proved() {
     let page = crate::support::page("heavy-top");

@@ -4,7 +4,8 @@ use crate::mutants::is_equivalent;
 use crate::support::{Page, generate_text};
 use gyro_verifier::{Depth, verify};
 
-/// A page with a wall and rods that hang on each other, each with its mass and inertia, and whatever else is `more`.
+/// A model file with a wall and rods that hang on each other, each with its mass and inertia, and whatever else is
+/// `more`.
 fn rods(rods: &[(&str, &str)], more: &str) -> Page {
     let mut text =
         "format = 1\nname = \"near\"\ngravity = [0, -9.81, 0]\n[[body]]\nname = \"rod0\"\nfixed = true\n"

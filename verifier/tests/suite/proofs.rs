@@ -55,7 +55,7 @@ second = { body = "plate" }
     let row = |k: u32| format!("{},{}\n", f64::from(k) * 1e-3, (f64::from(k) * 0.01).sin());
     let rows: String = (0..20_000).map(row).collect();
     let mut load = |_: &str| Ok(format!("t,x\n{rows}"));
-    let model = gyro_model::read_with("shaken.toml", page, &mut load).expect("a good page");
+    let model = gyro_model::read_with("shaken.toml", page, &mut load).expect("a good model file");
     let module = gyro_codegen::generate_model("shaken.toml", &model).expect("a module");
     let proved = |code: &str| verify(&model, code, &module.constants, Depth::Quick).is_proved();
     assert!(proved(&module.code));

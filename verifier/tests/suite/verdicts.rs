@@ -33,7 +33,7 @@ fn stopped_chain(bodies: usize) -> Model {
         }
         before = format!("b{body}");
     }
-    gyro_model::read("chain.toml", &page).expect("a good page")
+    gyro_model::read("chain.toml", &page).expect("a good model file")
 }
 
 /// No point has all of sixteen square roots; the module is proved all the same, and a fault in it found.
@@ -55,9 +55,9 @@ fn many_roots_hide_neither_proof_nor_fault() {
 /// Without the work the state is shorter, and nothing else is missing.
 #[test]
 fn a_module_without_the_work_is_proved() {
-    let counted = gyro_model::read("chain.toml", &page_with_work("")).expect("a good page");
+    let counted = gyro_model::read("chain.toml", &page_with_work("")).expect("a good model file");
     let left_out =
-        gyro_model::read("chain.toml", &page_with_work("count_work = false\n")).expect("a good page");
+        gyro_model::read("chain.toml", &page_with_work("count_work = false\n")).expect("a good model file");
     assert!(counted.has_work() && !left_out.has_work());
     for (model, joint_state) in [(&counted, "[T; 3]"), (&left_out, "[T; 2]")] {
         let module = gyro_codegen::generate_model("chain.toml", model).expect("a module");
@@ -104,7 +104,7 @@ fn free_frames(joints: usize) -> Model {
         );
     }
     let page = format!("format = 1\nname = \"frames\"\n[parameters]\n{parameters}{parts}");
-    gyro_model::read("frames.toml", &page).expect("a good page")
+    gyro_model::read("frames.toml", &page).expect("a good model file")
 }
 
 /// An arm on a joint whose frame's numbers are given.
@@ -120,7 +120,7 @@ fn arm(axis: &str, zero: &str) -> Model {
 }
 
 /// The axis is as long as the root of 26 + p², its zero direction across it as that of 26 (26 + p²): of a number that
-/// is no square modulo a prime, times 26 or not, one root is always missing, unless 26 is a square.
+/// is not a square modulo a prime, times 26 or not, one root is always missing, unless 26 is a square.
 #[test]
 fn roots_of_parameters_do_not_exclude_each_other() {
     for (axis, zero) in

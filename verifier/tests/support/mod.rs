@@ -1,10 +1,10 @@
-//! Model pages and their modules.
+//! Model files and their modules.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
 use gyro_model::Model;
 use std::path::{Path, PathBuf};
 
-/// A page with the module that the generator writes for it.
+/// A model file with the module that the generator writes for it.
 pub struct Page {
     pub name: String,
     pub model: Model,
@@ -12,7 +12,7 @@ pub struct Page {
     pub constants: String,
 }
 
-/// All pages of the shipped models, and those that the tests of the workspace bring along.
+/// All model files of the shipped models, and those that the tests of the workspace bring along.
 pub fn pages() -> Vec<PathBuf> {
     let folders = ["../models", "../tests/models"];
     let folders = folders.map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
@@ -23,23 +23,23 @@ pub fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// The page of a model by its file's name without extension.
+/// The model file of a model by its file's name without extension.
 pub fn page(name: &str) -> Page {
     let path = pages().into_iter().find(|path| path.file_stem().is_some_and(|stem| stem == name));
     generate(&path.unwrap_or_else(|| panic!("no page {name}")))
 }
 
-/// Reads a page and generates its module.
+/// Reads a model file and generates its module.
 pub fn generate(path: &Path) -> Page {
-    let text = std::fs::read_to_string(path).expect("a page");
+    let text = std::fs::read_to_string(path).expect("a model file");
     let name = path.file_name().and_then(|name| name.to_str()).expect("a name").to_owned();
     let folder = path.parent().expect("a folder").to_owned();
     let mut load = |file: &str| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string());
-    let model = gyro_model::read_with(&name, &text, &mut load).expect("a good page");
+    let model = gyro_model::read_with(&name, &text, &mut load).expect("a good model file");
     generate_model(name, model)
 }
 
-/// The same of a page that is no file and reads none.
+/// The same for a text that is in no file and reads no tables.
 pub fn generate_text(name: &str, text: &str) -> Page {
     let model = gyro_model::read(name, text).unwrap_or_else(|problems| panic!("{text}\n{problems}"));
     generate_model(name.to_owned(), model)

@@ -8,7 +8,7 @@ use gyro_cli::programs::io_failure;
 use gyro_cli::{files, generate};
 use std::fs;
 
-/// What it runs besides the pages in `embedded/models` and the paper's scene, which `gyro-sim` has.
+/// What it runs besides the model files in `embedded/models` and the paper's scene, which `gyro-sim` has.
 const OF_THE_GALLERY: &str = "gyroscope-combined-offsets.toml";
 
 /// Generates them, each proved, to where `embedded-scenes` includes them.

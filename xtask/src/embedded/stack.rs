@@ -89,7 +89,7 @@ impl Graph {
         graph
     }
 
-    /// A branch within a function is no call; one into another is.
+    /// A branch within a function is not a call; one into another is.
     fn follow_branches(&mut self) {
         let heads: Vec<u64> = self.functions.keys().copied().collect();
         let owner = |address: &u64| heads[..heads.partition_point(|head| head <= address)].last().copied();

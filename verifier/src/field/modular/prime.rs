@@ -209,6 +209,6 @@ fn halves(limb: u64) -> [u32; 2] {
 
 /// Whether a number is divisible by one below [`SMALL`].
 fn has_small_divisor(value: &BigUint) -> bool {
-    // By what is no prime nothing is found that one of its factors has not found before.
+    // By what is not a prime nothing is found that one of its factors has not found before.
     (3..SMALL).step_by(2).any(|divisor| (value % divisor) == BigUint::ZERO)
 }

@@ -72,7 +72,7 @@ second = { body = "SECOND", point = [-0.1, 0.4, 0], axis = [0, 1, 1], zero = [0,
 fn reactions_are_what_newton_and_euler_ask_for() {
     for [first, second] in [["cart", "bob"], ["bob", "cart"]] {
         let page = PENDULUM.replace("FIRST", first).replace("SECOND", second);
-        let mut model = gyro_model::read("pendulum.toml", &page).expect("a good page");
+        let mut model = gyro_model::read("pendulum.toml", &page).expect("a good model file");
         let kind = OutputKind::Reaction { joint: 0 };
         model.outputs = vec![Output { name: "load".to_owned(), kind }];
         let textbook = Textbook::new(&model);

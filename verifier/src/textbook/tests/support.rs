@@ -14,9 +14,9 @@ const RAFT: &str = "src/textbook/tests/raft.toml";
 /// States of each model.
 const STATES: u64 = 4;
 
-/// Shipped pages whose numbers leave nothing of difference quotients and absolute residuals in `f64`: rates of 1e5
-/// rad/s, a mass ratio of 1e12, a base at 20 Hz, torques of 1e3 N·m on bodies of 1e-6 kg·m². Their textbook is that of
-/// the other gyroscopes.
+/// Shipped model files whose numbers leave nothing of difference quotients and absolute residuals in `f64`: rates of
+/// 1e5 rad/s, a mass ratio of 1e12, a base at 20 Hz, torques of 1e3 N·m on bodies of 1e-6 kg·m². Their textbook is that
+/// of the other gyroscopes.
 const BEYOND_DIFFERENCES: [&str; 5] = [
     "gyroscope-fast",
     "gyroscope-heavy-rotor",
@@ -38,13 +38,13 @@ pub fn models() -> Vec<Model> {
     pages.iter().map(|path| read(path)).collect()
 }
 
-/// A page of what the shipped models lack.
+/// A model file of what the shipped models lack.
 pub fn raft() -> Model {
     read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(RAFT))
 }
 
 fn read(path: &Path) -> Model {
-    let page = std::fs::read_to_string(path).expect("a page");
+    let page = std::fs::read_to_string(path).expect("a model file");
     let mut table =
         |name: &str| std::fs::read_to_string(path.with_file_name(name)).map_err(|error| error.to_string());
     gyro_model::read_with(&path.display().to_string(), &page, &mut table)

@@ -1,0 +1,225 @@
+//! The arguments of `simulate`.
+
+use clap::{Args, ValueEnum};
+use gyro_model::{Method, Rational, parse_decimal};
+use gyro_runner::{Coordinates, Correction, Integrator, When};
+use std::path::PathBuf;
+
+/// Simulate a model
+///
+/// Prints a summary and writes a CSV file and plots. Settings that no option gives are taken from the table
+/// `simulation` of the model file. If an option is given twice, the last one counts. All times are in seconds.
+#[derive(Clone, Debug, Args)]
+#[command(
+    args_override_self = true,
+    after_help = "Examples:
+  {program} simulate models/gyroscope.toml
+  {program} simulate models/gyroscope.toml --engine assembled --t-end 10
+  {program} simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
+  {program} simulate models/gyroscope.toml --integrator dop853 --tolerance 1e-9 --coordinates joint --verify
+  {program} simulate models/gyroscope.toml --linearize 0.5 --json
+  {program} simulate my-gimbal.toml --set rotor_mass=0.085 --json
+  {program} simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
+
+Exit codes: 0 success; 1 the run failed; 2 the request was invalid; 3 the run completed, but its result is worthless"
+)]
+pub struct SimulateArgs {
+    /// Model file, anywhere on disk
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+    /// Engine that computes the motion
+    #[arg(long, value_enum, default_value_t = Engine::Generated)]
+    pub(crate) engine: Engine,
+    /// Length of the run
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) t_end: Option<f64>,
+    /// Largest step of the integrator; intervals are divided into equal steps
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) step: Option<f64>,
+    /// Interval between corrections of the dependent coordinates
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) correct_every: Option<f64>,
+    /// Integration alone, or with coordinate partitioning
+    #[arg(long, value_enum, overrides_with = "correction")]
+    pub(crate) method: Option<MethodName>,
+    /// The integrator: rk4 (fixed steps), tsit5, dop853, or rodas4 for stiff scenes
+    #[arg(long, value_name = "NAME", value_parser = integrator, default_value = "rk4")]
+    pub(crate) integrator: Integrator,
+    /// Error tolerance of each step, relative and absolute; the step size is then chosen automatically
+    #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
+    pub(crate) tolerance: Option<f64>,
+    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code
+    /// only)
+    #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
+    pub(crate) coordinates: Coordinates,
+    /// How constraints are enforced: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
+    /// model file's]
+    #[arg(long, value_name = "NAME", value_parser = correction)]
+    pub(crate) correction: Option<Correction>,
+    /// When constraints are corrected: steps=K or violation=SIZE [default: --correct-every; every step with
+    /// --tolerance]
+    #[arg(long, value_name = "WHEN", value_parser = when, overrides_with = "correct_every")]
+    pub(crate) correct_when: Option<When>,
+    /// Maximum number of steps [default: 10 million with --tolerance]. A run with fixed steps that would take more than
+    /// an hour needs a budget
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) budget: Option<u64>,
+    /// Run a second time with a finer step or tolerance and report how far the result can be trusted
+    #[arg(long)]
+    pub(crate) verify: bool,
+    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and
+    /// eigenvalues. Trees only
+    #[arg(long, value_name = "S", value_parser = seconds_or_none, allow_hyphen_values = true, conflicts_with = "t_end")]
+    pub(crate) linearize: Option<f64>,
+    /// Number type of the run
+    #[arg(long, value_enum, default_value_t = Precision::F64)]
+    pub(crate) precision: Precision,
+    /// Interval between samples [default: the model file's, on the nearest whole number of corrections]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub(crate) every: Option<f64>,
+    /// Value of one of the model's parameters; may be given several times. The start is assembled again
+    #[arg(long, value_name = "PARAMETER=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<(String, Rational)>,
+    /// Value of one of the model's inputs, once for each input: a number, or a CSV file with two columns, time and
+    /// value. Values are interpolated linearly between rows and held before the first and after the last; each step
+    /// uses the value at its start. Inputs that are not set keep the model file's value
+    #[arg(long, value_name = "NAME=FILE.csv|NUMBER", value_parser = set_input)]
+    pub(crate) input: Vec<(String, InputSetting)>,
+    /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Folder for the CSV file and the plots [default: out/NAME; none with --json]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON object on standard output and nothing else: the last sample, what its numbers are, and the files
+    /// with all samples
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Engine {
+    /// Generated code, compiled on demand
+    Generated,
+    /// The runtime-assembled model, in its careful form where the mechanism allows it (trees of revolute, spherical and
+    /// fixed joints); starts immediately
+    Assembled,
+    /// The runtime-assembled model in the paper's plain dense form
+    Dense,
+    /// The runtime-assembled model as a recursion in joint coordinates: for trees of any joints; the fastest engine
+    /// that needs no compilation
+    Recursive,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodName {
+    Direct,
+    Partitioned,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Precision {
+    F32,
+    F64,
+}
+
+impl Engine {
+    /// Its name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Generated => "generated",
+            Self::Assembled => "assembled",
+            Self::Dense => "dense",
+            Self::Recursive => "recursive",
+        }
+    }
+}
+
+impl Precision {
+    /// The Rust type.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Direct => Self::Direct,
+            MethodName::Partitioned => Self::Partitioned,
+        }
+    }
+}
+
+/// What `--input` sets an input to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum InputSetting {
+    /// A constant value.
+    Number(f64),
+    /// A CSV file of times and values.
+    File(PathBuf),
+}
+
+fn set_input(text: &str) -> Result<(String, InputSetting), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("NAME=FILE.csv or NAME=NUMBER was expected, such as motor=torque.csv or motor=0.02")?;
+    let (name, value) = (name.trim().to_owned(), value.trim());
+    match value.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((name, InputSetting::Number(number))),
+        Ok(_) => Err(format!("`{value}` is not a finite number")),
+        Err(_) if value.is_empty() => Err(format!("a value is missing after `{name}=`")),
+        Err(_) => Ok((name, InputSetting::File(PathBuf::from(value)))),
+    }
+}
+
+fn integrator(text: &str) -> Result<Integrator, String> {
+    text.parse().map_err(|()| "rk4, tsit5, dop853 or rodas4 was expected".to_owned())
+}
+
+fn coordinates(text: &str) -> Result<Coordinates, String> {
+    text.parse().map_err(|()| "maximal or joint was expected".to_owned())
+}
+
+fn correction(text: &str) -> Result<Correction, String> {
+    let expected =
+        "partition, closed-form, mass-weighted, baumgarte=RATE or none was expected, such as baumgarte=100";
+    text.parse().map_err(|()| expected.to_owned())
+}
+
+fn when(text: &str) -> Result<When, String> {
+    text.parse()
+        .map_err(|()| "steps=K or violation=SIZE was expected, such as steps=5 or violation=1e-10".to_owned())
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
+        _ => Err("a number above 0 and at most 1 was expected, such as 1e-9".to_owned()),
+    }
+}
+
+fn seconds_or_none(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("0 or a positive number of seconds was expected, such as 0.5".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("a positive number of seconds was expected, such as 1e-4".to_owned()),
+    }
+}
+
+fn setting(text: &str) -> Result<(String, Rational), String> {
+    let (name, value) =
+        text.split_once('=').ok_or("PARAMETER=VALUE was expected, such as rotor_mass=0.08")?;
+    let exact = parse_decimal(value)
+        .ok_or_else(|| format!("`{}` is not a decimal number, such as -0.08 or 8e-2", value.trim()))?;
+    Ok((name.trim().to_owned(), exact))
+}

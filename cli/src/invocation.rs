@@ -1,0 +1,64 @@
+//! By which program the commands are called: `gyro`, or `cargo xtask` for those who develop the project. Help texts
+//! and messages name that one.
+
+use clap::{Command, Parser};
+use std::sync::OnceLock;
+
+/// What help texts write for the program.
+const PROGRAM: &str = "{program}";
+
+/// The program of this process, once its arguments have been read.
+static NAME: OnceLock<String> = OnceLock::new();
+
+/// Reads the arguments of this process. Help texts and messages name the program as the parser calls it.
+#[must_use]
+pub fn parse<P: Parser>() -> P {
+    let command = named(P::command());
+    NAME.get_or_init(|| name_of(&command));
+    P::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit())
+}
+
+/// The name of the program: what a user types before the name of a command.
+pub(crate) fn program() -> &'static str {
+    NAME.get().map_or("gyro", String::as_str)
+}
+
+/// A parser's command with the program's name in the help of each of its subcommands.
+#[must_use]
+pub fn named(command: Command) -> Command {
+    let name = name_of(&command);
+    command.mut_subcommands(|subcommand| match subcommand.get_after_help() {
+        Some(help) => {
+            let help = help.to_string().replace(PROGRAM, &name);
+            subcommand.after_help(help)
+        }
+        None => subcommand,
+    })
+}
+
+fn name_of(command: &Command) -> String {
+    command.get_bin_name().unwrap_or_else(|| command.get_name()).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Cli;
+    use clap::CommandFactory;
+
+    /// Each example is a command line of the program that was called, whichever that is.
+    #[test]
+    fn examples_name_the_program_that_was_called() {
+        for name in ["gyro", "cargo xtask"] {
+            let mut examples = 0;
+            for subcommand in named(Cli::command().bin_name(name)).get_subcommands_mut() {
+                let (command, help) =
+                    (subcommand.get_name().to_owned(), subcommand.render_long_help().to_string());
+                assert!(!help.contains(PROGRAM), "{help}");
+                assert_eq!(help.contains("cargo xtask"), name == "cargo xtask", "{help}");
+                examples += help.matches(&format!("\n  {name} {command}")).count();
+            }
+            assert!(examples > 20, "{examples} examples of {name}");
+        }
+    }
+}
