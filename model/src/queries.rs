@@ -1,7 +1,7 @@
 //! What can be asked of a model: units, rows, sizes, and the model with other parameters.
 
 use crate::{
-    CoordinateKind, Force, ForceKind, JointCoordinate, JointKind, Model, Number, Rational, RedundantRow, Row,
+    CoordinateKind, Force, ForceKind, Joint, JointCoordinate, JointKind, Model, Number, Rational, RedundantRow, Row,
     RowOwner, RowUnit, Support, analyse, to_f64,
 };
 use std::ops::Range;
@@ -29,6 +29,11 @@ impl JointKind {
             Self::PointOnLine => &[Length, Length],
             Self::Rod => &[Length],
         }
+    }
+
+    /// Number of relative motions that the joint leaves free.
+    pub fn n_free(self) -> usize {
+        6 - self.row_units().len()
     }
 
     /// What the joint's rows are, in their order, as messages write them.
@@ -147,6 +152,24 @@ impl Model {
     /// What a joint coordinate is.
     pub fn coordinate_kind(&self, coordinate: JointCoordinate) -> CoordinateKind {
         self.joints[coordinate.joint].kind.coordinates()[coordinate.coordinate]
+    }
+
+    /// Whether forces, couplers, drivers or an advance along the axis act on a joint's coordinates.
+    pub fn acts_on_coordinates(&self, joint: usize) -> bool {
+        let forces = self.forces.iter().filter_map(|force| match force.kind {
+            ForceKind::Spring { on, .. }
+            | ForceKind::Damper { on, .. }
+            | ForceKind::Coulomb { on, .. }
+            | ForceKind::Stop { on, .. }
+            | ForceKind::Motor { on, .. } => Some(on),
+            ForceKind::Link { .. } | ForceKind::Load { .. } => None,
+        });
+        let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
+        let drivers = self.drivers.iter().map(|driver| driver.coordinate);
+        let Joint { kind, friction, .. } = &self.joints[joint];
+        *kind == JointKind::Screw
+            || !friction.is_zero()
+            || forces.chain(couplers).chain(drivers).any(|on| on.joint == joint)
     }
 
     fn coordinate_unit(&self, coordinate: JointCoordinate) -> RowUnit {

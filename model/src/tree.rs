@@ -52,6 +52,18 @@ impl Tree {
         Self::along(model, |joint| u8::from(!model.joints[joint].kind.turns()))
     }
 
+    /// The trees whose joint coordinates describe the mechanism: of the joints of a loop one is cut that has many
+    /// coordinates, so that few rows are left, and on whose coordinates nothing acts.
+    pub fn of_coordinates(model: &Model) -> Self {
+        let free = |joint: usize| u8::try_from(model.joints[joint].kind.n_free()).unwrap_or(u8::MAX);
+        let is_acted_on: Vec<_> = (0..model.joints.len()).map(|joint| model.acts_on_coordinates(joint)).collect();
+        if is_acted_on.contains(&true) {
+            Self::along(model, |joint| if is_acted_on[joint] { 0 } else { free(joint).max(1) })
+        } else {
+            Self::along(model, |joint| if free(joint) <= 1 { 0 } else { free(joint) })
+        }
+    }
+
     /// The same with another order of the joints: those of rank zero are walked breadth first; the others are followed
     /// one by one, lower ranks first, only where none of a lower rank leads on.
     pub(crate) fn along(model: &Model, rank: impl Fn(usize) -> u8) -> Self {

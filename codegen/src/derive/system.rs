@@ -25,6 +25,8 @@ pub struct Pose {
 pub struct System<'m> {
     pub model: &'m Model,
     pub tree: Tree,
+    /// The tree in whose joint coordinates the mechanism is described.
+    pub joint_tree: Tree,
     pub graph: Graph,
     pub definitions: Definitions,
     /// Bodies with coordinates: moving body to index into the model's bodies.
@@ -42,9 +44,11 @@ pub struct System<'m> {
 impl<'m> System<'m> {
     pub fn new(model: &'m Model) -> Self {
         let (moving_bodies, tree) = (model.coordinate_bodies(), Tree::of(model));
+        let joint_tree = Tree::of_coordinates(model);
         let mut system = Self {
             model,
             tree,
+            joint_tree,
             graph: Graph::new(),
             definitions: Definitions::default(),
             moving_bodies,

@@ -2,7 +2,6 @@
 
 use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
-use super::embedding::Embedding;
 use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
@@ -21,8 +20,6 @@ pub type Candidate = (&'static str, Vec<ExprId>);
 pub struct Candidates {
     /// What u̇ is the solution of, angular velocities made of rates.
     pub balance: JointDynamics,
-    /// The same of a tree in which every rate is an unknown.
-    pub balance_of_tree: JointDynamics,
     /// By elimination.
     pub eliminated: Vec<Candidate>,
     /// The shortest of them in joint coordinates, for what has to be short rather than accurate: the Jacobian.
@@ -41,8 +38,6 @@ impl Candidates {
         let loads = &textbook.dynamics.other_loads;
         let spins = dynamics::spins(system, links);
         let balance = JointDynamics::new(system, links, &spins, loads, along, embedding);
-        let every = Embedding::identity(embedding.rates.len());
-        let balance_of_tree = JointDynamics::new(system, links, &spins, loads, along, &every);
         let mut reductions = Vec::new();
         let mut eliminated = vec![("recursion", balance.recursion(system))];
         if embedding.n_unknowns <= MAX_FACTORED {
@@ -59,7 +54,6 @@ impl Candidates {
             is_small.then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));
         Self {
             balance,
-            balance_of_tree,
             eliminated,
             shortest,
             eliminated_on_spins,

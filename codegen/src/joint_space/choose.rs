@@ -2,7 +2,6 @@
 
 use super::candidates::Candidates;
 use super::coordinates::Coordinates;
-use super::dynamics::JointDynamics;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
 use super::{dynamics, maps, motions, multipliers};
@@ -40,6 +39,14 @@ pub struct JointSpace {
     pub jacobian: Option<Jacobian>,
     /// Bodies that are described in a frame that does not turn with them.
     pub invariant: Vec<usize>,
+    /// The rows of the joints that close loops, by their places among all rows.
+    pub closure_rows: Vec<usize>,
+    /// Φ of these rows, in terms of joint coordinates.
+    pub closure: Vec<ExprId>,
+    /// x, one Newton step nearer to closed loops.
+    pub closer_coordinates: Vec<ExprId>,
+    /// u that keep loops closed.
+    pub closing_rates: Vec<ExprId>,
 }
 
 impl JointSpace {
@@ -68,19 +75,20 @@ impl JointSpace {
         let accelerations_at = passes.cheapest(&mut system.graph, of_state(&at));
         let corrected = corrected(system, &coordinates, &at, exact);
         let corrected = passes.cheapest(&mut system.graph, corrected);
-        let multipliers = multipliers::of(system, textbook, &coordinates);
-        let multipliers = system.expanded(&coordinates.of_joints, &multipliers);
+        let lambda = multipliers::of(system, textbook, &coordinates);
+        let multipliers = system.expanded(&coordinates.of_joints, &lambda);
         let known = motions::accelerations_by_symbol(&corrected.roots);
         let solved = system.expanded(&known, &multipliers);
         let solution = corrected.roots.iter().copied().chain(solved).collect();
-        let rates = maps::coordinate_rates(system, &coordinates.layout);
+        let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
+        let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
         let along = dynamics::power_along(system, &coordinates.layout);
         let along = system.expanded(&coordinates.determined, &[along])[0];
         let power =
-            Power { along, others: observed.power_but_along_coordinates, tree: &candidates.balance_of_tree };
+            Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
-        let reduced = maps::reduced(system, &coordinates.layout);
+        let reduced = maps::reduced(system, &coordinates.layout, &coordinates.of_joints);
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
         let rates_of_rates: Vec<_> =
             (0..n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
@@ -100,8 +108,13 @@ impl JointSpace {
             passes,
         };
         let jacobian = Jacobian::derive(system, &form);
+        let [closure, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
+            closure_rows: coordinates.closure.rows.clone(),
+            closure,
+            closer_coordinates,
+            closing_rates,
             accelerations,
             multipliers,
             solution,
@@ -142,8 +155,8 @@ struct Power<'c> {
     along: ExprId,
     /// Of all others, in maximal coordinates.
     others: ExprId,
-    /// What the rates of the tree balance.
-    tree: &'c JointDynamics,
+    /// λ, in terms of [`Symbol::Acceleration`].
+    multipliers: &'c [ExprId],
 }
 
 impl Power<'_> {
@@ -157,13 +170,12 @@ impl Power<'_> {
         system.model.has_work().then(|| {
             let rates_of_rates = coordinates.of_tree(system, rates_of_rates);
             let motions = motions::motions(system, &coordinates.links, &rates_of_rates, true);
-            let left = self.tree.left_over(system, &rates_of_rates);
-            let loop_multipliers = multipliers::beside_joints(system, &coordinates.layout, &left);
             let motions = system.expanded(&coordinates.in_joints, &motions);
-            let loop_multipliers = system.expanded(&coordinates.in_joints, &loop_multipliers);
             let mut values = coordinates.in_joints.clone();
             values.extend(motions::accelerations_by_symbol(&motions));
-            values.extend(multipliers::by_symbol(&loop_multipliers));
+            let beside: Vec<_> = system.loop_closure_rows().iter().map(|&row| self.multipliers[row]).collect();
+            let beside = system.expanded(&values, &beside);
+            values.extend(beside.into_iter().enumerate().map(|(place, value)| (Symbol::LoopMultiplier(place), value)));
             let others = system.expanded(&values, &[self.others])[0];
             system.graph.add(self.along, others)
         })

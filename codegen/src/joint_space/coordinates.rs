@@ -1,17 +1,23 @@
 //! A tree in joint coordinates: what is derived before anything is solved.
 
-use super::determined;
+use super::closure::{self, Closure};
+use super::determined::{self, Determined, Relation};
 use super::embedding::Embedding;
 use super::layout::Layout;
 use super::link_kinematics::{self, LinkKinematics};
+use super::loops::Loops;
+use super::whole_angles::WholeAngles;
 use super::{dynamics, maps};
+use crate::solve::lu::Lu;
 use crate::derive::Textbook;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
-use crate::expr::graph::ExprId;
+use crate::expr::evaluate::evaluate;
+use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::ZERO3;
+use gyro_model::{JointCoordinate, RowOwner, Start};
 
 /// Joint coordinates and how they go with the maximal ones.
 #[derive(Debug)]
@@ -32,6 +38,13 @@ pub struct Coordinates {
     pub of_joints: Values,
     /// The coordinates that are no part of the state, with their rates and the rates' rates.
     pub determined: Values,
+    /// The joints that close loops.
+    pub closure: Closure,
+    pub loops: Loops,
+    /// The rows that hold coordinates by the rates of these, transposed.
+    pub holding: Option<Lu>,
+    /// How all rates of the tree follow those of the state.
+    pub by_rates: Embedding,
     /// How all rates of the tree accelerate.
     pub embedding: Embedding,
     /// The force along each rate of the tree.
@@ -41,25 +54,57 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// Whether joint coordinates describe the mechanism.
+    /// Whether joint coordinates describe the mechanism: nothing acts on the coordinates of a joint that closes a loop,
+    /// and couplers and drivers determine coordinates of the tree.
     pub fn cover(system: &System) -> bool {
-        system.tree.is_open() && determined::determined(system.model, |_| true).1.is_empty()
+        let tree = &system.joint_tree;
+        let is_free = |joint: &usize| !system.model.acts_on_coordinates(*joint);
+        tree.loop_joints.iter().all(is_free) && coordinates_beside_joints(system).1.is_empty()
     }
 
-    pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
-        let (known, _) = determined::determined(system.model, |_| true);
-        let layout = Layout::of(system, known);
-        let determined = determined::values(system, &layout);
-        let embedding = Embedding::of(system, &layout, &determined);
-        let links = links_of(system, &layout, &|_| true);
+    pub fn derive(system: &mut System, textbook: &Textbook, start: &Start) -> Self {
+        let (mut known, _) = coordinates_beside_joints(system);
+        loop {
+            let layout = Layout::of(system, known.clone());
+            let determined = determined::values(system, &layout);
+            let links = links_of(system, &layout, &|_| true);
+            let angles = WholeAngles::of(system, &layout, &links, |x| layout.is_held(x));
+            let unit = unit_atoms(system, &layout, &angles);
+            let rows = closure::rows(system, &textbook.kinematics.phi, (&layout, &angles), &unit);
+            let held = rows.iter().find_map(|&(row, phi)| {
+                let place = closure::held_by(&mut system.graph, &layout, phi)?;
+                let scalar = layout.scalars().find(|scalar| scalar.place == place)?;
+                Some(Determined { coordinate: scalar.coordinate, by: Relation::Held(row) })
+            });
+            if let Some(held) = held {
+                known.push(held);
+                continue;
+            }
+            return Self::closed(system, textbook, start, (layout, determined, links, angles, unit, rows));
+        }
+    }
+
+    fn closed(
+        system: &mut System,
+        textbook: &Textbook,
+        start: &Start,
+        (layout, determined, links, angles, unit, rows): Derived,
+    ) -> Self {
         let maximal = maps::of_bodies(system, &layout, &links);
         let maximal = maps::expanded(system, determined.clone(), maximal);
-        let in_joints = maps::in_joints(system, &layout, &maximal, &determined);
-        let of_joints = maps::of_joints(system, &layout);
+        let in_joints = maps::in_joints(system, &layout, &maximal, &determined, &angles);
+        let of_joints = maps::of_joints(system, &layout, &angles);
+        let by_rates = Embedding::identity(layout.n_rates).with_determined(system, &layout, &determined);
+        let closure = Closure::derive(system, rows, (&layout, &angles), &by_rates, &unit);
+        let unheld = WholeAngles::of(system, &layout, &links, |_| false);
+        let closure = closure.with_determined(system, &textbook.kinematics.phi, (&layout, &unheld));
+        let holding = holding(system, &layout, &closure, &of_joints, start);
+        let loops = loops_of(system, &closure, &of_joints, start);
+        let embedding = loops.embedding(&mut system.graph, &closure, layout.n_rates);
+        let embedding = embedding.with_determined(system, &layout, &determined);
         let invariant = invariant_angles(system, &layout, &links, &textbook.dynamics);
         let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
         let along = dynamics::forces_along(system, &layout);
-        let unit = unit_atoms(system, &layout);
         Self {
             layout,
             links,
@@ -69,10 +114,38 @@ impl Coordinates {
             in_joints,
             of_joints,
             determined,
+            by_rates,
+            closure,
+            loops,
+            holding,
             embedding,
             along,
             unit,
         }
+    }
+
+    /// Φ of the joints that close loops; x, one Newton step nearer to closed loops; u that keep loops closed.
+    pub fn closing(&self, system: &mut System) -> [Vec<ExprId>; 3] {
+        let Self { layout, closure, loops, .. } = self;
+        let graph = &mut system.graph;
+        let opposite = |graph: &mut Graph, rows: &[ExprId]| -> Vec<_> {
+            rows.iter().map(|&row| graph.neg(row)).collect()
+        };
+        let missing = opposite(graph, &closure.phi);
+        let shifts = loops.changes(graph, closure, &missing, layout.n_rates);
+        let missing = opposite(graph, &closure.residual);
+        let changes = loops.changes(graph, closure, &missing, layout.n_rates);
+        let shifts = maps::coordinate_rates(system, layout, &shifts);
+        let graph = &mut system.graph;
+        let added = |graph: &mut Graph, symbol: Symbol, change: ExprId| {
+            let known = graph.symbol(symbol);
+            graph.add(known, change)
+        };
+        let x: Vec<_> =
+            shifts.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Coordinate(k), by)).collect();
+        let u: Vec<_> =
+            changes.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Rate(k), by)).collect();
+        [&closure.phi, &x, &u].map(|roots| system.expanded(&self.in_joints, roots))
     }
 
     /// The accelerations of all rates of the tree, from those of the state.
@@ -98,6 +171,61 @@ impl Coordinates {
     pub fn have_orientations(&self) -> bool {
         self.layout.links.iter().any(|link| link.orientation.is_some())
     }
+}
+
+/// Of coordinates, with what is needed to close them: layout, values of what is determined, links, angles, sets of
+/// atoms of which the squares sum to one, rows.
+type Derived = (Layout, Values, Vec<LinkKinematics>, WholeAngles, Vec<Vec<ExprId>>, Vec<(usize, ExprId)>);
+
+/// What couplers and drivers determine, and the owners of the rows that determine no coordinate of the tree.
+fn coordinates_beside_joints(system: &System) -> (Vec<Determined>, Vec<RowOwner>) {
+    let is_on_tree = |on: JointCoordinate| !system.joint_tree.loop_joints.contains(&on.joint);
+    determined::determined(system.model, is_on_tree)
+}
+
+/// The entries' values at the start.
+fn numbers(system: &mut System, entries: &[ExprId], of_joints: &Values, start: &Start) -> Vec<f64> {
+    let entries = system.expanded(of_joints, entries);
+    evaluate(&system.graph, &entries, |symbol| maps::at_start(system, start, symbol))
+}
+
+/// What the rows that hold coordinates take along these.
+fn holding(
+    system: &mut System,
+    layout: &Layout,
+    closure: &Closure,
+    of_joints: &Values,
+    start: &Start,
+) -> Option<Lu> {
+    let is_held = |place: &usize| matches!(layout.determined[*place].by, Relation::Held(_));
+    let held: Vec<_> = (0..layout.determined.len()).filter(is_held).collect();
+    if held.is_empty() {
+        return None;
+    }
+    let rows = &closure.by_determined[closure.rows.len()..];
+    let matrix: Vec<Vec<_>> =
+        held.iter().map(|&place| rows.iter().map(|row| row[place]).collect()).collect();
+    let values = numbers(system, &matrix.concat(), of_joints, start);
+    let values = values.chunks(held.len()).map(<[_]>::to_vec).collect();
+    Some(Lu::new(&mut system.graph, matrix, values))
+}
+
+fn loops_of(system: &mut System, closure: &Closure, of_joints: &Values, start: &Start) -> Loops {
+    if closure.rows.is_empty() {
+        return Loops::default();
+    }
+    let values = numbers(system, &closure.jacobian.concat(), of_joints, start);
+    let values: Vec<_> = values.chunks(closure.jacobian[0].len()).map(<[_]>::to_vec).collect();
+    let rows = system.model.rows();
+    let owners: Vec<_> = closure.rows.iter().map(|&row| rows[row].owner).collect();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (place, owner) in owners.iter().enumerate() {
+        match groups.iter_mut().find(|group| owners[group[0]] == *owner) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
+        }
+    }
+    Loops::of(&mut system.graph, closure, groups, &values)
 }
 
 fn links_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turned) -> Vec<LinkKinematics> {
@@ -134,7 +262,7 @@ fn invariant_angles(
 }
 
 /// Sets of atoms of which the squares sum to one.
-fn unit_atoms(system: &mut System, layout: &Layout) -> Vec<Vec<ExprId>> {
+fn unit_atoms(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec<Vec<ExprId>> {
     let graph = &mut system.graph;
     let mut unit = Vec::new();
     for link in &layout.links {
@@ -145,6 +273,9 @@ fn unit_atoms(system: &mut System, layout: &Layout) -> Vec<Vec<ExprId>> {
         if let Some(place) = link.orientation {
             unit.push((0..4).map(|k| graph.symbol(Symbol::Coordinate(place.x + k))).collect());
         }
+    }
+    for (place, _) in angles.places() {
+        unit.push([Symbol::Cosine(place.x), Symbol::Sine(place.x)].map(|symbol| graph.symbol(symbol)).to_vec());
     }
     unit
 }

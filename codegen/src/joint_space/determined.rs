@@ -25,21 +25,25 @@ pub enum Relation {
     Forward(usize),
     /// Its first coordinate by its second.
     Backward(usize),
+    /// A row of a joint that closes a loop, by its place among all rows: the coordinate is zero, as the angle out of its
+    /// plane of a linkage is.
+    Held(usize),
 }
 
 impl Relation {
-    /// The owner of its row.
-    pub fn owner(self) -> RowOwner {
+    /// The owner of its row, if it is a row beside the joints.
+    pub fn owner(self) -> Option<RowOwner> {
         match self {
-            Self::Driver(driver) => RowOwner::Driver(driver),
-            Self::Forward(coupler) | Self::Backward(coupler) => RowOwner::Coupler(coupler),
+            Self::Driver(driver) => Some(RowOwner::Driver(driver)),
+            Self::Forward(coupler) | Self::Backward(coupler) => Some(RowOwner::Coupler(coupler)),
+            Self::Held(_) => None,
         }
     }
 
     /// The coordinate that the determined one is a multiple of, but for an offset.
     pub fn source(self, model: &Model) -> Option<JointCoordinate> {
         match self {
-            Self::Driver(_) => None,
+            Self::Driver(_) | Self::Held(_) => None,
             Self::Forward(coupler) => Some(model.couplers[coupler].first),
             Self::Backward(coupler) => Some(model.couplers[coupler].second),
         }
@@ -127,6 +131,7 @@ pub fn values(system: &mut System, layout: &Layout) -> Values {
                 let rate = by_time(&mut system.graph, value);
                 [value, rate, by_time(&mut system.graph, rate)]
             }
+            Relation::Held(_) => [Graph::ZERO; 3],
             Relation::Forward(coupler) | Relation::Backward(coupler) => {
                 let source = known.by.source(system.model).expect("a coupler has two coordinates");
                 let of_source = place_of(layout, source);

@@ -35,13 +35,19 @@ impl Embedding {
         Self { rates: (0..n_rates).map(rate).collect(), n_unknowns: n_rates }
     }
 
-    /// Of the coordinates of a layout, with the values of those that are determined.
-    pub fn of(system: &mut System, layout: &Layout, values: &Values) -> Self {
-        let mut embedding = Self::identity(layout.n_rates);
+    /// A new unknown, with its factor.
+    pub fn unknown(&mut self) -> (usize, ExprId) {
+        self.n_unknowns += 1;
+        (self.n_unknowns - 1, Graph::ONE)
+    }
+
+    /// The same with the rates that are determined, behind those of the state.
+    pub fn with_determined(mut self, system: &mut System, layout: &Layout, values: &Values) -> Self {
+        let embedding = &mut self;
         for known in &layout.determined {
             let place = place_of(layout, known.coordinate);
             let motion = match known.by {
-                Relation::Driver(_) => {
+                Relation::Driver(_) | Relation::Held(_) => {
                     RateMotion { columns: Vec::new(), bias: values[&Symbol::RateOfRate(place.u)] }
                 }
                 Relation::Forward(coupler) | Relation::Backward(coupler) => {
@@ -56,7 +62,7 @@ impl Embedding {
             debug_assert_eq!(embedding.rates.len(), place.u, "determined rates come in their order");
             embedding.rates.push(motion);
         }
-        embedding
+        self
     }
 
     /// The accelerations of all rates of the tree.
@@ -84,6 +90,13 @@ impl Embedding {
 }
 
 impl RateMotion {
+    /// The factor of an unknown, or the bias.
+    pub fn part(&self, of: Option<usize>) -> ExprId {
+        let Some(unknown) = of else { return self.bias };
+        let column = self.columns.iter().find(|(known, _)| *known == unknown);
+        column.map_or(Graph::ZERO, |column| column.1)
+    }
+
     fn scaled(&self, graph: &mut Graph, by: ExprId) -> Self {
         let columns = self.columns.iter().map(|&(unknown, factor)| (unknown, graph.mul(by, factor)));
         Self { columns: columns.collect(), bias: graph.mul(by, self.bias) }

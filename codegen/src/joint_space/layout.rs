@@ -1,6 +1,6 @@
 //! Where each joint's coordinates and rates stand.
 
-use super::determined::Determined;
+use super::determined::{Determined, Relation};
 use crate::derive::system::System;
 use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
 
@@ -42,7 +42,7 @@ pub struct Scalar {
 }
 
 /// Index of the first coordinate and of the first rate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     pub x: usize,
     pub u: usize,
@@ -50,7 +50,7 @@ pub struct Place {
 
 impl Layout {
     pub fn of(system: &System, determined: Vec<Determined>) -> Self {
-        let mut links = system.tree.links.clone();
+        let mut links = system.joint_tree.links.clone();
         links.sort_by_key(|link| match link.attachment {
             Attachment::Joint { joint, .. } => (0, joint),
             Attachment::Free | Attachment::Constrained => (1, link.body),
@@ -65,7 +65,7 @@ impl Layout {
             let place = layout.determined.iter().position(|known| known.coordinate == scalar.coordinate);
             scalar.place = place.map_or(scalar.place, behind);
         }
-        let order = |link: &LinkCoordinates| system.tree.links.iter().position(|l| l.body == link.link.body);
+        let order = |link: &LinkCoordinates| system.joint_tree.links.iter().position(|l| l.body == link.link.body);
         layout.links.sort_by_key(order);
         layout
     }
@@ -102,9 +102,20 @@ impl Layout {
         place
     }
 
+    /// Number of coordinates of the tree, those included that are no part of the state.
+    pub fn n_tree_coordinates(&self) -> usize {
+        self.n_coordinates + self.determined.len()
+    }
+
     /// Number of rates of the tree, those included that are no part of the state.
     pub fn n_tree_rates(&self) -> usize {
         self.n_rates + self.determined.len()
+    }
+
+    /// Whether a scalar coordinate is zero, as loops hold it.
+    pub fn is_held(&self, x: usize) -> bool {
+        let known = x.checked_sub(self.n_coordinates).and_then(|place| self.determined.get(place));
+        known.is_some_and(|known| matches!(known.by, Relation::Held(_)))
     }
 
     /// The scalar coordinates that are part of the state.

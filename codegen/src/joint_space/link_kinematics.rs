@@ -317,7 +317,7 @@ pub fn at_zero(graph: &mut Graph, joint: &JointFrames) -> Mat3 {
 }
 
 /// `R (h hᵀ + cos (I − h hᵀ) + sin h̃)` (Rodrigues), R constant.
-fn rotated(graph: &mut Graph, r: &Mat3, h: &Vec3, (sine, cosine): (ExprId, ExprId)) -> Mat3 {
+pub fn rotated(graph: &mut Graph, r: &Mat3, h: &Vec3, (sine, cosine): (ExprId, ExprId)) -> Mat3 {
     let along = graph.mat_vec(r, h);
     let tilde = graph.tilde(h);
     let skew = graph.mat_mul(r, &tilde);

@@ -1,8 +1,10 @@
 //! Between joint coordinates and maximal ones, both ways.
 
 use super::dynamics;
-use super::layout::{Layout, LinkCoordinates, Scalar};
+use super::closure::held_at_zero;
+use super::layout::{Layout, LinkCoordinates, Place, Scalar};
 use super::link_kinematics::{LinkKinematics, at_zero};
+use super::whole_angles::WholeAngles;
 use crate::derive::frames::{JointFrames, sine_and_cosine};
 use crate::derive::joint_coordinate::{self, relative_spin};
 use crate::derive::readings::{raw_angle, relative_euler};
@@ -212,7 +214,7 @@ fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
 
 /// Joint coordinates and rates in terms of a maximal state that satisfies the constraints. Of an angle on which nothing
 /// acts only the sine and cosine are given.
-pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
+pub fn of_joints(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Values {
     let mut values = Values::default();
     for link in &layout.links {
         for scalar in &link.scalars {
@@ -237,6 +239,20 @@ pub fn of_joints(system: &mut System, layout: &Layout) -> Values {
             values.extend((0..4).map(|k| (Symbol::Coordinate(place.x + k), p[k])));
             values.extend((0..3).map(|k| (Symbol::Rate(place.u + k), w[k])));
         }
+    }
+    for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
+        if layout.is_held(scalar.place.x) {
+            values.extend(held_at_zero(scalar.place));
+        }
+    }
+    for (place, sum) in angles.places() {
+        let graph = &mut system.graph;
+        let of = |place: Place| (values[&Symbol::Sine(place.x)], values[&Symbol::Cosine(place.x)]);
+        let (sine, cosine) = sum.sine_and_cosine(graph, of);
+        let rate = sum.sum(graph, |_, place| values[&Symbol::Rate(place.u)]);
+        values.insert(Symbol::Sine(place.x), sine);
+        values.insert(Symbol::Cosine(place.x), cosine);
+        values.insert(Symbol::Rate(place.u), rate);
     }
     expanded(system, Values::default(), values)
 }
@@ -272,8 +288,7 @@ fn scalar_of_joint(system: &mut System, scalar: &Scalar, values: &mut Values) {
 }
 
 /// x and u from any maximal state: angles continue from the value that x holds before.
-pub fn reduced(system: &mut System, layout: &Layout) -> Vec<ExprId> {
-    let values = of_joints(system, layout);
+pub fn reduced(system: &mut System, layout: &Layout, values: &Values) -> Vec<ExprId> {
     let mut all: Vec<_> = (0..layout.n_coordinates)
         .map(|x| values.get(&Symbol::Coordinate(x)).copied().unwrap_or(Graph::ZERO))
         .collect();
@@ -287,8 +302,26 @@ pub fn reduced(system: &mut System, layout: &Layout) -> Vec<ExprId> {
 }
 
 /// Everything in terms of joint coordinates and rates.
-pub fn in_joints(system: &mut System, layout: &Layout, maximal: &Values, determined: &Values) -> Values {
+pub fn in_joints(
+    system: &mut System,
+    layout: &Layout,
+    maximal: &Values,
+    determined: &Values,
+    angles: &WholeAngles,
+) -> Values {
     let mut values = determined.clone();
+    for (place, sum) in angles.places() {
+        let graph = &mut system.graph;
+        let [x, u] = [|place: Place| Symbol::Coordinate(place.x), |place: Place| Symbol::Rate(place.u)].map(|symbol| {
+            sum.sum(graph, |graph, place| {
+                let symbol = symbol(place);
+                determined.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol))
+            })
+        });
+        values.insert(Symbol::Sine(place.x), graph.sin(x));
+        values.insert(Symbol::Cosine(place.x), graph.cos(x));
+        values.insert(Symbol::Rate(place.u), u);
+    }
     for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
         let place = scalar.place.x;
         let symbol = Symbol::Coordinate(place);
@@ -307,27 +340,23 @@ pub fn in_joints(system: &mut System, layout: &Layout, maximal: &Values, determi
     values
 }
 
-/// ẋ: the rates of scalars, `½ Gᵀ w'` of Euler parameters.
-pub fn coordinate_rates(system: &mut System, layout: &Layout) -> Vec<ExprId> {
-    let graph = &mut system.graph;
-    let mut rates = vec![Graph::ZERO; layout.n_coordinates];
+/// ẋ of given rates: those of scalars, `½ Gᵀ w'` of Euler parameters.
+pub fn coordinate_rates(system: &mut System, layout: &Layout, rates: &[ExprId]) -> Vec<ExprId> {
+    let mut changes = vec![Graph::ZERO; layout.n_coordinates];
+    for scalar in layout.scalars() {
+        changes[scalar.place.x] = rates[scalar.place.u];
+    }
     for link in &layout.links {
-        for scalar in link.scalars.iter().filter(|scalar| scalar.place.x < layout.n_coordinates) {
-            rates[scalar.place.x] = graph.symbol(Symbol::Rate(scalar.place.u));
-        }
         if let Some(place) = link.position {
-            for k in 0..3 {
-                rates[place.x + k] = graph.symbol(Symbol::Rate(place.u + k));
-            }
+            changes[place.x..place.x + 3].copy_from_slice(&rates[place.u..place.u + 3]);
         }
         if let Some(place) = link.orientation {
-            let p = from_fn(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
-            let w = from_fn(|k| graph.symbol(Symbol::Rate(place.u + k)));
-            let p_rate = graph.euler_rate(&p, &w);
-            rates[place.x..place.x + 4].copy_from_slice(&p_rate);
+            let p = from_fn(|k| system.graph.symbol(Symbol::Coordinate(place.x + k)));
+            let p_rate = system.graph.euler_rate(&p, &from_fn(|k| rates[place.u + k]));
+            changes[place.x..place.x + 4].copy_from_slice(&p_rate);
         }
     }
-    rates
+    changes
 }
 
 /// Positions (r, p) of each moving_body, then velocities (s, w'), then turn references.
@@ -359,22 +388,31 @@ pub fn joint_start(system: &System, layout: &Layout, reduced: &[ExprId], start: 
         scalars.find(|scalar| scalar.place.x == x).map(|scalar| scalar.coordinate)
     };
     let assembled = |on: JointCoordinate| start.joints[on.joint].position[on.coordinate];
-    let turns = system.model.turn_references();
     let value = |symbol: Symbol| match symbol {
-        Symbol::Position { moving_body, k } => start.q[7 * moving_body + k],
-        Symbol::Euler { moving_body, k } => start.q[7 * moving_body + 3 + k],
-        Symbol::Velocity { moving_body, k } => start.v[6 * moving_body + k],
-        Symbol::Spin { moving_body, k } => start.v[6 * moving_body + 3 + k],
-        Symbol::Turn(turn) => assembled(turns[turn]),
         Symbol::Coordinate(x) => scalar_at(x).map_or(0.0, assembled),
-        Symbol::Parameter(index) => gyro_model::to_f64(&system.model.parameters[index].value),
-        Symbol::Input(index) => gyro_model::to_f64(&system.model.inputs[index].value),
-        Symbol::Table { table, order } => system.tables[table].value(0.0).get(order).copied().unwrap_or(0.0),
-        _ => 0.0,
+        symbol => at_start(system, start, symbol),
     };
     let mut values = evaluate(&system.graph, reduced, value);
     for (x, value) in values.iter_mut().enumerate().take(layout.n_coordinates) {
         *value = scalar_at(x).map_or(*value, assembled);
     }
     values
+}
+
+/// The value of a symbol of the maximal state, of parameters, inputs and tables, at the assembled start.
+pub fn at_start(system: &System, start: &Start, symbol: Symbol) -> f64 {
+    match symbol {
+        Symbol::Position { moving_body, k } => start.q[7 * moving_body + k],
+        Symbol::Euler { moving_body, k } => start.q[7 * moving_body + 3 + k],
+        Symbol::Velocity { moving_body, k } => start.v[6 * moving_body + k],
+        Symbol::Spin { moving_body, k } => start.v[6 * moving_body + 3 + k],
+        Symbol::Turn(turn) => {
+            let on = system.model.turn_references()[turn];
+            start.joints[on.joint].position[on.coordinate]
+        }
+        Symbol::Parameter(index) => gyro_model::to_f64(&system.model.parameters[index].value),
+        Symbol::Input(index) => gyro_model::to_f64(&system.model.inputs[index].value),
+        Symbol::Table { table, order } => system.tables[table].value(0.0).get(order).copied().unwrap_or(0.0),
+        _ => 0.0,
+    }
 }

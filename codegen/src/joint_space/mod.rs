@@ -8,6 +8,7 @@
 
 mod candidates;
 mod choose;
+mod closure;
 mod coordinates;
 mod determined;
 mod dynamics;
@@ -15,9 +16,11 @@ mod embedding;
 mod jacobian;
 mod layout;
 mod link_kinematics;
+mod loops;
 mod maps;
 mod motions;
 mod multipliers;
+mod whole_angles;
 
 pub use candidates::Candidates;
 pub use choose::JointSpace;

@@ -4,9 +4,10 @@
 
 use super::coordinates::Coordinates;
 use super::determined::{Relation, place_of};
-use super::layout::Layout;
+use super::layout::LinkCoordinates;
 use super::link_kinematics::LinkKinematics;
 use crate::derive::Textbook;
+use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
@@ -15,6 +16,7 @@ use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Vec3, transposed};
 use crate::simplify::normal_form::normal_form;
 use crate::solve::articulated_body::Arm;
+use crate::solve::loop_closure::gradient;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use crate::solve::multipliers::imbalance;
 use gyro_model::Attachment;
@@ -24,15 +26,58 @@ use std::array::from_fn;
 pub fn of(
     system: &mut System,
     Textbook { kinematics, dynamics }: &Textbook,
-    Coordinates { layout, links, unit, .. }: &Coordinates,
+    coordinates: &Coordinates,
 ) -> Vec<ExprId> {
+    let n_bodies = system.moving_bodies.len();
+    let lacking: Vec<_> =
+        (0..n_bodies).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
-    let mut lacking: Vec<_> =
-        (0..system.moving_bodies.len()).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
-    let mut left = vec![Graph::ZERO; layout.n_tree_rates()];
-    for (link, link_kinematics) in layout.links.iter().zip(links).rev() {
+    let joints: Vec<_> = (coordinates.layout.links.iter().zip(&coordinates.links))
+        .map(|(link, link_kinematics)| Held::of(system, kinematics, link, link_kinematics))
+        .collect();
+    let left = left_over(&mut system.graph, coordinates, &joints, lacking.clone());
+    beside_joints(system, coordinates, left, &mut lambda);
+    let closing = coordinates.closure.rows.iter().chain(&coordinates.closure.holding);
+    let mut lacking = lacking;
+    for &row in closing {
+        for (lacking, taken) in lacking.iter_mut().zip(gradient(kinematics, row)) {
+            let taken = taken.scaled(&mut system.graph, lambda[row]);
+            *lacking = lacking.plus(&mut system.graph, &taken);
+        }
+    }
+    for joint in joints.iter().rev() {
+        let forced = on_manifold(system, &joint.subspace.forced, joint, &coordinates.unit);
+        let graph = &mut system.graph;
+        let at_joint = joint.pass_on(graph, &mut lacking);
+        let turned = graph.mat_vec(&joint.link_kinematics.rotation, &at_joint.rho);
+        for (row, forced) in joint.subspace.rows.clone().zip(forced) {
+            let (force, torque) =
+                (graph.dot(&forced.t, &at_joint.t), forced.rotation.dot(graph, &at_joint.rho, &turned));
+            // M v̇ + Φᵀλ = f.
+            let supplied = graph.add(force, torque);
+            lambda[row] = graph.neg(supplied);
+        }
+    }
+    lambda
+}
+
+/// A body as its joint holds it.
+struct Held<'a> {
+    subspace: MotionSubspace,
+    link_kinematics: &'a LinkKinematics,
+    /// Rotations by joint coordinates.
+    rotations: Values,
+}
+
+impl<'a> Held<'a> {
+    fn of(
+        system: &mut System,
+        kinematics: &Kinematics,
+        link: &LinkCoordinates,
+        link_kinematics: &'a LinkKinematics,
+    ) -> Self {
         let subspace = MotionSubspace::of(system, kinematics, link.link);
-        let values = rotations(system, link.link.attachment, link_kinematics);
+        let rotations = rotations(system, link.link.attachment, link_kinematics);
         let subspace = MotionSubspace {
             point: link_kinematics.on_body,
             parent: subspace.parent.map(|parent| Parent {
@@ -42,73 +87,91 @@ pub fn of(
             }),
             ..subspace
         };
-        let forced = on_manifold(system, &subspace.forced, link_kinematics, &values, unit);
-        let graph = &mut system.graph;
-        let at_joint = Arm::on_body(graph, &subspace).wrench(graph, &lacking[subspace.moving_body]);
-        let turned = graph.mat_vec(&link_kinematics.rotation, &at_joint.rho);
-        for free in &link_kinematics.free {
-            let t = graph.mat_vec(&subspace.frame, &free.twist.t);
-            let taken = SpatialVector { t, rho: free.twist.rho }.dot(graph, &at_joint);
-            left[free.rate] = graph.neg(taken);
-        }
-        for (row, forced) in subspace.rows.clone().zip(forced) {
-            let (force, torque) =
-                (graph.dot(&forced.t, &at_joint.t), forced.rotation.dot(graph, &at_joint.rho, &turned));
-            // M v̇ + Φᵀλ = f.
-            let supplied = graph.add(force, torque);
-            lambda[row] = graph.neg(supplied);
-        }
-        if let Some(parent) = subspace.parent {
+        Self { subspace, link_kinematics, rotations }
+    }
+
+    /// What the body lacks at the joint point, carried on to its parent.
+    fn pass_on(&self, graph: &mut Graph, lacking: &mut [SpatialVector]) -> SpatialVector {
+        let at_joint = Arm::on_body(graph, &self.subspace).wrench(graph, &lacking[self.subspace.moving_body]);
+        if let Some(parent) = self.subspace.parent {
             let carried = parent.wrench(graph, &at_joint);
             lacking[parent.moving_body] = lacking[parent.moving_body].plus(graph, &carried);
         }
+        at_joint
     }
-    let of_closure = beside_joints(system, layout, &left);
-    for (row, value) in system.loop_closure_rows().into_iter().zip(of_closure) {
-        lambda[row] = value;
-    }
-    lambda
 }
 
-/// The multipliers of the rows that no joint of the tree owns, in their order, from the force that is left over along
-/// each rate of the tree: `left = Φ_xᵀ λ`.
-pub fn beside_joints(system: &mut System, layout: &Layout, left: &[ExprId]) -> Vec<ExprId> {
-    let mut left = left.to_vec();
-    let rows = system.model.rows();
-    let mut found = Vec::new();
+/// The force that is left over along each rate of the tree.
+fn left_over(
+    graph: &mut Graph,
+    coordinates: &Coordinates,
+    joints: &[Held<'_>],
+    mut lacking: Vec<SpatialVector>,
+) -> Vec<ExprId> {
+    let mut left = vec![Graph::ZERO; coordinates.layout.n_tree_rates()];
+    for joint in joints.iter().rev() {
+        let at_joint = joint.pass_on(graph, &mut lacking);
+        for free in &joint.link_kinematics.free {
+            let t = graph.mat_vec(&joint.subspace.frame, &free.twist.t);
+            let taken = SpatialVector { t, rho: free.twist.rho }.dot(graph, &at_joint);
+            left[free.rate] = graph.neg(taken);
+        }
+    }
+    left
+}
+
+/// The multipliers of the rows that no joint of the tree owns, from the force that is left over along each rate of the
+/// tree: `left = Φ_xᵀ λ`.
+fn beside_joints(system: &mut System, coordinates: &Coordinates, mut left: Vec<ExprId>, lambda: &mut [ExprId]) {
+    let Coordinates { layout, closure, loops, .. } = coordinates;
+    let n_closing = closure.rows.len();
+    let on_state = coordinates.by_rates.projected(&mut system.graph, &left);
+    let closing = loops.multipliers(&mut system.graph, closure, &on_state);
+    take(&mut system.graph, &mut left[layout.n_rates..], &closure.by_determined[..n_closing], &closing);
+    closure.rows.iter().zip(&closing).for_each(|(&row, &multiplier)| lambda[row] = multiplier);
+    if let Some(lu) = &coordinates.holding {
+        let is_held = |place: &usize| matches!(layout.determined[*place].by, Relation::Held(_));
+        let held = (0..layout.determined.len()).filter(is_held).map(|place| left[layout.n_rates + place]);
+        let holding = lu.solve(&mut system.graph, held.collect());
+        take(&mut system.graph, &mut left[layout.n_rates..], &closure.by_determined[n_closing..], &holding);
+        closure.holding.iter().zip(&holding).for_each(|(&row, &multiplier)| lambda[row] = multiplier);
+    }
     // What a coordinate determines comes after it.
     for known in layout.determined.iter().rev() {
+        let Some(owner) = known.by.owner() else { continue };
         let place = place_of(layout, known.coordinate).u;
         let ratio = match known.by {
-            Relation::Driver(_) => Graph::ZERO,
             Relation::Forward(coupler) | Relation::Backward(coupler) => {
                 system.number(&system.model.couplers[coupler].ratio)
             }
+            Relation::Driver(_) | Relation::Held(_) => Graph::ZERO,
         };
         let graph = &mut system.graph;
         // A coupler's row is `second − ratio · first − offset`.
-        let (lambda, on_source) = if matches!(known.by, Relation::Backward(_)) {
+        let (multiplier, on_source) = if matches!(known.by, Relation::Backward(_)) {
             let quotient = graph.div(left[place], ratio);
-            let lambda = graph.neg(quotient);
-            (lambda, lambda)
+            let multiplier = graph.neg(quotient);
+            (multiplier, multiplier)
         } else {
             let share = graph.mul(ratio, left[place]);
             (left[place], graph.neg(share))
         };
-        found.push((known.by.owner(), lambda));
+        lambda[system.model.rows_of(owner).start] = multiplier;
         if let Some(source) = known.by.source(system.model) {
             let at = place_of(layout, source).u;
             left[at] = system.graph.sub(left[at], on_source);
         }
     }
-    let of_row = |row: usize| found.iter().find(|(owner, _)| *owner == rows[row].owner);
-    let of_row = |row| of_row(row).expect("a row beside the joints determines a coordinate").1;
-    system.loop_closure_rows().into_iter().map(of_row).collect()
 }
 
-/// The symbols that stand for them.
-pub fn by_symbol(multipliers: &[ExprId]) -> impl Iterator<Item = (Symbol, ExprId)> {
-    multipliers.iter().enumerate().map(|(place, &value)| (Symbol::LoopMultiplier(place), value))
+/// Takes what rows supply from what is left over along some rates.
+fn take(graph: &mut Graph, left: &mut [ExprId], rows: &[Vec<ExprId>], multipliers: &[ExprId]) {
+    for (row, &multiplier) in rows.iter().zip(multipliers) {
+        for (left, &entry) in left.iter_mut().zip(row) {
+            let taken = graph.mul(entry, multiplier);
+            *left = graph.sub(*left, taken);
+        }
+    }
 }
 
 /// What a row forces upon its body.
@@ -135,17 +198,16 @@ impl Rotation {
 fn on_manifold(
     system: &mut System,
     forced: &[SpatialVector],
-    link_kinematics: &LinkKinematics,
-    values: &Values,
+    joint: &Held<'_>,
     unit: &[Vec<ExprId>],
 ) -> Vec<Forced> {
     let rotations: Vec<_> = forced.iter().flat_map(|twist| twist.rho).collect();
-    let on_body = system.expanded(values, &rotations);
+    let on_body = system.expanded(&joint.rotations, &rotations);
     let graph = &mut system.graph;
     let on_body = normal_form(graph, unit, &on_body);
     let (on_body, _) = on_body.as_chunks::<3>();
     let on_parent: Vec<_> =
-        on_body.iter().flat_map(|rho| graph.mat_vec(&link_kinematics.rotation, rho)).collect();
+        on_body.iter().flat_map(|rho| graph.mat_vec(&joint.link_kinematics.rotation, rho)).collect();
     let on_parent = normal_form(graph, unit, &on_parent);
     let (on_parent, _) = on_parent.as_chunks::<3>();
     let size = |graph: &Graph, rho: &Vec3| graph.reachable(rho).len();

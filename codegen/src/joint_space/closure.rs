@@ -1,0 +1,228 @@
+//! The joints that close loops, in joint coordinates: their rows, what the rates change them by, and how fast that
+//! itself changes.
+
+use super::determined::Relation;
+use super::embedding::Embedding;
+use super::layout::{Layout, Place};
+use super::whole_angles::WholeAngles;
+use crate::derive::system::System;
+use crate::expr::definitions::{Definitions, Expansion, Values};
+use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::symbol::Symbol;
+use crate::simplify::normal_form::{normal_form, vanishes};
+use gyro_model::RowOwner;
+use std::array::from_fn;
+
+/// `Φ_c(t, x) = 0`, in terms of joint coordinates and of the sines and cosines of angles.
+#[derive(Debug, Default)]
+pub struct Closure {
+    /// By their places among all rows.
+    pub rows: Vec<usize>,
+    pub phi: Vec<ExprId>,
+    /// J, by rows: a number for each rate of the state.
+    pub jacobian: Vec<Vec<ExprId>>,
+    /// `Φ̇ = J u − ν`.
+    pub residual: Vec<ExprId>,
+    /// `J u̇ = γ`.
+    pub gamma: Vec<ExprId>,
+    /// The rows that hold coordinates.
+    pub holding: Vec<usize>,
+    /// Of all rows, then of those that hold coordinates, the derivative by each determined rate, others being what they
+    /// are.
+    pub by_determined: Vec<Vec<ExprId>>,
+}
+
+/// The rows of joints that close loops, those that vanish left out.
+pub fn rows(
+    system: &mut System,
+    phi: &[ExprId],
+    (layout, angles): (&Layout, &WholeAngles),
+    unit: &[Vec<ExprId>],
+) -> Vec<(usize, ExprId)> {
+    let joints = system.joint_tree.loop_joints.clone();
+    let rows: Vec<_> =
+        joints.into_iter().flat_map(|joint| system.model.rows_of(RowOwner::Joint(joint))).collect();
+    let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
+    let phi = system.expanded(&angles.poses, &phi);
+    let phi = system.expanded(&all_held(layout), &phi);
+    let phi = normal_form(&mut system.graph, unit, &phi);
+    let graph = &mut system.graph;
+    rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
+}
+
+/// The values of all coordinates that loops hold.
+pub fn all_held(layout: &Layout) -> Values {
+    let scalars = layout.links.iter().flat_map(|link| &link.scalars);
+    let held = scalars.filter(|scalar| layout.is_held(scalar.place.x));
+    held.flat_map(|scalar| held_at_zero(scalar.place)).collect()
+}
+
+/// The place of the scalar coordinate that a row alone determines, which is zero.
+pub fn held_by(graph: &mut Graph, layout: &Layout, row: ExprId) -> Option<Place> {
+    let mut places = Vec::new();
+    for id in graph.reachable(&[row]) {
+        let Node::Symbol(symbol) = *graph.node(id) else { continue };
+        match symbol {
+            Symbol::Coordinate(x) | Symbol::Sine(x) | Symbol::Cosine(x) => places.push(x),
+            Symbol::Parameter(_) => {}
+            _ => return None,
+        }
+    }
+    places.dedup();
+    let [x] = places[..] else { return None };
+    let scalar = layout.scalars().find(|scalar| scalar.place.x == x)?;
+    let zero = Values::from_iter(held_at_zero(scalar.place));
+    let definitions = Definitions::default();
+    let at_zero = Expansion::with_values(&definitions, zero).of(graph, row);
+    (at_zero == Graph::ZERO).then_some(scalar.place)
+}
+
+/// What a coordinate that is zero gives.
+pub fn held_at_zero(place: Place) -> [(Symbol, ExprId); 5] {
+    let (x, u) = (place.x, place.u);
+    [
+        (Symbol::Coordinate(x), Graph::ZERO),
+        (Symbol::Rate(u), Graph::ZERO),
+        (Symbol::RateOfRate(u), Graph::ZERO),
+        (Symbol::Sine(x), Graph::ZERO),
+        (Symbol::Cosine(x), Graph::ONE),
+    ]
+}
+
+impl Closure {
+    /// `embedding` says how the determined rates follow those of the state.
+    pub fn derive(
+        system: &mut System,
+        rows: Vec<(usize, ExprId)>,
+        (layout, angles): (&Layout, &WholeAngles),
+        embedding: &Embedding,
+        unit: &[Vec<ExprId>],
+    ) -> Self {
+        let (rows, phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+        if system.joint_tree.loop_joints.is_empty() {
+            return Self::default();
+        }
+        let directions = Directions { layout, angles, embedding };
+        let graph = &mut system.graph;
+        let definitions = Definitions::default();
+        let mut jacobian = vec![Vec::new(); rows.len()];
+        for rate in 0..layout.n_rates {
+            let unit_rate = directions.of_rate(graph, rate);
+            let mut derivative = Derivative::new(&definitions, unit_rate);
+            for (row, &phi) in jacobian.iter_mut().zip(&phi) {
+                row.push(derivative.of(graph, phi));
+            }
+        }
+        let motion = directions.of_motion(graph);
+        let mut derivative = Derivative::new(&definitions, motion);
+        let residual: Vec<_> = phi.iter().map(|&phi| derivative.of(graph, phi)).collect();
+        let residual = normal_form(graph, unit, &residual);
+        let motion = directions.of_motion(graph);
+        let mut derivative = Derivative::new(&definitions, motion);
+        let gamma: Vec<_> = residual
+            .iter()
+            .map(|&row| {
+                let row = derivative.of(graph, row);
+                graph.neg(row)
+            })
+            .collect();
+        // Together: what they have in common is found.
+        let all = [&jacobian.concat()[..], &gamma].concat();
+        let all = normal_form(graph, unit, &all);
+        let (entries, gamma) = all.split_at(rows.len() * layout.n_rates);
+        let jacobian = entries.chunks(layout.n_rates.max(1)).map(<[_]>::to_vec).collect();
+        let closure = Self { rows, phi, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() };
+        closure
+    }
+
+    /// With the derivatives by the determined rates; `phi` are all rows, `angles` those of which none is held.
+    pub fn with_determined(
+        mut self,
+        system: &mut System,
+        phi: &[ExprId],
+        (layout, angles): (&Layout, &WholeAngles),
+    ) -> Self {
+        let held = layout.determined.iter().filter_map(|known| match known.by {
+            Relation::Held(row) => Some(row),
+            _ => None,
+        });
+        self.holding = held.collect();
+        let rows: Vec<_> = self.rows.iter().chain(&self.holding).map(|&row| phi[row]).collect();
+        let rows = system.expanded(&angles.poses, &rows);
+        self.by_determined = vec![Vec::new(); rows.len()];
+        let every = Embedding::identity(layout.n_tree_rates());
+        let directions = Directions { layout, angles, embedding: &every };
+        for rate in layout.n_rates..layout.n_tree_rates() {
+            let direction = directions.of_rate(&mut system.graph, rate);
+            let definitions = Definitions::default();
+            let mut derivative = Derivative::new(&definitions, direction);
+            let column: Vec<_> = rows.iter().map(|&row| derivative.of(&mut system.graph, row)).collect();
+            let column = system.expanded(&all_held(layout), &column);
+            self.by_determined.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
+        }
+        self
+    }
+}
+
+/// Along which the rows are differentiated.
+struct Directions<'a> {
+    layout: &'a Layout,
+    angles: &'a WholeAngles,
+    embedding: &'a Embedding,
+}
+
+impl Directions<'_> {
+    /// One rate of the state is one, all others are zero, and time stands still.
+    fn of_rate(&self, graph: &mut Graph, rate: usize) -> Direction {
+        let of = |u: usize| {
+            let columns = self.embedding.rates.get(u).map_or(&[][..], |motion| &motion.columns);
+            columns.iter().find(|(unknown, _)| *unknown == rate).map_or(Graph::ZERO, |column| column.1)
+        };
+        let sums: Vec<_> =
+            self.angles.places().map(|(_, sum)| sum.sum(graph, |_, place| of(place.u))).collect();
+        let first = self.layout.n_tree_rates();
+        self.along(graph, |_, u| if u < first { of(u) } else { sums[u - first] })
+    }
+
+    /// All rates as they are, and constant but for what time changes.
+    fn of_motion(&self, graph: &mut Graph) -> Direction {
+        let mut direction = self.along(graph, |graph, u| graph.symbol(Symbol::Rate(u)));
+        direction.insert(Symbol::Time, Graph::ONE);
+        let rates = &self.embedding.rates;
+        direction.extend(rates.iter().enumerate().map(|(u, motion)| (Symbol::Rate(u), motion.bias)));
+        for (place, sum) in self.angles.places() {
+            let bias = sum.sum(graph, |_, place| rates[place.u].bias);
+            direction.insert(Symbol::Rate(place.u), bias);
+        }
+        direction
+    }
+
+    fn along(&self, graph: &mut Graph, rate: impl Fn(&mut Graph, usize) -> ExprId) -> Direction {
+        let mut direction = Direction::new();
+        let scalars = self.layout.links.iter().flat_map(|link| &link.scalars);
+        let angles = scalars.clone().filter(|scalar| scalar.kind.is_angle()).map(|scalar| scalar.place);
+        for Place { x, u } in angles.chain(self.angles.places().map(|(place, _)| place)) {
+            let rate = rate(graph, u);
+            let [sine, cosine] = [Symbol::Sine(x), Symbol::Cosine(x)].map(|symbol| graph.symbol(symbol));
+            let (of_sine, of_cosine) = (graph.mul(cosine, rate), graph.mul(sine, rate));
+            direction.insert(Symbol::Sine(x), of_sine);
+            direction.insert(Symbol::Cosine(x), graph.neg(of_cosine));
+        }
+        for Place { x, u } in scalars.map(|scalar| scalar.place) {
+            direction.insert(Symbol::Coordinate(x), rate(graph, u));
+        }
+        for link in &self.layout.links {
+            if let Some(place) = link.position {
+                direction.extend((0..3).map(|k| (Symbol::Coordinate(place.x + k), rate(graph, place.u + k))));
+            }
+            if let Some(place) = link.orientation {
+                let p = from_fn(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
+                let w = from_fn(|k| rate(graph, place.u + k));
+                let rates = graph.euler_rate(&p, &w);
+                direction.extend((0..4).map(|k| (Symbol::Coordinate(place.x + k), rates[k])));
+            }
+        }
+        direction
+    }
+}
