@@ -115,8 +115,8 @@ mod violation;
 pub use apart::apart;
 pub use contract::{
     Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, Joint, JointBuffers,
-    JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo, System, Terms,
-    set_turn_references,
+    JointInfo, JointLayout, JointPlace, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo,
+    System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning, Uncorrected, Watched,

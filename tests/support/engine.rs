@@ -8,8 +8,8 @@ pub use erased::Choice;
 use erased::{Erased, ErasedDuals, ErasedTree, Numbers, Term};
 use gyro_runner::motion::{COLUMNS, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointSpace, Mechanism,
-    Partition, Real, Terms,
+    Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointLayout, JointSpace,
+    Mechanism, Partition, Real, Terms,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -262,13 +262,18 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     type Joints = Vec<T>;
     type Rates = Vec<T>;
     type Solution = Vec<T>;
+    type Closure = Vec<T>;
     type Jacobian = Vec<T>;
     type InputJacobian = Vec<T>;
+    fn joint_layout(&self) -> &JointLayout<'_> {
+        self.tree().joint_layout()
+    }
     fn joint_buffers(&self) -> JointBuffers<Self> {
         let tree = self.tree();
         JointBuffers {
             rates: tree.rates(),
             solution: Vec::new(),
+            closure: tree.closure_buffer(),
             jacobian: tree.jacobian_buffer(),
             input_jacobian: tree.input_jacobian_buffer(),
         }
@@ -305,6 +310,15 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     }
     fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
         self.tree().joint_input_jacobian(t, x, out);
+    }
+    fn loop_closure(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        self.tree().loop_closure(t, x, out);
+    }
+    fn close_positions(&self, t: T, x: &mut Vec<T>) {
+        self.tree().close_positions(t, x);
+    }
+    fn close_velocities(&self, t: T, x: &mut Vec<T>) {
+        self.tree().close_velocities(t, x);
     }
 }
 

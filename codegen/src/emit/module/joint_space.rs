@@ -5,6 +5,7 @@ use crate::emit::literals::float;
 use crate::emit::tokens::{Body, ident, index};
 use crate::joint_space::JointSpace;
 use crate::kernels::Kernel;
+use gyro_model::Attachment;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -50,19 +51,22 @@ impl ModuleWriter<'_> {
             Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
             None => [(); 2].map(|()| (quote! { () }, quote! { () })),
         };
-        let jacobian = self.joint_jacobian();
+        let (layout, jacobian) = (self.joint_layout(space), self.joint_jacobian());
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
                 type Solution = [T; #n_solution];
+                type Closure = [T; 0];
                 type Jacobian = #jacobian_type;
                 type InputJacobian = #input_jacobian_type;
 
+                #layout
                 fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
                     gyro_sim::JointBuffers {
                         rates: [T::constant(0.0); #n_rates],
                         solution: [T::constant(0.0); #n_solution],
+                        closure: [],
                         jacobian: #zero_jacobian,
                         input_jacobian: #zero_input_jacobian,
                     }
@@ -83,6 +87,42 @@ impl ModuleWriter<'_> {
                 #jacobian
             }
         })
+    }
+
+    /// What stands where in a joint state.
+    fn joint_layout(&self, space: &JointSpace) -> TokenStream {
+        let bodies = self.moving_bodies();
+        let mut places = Vec::new();
+        for link in &space.layout.links {
+            for scalar in &link.scalars {
+                let [joint, coordinate] = [scalar.coordinate.joint, scalar.coordinate.coordinate].map(index);
+                places.push((scalar.place.x, quote! { Scalar { joint: #joint, coordinate: #coordinate } }));
+            }
+            let Some(place) = link.orientation else { continue };
+            let place = match (link.link.attachment, link.position) {
+                (Attachment::Joint { joint, .. }, _) => {
+                    let joint = index(joint);
+                    (place.x, quote! { Orientation { joint: #joint } })
+                }
+                (_, position) => {
+                    let body = bodies.iter().position(|&body| body == link.link.body);
+                    let body = index(body.expect("it has coordinates"));
+                    (position.expect("nothing else holds it").x, quote! { Body { body: #body } })
+                }
+            };
+            places.push(place);
+        }
+        places.sort_by_key(|(x, _)| *x);
+        let places = places.into_iter().map(|(_, place)| quote! { gyro_sim::JointPlace::#place });
+        quote! {
+            fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
+                const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
+                    places: &[#(#places),*],
+                    closure_rows: &[],
+                };
+                &LAYOUT
+            }
+        }
     }
 
     /// Elements of ∂f/∂x.
