@@ -42,6 +42,9 @@ pub enum Kernel {
     CorrectedSolution,
     JointJacobian,
     JointInputJacobian,
+    LoopClosure,
+    ClosePositions,
+    CloseVelocities,
 }
 
 /// When a kernel exists, and where its expressions come from.
@@ -103,6 +106,9 @@ const TABLE: &[Row] = &[
     row(Kernel::CorrectedSolution, "corrected_solution", "both", Source::JointSpace(|s| s.solution.clone().into())),
     row(Kernel::JointJacobian, "joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", Source::Jacobian(|j| j.by_state_and_time.clone())),
     row(Kernel::JointInputJacobian, "joint_input_jacobian", "∂f/∂(inputs)", Source::Jacobian(|j| j.by_inputs.clone())),
+    row(Kernel::LoopClosure, "loop_closure", "Φ of the joints that close loops, in joint coordinates", Source::JointSpace(|s| s.closure.clone().into())),
+    row(Kernel::ClosePositions, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
+    row(Kernel::CloseVelocities, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
 ];
 
 const _: () = {

@@ -6,10 +6,10 @@ mod erased;
 pub use erased::Choice;
 
 use erased::{Erased, ErasedDuals, ErasedTree, Numbers, Term};
-use gyro_runner::motion::{COLUMNS, MotionBuilder, TreeWithJacobian, WithDuals};
+use gyro_runner::motion::{COLUMNS, Closing, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointSpace, Mechanism,
-    Partition, Real, Terms,
+    Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointLayout, JointSpace,
+    Mechanism, Partition, Real, Terms,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -132,6 +132,13 @@ impl<T: Real + 'static> Mechanism for Duals<T> {
     }
     fn set_input(&mut self, index: usize, value: Self::Scalar) -> bool {
         self.0.as_mut().is_some_and(|duals| duals.set_input(index, value))
+    }
+}
+
+/// For loops, which are linearised without an engine.
+impl<T: Real + 'static> Closing for Duals<T> {
+    fn close(&self, _: Self::Scalar, _: &mut [Self::Scalar]) {
+        unreachable!("{NOT_FORWARDED}")
     }
 }
 
@@ -262,13 +269,18 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     type Joints = Vec<T>;
     type Rates = Vec<T>;
     type Solution = Vec<T>;
+    type Closure = Vec<T>;
     type Jacobian = Vec<T>;
     type InputJacobian = Vec<T>;
+    fn joint_layout(&self) -> &JointLayout<'_> {
+        self.tree().joint_layout()
+    }
     fn joint_buffers(&self) -> JointBuffers<Self> {
         let tree = self.tree();
         JointBuffers {
             rates: tree.rates(),
             solution: Vec::new(),
+            closure: tree.closure_buffer(),
             jacobian: tree.jacobian_buffer(),
             input_jacobian: tree.input_jacobian_buffer(),
         }
@@ -305,6 +317,15 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     }
     fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
         self.tree().joint_input_jacobian(t, x, out);
+    }
+    fn loop_closure(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        self.tree().loop_closure(t, x, out);
+    }
+    fn close_positions(&self, t: T, x: &mut Vec<T>) {
+        self.tree().close_positions(t, x);
+    }
+    fn close_velocities(&self, t: T, x: &mut Vec<T>) {
+        self.tree().close_velocities(t, x);
     }
 }
 

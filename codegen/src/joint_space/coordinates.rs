@@ -127,6 +127,9 @@ impl Coordinates {
     /// Φ of the joints that close loops; x, one Newton step nearer to closed loops; u that keep loops closed.
     pub fn closing(&self, system: &mut System) -> [Vec<ExprId>; 3] {
         let Self { layout, closure, loops, .. } = self;
+        if closure.rows.is_empty() {
+            return Default::default();
+        }
         let graph = &mut system.graph;
         let opposite = |graph: &mut Graph, rows: &[ExprId]| -> Vec<_> {
             rows.iter().map(|&row| graph.neg(row)).collect()

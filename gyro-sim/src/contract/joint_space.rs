@@ -1,15 +1,23 @@
-//! Joint coordinates of trees.
+//! Joint coordinates.
 
 use super::{Equations, Storage};
 
-/// A tree in joint coordinates: the state-space form, with the maps to and from maximal coordinates, and shorter
-/// formulas for the accelerations of a maximal state that satisfies the constraints.
+/// A mechanism in joint coordinates, with the maps to and from maximal coordinates, and shorter formulas for the
+/// accelerations of a maximal state that satisfies the constraints.
 ///
-/// The joint state is `(x, u [, work])`. x has, joint after joint in the order of the model file, each scalar
+/// The joint state is `(x, u [, work])`: coordinates of a tree of joints that carries all bodies, and their rates, as
+/// [`JointSpace::joint_layout`] lists them. x has, joint after joint in the order of the model file, each scalar
 /// coordinate (an angle, rad, continuous over turns; a displacement, m), and then, of spherical joints and points on a
 /// line, the Euler parameters of the second body in the first's frame; after the joints, of each free body `r` and `p`.
 /// u has their rates: of Euler parameters the angular velocity relative to the first body in the second's frame, rad/s,
-/// of free bodies `s` and `w'`.
+/// of free bodies `s` and `w'`. Coordinates that couplers, drivers or loops determine as functions of others and of
+/// time are not among them.
+///
+/// # Loops
+/// Joints that are not of the tree close loops. What is left of their rows is the closure `Φ_c(t, x) = 0`. Of the
+/// closure's Jacobian J the columns are rates: `Φ̇_c = J u + ∂Φ_c/∂t`. u̇ is defined off the closure too, such that
+/// `Φ̈_c = 0`; what drifts off it all the same, [`CloseLoops`](crate::CloseLoops) brings back. Trees have no closure:
+/// joint coordinates satisfy all rows by construction.
 ///
 /// # The Jacobian
 /// Generated trees of up to eight rates have the derivatives of the joint form `ẋ = f(t, x)`, unless a third derivative
@@ -23,11 +31,15 @@ pub trait JointSpace: Equations {
     type Rates: Storage<Self::Scalar>;
     /// One scalar for each unknown of eq. (17).
     type Solution: Storage<Self::Scalar>;
+    /// One scalar for each row of the closure.
+    type Closure: Storage<Self::Scalar>;
     /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
     type Jacobian: Clone;
     /// ∂f/∂(inputs), n × m for m inputs, row by row.
     type InputJacobian: Clone;
 
+    /// Where the numbers of a joint state stand, and which rows are the closure.
+    fn joint_layout(&self) -> &JointLayout<'_>;
     /// Buffers, zeroed.
     fn joint_buffers(&self) -> JointBuffers<Self>;
     /// The assembled start, with all parameters at their defaults.
@@ -36,7 +48,7 @@ pub trait JointSpace: Equations {
     fn joint_accelerations(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::Rates);
     /// Writes the derivative of the joint state; [`Joint`](crate::Joint) integrates it.
     fn joint_derivative(&self, t: Self::Scalar, x: &Self::Joints, dx: &mut Self::Joints);
-    /// Writes the maximal state of a joint state; it satisfies the constraints.
+    /// Writes the maximal state of a joint state; it satisfies all constraints but the closure.
     fn to_maximal(&self, t: Self::Scalar, x: &Self::Joints, y: &mut Self::State);
     /// Writes the joint state of a maximal state; angles are those nearest to the previous contents of `x`.
     fn to_joints(&self, t: Self::Scalar, y: &Self::State, x: &mut Self::Joints);
@@ -67,6 +79,79 @@ pub trait JointSpace: Equations {
     }
     /// Writes ∂f/∂(inputs), row by row. Implemented where [`JointSpace::InputJacobian`] is not `()`.
     fn joint_input_jacobian(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::InputJacobian) {}
+    /// Writes Φ_c. Like the two functions below, it does nothing for trees.
+    fn loop_closure(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::Closure) {}
+    /// One Newton step of the positions towards `Φ_c = 0`: x changes by a δ with `J δ = −Φ_c` (Euler parameters, which
+    /// this does not normalise, by `½ Gᵀ δ`). u is left as it is.
+    fn close_positions(&self, _t: Self::Scalar, _x: &mut Self::Joints) {}
+    /// Changes u by a δ with `J δ = −Φ̇_c`, such that `Φ̇_c = 0` at these positions.
+    fn close_velocities(&self, _t: Self::Scalar, _x: &mut Self::Joints) {}
+}
+
+/// Where the numbers of a joint state stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JointLayout<'a> {
+    /// What stands in x and u, in order: each place follows the one before it.
+    pub places: &'a [JointPlace],
+    /// The rows of Φ that tree coordinates do not satisfy by themselves, by their index among the joint rows: those of
+    /// [`JointSpace::loop_closure`]. Empty for trees.
+    pub closure_rows: &'a [u16],
+}
+
+/// Some coordinates and their rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum JointPlace {
+    /// An angle or a displacement. One number in x, one in u.
+    Scalar {
+        /// Index of the joint.
+        joint: u16,
+        /// Which of the joint's coordinates it is.
+        coordinate: u16,
+    },
+    /// Euler parameters of the second body in the first's frame; angular velocity relative to the first in the
+    /// second's. Four numbers in x, three in u.
+    Orientation {
+        /// Index of the joint.
+        joint: u16,
+    },
+    /// (r, p) and (s, w') of a body that no joint carries. Seven numbers in x, six in u.
+    Body {
+        /// Index of the body.
+        body: u16,
+    },
+}
+
+impl JointLayout<'_> {
+    /// Length of x.
+    pub fn n_coordinates(&self) -> usize {
+        self.places.iter().map(|place| place.n_coordinates()).sum()
+    }
+
+    /// Length of u.
+    pub fn n_rates(&self) -> usize {
+        self.places.iter().map(|place| place.n_rates()).sum()
+    }
+}
+
+impl JointPlace {
+    /// How many numbers it has in x.
+    pub const fn n_coordinates(self) -> usize {
+        match self {
+            Self::Scalar { .. } => 1,
+            Self::Orientation { .. } => 4,
+            Self::Body { .. } => 7,
+        }
+    }
+
+    /// How many numbers it has in u.
+    pub const fn n_rates(self) -> usize {
+        match self {
+            Self::Scalar { .. } => 1,
+            Self::Orientation { .. } => 3,
+            Self::Body { .. } => 6,
+        }
+    }
 }
 
 /// What the functions of [`JointSpace`] write to.
@@ -76,6 +161,8 @@ pub struct JointBuffers<M: JointSpace + ?Sized> {
     pub rates: M::Rates,
     /// For [`JointSpace::corrected_solution`].
     pub solution: M::Solution,
+    /// For [`JointSpace::loop_closure`].
+    pub closure: M::Closure,
     /// For [`JointSpace::joint_jacobian`].
     pub jacobian: M::Jacobian,
     /// For [`JointSpace::joint_input_jacobian`].

@@ -12,7 +12,7 @@ mod partition;
 
 pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
 pub use equations::{Equations, Terms};
-pub use joint_space::{JointBuffers, JointSpace};
+pub use joint_space::{JointBuffers, JointLayout, JointPlace, JointSpace};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use ode::{Corrected, Exact, Joint, Ode, System};
 pub use partition::{Clearance, Partition};

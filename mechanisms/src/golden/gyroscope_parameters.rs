@@ -2958,12 +2958,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
     type Solution = [T; 33];
+    type Closure = [T; 0];
     type Jacobian = [T; 36];
     type InputJacobian = [T; 0];
+    fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
+        const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
+            places: &[
+                gyro_sim::JointPlace::Scalar {
+                    joint: 0,
+                    coordinate: 0,
+                },
+                gyro_sim::JointPlace::Scalar {
+                    joint: 1,
+                    coordinate: 0,
+                },
+                gyro_sim::JointPlace::Scalar {
+                    joint: 2,
+                    coordinate: 0,
+                },
+            ],
+            closure_rows: &[],
+        };
+        &LAYOUT
+    }
     fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
         gyro_sim::JointBuffers {
             rates: [T::constant(0.0); 3],
             solution: [T::constant(0.0); 33],
+            closure: [],
             jacobian: [T::constant(0.0); 36],
             input_jacobian: [T::constant(0.0); 0],
         }

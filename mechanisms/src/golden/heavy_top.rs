@@ -677,12 +677,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
     type Solution = [T; 9];
+    type Closure = [T; 0];
     type Jacobian = [T; 49];
     type InputJacobian = [T; 0];
+    fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
+        const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
+            places: &[
+                gyro_sim::JointPlace::Orientation {
+                    joint: 0,
+                },
+            ],
+            closure_rows: &[],
+        };
+        &LAYOUT
+    }
     fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
         gyro_sim::JointBuffers {
             rates: [T::constant(0.0); 3],
             solution: [T::constant(0.0); 9],
+            closure: [],
             jacobian: [T::constant(0.0); 49],
             input_jacobian: [T::constant(0.0); 0],
         }

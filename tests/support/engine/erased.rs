@@ -2,7 +2,8 @@
 
 use gyro_runner::motion::COLUMNS;
 use gyro_sim::{
-    Clearance, Description, Dual, Energy, Equations, Error, JointSpace, Mechanism, Partition, Real,
+    Clearance, Description, Dual, Energy, Equations, Error, JointLayout, JointSpace, Mechanism, Partition,
+    Real,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -63,6 +64,7 @@ pub(super) trait Erased<T>: Any + Debug {
 
 /// What solvers and linearisation ask of a tree.
 pub(super) trait ErasedTree<T> {
+    fn joint_layout(&self) -> &JointLayout<'_>;
     fn joint_start(&self) -> Vec<T>;
     fn rates(&self) -> Vec<T>;
     fn jacobian_buffer(&self) -> Vec<T>;
@@ -71,6 +73,10 @@ pub(super) trait ErasedTree<T> {
     fn joint_derivative(&self, t: T, x: &[T], dx: &mut [T]);
     fn joint_jacobian(&self, t: T, x: &[T], dfdx: &mut [T], dfdt: &mut [T]);
     fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]);
+    fn closure_buffer(&self) -> Vec<T>;
+    fn loop_closure(&self, t: T, x: &[T], out: &mut [T]);
+    fn close_positions(&self, t: T, x: &mut [T]);
+    fn close_velocities(&self, t: T, x: &mut [T]);
     fn to_maximal(&self, t: T, x: &[T], y: &mut [T]);
     fn to_joints(&self, t: T, y: &[T], x: &mut [T]);
 }
@@ -258,6 +264,22 @@ where
         let x = &filled(JointSpace::joint_start(self), x);
         let buffer = self.joint_buffers().input_jacobian;
         through(buffer, out, |out| JointSpace::joint_input_jacobian(self, t, x, out));
+    }
+    fn joint_layout(&self) -> &JointLayout<'_> {
+        JointSpace::joint_layout(self)
+    }
+    fn closure_buffer(&self) -> Vec<T> {
+        listed(self.joint_buffers().closure)
+    }
+    fn loop_closure(&self, t: T, x: &[T], out: &mut [T]) {
+        let x = &filled(JointSpace::joint_start(self), x);
+        through(self.joint_buffers().closure, out, |out| JointSpace::loop_closure(self, t, x, out));
+    }
+    fn close_positions(&self, t: T, x: &mut [T]) {
+        through(filled(JointSpace::joint_start(self), x), x, |x| JointSpace::close_positions(self, t, x));
+    }
+    fn close_velocities(&self, t: T, x: &mut [T]) {
+        through(filled(JointSpace::joint_start(self), x), x, |x| JointSpace::close_velocities(self, t, x));
     }
     fn to_maximal(&self, t: T, x: &[T], y: &mut [T]) {
         let x = &filled(JointSpace::joint_start(self), x);

@@ -5,6 +5,7 @@ use crate::emit::literals::float;
 use crate::emit::tokens::{Body, ident, index};
 use crate::joint_space::JointSpace;
 use crate::kernels::Kernel;
+use gyro_model::Attachment;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -50,19 +51,28 @@ impl ModuleWriter<'_> {
             Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
             None => [(); 2].map(|()| (quote! { () }, quote! { () })),
         };
-        let jacobian = self.joint_jacobian();
+        let (layout, jacobian) = (self.joint_layout(space), self.joint_jacobian());
+        let n_closure = index(space.closure_rows.len());
+        let zero_closure = match space.closure_rows.len() {
+            0 => quote! { [] },
+            _ => quote! { [T::constant(0.0); #n_closure] },
+        };
+        let closure = self.closure(space);
         Some(quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
                 type Solution = [T; #n_solution];
+                type Closure = [T; #n_closure];
                 type Jacobian = #jacobian_type;
                 type InputJacobian = #input_jacobian_type;
 
+                #layout
                 fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
                     gyro_sim::JointBuffers {
                         rates: [T::constant(0.0); #n_rates],
                         solution: [T::constant(0.0); #n_solution],
+                        closure: #zero_closure,
                         jacobian: #zero_jacobian,
                         input_jacobian: #zero_input_jacobian,
                     }
@@ -81,6 +91,83 @@ impl ModuleWriter<'_> {
                 #multipliers
                 #solution
                 #jacobian
+                #closure
+            }
+        })
+    }
+
+    /// What stands where in a joint state.
+    fn joint_layout(&self, space: &JointSpace) -> TokenStream {
+        let bodies = self.moving_bodies();
+        let mut places = Vec::new();
+        for link in &space.layout.links {
+            for scalar in link.scalars.iter().filter(|scalar| scalar.place.x < space.layout.n_coordinates) {
+                let [joint, coordinate] = [scalar.coordinate.joint, scalar.coordinate.coordinate].map(index);
+                places.push((scalar.place.x, quote! { Scalar { joint: #joint, coordinate: #coordinate } }));
+            }
+            let Some(place) = link.orientation else { continue };
+            let place = match (link.link.attachment, link.position) {
+                (Attachment::Joint { joint, .. }, _) => {
+                    let joint = index(joint);
+                    (place.x, quote! { Orientation { joint: #joint } })
+                }
+                (_, position) => {
+                    let body = bodies.iter().position(|&body| body == link.link.body);
+                    let body = index(body.expect("it has coordinates"));
+                    (position.expect("nothing else holds it").x, quote! { Body { body: #body } })
+                }
+            };
+            places.push(place);
+        }
+        places.sort_by_key(|(x, _)| *x);
+        let places = places.into_iter().map(|(_, place)| quote! { gyro_sim::JointPlace::#place });
+        let closure_rows = space.closure_rows.iter().copied().map(index);
+        quote! {
+            fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
+                const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
+                    places: &[#(#places),*],
+                    closure_rows: &[#(#closure_rows),*],
+                };
+                &LAYOUT
+            }
+        }
+    }
+
+    /// Nothing for trees.
+    fn closure(&self, space: &JointSpace) -> Option<TokenStream> {
+        if space.closure_rows.is_empty() {
+            return None;
+        }
+        let rows = self.of_joints(
+            Kernel::LoopClosure,
+            "Writes Φ of the joints that close loops",
+            &quote! { out: &mut Self::Closure },
+            |values| quote! { *out = [#(#values),*]; },
+        );
+        let what = "One Newton step of the joint coordinates towards closed loops";
+        let positions = self.closing(Kernel::ClosePositions, what, 0);
+        let what = "Changes the rates such that loops stay closed";
+        let velocities = self.closing(Kernel::CloseVelocities, what, space.layout.n_coordinates);
+        Some(quote! {
+            #rows
+            #positions
+            #velocities
+        })
+    }
+
+    /// A function that overwrites part of the joint state; what keeps its value is not stored again.
+    fn closing(&self, kernel: Kernel, what: &str, first: usize) -> TokenStream {
+        let changed = (first..).zip(self.kernels.roots(kernel));
+        let changed = changed.filter(|&(place, &root)| !self.is_element_of("x", root, place));
+        let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
+        let name = ident(kernel.name());
+        self.function(what, &roots, |body, t, _| {
+            let (statements, values) = (&body.statements, &body.values);
+            quote! {
+                fn #name(&self, #t: T, x: &mut Self::Joints) {
+                    #statements
+                    #(x[#places] = #values;)*
+                }
             }
         })
     }

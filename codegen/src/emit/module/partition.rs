@@ -19,7 +19,8 @@ impl ModuleWriter<'_> {
         let [n_constraints, n_positions] =
             [self.equations.phi.len(), 7 * self.equations.n_moving_bodies()].map(index);
         // Trees have no singular poses.
-        let clearance = self.equations.joint_space.is_none().then(|| {
+        let is_tree = self.equations.joint_space.as_ref().is_some_and(|space| space.closure_rows.is_empty());
+        let clearance = (!is_tree).then(|| {
             quote! {
                 fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
                     ::core::option::Option::Some(
@@ -123,7 +124,7 @@ impl ModuleWriter<'_> {
     /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
     fn solve(&self, name: &str, what: &str, roots: &[ExprId], first: usize) -> TokenStream {
         let name = ident(name);
-        let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element(root, place));
+        let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element_of("y", root, place));
         let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
         let y = ident(if places.is_empty() { "_y" } else { "y" });
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
@@ -141,10 +142,10 @@ impl ModuleWriter<'_> {
         })
     }
 
-    /// Whether an expression is just an element of the state.
-    fn is_element(&self, root: ExprId, place: usize) -> bool {
+    /// Whether an expression is just an element of a buffer.
+    pub fn is_element_of(&self, buffer: &str, root: ExprId, place: usize) -> bool {
         let Node::Symbol(symbol) = self.equations.graph.node(root) else { return false };
-        let place = index(place);
-        self.variable(*symbol).1.is_some_and(|source| source.to_string() == quote! { y[#place] }.to_string())
+        let (buffer, place) = (ident(buffer), index(place));
+        self.variable(*symbol).1.is_some_and(|source| source.to_string() == quote! { #buffer[#place] }.to_string())
     }
 }
