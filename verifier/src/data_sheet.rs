@@ -9,7 +9,7 @@ use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
 use std::collections::BTreeSet;
 
 /// Of each function its name on the data sheet, what it computes, and how its documentation begins.
-const WORDS: [(&str, &str, &str); 28] = [
+const WORDS: [(&str, &str, &str); 31] = [
     ("set_up", "what depends on parameters alone", "What depends on parameters alone"),
     ("phi", "Φ", "Writes Φ"),
     ("phi_q", "Φ_q, non-zeros in (r, p)", "Writes the non-zeros of Φ_q"),
@@ -60,6 +60,17 @@ const WORDS: [(&str, &str, &str); 28] = [
     ),
     ("corrected_multipliers", "λ at such a state and these accelerations", "Writes λ"),
     ("corrected_solution", "both", "Writes (s̈, ẇ') and λ at a state that satisfies the constraints"),
+    (
+        "loop_closure",
+        "Φ of the joints that close loops, in joint coordinates",
+        "Writes Φ of the joints that close loops",
+    ),
+    (
+        "close_positions",
+        "one Newton step of joint coordinates that closes loops",
+        "One Newton step of the joint coordinates towards closed loops",
+    ),
+    ("close_velocities", "rates that keep loops closed", "Changes the rates such that loops stay closed"),
     ("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
     ("joint_input_jacobian", "∂f/∂(inputs)", "Writes ∂f/∂(inputs)"),
 ];
@@ -170,7 +181,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
     }
     let has_jacobian = module.programs.contains_key("joint_jacobian");
     let missing = [
-        (module.joints.is_none(), "joint coordinates (for trees without couplers and drivers)"),
+        (module.joints.is_none(), "joint coordinates"),
         (
             module.joints.is_some() && !has_jacobian,
             "the Jacobian of the joint form (too many rates, or third derivatives of tables)",
@@ -203,10 +214,13 @@ fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<
     };
     let zeros = program.results.iter().filter(|&&id| is_zero(id)).count();
     let (n, work) = (model.coordinate_bodies().len(), usize::from(model.has_work()));
-    let n_rates = module.joints.as_ref().map_or(0, |joints| joints.n_rates);
+    let (n_coordinates, n_rates) =
+        module.joints.as_ref().map_or((0, 0), |joints| (joints.n_coordinates, joints.n_rates));
     let (name, results) = match name {
         "newton_step" => (name, 7 * n),
         "solve_velocities" => (name, 6 * n),
+        "close_positions" => (name, n_coordinates),
+        "close_velocities" => (name, n_rates),
         "derivative" => (name, program.results.len() - 6 * n),
         "joint_derivative" => (name, program.results.len() - n_rates),
         // Work goes through.

@@ -2,6 +2,7 @@
 
 mod block;
 mod expression;
+mod layout;
 mod matching;
 mod plain;
 mod skeleton;
@@ -43,7 +44,7 @@ pub struct Module {
     pub start: Vec<f64>,
     /// The start in joint coordinates; nothing of mechanisms that have none.
     pub joint_start: Vec<f64>,
-    /// Where joint coordinates stand, if the mechanism is an open tree.
+    /// Where joint coordinates stand, if the module has them.
     pub joints: Option<JointLayout>,
     /// Number of accelerations and multipliers that `accelerations` gives.
     pub n_accelerations: usize,
@@ -59,7 +60,7 @@ pub struct Module {
 pub(crate) const SET_UP: &str = "set_up";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 29] = [
+const FUNCTIONS: [(&str, Form); 32] = [
     (SET_UP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -87,6 +88,9 @@ const FUNCTIONS: [(&str, Form); 29] = [
     ("corrected_accelerations", Form::Filling),
     ("corrected_multipliers", Form::Filling),
     ("corrected_solution", Form::Filling),
+    ("loop_closure", Form::Filling),
+    ("close_positions", Form::JointStores),
+    ("close_velocities", Form::JointStores),
     ("joint_jacobian", Form::Jacobian),
     ("joint_input_jacobian", Form::Filling),
 ];
@@ -172,7 +176,7 @@ impl Module {
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let jacobian = text.contains("fn joint_jacobian(");
         let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };
-        let joints = JointLayout::of(model);
+        let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
         let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
@@ -218,7 +222,7 @@ impl Module {
             hole.arguments.iter().for_each(|argument| reader.argument(argument));
             let targets = TARGETS.iter().filter(|(function, _)| *function == name);
             targets.for_each(|(_, target)| reader.target(target));
-            if form == Form::Joints {
+            if matches!(form, Form::Joints | Form::JointStores) {
                 reader.buffer();
             }
             reader.body(&block(hole)?, form).map(|program| Some((name.to_owned(), program)))
@@ -295,6 +299,7 @@ impl Module {
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
             ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
             ("corrected_solution", if self.joints.is_some() { 6 * n + rows } else { 0 }),
+            ("loop_closure", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
         ];

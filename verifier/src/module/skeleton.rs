@@ -11,12 +11,12 @@ mod pieces;
 pub use mechanism::{n_readings, n_state};
 pub use partition::Choice;
 
-use crate::joints::JointLayout;
+use crate::joints::{Freedom, JointLayout};
 use definition::{constants, definition};
 use gyro_model::{Model, Spline};
 use mechanism::mechanism;
 use partition::partition;
-use pieces::{buffers, fillings, lines};
+use pieces::{buffers, fillings, lines, list};
 
 /// What the description leaves to choice.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +104,7 @@ fn multipliers(name: &str, accelerations: &str) -> String {
 
 fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bool) -> String {
     let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
-    let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
+    let (n_state, n_rates, n_closure) = (joints.n_state(), joints.n_rates, joints.closure_rows.len());
     let sizes = [n_state * n_state, n_state * model.inputs.len()];
     let [(jacobian, no_slopes), (input_jacobian, no_input_slopes)] = if has_jacobian {
         sizes.map(|n| (format!("[T; {n}]"), format!("[T::constant(0.0); {n}]")))
@@ -120,17 +120,24 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             HOLE_joint_input_jacobian
         }";
     let jacobians = if has_jacobian { jacobians } else { "" };
+    let (layout, closure) = (layout(joints), if n_closure > 0 { CLOSURE } else { "" });
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
             type Joints = [T; {n_state}];
             type Rates = [T; {n_rates}];
             type Solution = [T; {n_solution}];
+            type Closure = [T; {n_closure}];
             type Jacobian = {jacobian};
             type InputJacobian = {input_jacobian};
+            fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {{
+                const JOINT_LAYOUT: gyro_sim::JointLayout<'static> = {layout};
+                &JOINT_LAYOUT
+            }}
             fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {{
                 gyro_sim::JointBuffers {{
                     rates: [T::constant(0.0); {n_rates}],
                     solution: [T::constant(0.0); {n_solution}],
+                    closure: [T::constant(0.0); {n_closure}],
                     jacobian: {no_slopes},
                     input_jacobian: {no_input_slopes}
                 }}
@@ -145,6 +152,7 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             {}
             {}
             {}
+            {closure}
             {jacobians}
         }}",
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
@@ -152,3 +160,26 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
         fillings(&[("corrected_solution", "Solution")]),
     )
 }
+
+/// Where the numbers of the joint state stand.
+fn layout(joints: &JointLayout) -> String {
+    let places = list(joints.places.iter().map(|place| {
+        let what = match place.of {
+            Freedom::Scalar(on) => {
+                format!("Scalar {{ joint: {}, coordinate: {} }}", on.joint, on.coordinate)
+            }
+            Freedom::Orientation { joint } => format!("Orientation {{ joint: {joint} }}"),
+            Freedom::Body { moving_body } => format!("Body {{ body: {moving_body} }}"),
+        };
+        format!("gyro_sim::JointPlace::{what}")
+    }));
+    let closure_rows = list(&joints.closure_rows);
+    format!("gyro_sim::JointLayout {{ places: &[{places}], closure_rows: &[{closure_rows}] }}")
+}
+
+/// What mechanisms have whose joint coordinates do not satisfy all rows by themselves.
+const CLOSURE: &str = "fn loop_closure(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Closure) {
+        HOLE_loop_closure
+    }
+    fn close_positions(&self, ANY_t: T, x: &mut Self::Joints) { HOLE_close_positions }
+    fn close_velocities(&self, ANY_t: T, x: &mut Self::Joints) { HOLE_close_velocities }";

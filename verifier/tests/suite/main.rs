@@ -8,6 +8,7 @@ mod compiled;
 mod dependencies;
 mod faults;
 mod holes;
+mod layouts;
 mod mutants;
 mod near_numbers;
 mod needless;
