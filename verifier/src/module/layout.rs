@@ -69,10 +69,9 @@ fn freedom(written: &Expr) -> Result<Freedom, Refusal> {
     let number = |name: &str| integer(field(place, name)?);
     let kind = place.path.segments.last().map(|segment| segment.ident.to_string());
     Ok(match kind.as_deref() {
-        Some("Scalar") => Freedom::Scalar(JointCoordinate {
-            joint: number("joint")?,
-            coordinate: number("coordinate")?,
-        }),
+        Some("Scalar") => {
+            Freedom::Scalar(JointCoordinate { joint: number("joint")?, coordinate: number("coordinate")? })
+        }
         Some("Orientation") => Freedom::Orientation { joint: number("joint")? },
         Some("Body") => Freedom::Body { moving_body: number("body")? },
         _ => return Err(refused(written)),

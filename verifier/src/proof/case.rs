@@ -1,9 +1,9 @@
 //! A module and the textbook on one tape.
 
-use crate::atoms::Elementary;
-use crate::field::{Field, Precision, Real};
 use super::point;
 use super::statements::DRAWS;
+use crate::atoms::Elementary;
+use crate::field::{Field, Precision, Real};
 use crate::joints::JointLayout;
 use crate::module::{Module, n_state};
 use crate::point::Point;

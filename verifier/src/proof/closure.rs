@@ -104,11 +104,7 @@ fn directions<'a>(
 }
 
 /// How fast Φ_c changes if x does at these rates.
-fn rates_of_closure<'a>(
-    case: &Case<'a>,
-    layout: &JointLayout,
-    of_x: &[Term<'a>],
-) -> Option<Vec<Term<'a>>> {
+fn rates_of_closure<'a>(case: &Case<'a>, layout: &JointLayout, of_x: &[Term<'a>]) -> Option<Vec<Term<'a>>> {
     let rate = |source| match source {
         Source::Joint(k) => of_x.get(k).copied(),
         _ => None,

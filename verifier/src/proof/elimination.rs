@@ -67,9 +67,8 @@ impl<F: Field> Eliminated<F> {
         let mut vector = vec![F::zero(context); self.n_columns];
         for Row { pivot, entries } in self.rows.iter().rev() {
             let (matrix, combination) = entries.split_at(self.n_columns);
-            let sum = |a: &[F], b: &[F]| {
-                a.iter().zip(b).fold(F::zero(context), |sum, (a, b)| sum.add(&a.mul(b)))
-            };
+            let sum =
+                |a: &[F], b: &[F]| a.iter().zip(b).fold(F::zero(context), |sum, (a, b)| sum.add(&a.mul(b)));
             vector[*pivot] = sum(combination, numbers).sub(&sum(matrix, &vector));
         }
         vector

@@ -80,7 +80,10 @@ impl<'c, 'a> Motion<'c, 'a> {
             return Some([taken, Vec::new()]);
         }
         let Some(jacobian) = Eliminated::of(case, &closure::jacobian(case, self.layout)?) else {
-            return Some([vec![Term::one(context)], vec![Term::zero(context); self.layout.closure_rows.len()]]);
+            return Some([
+                vec![Term::one(context)],
+                vec![Term::zero(context); self.layout.closure_rows.len()],
+            ]);
         };
         let (rest, factors) = jacobian.split(context, &taken);
         let lambda = factors.iter().map(Field::neg).collect();

@@ -5,7 +5,7 @@ use gyro_model::{JointKind, Model, Support};
 use gyro_verifier::{Depth, Report, verify};
 
 /// The places of a tree's joint state: joints in the order of the model file, then free bodies.
-fn places(model: &Model) -> Vec<String> {
+pub fn places(model: &Model) -> Vec<String> {
     let mut places = Vec::new();
     for (joint, kind) in model.joints.iter().map(|joint| joint.kind).enumerate() {
         let scalars = 0..kind.coordinates().len();
@@ -23,7 +23,7 @@ fn places(model: &Model) -> Vec<String> {
 }
 
 /// A tree's module that says where its joint coordinates stand, with what follows its places.
-fn stated(page: &Page, places: &[String], closure_rows: &str) -> String {
+pub fn stated(page: &Page, places: &[String], closure_rows: &str) -> String {
     let layout = format!(
         "fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {{
             const JOINT_LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {{
@@ -46,7 +46,10 @@ fn stated(page: &Page, places: &[String], closure_rows: &str) -> String {
     }
     let code = code.replacen("type Jacobian", "type Closure = [T; 0]; type Jacobian", 1);
     let (head, buffers) = code.split_once("JointBuffers {").expect("buffers");
-    format!("{head}JointBuffers {{{}", buffers.replacen("jacobian:", "closure: [T::constant(0.0); 0], jacobian:", 1))
+    format!(
+        "{head}JointBuffers {{{}",
+        buffers.replacen("jacobian:", "closure: [T::constant(0.0); 0], jacobian:", 1)
+    )
 }
 
 fn report(page: &Page, places: &[String], closure_rows: &str) -> Report {

@@ -9,6 +9,7 @@ mod dependencies;
 mod faults;
 mod holes;
 mod layouts;
+mod loops;
 mod mutants;
 mod near_numbers;
 mod needless;
