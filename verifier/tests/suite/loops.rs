@@ -72,18 +72,18 @@ const SHAKEN: &str = "driven = { translation = [{ polynomial = [0, 1, 0.5] }, \
      { sinusoid = { amplitude = 0.25, angular_frequency = 2, phase_deg = 0 } }, 0], rotations = [] }";
 
 /// A program in the making, of a module that gets it.
-struct Composed<'m> {
+pub struct Composed<'m> {
     program: Program,
     constants: &'m mut Vec<Constant>,
 }
 
 impl Composed<'_> {
-    fn push(&mut self, node: Node) -> Id {
+    pub fn push(&mut self, node: Node) -> Id {
         self.program.push(node, 1)
     }
 
     /// What a function of a module gives; some of what it reads is replaced.
-    fn call(&mut self, module: &Module, function: &str, read: impl Fn(Source) -> Option<Id>) -> Vec<Id> {
+    pub fn call(&mut self, module: &Module, function: &str, read: impl Fn(Source) -> Option<Id>) -> Vec<Id> {
         let offset = self.constants.len();
         self.constants.extend(module.constants.values.iter().cloned());
         let (mut places, program) = (Vec::<Id>::new(), &module.programs[function]);
@@ -117,8 +117,16 @@ impl Composed<'_> {
         rates.iter().map(|rate| sum(self, rate)).collect()
     }
 
-    fn joint(&mut self, k: usize) -> Id {
+    pub fn joint(&mut self, k: usize) -> Id {
         self.push(Node::Read(Source::Joint(k)))
+    }
+
+    /// A number of decimals.
+    pub fn number(&mut self, decimals: &str) -> Id {
+        let factor = gyro_model::parse_decimal(decimals).expect("a decimal");
+        let literal = decimals.parse().expect("a decimal");
+        self.constants.push(Constant { literal, factor, radicand: None });
+        self.push(Node::Constant(self.constants.len() - 1))
     }
 
     fn sum(&mut self, ids: impl IntoIterator<Item = Id>) -> Id {
@@ -126,7 +134,7 @@ impl Composed<'_> {
     }
 }
 
-fn of_state(state: &[Id]) -> impl Fn(Source) -> Option<Id> {
+pub fn of_state(state: &[Id]) -> impl Fn(Source) -> Option<Id> {
     |source| if let Source::State(k) = source { Some(state[k]) } else { None }
 }
 
@@ -200,7 +208,7 @@ impl Loop {
     }
 }
 
-fn add(
+pub fn add(
     module: &mut Module,
     function: &str,
     places: Vec<usize>,

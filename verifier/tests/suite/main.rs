@@ -15,4 +15,5 @@ mod near_numbers;
 mod needless;
 mod proofs;
 mod rounding;
+mod substituted;
 mod verdicts;
