@@ -12,7 +12,7 @@ use syn::spanned::Spanned;
 use syn::{Expr, ExprStruct};
 
 /// Name of the constant.
-const NAME: &str = "JOINT_LAYOUT";
+const NAME: &str = "LAYOUT";
 
 /// The layout in a module's text; `None` of one without joint coordinates.
 ///
@@ -27,7 +27,7 @@ pub fn read(model: &Model, text: &TokenStream) -> Result<Option<JointLayout>, Re
     layout.map(Some).map_err(|words| Refusal::at(written.span(), format!("of the joint state: {words}")))
 }
 
-/// The tokens between `const JOINT_LAYOUT: type =` and the semicolon.
+/// The tokens between `const LAYOUT: type =` and the semicolon.
 fn value(text: TokenStream) -> Option<TokenStream> {
     let is_mark = |token: &TokenTree, mark| matches!(token, TokenTree::Punct(p) if p.as_char() == mark);
     let mut tokens = text.into_iter();

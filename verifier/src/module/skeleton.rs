@@ -120,7 +120,11 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             HOLE_joint_input_jacobian
         }";
     let jacobians = if has_jacobian { jacobians } else { "" };
-    let (layout, closure) = (layout(joints), if n_closure > 0 { CLOSURE } else { "" });
+    let layout = layout(joints);
+    let (closure, no_closure) = match n_closure {
+        0 => ("", "[]".to_owned()),
+        n => (CLOSURE, format!("[T::constant(0.0); {n}]")),
+    };
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
             type Joints = [T; {n_state}];
@@ -130,14 +134,14 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             type Jacobian = {jacobian};
             type InputJacobian = {input_jacobian};
             fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {{
-                const JOINT_LAYOUT: gyro_sim::JointLayout<'static> = {layout};
-                &JOINT_LAYOUT
+                const LAYOUT: gyro_sim::JointLayout<'static> = {layout};
+                &LAYOUT
             }}
             fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {{
                 gyro_sim::JointBuffers {{
                     rates: [T::constant(0.0); {n_rates}],
                     solution: [T::constant(0.0); {n_solution}],
-                    closure: [T::constant(0.0); {n_closure}],
+                    closure: {no_closure},
                     jacobian: {no_slopes},
                     input_jacobian: {no_input_slopes}
                 }}
@@ -152,8 +156,8 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             {}
             {}
             {}
-            {closure}
             {jacobians}
+            {closure}
         }}",
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
         multipliers("corrected_multipliers", "Velocities"),

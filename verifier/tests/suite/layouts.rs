@@ -26,17 +26,17 @@ pub fn places(model: &Model) -> Vec<String> {
 pub fn stated(page: &Page, places: &[String], closure_rows: &str) -> String {
     let layout = format!(
         "fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {{
-            const JOINT_LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {{
+            const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {{
                 places: &[{}],
                 closure_rows: &[{closure_rows}],
             }};
-            &JOINT_LAYOUT
+            &LAYOUT
         }}",
         places.join(", ")
     );
     let code = match page.code.split_once("fn joint_layout") {
         Some((head, rest)) => {
-            let (_, rest) = rest.split_once("&JOINT_LAYOUT\n    }\n").expect("the end of the function");
+            let (_, rest) = rest.split_once("&LAYOUT\n    }\n").expect("the end of the function");
             format!("{head}{layout}\n{rest}")
         }
         None => page.code.replacen("fn joint_buffers", &format!("{layout} fn joint_buffers"), 1),
@@ -46,10 +46,7 @@ pub fn stated(page: &Page, places: &[String], closure_rows: &str) -> String {
     }
     let code = code.replacen("type Jacobian", "type Closure = [T; 0]; type Jacobian", 1);
     let (head, buffers) = code.split_once("JointBuffers {").expect("buffers");
-    format!(
-        "{head}JointBuffers {{{}",
-        buffers.replacen("jacobian:", "closure: [T::constant(0.0); 0], jacobian:", 1)
-    )
+    format!("{head}JointBuffers {{{}", buffers.replacen("jacobian:", "closure: [], jacobian:", 1))
 }
 
 fn report(page: &Page, places: &[String], closure_rows: &str) -> Report {
