@@ -175,7 +175,8 @@ impl Module {
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let jacobian = text.contains("fn joint_jacobian(");
-        let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };
+        let corrected_derivative = text.contains("fn corrected_derivative(");
+        let has = Has { choice, jacobian, corrected_derivative, set_up: text.contains("fn set_up(") };
         let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
         let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
@@ -270,7 +271,7 @@ impl Module {
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
         let (n_joints, n_rates) =
             self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
-        let n_corrected = if self.joints.is_some() { n_state(model) } else { 0 };
+        let n_maximal = if self.joints.is_some() { n_state(model) } else { 0 };
         let has = |function: &str| self.programs.contains_key(function);
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
@@ -290,10 +291,10 @@ impl Module {
             ("project", 6 * n),
             ("outputs", outputs),
             ("chart_vectors", 4 * number("charts")),
-            ("corrected_derivative", n_corrected),
+            ("corrected_derivative", if has("corrected_derivative") { n_state(model) } else { 0 }),
             ("joint_accelerations", n_rates),
             ("joint_derivative", n_joints),
-            ("to_maximal", n_corrected),
+            ("to_maximal", n_maximal),
             ("to_joints", n_joints),
             ("joint_accelerations_at", n_rates),
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),

@@ -25,6 +25,8 @@ pub struct Has {
     pub choice: Choice,
     /// The Jacobian of the joint form.
     pub jacobian: bool,
+    /// A derivative that goes on from other accelerations, at states that satisfy the constraints.
+    pub corrected_derivative: bool,
     /// A function of what depends on parameters alone.
     pub set_up: bool,
 }
@@ -40,7 +42,7 @@ pub fn text(
     [
         constants(tables),
         definition(model, type_name, has.set_up),
-        mechanism(model, type_name, joints.is_some()),
+        mechanism(model, type_name, joints.is_some() && has.corrected_derivative),
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),

@@ -111,10 +111,10 @@ impl Claim {
                 JointDerivative,
                 JointAccelerationsAt,
                 CorrectedAccelerations,
-                CorrectedDerivative,
-                CorrectedMultipliers,
-                CorrectedSolution,
             ]);
+            claims
+                .extend(module.programs.contains_key("corrected_derivative").then_some(CorrectedDerivative));
+            claims.extend([CorrectedMultipliers, CorrectedSolution]);
         }
         let gives =
             |function: &str| module.programs.get(function).is_some_and(|program| !program.results.is_empty());
