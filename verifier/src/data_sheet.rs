@@ -63,6 +63,9 @@ const WORDS: &[Words] = &[
     },
     says("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
     writes("joint_input_jacobian", "∂f/∂(inputs)"),
+    says("loop_closure", "Φ of the joints that close loops, in joint coordinates", "Writes Φ of the joints that close loops"),
+    says("close_positions", "one Newton step of joint coordinates that closes loops", "One Newton step of the joint coordinates towards closed loops"),
+    says("close_velocities", "rates that keep loops closed", "Changes the rates such that loops stay closed"),
 ];
 
 /// What a module says of the function of this name; `None` if no module has such a function.
@@ -175,7 +178,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
     }
     let has_jacobian = module.programs.contains_key("joint_jacobian");
     let missing = [
-        (module.joints.is_none(), "joint coordinates (for trees without couplers and drivers)"),
+        (module.joints.is_none(), "joint coordinates"),
         (
             module.joints.is_some() && !has_jacobian,
             "the Jacobian of the joint form (too many rates, or third derivatives of tables)",
@@ -208,10 +211,13 @@ fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<
     };
     let zeros = program.results.iter().filter(|&&id| is_zero(id)).count();
     let (n, work) = (model.coordinate_bodies().len(), usize::from(model.has_work()));
-    let n_rates = module.joints.as_ref().map_or(0, |joints| joints.n_rates);
+    let (n_coordinates, n_rates) =
+        module.joints.as_ref().map_or((0, 0), |joints| (joints.n_coordinates, joints.n_rates));
     let (name, results) = match name {
         "newton_step" => (name, 7 * n),
         "solve_velocities" => (name, 6 * n),
+        "close_positions" => (name, n_coordinates),
+        "close_velocities" => (name, n_rates),
         "derivative" => (name, program.results.len() - 6 * n),
         "joint_derivative" => (name, program.results.len() - n_rates),
         // Work goes through.

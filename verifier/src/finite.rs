@@ -26,6 +26,10 @@ const REGULAR: f64 = 1e-9;
 /// A divisor of the textbook's is zero but for rounding if it is smaller: a length, m, or the square of a sine.
 const VANISHING: f64 = 1e-12;
 
+/// Functions of a joint state that solve for what the rows of loops demand.
+const IN_JOINTS: [&str; 5] =
+    ["joint_accelerations", "close_positions", "close_velocities", "joint_jacobian", "joint_input_jacobian"];
+
 /// All that is not finite and should be.
 pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
     let textbook = Dense::new(model);
@@ -35,8 +39,8 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
         let broken = places.iter().find_map(|place| {
             let line = not_finite(model, module, &constants, function, place)?;
             let must_be_finite = match function.as_str() {
-                // Every joint state has its maximal state.
-                "to_maximal" => true,
+                // Every joint state has its maximal state, and is as far from closed loops as that is.
+                "to_maximal" | "loop_closure" => true,
                 function => textbook.is_regular(model, &place.state, is_solve(module, function)),
             };
             must_be_finite.then_some((place.what, line))
@@ -51,8 +55,12 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
 /// Whether a function solves for what the rows ask. Which unknown is taken from which row is decided for joints that
 /// are whole: where axes are torn a right angle apart, the solve of a tree divides by their cosine, though eq. (17) has
 /// a solution there. What is made of accelerations may have multipliers in it, which are solved for too: reactions, and
-/// the power of what is driven.
+/// the power of what is driven. In joint coordinates only loops have rows to solve for.
 fn is_solve(module: &Module, function: &str) -> bool {
+    let has_loops = module.joints.as_ref().is_some_and(|joints| !joints.closure_rows.is_empty());
+    if has_loops && (IN_JOINTS.contains(&function) || is_on_constraints(function)) {
+        return true;
+    }
     let is_acceleration = |node: &Node| matches!(node, Node::Read(Source::Acceleration(_)));
     ["accelerations", "project", "newton_step", "solve_velocities"].contains(&function)
         || module.programs[function].nodes.iter().any(is_acceleration)

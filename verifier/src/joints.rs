@@ -1,12 +1,14 @@
-//! Where the joint coordinates of a tree stand.
+//! Where the joint coordinates of a mechanism stand.
 
-use gyro_model::{JointCoordinate, JointKind, Model, RowOwner, Support, Tree};
+use gyro_model::{JointCoordinate, JointKind, Model};
 
-/// The joint state of a tree, `(x, u [, work])`: joints in the order of the model file, then free bodies.
+/// The joint state `(x, u [, work])` of a mechanism, as its module says; what is proved is proved of this layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointLayout {
     /// What stands where.
     pub places: Vec<Place>,
+    /// The rows of Φ that the coordinates do not satisfy by themselves, by their places among [`Model::rows`].
+    pub closure_rows: Vec<usize>,
     /// Length of x.
     pub n_coordinates: usize,
     /// Length of u.
@@ -37,7 +39,7 @@ pub enum Freedom {
         /// Index into [`Model::joints`].
         joint: usize,
     },
-    /// (r, p) and (s, w') of a free body.
+    /// (r, p) and (s, w') of a body that no joint carries.
     Body {
         /// Its place in [`Model::coordinate_bodies`].
         moving_body: usize,
@@ -45,6 +47,18 @@ pub enum Freedom {
 }
 
 impl Freedom {
+    /// Whether a model has it.
+    fn exists(self, model: &Model) -> bool {
+        let kind = |joint: usize| model.joints.get(joint).map(|joint| joint.kind);
+        match self {
+            Self::Scalar(on) => kind(on.joint).is_some_and(|kind| on.coordinate < kind.coordinates().len()),
+            Self::Orientation { joint } => {
+                matches!(kind(joint), Some(JointKind::Spherical | JointKind::PointOnLine))
+            }
+            Self::Body { moving_body } => moving_body < model.coordinate_bodies().len(),
+        }
+    }
+
     /// Number of coordinates, number of rates.
     pub fn sizes(self) -> (usize, usize) {
         match self {
@@ -65,28 +79,34 @@ impl Freedom {
 }
 
 impl JointLayout {
-    /// Of a mechanism whose joints hold every body by one path, with no row beside the joints' own; `None` of others.
-    pub fn of(model: &Model) -> Option<Self> {
-        let closes = |owner: &RowOwner| matches!(owner, RowOwner::Coupler(_) | RowOwner::Driver(_));
-        if !Tree::of(model).is_open() || model.rows().iter().any(|row| closes(&row.owner)) {
-            return None;
-        }
-        let mut layout =
-            Self { places: Vec::new(), n_coordinates: 0, n_rates: 0, has_work: model.has_work() };
-        for (joint, kind) in model.joints.iter().map(|joint| joint.kind).enumerate() {
-            for coordinate in 0..kind.coordinates().len() {
-                layout.add(Freedom::Scalar(JointCoordinate { joint, coordinate }));
+    /// What a module says of a model's joint state.
+    ///
+    /// # Errors
+    /// What is wrong with it whatever the formulas are: a coordinate that does not exist or stands there twice, rows
+    /// that do not exist or are out of order, as many rates and rows as cannot be.
+    pub fn new(model: &Model, freedoms: &[Freedom], closure_rows: Vec<usize>) -> Result<Self, String> {
+        let (n, n_rows) = (model.coordinate_bodies().len(), model.rows().len());
+        let (places, has_work) = (Vec::new(), model.has_work());
+        let mut layout = Self { places, closure_rows, n_coordinates: 0, n_rates: 0, has_work };
+        for freedom in freedoms {
+            if !freedom.exists(model) {
+                return Err(format!("{freedom:?} is no coordinate of the model"));
             }
-            if matches!(kind, JointKind::Spherical | JointKind::PointOnLine) {
-                layout.add(Freedom::Orientation { joint });
+            if layout.places.iter().any(|place| place.of == *freedom) {
+                return Err(format!("{freedom:?} is there twice"));
             }
+            layout.add(*freedom);
         }
-        for (moving_body, body) in model.coordinate_bodies().into_iter().enumerate() {
-            if model.bodies[body].support == Support::Free {
-                layout.add(Freedom::Body { moving_body });
-            }
+        let rows = &layout.closure_rows;
+        if !rows.is_sorted_by(|a, b| a < b) || rows.last().is_some_and(|&last| last >= n_rows) {
+            return Err(format!("{rows:?} are no rows of the model in their order"));
         }
-        Some(layout)
+        let satisfied = n_rows - rows.len();
+        if satisfied + layout.n_rates != 6 * n {
+            let n_rates = layout.n_rates;
+            return Err(format!("{n_rates} rates and {satisfied} rows that they satisfy are not {}", 6 * n));
+        }
+        Ok(layout)
     }
 
     fn add(&mut self, of: Freedom) {

@@ -2,6 +2,7 @@
 
 mod block;
 mod expression;
+mod layout;
 mod matching;
 mod plain;
 mod skeleton;
@@ -43,7 +44,7 @@ pub struct Module {
     pub start: Vec<f64>,
     /// The start in joint coordinates; nothing of mechanisms that have none.
     pub joint_start: Vec<f64>,
-    /// Where joint coordinates stand, if the mechanism is an open tree.
+    /// Where joint coordinates stand, if the module has them.
     pub joints: Option<JointLayout>,
     /// Number of accelerations and multipliers that `accelerations` gives.
     pub n_accelerations: usize,
@@ -59,7 +60,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 29] = [
+const FUNCTIONS: [(&str, Form); 32] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -87,6 +88,9 @@ const FUNCTIONS: [(&str, Form); 29] = [
     ("corrected_accelerations", Form::Filling),
     ("corrected_multipliers", Form::Filling),
     ("corrected_solution", Form::Filling),
+    ("loop_closure", Form::Filling),
+    ("close_positions", Form::JointStores),
+    ("close_velocities", Form::JointStores),
     ("joint_jacobian", Form::Jacobian),
     ("joint_input_jacobian", Form::Filling),
 ];
@@ -171,8 +175,9 @@ impl Module {
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let jacobian = text.contains("fn joint_jacobian(");
-        let has = Has { choice, jacobian, parameter_setup: text.contains("fn parameter_setup(") };
-        let joints = JointLayout::of(model);
+        let corrected_derivative = text.contains("fn corrected_derivative(");
+        let has = Has { choice, jacobian, corrected_derivative, parameter_setup: text.contains("fn parameter_setup(") };
+        let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
         let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
@@ -218,7 +223,7 @@ impl Module {
             hole.arguments.iter().for_each(|argument| reader.argument(argument));
             let targets = TARGETS.iter().filter(|(function, _)| *function == name);
             targets.for_each(|(_, target)| reader.target(target));
-            if form == Form::Joints {
+            if matches!(form, Form::Joints | Form::JointStores) {
                 reader.buffer();
             }
             reader.body(&block(hole)?, form).map(|program| Some((name.to_owned(), program)))
@@ -268,7 +273,7 @@ impl Module {
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
         let (n_joints, n_rates) =
             self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
-        let n_corrected = if self.joints.is_some() { n_state(model) } else { 0 };
+        let n_maximal = if self.joints.is_some() { n_state(model) } else { 0 };
         let has = |function: &str| self.programs.contains_key(function);
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
@@ -288,15 +293,16 @@ impl Module {
             ("project", 6 * n),
             ("outputs", outputs),
             ("chart_vectors", 4 * number("charts")),
-            ("corrected_derivative", n_corrected),
+            ("corrected_derivative", if has("corrected_derivative") { n_state(model) } else { 0 }),
             ("joint_accelerations", n_rates),
             ("joint_derivative", n_joints),
-            ("to_maximal", n_corrected),
+            ("to_maximal", n_maximal),
             ("to_joints", n_joints),
             ("joint_accelerations_at", n_rates),
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
             ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
             ("corrected_solution", if self.joints.is_some() { 6 * n + rows } else { 0 }),
+            ("loop_closure", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
         ];

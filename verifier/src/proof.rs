@@ -2,8 +2,10 @@
 
 mod case;
 mod claim;
+mod closure;
 mod compare;
 mod decide;
+mod elimination;
 mod joints;
 mod partition;
 mod point;

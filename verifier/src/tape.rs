@@ -83,6 +83,20 @@ impl Tape {
         self.formulas.into_inner()
     }
 
+    /// What some of it is at a point; `None` of what divides by zero.
+    pub fn evaluate<F: Field>(
+        &self,
+        terms: &[Term<'_>],
+        context: F::Context,
+        atoms: &dyn Atoms<F>,
+        read: &dyn Fn(Source) -> F,
+    ) -> Vec<Option<F>> {
+        let formulas = self.formulas.borrow();
+        let needed = formulas.reach(terms.iter().map(|term| term.id));
+        let values = formulas.evaluate(&needed, context, atoms, read);
+        terms.iter().map(|term| values[term.id].clone()).collect()
+    }
+
     /// Something given.
     pub fn read(&self, source: Source) -> Term<'_> {
         self.note(Node::Read(source), 0)

@@ -60,6 +60,8 @@ pub enum Form {
     Stores,
     /// `x[0] = ...; x[1] = ...;`, all of them.
     Joints,
+    /// `x[3] = ...;`, those that change.
+    JointStores,
     /// `*dfdx = [...]; *dfdt = [...];`
     Jacobian,
 }
@@ -325,6 +327,9 @@ impl<'a> Reader<'a> {
             }
             (Form::Stores, stores) => {
                 stores.iter().try_for_each(|store| self.store(store, "y", Known::State))
+            }
+            (Form::JointStores, stores) => {
+                stores.iter().try_for_each(|store| self.store(store, "x", Known::Joints))
             }
             (Form::Joints, stores) => {
                 stores.iter().try_for_each(|store| self.store(store, "x", Known::Joints))?;

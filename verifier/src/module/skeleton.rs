@@ -11,12 +11,12 @@ mod pieces;
 pub use mechanism::{n_readings, n_state};
 pub use partition::Choice;
 
-use crate::joints::JointLayout;
+use crate::joints::{Freedom, JointLayout};
 use definition::{constants, definition};
 use gyro_model::{Model, Spline};
 use mechanism::mechanism;
 use partition::partition;
-use pieces::{buffers, fillings, lines};
+use pieces::{buffers, fillings, lines, list};
 
 /// What the description leaves to choice.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +25,8 @@ pub struct Has {
     pub choice: Choice,
     /// The Jacobian of the joint form.
     pub jacobian: bool,
+    /// A derivative that goes on from other accelerations, at states that satisfy the constraints.
+    pub corrected_derivative: bool,
     /// A function of what depends on parameters alone.
     pub parameter_setup: bool,
 }
@@ -40,7 +42,7 @@ pub fn text(
     [
         constants(tables),
         definition(model, type_name, has.parameter_setup),
-        mechanism(model, type_name, joints.is_some()),
+        mechanism(model, type_name, joints.is_some() && has.corrected_derivative),
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
@@ -104,7 +106,7 @@ fn multipliers(name: &str, accelerations: &str) -> String {
 
 fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bool) -> String {
     let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
-    let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
+    let (n_state, n_rates, n_closure) = (joints.n_state(), joints.n_rates, joints.closure_rows.len());
     let sizes = [n_state * n_state, n_state * model.inputs.len()];
     let [(jacobian, no_slopes), (input_jacobian, no_input_slopes)] = if has_jacobian {
         sizes.map(|n| (format!("[T; {n}]"), format!("[T::constant(0.0); {n}]")))
@@ -120,17 +122,28 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             HOLE_joint_input_jacobian
         }";
     let jacobians = if has_jacobian { jacobians } else { "" };
+    let layout = layout(joints);
+    let (closure, no_closure) = match n_closure {
+        0 => ("", "[]".to_owned()),
+        n => (CLOSURE, format!("[T::constant(0.0); {n}]")),
+    };
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
             type Joints = [T; {n_state}];
             type Rates = [T; {n_rates}];
             type Solution = [T; {n_solution}];
+            type Closure = [T; {n_closure}];
             type Jacobian = {jacobian};
             type InputJacobian = {input_jacobian};
+            fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {{
+                const LAYOUT: gyro_sim::JointLayout<'static> = {layout};
+                &LAYOUT
+            }}
             fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {{
                 gyro_sim::JointBuffers {{
                     rates: [T::constant(0.0); {n_rates}],
                     solution: [T::constant(0.0); {n_solution}],
+                    closure: {no_closure},
                     jacobian: {no_slopes},
                     input_jacobian: {no_input_slopes}
                 }}
@@ -146,9 +159,33 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             {}
             {}
             {jacobians}
+            {closure}
         }}",
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
         multipliers("corrected_multipliers", "Velocities"),
         fillings(&[("corrected_solution", "Solution")]),
     )
 }
+
+/// Where the numbers of the joint state stand.
+fn layout(joints: &JointLayout) -> String {
+    let places = list(joints.places.iter().map(|place| {
+        let what = match place.of {
+            Freedom::Scalar(on) => {
+                format!("Scalar {{ joint: {}, coordinate: {} }}", on.joint, on.coordinate)
+            }
+            Freedom::Orientation { joint } => format!("Orientation {{ joint: {joint} }}"),
+            Freedom::Body { moving_body } => format!("Body {{ body: {moving_body} }}"),
+        };
+        format!("gyro_sim::JointPlace::{what}")
+    }));
+    let closure_rows = list(&joints.closure_rows);
+    format!("gyro_sim::JointLayout {{ places: &[{places}], closure_rows: &[{closure_rows}] }}")
+}
+
+/// What mechanisms have whose joint coordinates do not satisfy all rows by themselves.
+const CLOSURE: &str = "fn loop_closure(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Closure) {
+        HOLE_loop_closure
+    }
+    fn close_positions(&self, ANY_t: T, x: &mut Self::Joints) { HOLE_close_positions }
+    fn close_velocities(&self, ANY_t: T, x: &mut Self::Joints) { HOLE_close_velocities }";

@@ -1,11 +1,15 @@
 //! A module and the textbook on one tape.
 
-use crate::field::Field;
+use super::point;
+use super::statements::DRAWS;
+use crate::atoms::Elementary;
+use crate::field::{Field, Precision, Real};
 use crate::joints::JointLayout;
 use crate::module::{Module, n_state};
 use crate::point::Point;
 use crate::program::Source;
 use crate::rates::rates;
+use crate::seed::Seed;
 use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Evaluation, Textbook};
 use gyro_model::Model;
@@ -156,6 +160,29 @@ impl<'a> Case<'a> {
             moved.state[place] = value;
         }
         moved
+    }
+}
+
+impl<'a> Case<'a> {
+    /// A joint state changed by a function that closes loops.
+    pub fn closed(&self, function: &str, joints: &[Term<'a>]) -> Vec<Term<'a>> {
+        let values = self.results(function, Arguments { joints, ..self.given(&self.point) });
+        let mut closed = joints.to_vec();
+        for (&place, value) in self.module.programs[function].places.iter().zip(values) {
+            closed[place] = value;
+        }
+        closed
+    }
+
+    /// What some formulas are at a point at which all of them exist; `None` if there is none.
+    pub fn numbers<'c>(&self, precision: &'c Precision, terms: &[Term<'a>]) -> Option<Vec<Real<'c>>> {
+        (0..DRAWS).find_map(|number| {
+            let mut random = Seed::FIXED.numbers(number);
+            let draw = point::real(self.model, self.module, precision, &mut random)?;
+            let numbers = self.tape.evaluate(terms, precision, &Elementary, &|source| draw.read(source));
+            let exists = |number: &Option<Real<'c>>| number.as_ref().is_some_and(|x| !x.to_f64().is_nan());
+            numbers.iter().all(exists).then(|| numbers.into_iter().flatten().collect())
+        })
     }
 }
 

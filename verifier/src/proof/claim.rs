@@ -4,7 +4,7 @@ use super::case::{Arguments, Case};
 use super::partition::dot;
 use super::point::stretched;
 use super::residuals::{differences, position_rates};
-use super::{joints, partition};
+use super::{closure, joints, partition};
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
@@ -66,6 +66,12 @@ pub enum Claim {
     CorrectedMultipliers,
     /// `corrected_solution` is both.
     CorrectedSolution,
+    /// `loop_closure` gives the rows that the joint coordinates do not satisfy by themselves.
+    LoopClosure,
+    /// `close_positions` is one Newton step for these.
+    ClosePositions,
+    /// `close_velocities` changes the rates such that these stay as they are.
+    CloseVelocities,
     /// `joint_jacobian` is ∂f/∂x and ∂f/∂t of `joint_derivative`.
     JointJacobian,
     /// `joint_input_jacobian` is ∂f/∂(inputs).
@@ -94,7 +100,10 @@ impl Claim {
         if module.n_charts.is_some() {
             claims.extend([ChartVectors, NewtonStep, SolveVelocities]);
         }
-        if module.joints.is_some() {
+        if let Some(joints) = &module.joints {
+            if !joints.closure_rows.is_empty() {
+                claims.extend([LoopClosure, ClosePositions, CloseVelocities]);
+            }
             claims.extend([
                 ToMaximal,
                 ToJoints,
@@ -102,10 +111,10 @@ impl Claim {
                 JointDerivative,
                 JointAccelerationsAt,
                 CorrectedAccelerations,
-                CorrectedDerivative,
-                CorrectedMultipliers,
-                CorrectedSolution,
             ]);
+            claims
+                .extend(module.programs.contains_key("corrected_derivative").then_some(CorrectedDerivative));
+            claims.extend([CorrectedMultipliers, CorrectedSolution]);
         }
         let gives =
             |function: &str| module.programs.get(function).is_some_and(|program| !program.results.is_empty());
@@ -142,6 +151,9 @@ impl Claim {
             Self::CorrectedDerivative => &["corrected_derivative"],
             Self::CorrectedMultipliers => &["corrected_multipliers"],
             Self::CorrectedSolution => &["corrected_solution"],
+            Self::LoopClosure => &["loop_closure"],
+            Self::ClosePositions => &["close_positions"],
+            Self::CloseVelocities => &["close_velocities"],
             Self::JointJacobian => &["joint_jacobian"],
             Self::JointInputJacobian => &["joint_input_jacobian"],
         }
@@ -166,15 +178,18 @@ impl Claim {
             Self::ChartVectors => "parallel to Gᵀh' or to p",
             Self::NewtonStep => "linearised rows vanish, the special parameter is kept",
             Self::SolveVelocities => "velocity rows vanish, independent rates are kept",
-            Self::ToMaximal => "all rows vanish, its joint coordinates are x and u",
+            Self::ToMaximal => "rows vanish but those of loops, its joint coordinates are x and u",
             Self::ToJoints => "x and u of any state, angles by their derivative",
-            Self::JointAccelerations => "with B = ∂v/∂u: Bᵀ(M v̇ − f) = 0, Φ_π' v̇ = γ",
+            Self::JointAccelerations => "with B = ∂v/∂u: Bᵀ(M v̇ − f) = −Jᵀλ, Φ_π' v̇ = γ",
             Self::JointDerivative => "along it the state moves by eqs. (14), (16); power",
             Self::JointAccelerationsAt => "the proved u̇ at the state of (x, u)",
             Self::CorrectedAccelerations => "the proved v̇ at the state of (x, u)",
             Self::CorrectedDerivative => "eqs. (14), (16), v̇, turns; power at the state of (x, u)",
             Self::CorrectedMultipliers => "M v̇ + Φ_π'ᵀ λ = f at the state of (x, u)",
             Self::CorrectedSolution => "the proved v̇ there, M v̇ + Φ_π'ᵀ λ = f",
+            Self::LoopClosure => "Φ of what closes loops at the state of (x, u)",
+            Self::ClosePositions => "J δ = −Φ of what closes loops, x changes by T δ",
+            Self::CloseVelocities => "loops stay closed; rates at which they do are kept",
             Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
             Self::JointInputJacobian => "`joint_derivative` by dual numbers, of the inputs",
         }
@@ -198,6 +213,9 @@ impl Claim {
             | Self::CorrectedAccelerations
             | Self::CorrectedMultipliers
             | Self::CorrectedSolution => "eq. (17) on the constraints",
+            Self::LoopClosure | Self::ClosePositions | Self::CloseVelocities => {
+                "Newton's step for closed loops"
+            }
             Self::JointJacobian | Self::JointInputJacobian => {
                 "the derivatives of `joint_derivative` by dual numbers"
             }
@@ -257,6 +275,9 @@ impl Claim {
             Self::CorrectedDerivative => joints::corrected_derivative(case),
             Self::CorrectedMultipliers => joints::corrected_multipliers(case),
             Self::CorrectedSolution => joints::corrected_solution(case),
+            Self::LoopClosure => closure::loop_closure(case),
+            Self::ClosePositions => closure::close_positions(case),
+            Self::CloseVelocities => closure::close_velocities(case),
             Self::JointJacobian => joints::jacobian(case),
             Self::JointInputJacobian => joints::input_jacobian(case),
         }

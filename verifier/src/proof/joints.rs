@@ -1,13 +1,17 @@
-//! What a tree's functions in joint coordinates must satisfy.
+//! What a mechanism's functions in joint coordinates must satisfy.
 //!
-//! `y = to_maximal(x)` satisfies all rows, and the joint coordinates that the textbook reads off it are those that it
-//! was made of. So its velocities v depend on u through a matrix `B = ∂v/∂u` of full column rank, whose columns are all
-//! that the velocity rows leave free. Then the accelerations of eq. (17) are the v̇ that satisfy the rows' second
-//! derivative, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the constraints only what does no work on any free motion, `Bᵀ (M
-//! v̇ − f) = 0`: multipliers are not needed. B and v̇ are derivatives of `to_maximal` by dual numbers.
+//! `y = to_maximal(x)` satisfies all rows but those that close loops, and the joint coordinates that the textbook reads
+//! off it are those that it was made of. So its velocities v depend on u through a matrix `B = ∂v/∂u` of full column
+//! rank, whose columns are all that these velocity rows leave free. Then the accelerations of eq. (17) are the v̇ that
+//! satisfy the second derivative of all rows, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the constraints only what does no
+//! work on any free motion that keeps loops closed: with J of [`closure`], whose rows must be independent,
+//! `Bᵀ (M v̇ − f) = −Jᵀ λ` for some λ, the multipliers of the rows that close loops. Of trees, which have no such rows,
+//! nothing is left and multipliers are not needed. B and v̇ are derivatives of `to_maximal` by dual numbers.
 
 use super::case::{Arguments, Case};
-use super::partition::turning;
+use super::closure::{self, of_closure};
+use super::elimination::Eliminated;
+use super::partition::{dot, turning};
 use super::residuals::{differences, position_rates};
 use crate::atoms::Atoms;
 use crate::field::Field;
@@ -16,6 +20,7 @@ use crate::point::Point;
 use crate::program::Source;
 use crate::tape::{Term, Written};
 use crate::textbook::Reading;
+use gyro_model::{JointCoordinate, RowOwner};
 
 /// A joint state on its way.
 struct Motion<'c, 'a> {
@@ -64,14 +69,48 @@ impl<'c, 'a> Motion<'c, 'a> {
         (0..self.layout.n_rates).map(column).collect()
     }
 
-    /// Power of non-conservative forces and drivers; nothing where the state carries no work.
+    /// What is left of `Bᵀ (M v̇ − f) = −Jᵀ λ` for any λ, with numbers that exist where the rows of J are independent;
+    /// and λ.
+    fn balance(&self) -> Option<[Vec<Term<'a>>; 2]> {
+        let (case, context) = (self.case, self.case.point.context);
+        let imbalance = case.textbook(&self.maximal)?.imbalance(self.accelerations())?;
+        let along = |column: Vec<Term<'a>>| dot(&column, &imbalance);
+        let taken: Vec<_> = self.free_motions()?.into_iter().map(along).collect();
+        if self.layout.closure_rows.is_empty() {
+            return Some([taken, Vec::new()]);
+        }
+        let Some(jacobian) = Eliminated::of(case, &closure::jacobian(case, self.layout)?) else {
+            return Some([
+                vec![Term::one(context)],
+                vec![Term::zero(context); self.layout.closure_rows.len()],
+            ]);
+        };
+        let (rest, factors) = jacobian.split(context, &taken);
+        let lambda = factors.iter().map(Field::neg).collect();
+        Some([[rest, jacobian.independence(context)].concat(), lambda])
+    }
+
+    /// Power of non-conservative forces and drivers; nothing where the state carries no work. Drivers do `−λᵀν`, where
+    /// eq. (18) is not satisfied for the rows that close loops.
     fn power(&self) -> Option<Vec<Term<'a>>> {
         if !self.layout.has_work {
             return Some(Vec::new());
         }
-        let [forces, drivers] = self.case.textbook(&self.maximal)?.power_of_motion(self.accelerations())?;
-        Some(vec![forces.add(&drivers)])
+        let textbook = self.case.textbook(&self.maximal)?;
+        let [forces, drivers] = textbook.power_of_motion(self.accelerations())?;
+        let mut power = forces.add(&drivers);
+        if !self.layout.closure_rows.is_empty() {
+            let [_, lambda] = self.balance()?;
+            power = power.add(&dot(&lambda, &of_closure(self.layout, &textbook.velocity_residual()?)));
+        }
+        Some(vec![power])
     }
+}
+
+/// The maximal state of a joint state.
+pub(super) fn maximal<'a>(case: &Case<'a>, joints: &[Term<'a>]) -> Point<Term<'a>> {
+    let state = case.results("to_maximal", Arguments { joints, ..case.given(&case.point) });
+    Point { state, ..case.point.clone() }
 }
 
 /// The velocities of a state.
@@ -80,13 +119,18 @@ fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
     &state[7 * n..13 * n]
 }
 
-/// The state satisfies the constraints; the coordinates, rates, turn references and work that it has are those given.
+/// The state satisfies the constraints but those that close loops; the coordinates, rates and work that it has are
+/// those given, and its turn references the continuous angles.
 pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
-    let maximal = Point { state: case.run("to_maximal", &case.point), ..case.point.clone() };
+    let maximal = maximal(case, &case.joints);
     let textbook = case.textbook(&maximal)?;
-    let mut residuals = textbook.phi()?;
-    residuals.extend(textbook.velocity_residual()?);
+    let satisfied = |rows: Vec<Term<'a>>| {
+        let rows = rows.into_iter().enumerate();
+        rows.filter(|(row, _)| !layout.closure_rows.contains(row)).map(|(_, residual)| residual)
+    };
+    let mut residuals: Vec<_> = satisfied(textbook.phi()?).collect();
+    residuals.extend(satisfied(textbook.velocity_residual()?));
     for place in &layout.places {
         let (coordinates, rates) = place.of.sizes();
         let x = &case.joints[place.x..place.x + coordinates];
@@ -110,12 +154,35 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         };
         residuals.extend(differences(&found, &expected));
     }
-    let rest = &maximal.state[13 * case.n_bodies()..];
-    let turns = case.model.turn_references();
-    let turns = turns.iter().map(|turn| layout.scalar(*turn).map(|place| case.joints[place]));
-    let turns = turns.collect::<Option<Vec<_>>>()?;
-    residuals.extend(differences(rest, &[&case.joints[layout.n_motion()..], &turns].concat()));
+    let (work, turns) = maximal.state[13 * case.n_bodies()..].split_at(usize::from(layout.has_work));
+    residuals.extend(differences(work, &case.joints[layout.n_motion()..]));
+    for (turn, found) in case.model.turn_references().into_iter().zip(turns) {
+        let Some(place) = layout.scalar(turn) else {
+            residuals.extend(angle_differs(case, layout, textbook.reading(turn)?, turn, found));
+            continue;
+        };
+        residuals.push(found.sub(&case.joints[place]));
+    }
     Some(residuals)
+}
+
+/// That a turn reference of which x has no coordinate is the angle that is read. (It moves as the angle does, which is
+/// part of the claim about the derivative, and at the start it is the assembled one: so it is as turned.)
+fn angle_differs<'a>(
+    case: &Case<'a>,
+    layout: &JointLayout,
+    reading: Reading<Term<'a>>,
+    turn: JointCoordinate,
+    found: &Term<'a>,
+) -> Vec<Term<'a>> {
+    let Reading::Angle { sine, cosine, .. } = reading else { return vec![Term::one(case.point.context)] };
+    let (sine_found, cosine_found) = (Written.sin(found), Written.cos(found));
+    let mut rows = case.model.rows_of(RowOwner::Joint(turn.joint));
+    if rows.any(|row| layout.closure_rows.contains(&row)) {
+        // Of a joint that is torn sine and cosine are read up to a factor.
+        return vec![sine.mul(&cosine_found).sub(&cosine.mul(&sine_found))];
+    }
+    differences(&[sine, cosine], &[sine_found, cosine_found])
 }
 
 /// At any state all but angles are what the textbook reads off it. Angles change as the textbook's do, however the
@@ -123,7 +190,7 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
 /// among the turns.
 pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
-    let maximal = Point { state: case.run("to_maximal", &case.point), ..case.point.clone() };
+    let maximal = maximal(case, &case.joints);
     let mut residuals = differences(&case.run("to_joints", &maximal), &case.joints);
     let textbook = case.textbook(&case.point)?;
     let (rates, one) = (textbook.position_rates(), Term::one(case.point.context));
@@ -166,20 +233,14 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
-/// `Φ_r s̈ + Φ_π' ẇ' = γ` and `Bᵀ (M v̇ − f) = 0`.
+/// `Φ_r s̈ + Φ_π' ẇ' = γ` and `Bᵀ (M v̇ − f) = −Jᵀ λ`. (That rows and free motions make up the whole is part of the
+/// layout.)
 pub fn accelerations<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let motion = Motion::new(case)?;
     let textbook = case.textbook(&motion.maximal)?;
     let mut residuals = textbook.residual_of_rows(motion.accelerations())?;
-    let imbalance = textbook.imbalance(motion.accelerations())?;
-    let zero = Term::zero(case.point.context);
-    let along = |column: Vec<Term<'a>>| {
-        column.iter().zip(&imbalance).fold(zero, |sum, (b, force)| sum.add(&b.mul(force)))
-    };
-    residuals.extend(motion.free_motions()?.into_iter().map(along));
-    // Rows and free motions must make up the whole.
-    let is_whole = case.model.rows().len() + motion.layout.n_rates == 6 * case.n_bodies();
-    residuals.extend((!is_whole).then(|| Term::one(case.point.context)));
+    let [balance, _] = motion.balance()?;
+    residuals.extend(balance);
     Some(residuals)
 }
 

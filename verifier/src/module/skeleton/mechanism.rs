@@ -57,11 +57,11 @@ fn turn_references(model: &Model) -> String {
     list(places)
 }
 
-pub(super) fn mechanism(model: &Model, name: &str, is_tree: bool) -> String {
+pub(super) fn mechanism(model: &Model, name: &str, has_corrected: bool) -> String {
     let corrected = "fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         HOLE_corrected_derivative
     }";
-    let corrected = if is_tree { corrected } else { "" };
+    let corrected = if has_corrected { corrected } else { "" };
     let (n, n_rows, n_outputs) = (model.coordinate_bodies().len(), model.rows().len(), columns(model).len());
     let sizes = [n_rows, n_rows + n, n_readings(model), n_outputs].map(|n| n.to_string());
     let [rows, constraints, readings, outputs] = &sizes;

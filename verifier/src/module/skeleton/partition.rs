@@ -69,8 +69,8 @@ fn by_pivoting(model: &Model, name: &str, joints: Option<&JointLayout>) -> Strin
             }}"
         )
     }));
-    // Trees have no singular poses.
-    let clearance = if joints.is_some() {
+    // Where no loop is closed there are no singular poses.
+    let clearance = if joints.is_some_and(|joints| joints.closure_rows.is_empty()) {
         String::new()
     } else {
         format!(

@@ -1,0 +1,117 @@
+//! What the functions that close the loops of a mechanism in joint coordinates must satisfy.
+//!
+//! Φ_c are the rows of Φ that the coordinates x do not satisfy by themselves. x moves at rates u by `ẋ = T u`: Euler
+//! parameters by `½ Gᵀ u`, all else by u. Then `dΦ_c/dt = J u + ∂Φ_c/∂t` with `J = ∂Φ_c/∂x · T`, by dual numbers
+//! through `to_maximal` and the textbook's rows.
+
+use super::case::Case;
+use super::elimination::Eliminated;
+use super::joints::maximal;
+use super::partition::{dot, turning};
+use super::residuals::differences;
+use crate::field::Field;
+use crate::joints::{JointLayout, Place};
+use crate::point::Point;
+use crate::program::Source;
+use crate::tape::Term;
+use gyro_model::Rational;
+
+/// The rows of Φ_c among all rows.
+pub(super) fn of_closure<T: Clone>(layout: &JointLayout, rows: &[T]) -> Vec<T> {
+    layout.closure_rows.iter().map(|&row| rows[row].clone()).collect()
+}
+
+/// `loop_closure` is Φ_c.
+pub fn loop_closure<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let phi = case.textbook(&maximal(case, &case.joints))?.phi()?;
+    Some(differences(&case.run("loop_closure", &case.point), &of_closure(layout, &phi)))
+}
+
+/// x changes by a `T δ` for which `J δ = −Φ_c`; nothing else does. Along p the change of Euler parameters is none, and
+/// then it is `½ Gᵀ δ` for some δ.
+pub fn close_positions<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let changed = case.closed("close_positions", &case.joints);
+    let changes = differences(&changed, &case.joints);
+    let (of_x, of_rest) = changes.split_at(layout.n_coordinates);
+    let mut residuals = of_rest.to_vec();
+    residuals.extend(layout.euler().map(|p| dot(&case.joints[p..p + 4], &of_x[p..p + 4])));
+    let start = maximal(case, &case.joints);
+    let phi = case.textbook(&start)?.phi()?;
+    let moved = rates_of_closure(case, layout, of_x)?;
+    residuals.extend(moved.iter().zip(of_closure(layout, &phi)).map(|(moved, phi)| moved.add(&phi)));
+    Some(residuals)
+}
+
+/// u changes such that `dΦ_c/dt = 0`; nothing else does. Rates at which that is so already are left as they are.
+pub fn close_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let closed = case.closed("close_velocities", &case.joints);
+    let (x, rest) = (0..layout.n_coordinates, layout.n_motion()..layout.n_state());
+    let mut residuals = differences(&closed[x.clone()], &case.joints[x]);
+    residuals.extend(differences(&closed[rest.clone()], &case.joints[rest]));
+    residuals.extend(of_closure(layout, &case.textbook(&maximal(case, &closed))?.velocity_residual()?));
+    let kept = kept_rates(case, layout)?;
+    residuals.extend(differences(&case.closed("close_velocities", &kept), &kept));
+    Some(residuals)
+}
+
+/// Any joint state at which `dΦ_c/dt = 0`: some rates are such that it is, the others are any.
+fn kept_rates<'a>(case: &Case<'a>, layout: &JointLayout) -> Option<Vec<Term<'a>>> {
+    let jacobian = Eliminated::of(case, &jacobian(case, layout)?)?;
+    let residual = case.textbook(&maximal(case, &case.joints))?.velocity_residual()?;
+    let changes = jacobian.solution(case.point.context, &of_closure(layout, &residual));
+    let mut kept = case.joints.clone();
+    for (rate, change) in kept[layout.n_coordinates..].iter_mut().zip(changes) {
+        *rate = rate.sub(&change);
+    }
+    Some(kept)
+}
+
+/// J by rows.
+pub(super) fn jacobian<'a>(case: &Case<'a>, layout: &JointLayout) -> Option<Vec<Vec<Term<'a>>>> {
+    let column = |rate: usize| {
+        let place = layout.places.iter().rfind(|place| place.u <= rate)?;
+        rates_of_closure(case, layout, &directions(case, layout, place, rate - place.u)?)
+    };
+    let columns = (0..layout.n_rates).map(column).collect::<Option<Vec<_>>>()?;
+    let row = |k: usize| columns.iter().map(|column| column[k]).collect();
+    Some((0..layout.closure_rows.len()).map(row).collect())
+}
+
+/// A column of T.
+fn directions<'a>(
+    case: &Case<'a>,
+    layout: &JointLayout,
+    place: &Place,
+    rate: usize,
+) -> Option<Vec<Term<'a>>> {
+    let context = case.point.context;
+    let mut directions = vec![Term::zero(context); layout.n_coordinates];
+    match place.of.euler() {
+        // Displacements come before Euler parameters, and there are as many as rates of them.
+        Some(euler) if rate >= euler => {
+            let axis = [0, 1, 2].map(|k| Term::integer(context, i64::from(euler + k == rate)));
+            let half = Term::from_rational(context, &Rational::new(1.into(), 2.into()));
+            let p = place.x + euler;
+            let turned = turning(&case.joints[p..p + 4], &axis);
+            turned.iter().zip(&mut directions[p..]).for_each(|(e, direction)| *direction = e.mul(&half));
+        }
+        _ => directions[place.x + rate] = Term::one(context),
+    }
+    Some(directions)
+}
+
+/// How fast Φ_c changes if x does at these rates.
+fn rates_of_closure<'a>(case: &Case<'a>, layout: &JointLayout, of_x: &[Term<'a>]) -> Option<Vec<Term<'a>>> {
+    let rate = |source| match source {
+        Source::Joint(k) => of_x.get(k).copied(),
+        _ => None,
+    };
+    let [state, rates] = case.run_along("to_maximal", case.given(&case.point), &rate)?;
+    let point = Point { state, ..case.point.clone() };
+    let textbook = case.textbook(&point)?;
+    let phi_q = textbook.phi_q()?;
+    Some(of_closure(layout, &textbook.product(&phi_q, &rates[..7 * case.n_bodies()])))
+}
