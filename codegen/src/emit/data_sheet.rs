@@ -210,7 +210,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
                 "the Jacobian of the joint form (too many rates, or third derivatives of tables)".to_owned()
             }));
         }
-        None => left_out.push("joint coordinates (for trees without couplers and drivers)".into()),
+        None => left_out.push("joint coordinates".into()),
     }
     if equations.charts.is_none() {
         left_out

@@ -7,7 +7,7 @@ use crate::expr::definitions::{Definitions, Values};
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
-use gyro_model::{JointCoordinate, Model, Number, RowOwner};
+use gyro_model::{JointCoordinate, Model, RowOwner};
 
 /// A coordinate that others or time determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ pub fn determined(
                     match (is_open(relation.second), is_open(relation.first)) {
                         _ if !(is_tree && is_new) => None,
                         (true, _) => Some(forward),
-                        (false, true) if divides(&relation.ratio) => Some(backward),
+                        (false, true) if model.value(&relation.ratio) != 0.0 => Some(backward),
                         _ => None,
                     }
                 }
@@ -103,11 +103,6 @@ pub fn determined(
         open.remove(place);
         found.push(by);
     }
-}
-
-/// Whether a ratio is known not to vanish.
-fn divides(ratio: &Number) -> bool {
-    matches!(ratio, Number::Exact(_)) && !ratio.is_zero()
 }
 
 fn sources_first(model: &Model, mut found: Vec<Determined>) -> Vec<Determined> {

@@ -111,8 +111,9 @@ impl JointForm<'_> {
         let names = ["derivatives of u̇, from its leaves", "derivatives of u̇, from its roots"];
         let mut candidates: Vec<_> = names.map(str::to_owned).into_iter().zip(solved).collect();
         // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
-        // which is emitted.
-        if self.coordinates.layout.links.iter().any(|link| link.orientation.is_some()) {
+        // which is emitted. In loops the rates are no unknowns of the balance.
+        let is_open = self.coordinates.closure.rows.is_empty();
+        if self.coordinates.have_orientations() || !is_open {
             return candidates;
         }
         let rates_of_rates: Vec<_> = (0..self.coordinates.layout.n_rates)

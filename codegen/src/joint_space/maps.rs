@@ -245,15 +245,8 @@ pub fn of_joints(system: &mut System, layout: &Layout, angles: &WholeAngles) -> 
             values.extend(held_at_zero(scalar.place));
         }
     }
-    for (place, sum) in angles.places() {
-        let graph = &mut system.graph;
-        let of = |place: Place| (values[&Symbol::Sine(place.x)], values[&Symbol::Cosine(place.x)]);
-        let (sine, cosine) = sum.sine_and_cosine(graph, of);
-        let rate = sum.sum(graph, |_, place| values[&Symbol::Rate(place.u)]);
-        values.insert(Symbol::Sine(place.x), sine);
-        values.insert(Symbol::Cosine(place.x), cosine);
-        values.insert(Symbol::Rate(place.u), rate);
-    }
+    let known = values.clone();
+    insert_sums(&mut system.graph, angles, &mut values, |_, place| known[&Symbol::Rate(place.u)]);
     expanded(system, Values::default(), values)
 }
 
@@ -310,18 +303,6 @@ pub fn in_joints(
     angles: &WholeAngles,
 ) -> Values {
     let mut values = determined.clone();
-    for (place, sum) in angles.places() {
-        let graph = &mut system.graph;
-        let [x, u] = [|place: Place| Symbol::Coordinate(place.x), |place: Place| Symbol::Rate(place.u)].map(|symbol| {
-            sum.sum(graph, |graph, place| {
-                let symbol = symbol(place);
-                determined.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol))
-            })
-        });
-        values.insert(Symbol::Sine(place.x), graph.sin(x));
-        values.insert(Symbol::Cosine(place.x), graph.cos(x));
-        values.insert(Symbol::Rate(place.u), u);
-    }
     for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
         let place = scalar.place.x;
         let symbol = Symbol::Coordinate(place);
@@ -335,9 +316,30 @@ pub fn in_joints(
             values.insert(Symbol::Angle(turn), x);
         }
     }
+    let rate = |graph: &mut Graph, place: Place| {
+        let symbol = Symbol::Rate(place.u);
+        determined.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol))
+    };
+    insert_sums(&mut system.graph, angles, &mut values, rate);
     let maximal = expanded(system, values.clone(), maximal.clone());
     values.extend(maximal);
     values
+}
+
+/// Sines, cosines and rates of sums, from those of the angles.
+fn insert_sums(
+    graph: &mut Graph,
+    angles: &WholeAngles,
+    values: &mut Values,
+    rate: impl Fn(&mut Graph, Place) -> ExprId,
+) {
+    for (place, sum) in angles.places() {
+        let of = |place: Place| (values[&Symbol::Sine(place.x)], values[&Symbol::Cosine(place.x)]);
+        let (sine, cosine) = sum.sine_and_cosine(graph, of);
+        values.insert(Symbol::Sine(place.x), sine);
+        values.insert(Symbol::Cosine(place.x), cosine);
+        values.insert(Symbol::Rate(place.u), sum.sum(graph, &rate));
+    }
 }
 
 /// ẋ of given rates: those of scalars, `½ Gᵀ w'` of Euler parameters.
