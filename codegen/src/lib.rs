@@ -185,7 +185,7 @@ fn equations<'m>(model: &'m Model, elimination: Elimination, start: &Start) -> E
     let mut rotations = Rotations::of(&mut system, &definitions);
     let solved = rotations.cheapest(&mut system.graph, &solution.solved);
     let joint_space = Coordinates::cover(&system).then(|| {
-        let coordinates = Coordinates::derive(&mut system, &textbook, start);
+        let coordinates = Coordinates::derive(&mut system, &textbook);
         let candidates = Candidates::solve(&mut system, &textbook, &coordinates);
         JointSpace::choose(&mut system, (&textbook, &observed), coordinates, candidates, &solved.roots, start)
     });

@@ -30,6 +30,14 @@ impl Graph {
         sum
     }
 
+    /// Of as many numbers as both have.
+    pub fn dot_slices(&mut self, a: &[ExprId], b: &[ExprId]) -> ExprId {
+        a.iter().zip(b).fold(Self::ZERO, |sum, (&a, &b)| {
+            let product = self.mul(a, b);
+            self.add(sum, product)
+        })
+    }
+
     pub fn cross(&mut self, a: &Vec3, b: &Vec3) -> Vec3 {
         std::array::from_fn(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);

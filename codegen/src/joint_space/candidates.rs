@@ -36,19 +36,20 @@ impl Candidates {
     pub fn solve(system: &mut System, textbook: &Textbook, coordinates: &Coordinates) -> Self {
         let Coordinates { embedding, links_of_dynamics: links, unit, along, .. } = coordinates;
         let loads = &textbook.dynamics.other_loads;
+        let rows = coordinates.remaining_rows(&mut system.graph);
         let spins = dynamics::spins(system, links);
-        let balance = JointDynamics::new(system, links, &spins, loads, along, embedding);
+        let balance = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
         let mut reductions = Vec::new();
         let mut eliminated = vec![("recursion", balance.recursion(system))];
-        if embedding.n_unknowns <= MAX_FACTORED {
+        if embedding.n_unknowns <= MAX_FACTORED && rows.is_empty() {
             eliminated.push((NORMAL_FORM, balance.factored(system, unit, &mut reductions)));
         }
         let shortest = expanded(system, &coordinates.in_joints, &eliminated);
         let shortest = FinalPasses::of(false).cheapest(&mut system.graph, shortest).roots;
         let spins = spins_at_hand(system, coordinates);
-        let on_spins = JointDynamics::new(system, links, &spins, loads, along, embedding);
+        let on_spins = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
         let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
-        let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns);
+        let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns) && rows.is_empty();
         let by_gram_schmidt = is_small.then(|| ("Gram–Schmidt", balance.by_gram_schmidt(system)));
         let by_gram_schmidt_on_spins =
             is_small.then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));

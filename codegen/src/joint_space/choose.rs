@@ -144,7 +144,8 @@ fn corrected(
         forms.push((format!("{name} in the bodies' frames"), own));
         forms.push((format!("{name} in the global frame"), global));
     }
-    let exact = system.expanded(&Values::default(), exact);
+    // Multipliers that are found with them are left out.
+    let exact = system.expanded(&Values::default(), &exact[..6 * system.moving_bodies.len()]);
     forms.push(("elimination in maximal coordinates".to_owned(), exact));
     forms
 }

@@ -13,6 +13,7 @@ use crate::expr::symbol::Symbol;
 use crate::simplify::normal_form::{normal_form, vanishes};
 use gyro_model::RowOwner;
 use std::array::from_fn;
+use std::collections::BTreeSet;
 
 /// `Φ_c(t, x) = 0`, in terms of joint coordinates and of the sines and cosines of angles.
 #[derive(Debug, Default)]
@@ -134,6 +135,12 @@ impl Closure {
         let jacobian = entries.chunks(layout.n_rates.max(1)).map(<[_]>::to_vec).collect();
         let closure = Self { rows, phi, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() };
         closure
+    }
+
+    /// The rates that change some rows.
+    pub fn rates_of(&self, rows: &[usize]) -> BTreeSet<usize> {
+        let entries = rows.iter().flat_map(|&row| self.jacobian[row].iter().enumerate());
+        entries.filter(|(_, entry)| **entry != Graph::ZERO).map(|(rate, _)| rate).collect()
     }
 
     /// With the derivatives by the determined rates; `phi` are all rows, `angles` those of which none is held.

@@ -8,16 +8,14 @@ use super::link_kinematics::{self, LinkKinematics};
 use super::loops::Loops;
 use super::whole_angles::WholeAngles;
 use super::{dynamics, maps};
-use crate::solve::lu::Lu;
 use crate::derive::Textbook;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
-use crate::expr::evaluate::evaluate;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::ZERO3;
-use gyro_model::{JointCoordinate, RowOwner, Start};
+use gyro_model::{JointCoordinate, RowOwner};
 
 /// Joint coordinates and how they go with the maximal ones.
 #[derive(Debug)]
@@ -41,8 +39,6 @@ pub struct Coordinates {
     /// The joints that close loops.
     pub closure: Closure,
     pub loops: Loops,
-    /// The rows that hold coordinates by the rates of these, transposed.
-    pub holding: Option<Lu>,
     /// How all rates of the tree follow those of the state.
     pub by_rates: Embedding,
     /// How all rates of the tree accelerate.
@@ -62,7 +58,7 @@ impl Coordinates {
         tree.loop_joints.iter().all(is_free) && coordinates_beside_joints(system).1.is_empty()
     }
 
-    pub fn derive(system: &mut System, textbook: &Textbook, start: &Start) -> Self {
+    pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
         let (mut known, _) = coordinates_beside_joints(system);
         loop {
             let layout = Layout::of(system, known.clone());
@@ -80,14 +76,13 @@ impl Coordinates {
                 known.push(held);
                 continue;
             }
-            return Self::closed(system, textbook, start, (layout, determined, links, angles, unit, rows));
+            return Self::closed(system, textbook, (layout, determined, links, angles, unit, rows));
         }
     }
 
     fn closed(
         system: &mut System,
         textbook: &Textbook,
-        start: &Start,
         (layout, determined, links, angles, unit, rows): Derived,
     ) -> Self {
         let maximal = maps::of_bodies(system, &layout, &links);
@@ -98,8 +93,7 @@ impl Coordinates {
         let closure = Closure::derive(system, rows, (&layout, &angles), &by_rates, &unit);
         let unheld = WholeAngles::of(system, &layout, &links, |_| false);
         let closure = closure.with_determined(system, &textbook.kinematics.phi, (&layout, &unheld));
-        let holding = holding(system, &layout, &closure, &of_joints, start);
-        let loops = loops_of(system, &closure, &of_joints, start);
+        let loops = loops_of(system, &closure);
         let embedding = loops.embedding(&mut system.graph, &closure, layout.n_rates);
         let embedding = embedding.with_determined(system, &layout, &determined);
         let invariant = invariant_angles(system, &layout, &links, &textbook.dynamics);
@@ -117,7 +111,6 @@ impl Coordinates {
             by_rates,
             closure,
             loops,
-            holding,
             embedding,
             along,
             unit,
@@ -149,6 +142,15 @@ impl Coordinates {
         let u: Vec<_> =
             changes.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Rate(k), by)).collect();
         [&closure.phi, &x, &u].map(|roots| system.expanded(&self.in_joints, roots))
+    }
+
+    /// The rows that the unknowns must meet besides, with what they must come to.
+    pub fn remaining_rows(&self, graph: &mut Graph) -> Vec<(Vec<ExprId>, ExprId)> {
+        let row = |&row: &usize| {
+            let jacobian = self.embedding.projected(graph, &self.closure.jacobian[row]);
+            (jacobian, self.closure.gamma[row])
+        };
+        self.loops.others.iter().map(row).collect()
     }
 
     /// The accelerations of all rates of the tree, from those of the state.
@@ -186,39 +188,7 @@ fn coordinates_beside_joints(system: &System) -> (Vec<Determined>, Vec<RowOwner>
     determined::determined(system.model, is_on_tree)
 }
 
-/// The entries' values at the start.
-fn numbers(system: &mut System, entries: &[ExprId], of_joints: &Values, start: &Start) -> Vec<f64> {
-    let entries = system.expanded(of_joints, entries);
-    evaluate(&system.graph, &entries, |symbol| maps::at_start(system, start, symbol))
-}
-
-/// What the rows that hold coordinates take along these.
-fn holding(
-    system: &mut System,
-    layout: &Layout,
-    closure: &Closure,
-    of_joints: &Values,
-    start: &Start,
-) -> Option<Lu> {
-    let is_held = |place: &usize| matches!(layout.determined[*place].by, Relation::Held(_));
-    let held: Vec<_> = (0..layout.determined.len()).filter(is_held).collect();
-    if held.is_empty() {
-        return None;
-    }
-    let rows = &closure.by_determined[closure.rows.len()..];
-    let matrix: Vec<Vec<_>> =
-        held.iter().map(|&place| rows.iter().map(|row| row[place]).collect()).collect();
-    let values = numbers(system, &matrix.concat(), of_joints, start);
-    let values = values.chunks(held.len()).map(<[_]>::to_vec).collect();
-    Some(Lu::new(&mut system.graph, matrix, values))
-}
-
-fn loops_of(system: &mut System, closure: &Closure, of_joints: &Values, start: &Start) -> Loops {
-    if closure.rows.is_empty() {
-        return Loops::default();
-    }
-    let values = numbers(system, &closure.jacobian.concat(), of_joints, start);
-    let values: Vec<_> = values.chunks(closure.jacobian[0].len()).map(<[_]>::to_vec).collect();
+fn loops_of(system: &mut System, closure: &Closure) -> Loops {
     let rows = system.model.rows();
     let owners: Vec<_> = closure.rows.iter().map(|&row| rows[row].owner).collect();
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -228,7 +198,7 @@ fn loops_of(system: &mut System, closure: &Closure, of_joints: &Values, start: &
             None => groups.push(vec![place]),
         }
     }
-    Loops::of(&mut system.graph, closure, groups, &values)
+    Loops::of(&mut system.graph, closure, &groups)
 }
 
 fn links_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turned) -> Vec<LinkKinematics> {

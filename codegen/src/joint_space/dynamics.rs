@@ -106,6 +106,8 @@ pub struct JointDynamics {
     /// In the bodies' own frames.
     excitation: Excitation,
     embedding: Embedding,
+    /// Rows that the unknowns must meet besides, `J z = γ`.
+    rows: Vec<(Vec<ExprId>, ExprId)>,
 }
 
 impl JointDynamics {
@@ -116,7 +118,7 @@ impl JointDynamics {
         spins: &[Vec3],
         loads: &[Load],
         along: &[ExprId],
-        embedding: &Embedding,
+        (embedding, rows): (&Embedding, Vec<(Vec<ExprId>, ExprId)>),
     ) -> Self {
         let gravity = system.numbers(&system.model.gravity);
         let mut along = embedding.projected(&mut system.graph, along);
@@ -154,7 +156,7 @@ impl JointDynamics {
         excitation.bias = (0..spins.len())
             .map(|moving_body| inertial(system, moving_body, &spins[moving_body], loads))
             .collect();
-        Self { unknowns, places, subspaces, excitation, embedding: embedding.clone() }
+        Self { unknowns, places, subspaces, excitation, embedding: embedding.clone(), rows }
     }
 
     /// Whether an unknown moves several joints.
@@ -175,7 +177,35 @@ impl JointDynamics {
     pub fn recursion(&self, system: &mut System) -> Vec<ExprId> {
         let tree = self.eliminated(system);
         let found = self.respond(&mut system.graph, &tree, &self.excitation);
+        let found = self.closed(&mut system.graph, &tree, found);
         self.embedding.rates_of_rates(&mut system.graph, &found)
+    }
+
+    /// What the unknowns become by the multipliers that meet the remaining rows: `M⁻¹ Jᵀ μ` is added, such that
+    /// `J z = γ`.
+    fn closed(&self, graph: &mut Graph, tree: &Eliminated, mut found: Vec<ExprId>) -> Vec<ExprId> {
+        let responses: Vec<_> =
+            self.rows.iter().map(|(row, _)| self.response_to(graph, tree, row)).collect();
+        let mut matrix = BTreeMap::new();
+        for (k, (row, _)) in self.rows.iter().enumerate() {
+            for (l, response) in responses[..=k].iter().enumerate() {
+                matrix.insert((k, l), graph.dot_slices(row, response));
+            }
+        }
+        matrix.retain(|_, entry| *entry != Graph::ZERO);
+        let lacking = self.rows.iter().map(|(row, gamma)| {
+            let rate = graph.dot_slices(row, &found);
+            graph.sub(*gamma, rate)
+        });
+        let lacking = lacking.collect();
+        let multipliers = Elimination::new(matrix, lacking).solve_in_order(graph);
+        for (response, &multiplier) in responses.iter().zip(&multipliers) {
+            for (found, &response) in found.iter_mut().zip(response) {
+                let part = graph.mul(response, multiplier);
+                *found = graph.add(*found, part);
+            }
+        }
+        found
     }
 
     fn eliminated(&self, system: &mut System) -> Eliminated {
@@ -239,16 +269,17 @@ impl JointDynamics {
     /// The unknowns that forces along them alone bring about, for each column of forces: `M⁻¹ force`.
     pub fn accelerations_of(&self, system: &mut System, columns: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
         let tree = self.eliminated(system);
-        let solved = |forces: &Vec<ExprId>| {
-            let mut forces: Vec<_> = self.places.iter().map(|&place| forces[place]).collect();
-            // A force along an unknown acts once.
-            let mut taken = |&unknown: &usize| std::mem::replace(&mut forces[unknown], Graph::ZERO);
-            let along = self.unknowns.iter().map(|unknowns| unknowns.iter().map(&mut taken).collect());
-            let none = Excitation::none(self.excitation.bias.len(), self.subspaces.len());
-            let excitation = Excitation { along: along.collect(), ..none };
-            self.respond(&mut system.graph, &tree, &excitation)
-        };
-        columns.iter().map(solved).collect()
+        columns.iter().map(|forces| self.response_to(&mut system.graph, &tree, forces)).collect()
+    }
+
+    fn response_to(&self, graph: &mut Graph, tree: &Eliminated, forces: &[ExprId]) -> Vec<ExprId> {
+        let mut forces: Vec<_> = self.places.iter().map(|&place| forces[place]).collect();
+        // A force along an unknown acts once.
+        let mut taken = |&unknown: &usize| std::mem::replace(&mut forces[unknown], Graph::ZERO);
+        let along = self.unknowns.iter().map(|unknowns| unknowns.iter().map(&mut taken).collect());
+        let none = Excitation::none(self.excitation.bias.len(), self.subspaces.len());
+        let excitation = Excitation { along: along.collect(), ..none };
+        self.respond(graph, tree, &excitation)
     }
 
     /// The same by factoring the reduced mass matrix; forces in terms of joint coordinates and rates, as `in_joints`

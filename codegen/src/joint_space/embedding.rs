@@ -35,10 +35,10 @@ impl Embedding {
         Self { rates: (0..n_rates).map(rate).collect(), n_unknowns: n_rates }
     }
 
-    /// A new unknown, with its factor.
-    pub fn unknown(&mut self) -> (usize, ExprId) {
+    /// A new unknown.
+    pub fn unknown(&mut self) -> usize {
         self.n_unknowns += 1;
-        (self.n_unknowns - 1, Graph::ONE)
+        self.n_unknowns - 1
     }
 
     /// The same with the rates that are determined, behind those of the state.
@@ -90,13 +90,6 @@ impl Embedding {
 }
 
 impl RateMotion {
-    /// The factor of an unknown, or the bias.
-    pub fn part(&self, of: Option<usize>) -> ExprId {
-        let Some(unknown) = of else { return self.bias };
-        let column = self.columns.iter().find(|(known, _)| *known == unknown);
-        column.map_or(Graph::ZERO, |column| column.1)
-    }
-
     fn scaled(&self, graph: &mut Graph, by: ExprId) -> Self {
         let columns = self.columns.iter().map(|&(unknown, factor)| (unknown, graph.mul(by, factor)));
         Self { columns: columns.collect(), bias: graph.mul(by, self.bias) }

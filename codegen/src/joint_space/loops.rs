@@ -1,108 +1,87 @@
-//! How rates keep loops closed: `J δ = b` for the rates of each loop, one loop after the other.
+//! How rates keep loops closed: `J δ = b`.
 //!
-//! A loop whose rates are one more than its rows (a four-bar linkage) has a single motion, the vector that is
-//! perpendicular to its rows, whichever of its rates would be called independent: then the formulas have no choice and
-//! are singular only where the mechanism is. In others some rates are independent and the rest follow from them.
+//! A loop whose rates are one more than its rows and belong to no other loop (a four-bar linkage) has a single motion,
+//! the vector that is perpendicular to its rows, whichever of its rates would be called independent: all its rates
+//! follow from one unknown. The rows of other loops are met by multipliers. Neither has a choice of independent
+//! coordinates: the formulas are singular only where the mechanism is.
 
 use super::closure::Closure;
 use super::embedding::{Embedding, RateMotion};
 use crate::expr::graph::{ExprId, Graph};
-use crate::solve::lu::Lu;
-use std::collections::BTreeSet;
+use crate::solve::ldl::Elimination;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// The loops of a mechanism, in the order in which they are closed.
+/// The loops of a mechanism.
 #[derive(Debug, Default)]
-pub struct Loops(Vec<Loop>);
+pub struct Loops {
+    single: Vec<Single>,
+    /// The rows of all other loops, among those of the closure.
+    pub others: Vec<usize>,
+}
 
-/// Some rows that are solved together.
+/// A loop with a single motion.
 #[derive(Debug)]
-struct Loop {
+struct Single {
     /// Among those of the closure.
     rows: Vec<usize>,
-    /// Rates of earlier loops on which the rows depend.
-    before: Vec<usize>,
-    /// The others.
-    own: Vec<usize>,
+    rates: Vec<usize>,
     solve: Solve,
 }
 
 #[derive(Debug)]
 enum Solve {
-    /// Two rates and a row.
+    /// Two rates and a row, with the inverse of its square.
     Pair { row: [ExprId; 2], inverse: ExprId },
-    /// Three rates and two rows; their cross product, and the inverse of its square.
+    /// Three rates and two rows, their cross product, and the inverse of its square.
     Triple { rows: [[ExprId; 3]; 2], motion: [ExprId; 3], inverse: ExprId },
-    /// As many of the own rates as there are rows follow from the rest.
-    Square { dependent: Vec<usize>, lu: Lu },
 }
 
 impl Loops {
-    /// `groups` are the rows of each joint, `values` those of J at the start.
-    pub fn of(graph: &mut Graph, closure: &Closure, groups: Vec<Vec<usize>>, values: &[Vec<f64>]) -> Self {
+    /// `groups` are the rows of each joint.
+    pub fn of(graph: &mut Graph, closure: &Closure, groups: &[Vec<usize>]) -> Self {
+        let rates: Vec<_> = groups.iter().map(|rows| closure.rates_of(rows)).collect();
         let mut loops = Self::default();
-        let mut left = groups;
-        let mut known = BTreeSet::new();
-        let columns_of = |rows: &[usize]| -> BTreeSet<usize> {
-            let is_entry = |rate: &usize| rows.iter().any(|&row| closure.jacobian[row][*rate] != Graph::ZERO);
-            (0..closure.jacobian[0].len()).filter(is_entry).collect()
-        };
-        while !left.is_empty() {
-            let n_own = |rows: &[usize]| columns_of(rows).difference(&known).count();
-            let solvable = left.iter().enumerate().filter(|(_, rows)| n_own(rows) >= rows.len());
-            let Some((next, _)) = solvable.min_by_key(|(_, rows)| n_own(rows) - rows.len()) else {
-                // No loop can be closed by itself: two that share rates are closed together.
-                let first = left.remove(0);
-                let columns = columns_of(&first);
-                let shares = |rows: &Vec<usize>| !columns_of(rows).is_disjoint(&columns);
-                let with = left.iter().position(shares).unwrap_or(0);
-                assert!(!left.is_empty(), "independent rows have enough rates");
-                left[with].extend(first);
-                continue;
-            };
-            let rows = left.remove(next);
-            let columns = columns_of(&rows);
-            let own: Vec<_> = columns.difference(&known).copied().collect();
-            let before: Vec<_> = columns.intersection(&known).copied().collect();
-            let others: BTreeSet<_> = left.iter().flat_map(|rows| columns_of(rows)).collect();
-            known.extend(&own);
-            loops.0.push(Loop::of(graph, closure, (rows, before, own), &others, values));
+        for (place, rows) in groups.iter().enumerate() {
+            let is_alone = (0..groups.len()).all(|other| other == place || rates[other].is_disjoint(&rates[place]));
+            match Single::of(graph, closure, rows, &rates[place]) {
+                Some(single) if is_alone => loops.single.push(single),
+                _ => loops.others.extend(rows),
+            }
         }
         loops
     }
 
-    /// How the rates move: `J u̇ = γ` for all values of the unknowns.
+    /// How the rates move: for all values of the unknowns the single loops stay closed, `J u̇ = γ`.
     pub fn embedding(&self, graph: &mut Graph, closure: &Closure, n_rates: usize) -> Embedding {
         let mut embedding = Embedding { rates: Vec::new(), n_unknowns: 0 };
-        let in_loops: BTreeSet<_> = self.0.iter().flat_map(|closed| closed.own.iter().copied()).collect();
-        for rate in 0..n_rates {
-            let columns = if in_loops.contains(&rate) { Vec::new() } else { vec![embedding.unknown()] };
-            embedding.rates.push(RateMotion { columns, bias: Graph::ZERO });
+        let mut in_loops = BTreeMap::new();
+        for single in &self.single {
+            let rhs = single.rows.iter().map(|&row| closure.gamma[row]).collect();
+            let motion = single.motion(graph).into_iter().zip(single.least(graph, rhs));
+            in_loops.extend(single.rates.iter().zip(motion).map(|(&rate, motion)| (rate, (motion, single.rates[0]))));
         }
-        for closed in &self.0 {
-            closed.embed(graph, closure, &mut embedding);
+        let mut unknowns = BTreeMap::new();
+        for rate in 0..n_rates {
+            let ((factor, bias), first) = in_loops.remove(&rate).unwrap_or(((Graph::ONE, Graph::ZERO), rate));
+            let unknown = *unknowns.entry(first).or_insert_with(|| embedding.unknown());
+            embedding.rates.push(RateMotion { columns: vec![(unknown, factor)], bias });
         }
         embedding
     }
 
-    /// Rates with `J δ = b`: of those that close a loop of a single motion the least, of others the dependent ones.
-    pub fn changes(
-        &self,
-        graph: &mut Graph,
-        closure: &Closure,
-        rhs: &[ExprId],
-        n_rates: usize,
-    ) -> Vec<ExprId> {
+    /// The least rates with `J δ = b`.
+    pub fn changes(&self, graph: &mut Graph, closure: &Closure, rhs: &[ExprId], n_rates: usize) -> Vec<ExprId> {
         let mut changes = vec![Graph::ZERO; n_rates];
-        for closed in &self.0 {
-            let rhs = closed.rows.iter().map(|&row| {
-                closed.before.iter().fold(rhs[row], |rest, &rate| {
-                    let taken = graph.mul(closure.jacobian[row][rate], changes[rate]);
-                    graph.sub(rest, taken)
-                })
-            });
-            let rhs = rhs.collect();
-            for (rate, change) in closed.particular(graph, rhs) {
-                changes[rate] = change;
+        for single in &self.single {
+            let rhs = single.rows.iter().map(|&row| rhs[row]).collect();
+            single.rates.iter().zip(single.least(graph, rhs)).for_each(|(&rate, change)| changes[rate] = change);
+        }
+        let rhs = self.others.iter().map(|&row| rhs[row]).collect();
+        let weights = self.solve_square(graph, closure, rhs);
+        for (&row, weight) in self.others.iter().zip(weights) {
+            for (change, &entry) in changes.iter_mut().zip(&closure.jacobian[row]) {
+                let part = graph.mul(entry, weight);
+                *change = graph.add(*change, part);
             }
         }
         changes
@@ -110,57 +89,64 @@ impl Loops {
 
     /// `Jᵀ λ = f` for forces along the rates that rows of loops can supply.
     pub fn multipliers(&self, graph: &mut Graph, closure: &Closure, forces: &[ExprId]) -> Vec<ExprId> {
-        let mut left = forces.to_vec();
         let mut multipliers = vec![Graph::ZERO; closure.rows.len()];
-        for closed in self.0.iter().rev() {
-            let found = closed.transposed(graph, &left);
-            for (&row, &multiplier) in closed.rows.iter().zip(&found) {
-                multipliers[row] = multiplier;
-                for &rate in &closed.before {
-                    let taken = graph.mul(closure.jacobian[row][rate], multiplier);
-                    left[rate] = graph.sub(left[rate], taken);
-                }
+        for single in &self.single {
+            let forces: Vec<_> = single.rates.iter().map(|&rate| forces[rate]).collect();
+            let found = single.transposed(graph, &forces);
+            single.rows.iter().zip(found).for_each(|(&row, multiplier)| multipliers[row] = multiplier);
+        }
+        let rhs = self.others.iter().map(|&row| graph.dot_slices(&closure.jacobian[row], forces)).collect();
+        let found = self.solve_square(graph, closure, rhs);
+        self.others.iter().zip(found).for_each(|(&row, multiplier)| multipliers[row] = multiplier);
+        multipliers
+    }
+
+    /// `J Jᵀ w = b` for the rows of the other loops.
+    fn solve_square(&self, graph: &mut Graph, closure: &Closure, rhs: Vec<ExprId>) -> Vec<ExprId> {
+        let mut square = BTreeMap::new();
+        for (k, &row) in self.others.iter().enumerate() {
+            for (l, &other) in self.others[..=k].iter().enumerate() {
+                square.insert((k, l), graph.dot_slices(&closure.jacobian[row], &closure.jacobian[other]));
             }
         }
-        multipliers
+        square.retain(|_, entry| *entry != Graph::ZERO);
+        Elimination::new(square, rhs).solve_in_order(graph)
     }
 }
 
-impl Loop {
-    fn of(
-        graph: &mut Graph,
-        closure: &Closure,
-        (rows, before, own): (Vec<usize>, Vec<usize>, Vec<usize>),
-        others: &BTreeSet<usize>,
-        values: &[Vec<f64>],
-    ) -> Self {
+impl Single {
+    /// `None` if the loop has not a single motion, or one for which there is no short formula.
+    fn of(graph: &mut Graph, closure: &Closure, rows: &[usize], rates: &BTreeSet<usize>) -> Option<Self> {
+        let rates: Vec<_> = rates.iter().copied().collect();
         let entry = |row: usize, rate: usize| closure.jacobian[row][rate];
-        let solve = match (&rows[..], &own[..]) {
-            (&[row], &[a, b]) if before.is_empty() => {
+        let solve = match (rows, &rates[..]) {
+            (&[row], &[a, b]) => {
                 let row = [entry(row, a), entry(row, b)];
                 let square = graph.dot(&row, &row);
                 Solve::Pair { row, inverse: graph.recip(square) }
             }
-            (&[first, second], own) if own.len() == 3 && before.is_empty() => {
-                let rows = [first, second].map(|row| [0, 1, 2].map(|k| entry(row, own[k])));
+            (&[first, second], &[a, b, c]) => {
+                let rows = [first, second].map(|row| [a, b, c].map(|rate| entry(row, rate)));
                 let motion = graph.cross(&rows[0], &rows[1]);
                 let square = graph.dot(&motion, &motion);
                 Solve::Triple { rows, motion, inverse: graph.recip(square) }
             }
-            _ => {
-                let dependent = dependent(&rows, &own, others, values);
-                let matrix = rows.iter().map(|&row| dependent.iter().map(|&rate| entry(row, rate)).collect());
-                let numbers = rows.iter().map(|&row| dependent.iter().map(|&rate| values[row][rate]).collect());
-                let (matrix, numbers) = (matrix.collect(), numbers.collect());
-                Solve::Square { lu: Lu::new(graph, matrix, numbers), dependent }
-            }
+            _ => return None,
         };
-        Self { rows, before, own, solve }
+        Some(Self { rows: rows.to_vec(), rates, solve })
     }
 
-    /// Of the own rates, with all independent ones zero.
-    fn particular(&self, graph: &mut Graph, rhs: Vec<ExprId>) -> Vec<(usize, ExprId)> {
-        let values = match &self.solve {
+    /// Perpendicular to the rows.
+    fn motion(&self, graph: &mut Graph) -> Vec<ExprId> {
+        match &self.solve {
+            Solve::Pair { row: [a, b], .. } => vec![*b, graph.neg(*a)],
+            Solve::Triple { motion, .. } => motion.to_vec(),
+        }
+    }
+
+    /// The least rates with `J δ = b`.
+    fn least(&self, graph: &mut Graph, rhs: Vec<ExprId>) -> Vec<ExprId> {
+        match &self.solve {
             Solve::Pair { row, inverse } => {
                 let scaled = graph.mul(rhs[0], *inverse);
                 graph.scale_vec(scaled, row).to_vec()
@@ -172,114 +158,21 @@ impl Loop {
                 let least = graph.cross(&difference, motion);
                 graph.scale_vec(*inverse, &least).to_vec()
             }
-            Solve::Square { dependent, lu } => {
-                let solution = lu.solve(graph, rhs);
-                return dependent.iter().copied().zip(solution).collect();
-            }
-        };
-        self.own.iter().copied().zip(values).collect()
+        }
     }
 
-    /// λ with `Jᵀ λ = f` along the own rates.
+    /// λ with `Jᵀ λ = f`.
     fn transposed(&self, graph: &mut Graph, forces: &[ExprId]) -> Vec<ExprId> {
         match &self.solve {
             Solve::Pair { row, inverse } => {
-                let force = [forces[self.own[0]], forces[self.own[1]]];
-                let along = graph.dot(row, &force);
+                let along = graph.dot_slices(row, forces);
                 vec![graph.mul(along, *inverse)]
             }
             Solve::Triple { rows: [first, second], motion, inverse } => {
-                let force = [0, 1, 2].map(|k| forces[self.own[k]]);
-                let (left, right) = (graph.cross(second, motion), graph.cross(motion, first));
-                [left, right]
-                    .map(|dual| {
-                        let along = graph.dot(&dual, &force);
-                        graph.mul(along, *inverse)
-                    })
-                    .to_vec()
-            }
-            Solve::Square { dependent, lu } => {
-                lu.solve_transposed(graph, dependent.iter().map(|&rate| forces[rate]).collect())
+                let duals = [graph.cross(second, motion), graph.cross(motion, first)];
+                let supplied = duals.map(|dual| graph.dot_slices(&dual, forces));
+                supplied.map(|along| graph.mul(along, *inverse)).to_vec()
             }
         }
     }
-
-    /// Adds the own rates to what is known of the others.
-    fn embed(&self, graph: &mut Graph, closure: &Closure, embedding: &mut Embedding) {
-        let motion = match &self.solve {
-            Solve::Pair { row: [a, b], .. } => Some(vec![*b, graph.neg(*a)]),
-            Solve::Triple { motion, .. } => Some(motion.to_vec()),
-            Solve::Square { .. } => None,
-        };
-        if let Some(motion) = motion {
-            let (unknown, _) = embedding.unknown();
-            for (&rate, factor) in self.own.iter().zip(motion) {
-                embedding.rates[rate].columns.push((unknown, factor));
-            }
-        }
-        if let Solve::Square { dependent, .. } = &self.solve {
-            for rate in self.own.iter().filter(|rate| !dependent.contains(rate)) {
-                let unknown = embedding.unknown();
-                embedding.rates[*rate].columns.push(unknown);
-            }
-        }
-        // What is known moves the rows.
-        let known: Vec<_> = (0..embedding.n_unknowns).map(Some).chain([None]).collect();
-        for unknown in known {
-            let rhs = self.rows.iter().map(|&row| {
-                let start = if unknown.is_none() { closure.gamma[row] } else { Graph::ZERO };
-                let moved = (0..closure.jacobian[row].len()).filter(|rate| self.moves(*rate));
-                moved.fold(start, |rest, rate| {
-                    let taken = graph.mul(closure.jacobian[row][rate], embedding.rates[rate].part(unknown));
-                    graph.sub(rest, taken)
-                })
-            });
-            let rhs: Vec<_> = rhs.collect();
-            if rhs.iter().all(|&x| x == Graph::ZERO) {
-                continue;
-            }
-            for (rate, value) in self.particular(graph, rhs) {
-                let motion = &mut embedding.rates[rate];
-                match unknown {
-                    Some(unknown) => motion.columns.push((unknown, value)),
-                    None => motion.bias = value,
-                }
-            }
-        }
-    }
-
-    /// Whether a rate moves the rows and is given before they are solved.
-    fn moves(&self, rate: usize) -> bool {
-        match &self.solve {
-            Solve::Square { dependent, .. } => {
-                !dependent.contains(&rate) && (self.before.contains(&rate) || self.own.contains(&rate))
-            }
-            _ => false,
-        }
-    }
-}
-
-/// As many rates as there are rows that determine them well at the start; those that no other loop shares first.
-fn dependent(rows: &[usize], own: &[usize], others: &BTreeSet<usize>, values: &[Vec<f64>]) -> Vec<usize> {
-    /// How much smaller a pivot may be for the sake of a rate that no other loop shares.
-    const SHARED: f64 = 1e-2;
-    let weight = |rate: usize| if others.contains(&rate) { SHARED } else { 1.0 };
-    let mut matrix: Vec<Vec<f64>> = rows.iter().map(|&row| own.iter().map(|&rate| values[row][rate]).collect()).collect();
-    let (mut left, mut taken): (Vec<usize>, Vec<usize>) = ((0..rows.len()).collect(), Vec::new());
-    while !left.is_empty() {
-        let places = left.iter().flat_map(|&row| (0..own.len()).map(move |column| (row, column)));
-        let places = places.filter(|(_, column)| !taken.contains(column));
-        let size = |&(row, column): &(usize, usize)| matrix[row][column].abs() * weight(own[column]);
-        let (row, column) = places.max_by(|a, b| size(a).total_cmp(&size(b))).expect("enough rates");
-        left.retain(|&other| other != row);
-        taken.push(column);
-        for &other in &left {
-            let factor = matrix[other][column] / matrix[row][column];
-            for k in 0..own.len() {
-                matrix[other][k] -= factor * matrix[row][k];
-            }
-        }
-    }
-    taken.sort_unstable();
-    taken.into_iter().map(|column| own[column]).collect()
 }

@@ -19,7 +19,7 @@ use crate::solve::articulated_body::Arm;
 use crate::solve::loop_closure::gradient;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use crate::solve::multipliers::imbalance;
-use gyro_model::Attachment;
+use gyro_model::{Attachment, JointCoordinate, JointKind, RowOwner};
 use std::array::from_fn;
 
 /// The multiplier of each row, in terms of [`Symbol::Acceleration`], the maximal state and joint coordinates.
@@ -37,9 +37,10 @@ pub fn of(
         .collect();
     let left = left_over(&mut system.graph, coordinates, &joints, lacking.clone());
     beside_joints(system, coordinates, left, &mut lambda);
-    let closing = coordinates.closure.rows.iter().chain(&coordinates.closure.holding);
+    let closing = coordinates.closure.rows.iter().chain(&coordinates.closure.holding).copied();
+    let along_screws = rows_along_screws(system);
     let mut lacking = lacking;
-    for &row in closing {
+    for row in closing.chain(along_screws) {
         for (lacking, taken) in lacking.iter_mut().zip(gradient(kinematics, row)) {
             let taken = taken.scaled(&mut system.graph, lambda[row]);
             *lacking = lacking.plus(&mut system.graph, &taken);
@@ -59,6 +60,22 @@ pub fn of(
         }
     }
     lambda
+}
+
+/// The rows of couplers and drivers along the coordinate of a screw: what they supply loads the screw's own row too. Of
+/// other joints the coordinates are at right angles to what the rows hold.
+fn rows_along_screws(system: &System) -> Vec<usize> {
+    let rows = system.model.rows();
+    let is_screw = |on: JointCoordinate| system.joints[on.joint].kind == JointKind::Screw;
+    let is_along = |row: &usize| match rows[*row].owner {
+        RowOwner::Coupler(coupler) => {
+            let coupler = &system.model.couplers[coupler];
+            is_screw(coupler.first) || is_screw(coupler.second)
+        }
+        RowOwner::Driver(driver) => is_screw(system.model.drivers[driver].coordinate),
+        _ => false,
+    };
+    (0..rows.len()).filter(is_along).collect()
 }
 
 /// A body as its joint holds it.
@@ -129,12 +146,12 @@ fn beside_joints(system: &mut System, coordinates: &Coordinates, mut left: Vec<E
     let closing = loops.multipliers(&mut system.graph, closure, &on_state);
     take(&mut system.graph, &mut left[layout.n_rates..], &closure.by_determined[..n_closing], &closing);
     closure.rows.iter().zip(&closing).for_each(|(&row, &multiplier)| lambda[row] = multiplier);
-    if let Some(lu) = &coordinates.holding {
-        let is_held = |place: &usize| matches!(layout.determined[*place].by, Relation::Held(_));
-        let held = (0..layout.determined.len()).filter(is_held).map(|place| left[layout.n_rates + place]);
-        let holding = lu.solve(&mut system.graph, held.collect());
-        take(&mut system.graph, &mut left[layout.n_rates..], &closure.by_determined[n_closing..], &holding);
-        closure.holding.iter().zip(&holding).for_each(|(&row, &multiplier)| lambda[row] = multiplier);
+    // A row that holds a coordinate changes with no other that is held.
+    let is_held = |place: &usize| matches!(layout.determined[*place].by, Relation::Held(_));
+    let held = (0..layout.determined.len()).filter(is_held);
+    for ((place, by), &row) in held.zip(&closure.by_determined[n_closing..]).zip(&closure.holding) {
+        lambda[row] = system.graph.div(left[layout.n_rates + place], by[place]);
+        take(&mut system.graph, &mut left[layout.n_rates..], &[by.clone()], &[lambda[row]]);
     }
     // What a coordinate determines comes after it.
     for known in layout.determined.iter().rev() {

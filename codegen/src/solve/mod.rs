@@ -8,7 +8,6 @@ pub mod forward_dynamics;
 pub mod gram_schmidt;
 pub mod ldl;
 pub mod loop_closure;
-pub mod lu;
 pub mod motion_subspace;
 pub mod multipliers;
 pub mod partition;
