@@ -17,7 +17,7 @@ use crate::textbook::{Sparse, Textbook};
 use gyro_model::{Model, Row, RowOwner, RowUnit};
 
 /// Axes of a joint that is whole are off by less, as the dot-1 rows have it: by more than any that are torn by
-/// [`TORN`].
+/// [`TORN`]. A loop that is closed is off by less of the mechanism's size.
 const WHOLE: f64 = 0.2;
 
 /// Eq. (17), its rows and columns brought to size one, can be solved if no pivot is smaller than this.
@@ -41,7 +41,10 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
             let must_be_finite = match function.as_str() {
                 // Every joint state has its maximal state, and is as far from closed loops as that is.
                 "to_maximal" | "loop_closure" => true,
-                function => textbook.is_regular(model, &place.state, is_solve(module, function)),
+                function => {
+                    let module = is_solve(module, function).then_some(module);
+                    textbook.is_regular(model, &place.state, module)
+                }
             };
             must_be_finite.then_some((place.what, line))
         });
@@ -170,8 +173,8 @@ impl Dense {
     }
 
     /// Whether the textbook has finite numbers at a state, and eq. (17) a solution there; if asked for, whether joints
-    /// are whole too.
-    fn is_regular(&self, model: &Model, state: &[f64], must_be_whole: bool) -> bool {
+    /// of a module are whole too, and its loops closed.
+    fn is_regular(&self, model: &Model, state: &[f64], must_be_whole: Option<&Module>) -> bool {
         if !self.is_written || state.iter().any(|x| !x.is_finite()) {
             return false;
         }
@@ -192,11 +195,16 @@ impl Dense {
         let is_finite = divisors.all(|divisor| divisor > VANISHING)
             && self.others.iter().all(|id| value(id).is_finite())
             && matrix.iter().flatten().all(|x| x.is_finite());
-        let is_whole = || {
-            let mut rows = model.rows().into_iter().zip(&self.others);
-            rows.all(|(row, id)| !is_of_directions(row) || value(id).abs() < WHOLE)
+        let is_whole = |module: &Module| {
+            let closes =
+                |row| module.joints.as_ref().is_some_and(|joints| joints.closure_rows.contains(&row));
+            let unit = |row: Row| if row.unit == RowUnit::Length { model.size() } else { 1.0 };
+            let mut rows = model.rows().into_iter().zip(&self.others).enumerate();
+            rows.all(|(place, (row, id))| {
+                !(is_of_directions(row) || closes(place)) || value(id).abs() < WHOLE * unit(row)
+            })
         };
-        is_finite && (!must_be_whole || is_whole()) && smallest_pivot(matrix) > REGULAR
+        is_finite && must_be_whole.is_none_or(is_whole) && smallest_pivot(matrix) > REGULAR
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::atoms::Elementary;
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
-use crate::joints::Freedom;
+use crate::joints::{Freedom, JointLayout};
 use crate::module::Module;
 use crate::point::Point;
 use crate::program::{Id, Source};
@@ -12,7 +12,7 @@ use crate::seed::Seed;
 use crate::states::{places, point, random_state};
 use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Reading, Textbook};
-use gyro_model::{Model, START_TOLERANCE};
+use gyro_model::{JointCoordinate, Model, START_TOLERANCE, Start};
 use rand::RngExt;
 
 /// Sine and cosine of an angle that is none.
@@ -105,19 +105,33 @@ fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
         }
         Freedom::Orientation { .. } | Freedom::Body { .. } => true,
     });
+    // An angle that others determine is assembled in `f64`: after many turns it is known less well.
+    let determined = largest(&positions_elsewhere(model, layout, &assembled));
     let n = model.coordinate_bodies().len();
     let (found, expected) = (state[..7 * n].chunks(7), module.start[..7 * n].chunks(7));
     let reach = largest(&module.start[..7 * n]);
     let placed = found.zip(expected).all(|(found, expected)| {
-        let same = |sign: f64| found[3..].iter().zip(&expected[3..]).all(|(a, b)| is_near(sign * a, *b, 1.0));
+        let euler = found[3..].iter().zip(&expected[3..]);
+        let is_same = |sign: f64| euler.clone().all(|(a, b)| is_near(sign * a, *b, determined));
         found[..3].iter().zip(&expected[..3]).all(|(a, b)| is_near(*a, *b, reach))
-            && (same(1.0) || same(-1.0))
+            && (is_same(1.0) || is_same(-1.0))
     });
     let (found, expected) = (&state[7 * n..], &module.start[7 * n..]);
     let fastest = largest(expected);
     let moves = found.iter().zip(expected).all(|(a, b)| is_near(*a, *b, fastest));
     (!(turned && placed && moves))
         .then(|| "the start in joint coordinates is not what the model assembles".to_owned())
+}
+
+/// The coordinates of joints that are not in the joint state.
+fn positions_elsewhere(model: &Model, layout: &JointLayout, start: &Start) -> Vec<f64> {
+    let of_joint = |joint: usize| {
+        let coordinates = 0..model.joints[joint].kind.coordinates().len();
+        let elsewhere = coordinates
+            .filter(move |&coordinate| layout.scalar(JointCoordinate { joint, coordinate }).is_none());
+        elsewhere.map(move |coordinate| start.joints[joint].position[coordinate])
+    };
+    (0..model.joints.len()).flat_map(of_joint).collect()
 }
 
 /// Angles are proved up to a factor: here it must be positive.

@@ -1,7 +1,6 @@
 //! A module and the textbook on one tape.
 
-use super::point;
-use super::statements::DRAWS;
+use super::point::{self, DRAWS};
 use crate::atoms::Elementary;
 use crate::field::{Field, Precision, Real};
 use crate::joints::JointLayout;
@@ -164,6 +163,12 @@ impl<'a> Case<'a> {
 }
 
 impl<'a> Case<'a> {
+    /// The maximal state of a joint state.
+    pub fn maximal(&self, joints: &[Term<'a>]) -> Point<Term<'a>> {
+        let state = self.results("to_maximal", Arguments { joints, ..self.given(&self.point) });
+        Point { state, ..self.point.clone() }
+    }
+
     /// A joint state changed by a function that closes loops.
     pub fn closed(&self, function: &str, joints: &[Term<'a>]) -> Vec<Term<'a>> {
         let values = self.results(function, Arguments { joints, ..self.given(&self.point) });

@@ -6,7 +6,6 @@
 
 use super::case::Case;
 use super::elimination::Eliminated;
-use super::joints::maximal;
 use super::partition::{dot, turning};
 use super::residuals::differences;
 use crate::field::Field;
@@ -24,7 +23,7 @@ pub(super) fn of_closure<T: Clone>(layout: &JointLayout, rows: &[T]) -> Vec<T> {
 /// `loop_closure` is Φ_c.
 pub fn loop_closure<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
-    let phi = case.textbook(&maximal(case, &case.joints))?.phi()?;
+    let phi = case.textbook(&case.maximal(&case.joints))?.phi()?;
     Some(differences(&case.run("loop_closure", &case.point), &of_closure(layout, &phi)))
 }
 
@@ -37,7 +36,7 @@ pub fn close_positions<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (of_x, of_rest) = changes.split_at(layout.n_coordinates);
     let mut residuals = of_rest.to_vec();
     residuals.extend(layout.euler().map(|p| dot(&case.joints[p..p + 4], &of_x[p..p + 4])));
-    let start = maximal(case, &case.joints);
+    let start = case.maximal(&case.joints);
     let phi = case.textbook(&start)?.phi()?;
     let moved = rates_of_closure(case, layout, of_x)?;
     residuals.extend(moved.iter().zip(of_closure(layout, &phi)).map(|(moved, phi)| moved.add(&phi)));
@@ -51,7 +50,7 @@ pub fn close_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (x, rest) = (0..layout.n_coordinates, layout.n_motion()..layout.n_state());
     let mut residuals = differences(&closed[x.clone()], &case.joints[x]);
     residuals.extend(differences(&closed[rest.clone()], &case.joints[rest]));
-    residuals.extend(of_closure(layout, &case.textbook(&maximal(case, &closed))?.velocity_residual()?));
+    residuals.extend(of_closure(layout, &case.textbook(&case.maximal(&closed))?.velocity_residual()?));
     let kept = kept_rates(case, layout)?;
     residuals.extend(differences(&case.closed("close_velocities", &kept), &kept));
     Some(residuals)
@@ -60,7 +59,7 @@ pub fn close_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
 /// Any joint state at which `dΦ_c/dt = 0`: some rates are such that it is, the others are any.
 fn kept_rates<'a>(case: &Case<'a>, layout: &JointLayout) -> Option<Vec<Term<'a>>> {
     let jacobian = Eliminated::of(case, &jacobian(case, layout)?)?;
-    let residual = case.textbook(&maximal(case, &case.joints))?.velocity_residual()?;
+    let residual = case.textbook(&case.maximal(&case.joints))?.velocity_residual()?;
     let changes = jacobian.solution(case.point.context, &of_closure(layout, &residual));
     let mut kept = case.joints.clone();
     for (rate, change) in kept[layout.n_coordinates..].iter_mut().zip(changes) {

@@ -1,7 +1,7 @@
 //! What modules are like, besides their claims: whether two compute the same, and what one need not compute.
 
-use super::decide::{Decider, FAR_FROM_ZERO, Verdict};
-use super::point::{self, Draw};
+use super::decide::{Decider, Verdict};
+use super::point::{self, Draw, FAR_FROM_ZERO};
 use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision};
 use crate::interpreter::{self, DivisionByZero, Given};

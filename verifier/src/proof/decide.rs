@@ -10,8 +10,8 @@
 //! joint, and joints are drawn one by one.
 
 use super::claim::Claim;
-use super::point::{self, Draw};
-use super::statements::{DRAWS, Outcome, Statements, missed_roots};
+use super::point::{self, DRAWS, Draw, FAR_FROM_ZERO};
+use super::statements::{Outcome, Statements, missed_roots};
 use crate::atoms::{Drawn, Elementary};
 use crate::field::{Field, Modular, Precision, Prime, Real};
 use crate::interpreter::DivisionByZero;
@@ -305,7 +305,3 @@ impl<'a, const L: usize> Decider<'a, L> {
         None
     }
 }
-
-/// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding
-/// makes 1e-115 of it.
-pub(super) const FAR_FROM_ZERO: f64 = 1e-60;

@@ -5,7 +5,7 @@
 //! divided by zero is not proved.
 
 use super::case::Case;
-use super::decide::FAR_FROM_ZERO;
+use super::point::FAR_FROM_ZERO;
 use crate::field::{Field, Precision, Real};
 use crate::tape::Term;
 

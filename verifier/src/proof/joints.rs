@@ -107,12 +107,6 @@ impl<'c, 'a> Motion<'c, 'a> {
     }
 }
 
-/// The maximal state of a joint state.
-pub(super) fn maximal<'a>(case: &Case<'a>, joints: &[Term<'a>]) -> Point<Term<'a>> {
-    let state = case.results("to_maximal", Arguments { joints, ..case.given(&case.point) });
-    Point { state, ..case.point.clone() }
-}
-
 /// The velocities of a state.
 fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
     let n = case.n_bodies();
@@ -123,7 +117,7 @@ fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
 /// those given, and its turn references the continuous angles.
 pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
-    let maximal = maximal(case, &case.joints);
+    let maximal = case.maximal(&case.joints);
     let textbook = case.textbook(&maximal)?;
     let satisfied = |rows: Vec<Term<'a>>| {
         let rows = rows.into_iter().enumerate();
@@ -190,7 +184,7 @@ fn angle_differs<'a>(
 /// among the turns.
 pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
-    let maximal = maximal(case, &case.joints);
+    let maximal = case.maximal(&case.joints);
     let mut residuals = differences(&case.run("to_joints", &maximal), &case.joints);
     let textbook = case.textbook(&case.point)?;
     let (rates, one) = (textbook.position_rates(), Term::one(case.point.context));

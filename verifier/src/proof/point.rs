@@ -8,6 +8,13 @@ use crate::program::Source;
 use gyro_model::{Model, to_f64};
 use rand::{Rng, RngExt};
 
+/// Draws at most this often until all roots exist: each root of a number that varies exists at every other point.
+pub(super) const DRAWS: u64 = 256;
+
+/// A residual in 384 bits that is larger than this part of the largest number on the way to it is not zero: rounding
+/// makes 1e-115 of it.
+pub(super) const FAR_FROM_ZERO: f64 = 1e-60;
+
 /// A point with what claims need besides.
 #[derive(Clone)]
 pub(super) struct Draw<F: Field> {

@@ -3,7 +3,7 @@
 
 use super::case::Case;
 use super::claim::Claim;
-use super::point;
+use super::point::{self, DRAWS};
 use crate::atoms::{Drawn, Elementary, Formal, HALVINGS};
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
 use crate::module::Module;
@@ -25,9 +25,6 @@ const PRIMES: usize = 64;
 /// Points more than there are roots, until roots are thought to exclude each other: one of 2^8 primes is passed over in
 /// vain.
 const MORE_POINTS: usize = 8;
-
-/// Draws at most this often until all roots exist: each root of a number that varies exists at every other point.
-pub(super) const DRAWS: u64 = 256;
 
 /// Claims about a module written down, each as its residuals.
 #[derive(Debug)]

@@ -1,5 +1,5 @@
 //! Functions that close loops, put together by hand from those of two modules: of the mechanism, and of the tree that
-//! is left when its last joint is cut. What they compute is right by construction, and what is wrong with them is found.
+//! is left when its last joint is cut. What they compute is right by construction, and faults in them are found.
 
 use crate::faults::{Fault, apply, faults};
 use crate::layouts::{places, stated};
