@@ -1,7 +1,7 @@
 //! Peaucellier's linkage, reduced to the angle of its crank.
 //!
-//! The crank leads the inner corner C of a rhombus with sides b about its pivot; the two corners U and L beside it are at
-//! the ends of long bars a that turn about the origin, where the circles about the origin and about C meet:
+//! The crank leads the inner corner C of a rhombus with sides b about its pivot; the two corners U and L beside it are
+//! at the ends of long bars a that turn about the origin, where the circles about the origin and about C meet:
 //!
 //! ```text
 //! U, L = x C ± y C⊥       x = ½ (a² − b² + C·C)/C·C       y² = a²/C·C − x²       D = U + L − C

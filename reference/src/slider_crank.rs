@@ -1,15 +1,15 @@
 //! Slider-cranks, plane and spatial, reduced to the angle of the crank.
 //!
-//! The crank turns about an axis n through its pivot, from a zero direction f: its end is A = O + a (f cos θ + n×f sin θ).
-//! The slider's joint S is on a line through the origin along d, at the rod's length l from A: S = d x,
+//! The crank turns about an axis n through its pivot, from a zero direction f: its end is A = O + a (f cos θ + n×f sin
+//! θ). The slider's joint S is on a line through the origin along d, at the rod's length l from A: S = d x,
 //!
 //! ```text
 //! x = d·A + √((d·A)² − A·A + l²)
 //! ```
 //!
-//! The slider does not turn. The rod turns with its direction u from A to S, about it as a universal joint on the slider
-//! has it: the joint's second axis, the rod's y, is across the first one, h, and across u. In a plane with the normal h
-//! that is what revolute joints have it do.
+//! The slider does not turn. The rod turns with its direction u from A to S, about it as a universal joint on the
+//! slider has it: the joint's second axis, the rod's y, is across the first one, h, and across u. In a plane with the
+//! normal h that is what revolute joints have it do.
 
 use crate::extrapolation::State;
 use crate::jet::{Arrow, Jet, Moving, along, fixed, inner, minus, outer, plus, unit};
@@ -108,8 +108,8 @@ struct Pose {
 }
 
 impl SliderCrank {
-    /// Crank and rod of 0.1 and 0.3 m in a plane, the slider on a line through the pivot along x; gravity 9.81 m/s² along
-    /// −y; the crank starts at 40 degrees with 15 rad/s.
+    /// Crank and rod of 0.1 and 0.3 m in a plane, the slider on a line through the pivot along x; gravity 9.81 m/s²
+    /// along −y; the crank starts at 40 degrees with 12 rad/s.
     #[must_use]
     pub fn in_line() -> Self {
         let member = |length: f64, mass, inertia| Member { length, centre: 0.5 * length, mass, inertia };
@@ -124,7 +124,7 @@ impl SliderCrank {
             hinge: [0.0, 0.0, 1.0],
             gravity: [0.0, -9.81, 0.0],
             start: 40f64.to_radians(),
-            rate: 15.0,
+            rate: 12.0,
         }
     }
 

@@ -1,9 +1,9 @@
 //! A Stewart platform in the pose of its plate: position, Euler parameters, velocity, angular velocity.
 //!
-//! Where a leg's cylinder and piston are follows from where its joint on the plate is: u = s/L along the leg, and across
-//! it, as the base's universal joint has it, the second axis y ∝ (0, u_z, −u_y) for a first axis along global x. The
-//! bodies' velocities and accelerations are those of [`Jet`]s in time. With v_k and w_k the velocities of a body when
-//! only the k-th of the plate's six is one, the equations are Kane's:
+//! Where a leg's cylinder and piston are follows from where its joint on the plate is: u = s/L along the leg, and
+//! across it, as the base's universal joint has it, the second axis y ∝ (0, u_z, −u_y) for a first axis along global x.
+//! The bodies' velocities and accelerations are those of [`Jet`]s in time. With v_k and w_k the velocities of a body
+//! when only the k-th of the plate's six is one, the equations are Kane's:
 //!
 //! ```text
 //! M_kj = Σ m v_k·v_j + w_k·J w_j
@@ -107,6 +107,13 @@ struct Motion {
     acceleration: [Precise; 2],
 }
 
+struct Equations {
+    mass: [[DoubleDouble; 6]; 6],
+    force: [DoubleDouble; 6],
+    slopes: [[DoubleDouble; 6]; 6],
+    bias: [DoubleDouble; 6],
+}
+
 /// A leg.
 struct Leg {
     length: Jet,
@@ -155,6 +162,25 @@ impl StewartPlatform {
         };
         let lengths = decimals(self.lengths);
         motion.iter().map(|(t, state)| platform.sample(*t, state, &lengths)).collect()
+    }
+
+    /// What has to act along the legs, N, beside the forces given, so that they have these accelerations (m/s²) at the
+    /// lengths and rates of the start.
+    ///
+    /// # Panics
+    /// As [`solve`](Self::solve).
+    #[must_use]
+    pub fn driver_forces(&self, accelerations: [f64; 6]) -> [f64; 6] {
+        let platform = self.precisely();
+        let Equations { mass, force, slopes, bias } = platform.equations(&Motion::of(&self.start(&platform)));
+        let wanted = decimals(accelerations);
+        let plate = least_squares(&slopes, core::array::from_fn(|leg| wanted[leg] - bias[leg]));
+        let missing = core::array::from_fn(|k| {
+            let needed = (0..6).fold(DoubleDouble::ZERO, |sum, j| sum + mass[k][j] * plate[j]);
+            needed - force[k]
+        });
+        let transposed = core::array::from_fn(|k| slopes.map(|row| row[k]));
+        rounded(least_squares(&transposed, missing))
     }
 
     fn precisely(&self) -> Precisely {
@@ -285,10 +311,10 @@ impl Precisely {
         (columns[0].map(|[length, ..]| length), slopes)
     }
 
-    /// Accelerations of the plate's six velocities.
-    fn accelerations(&self, motion: &Motion) -> [DoubleDouble; 6] {
+    /// M, the right-hand side, and the legs' L_k and their accelerations where the plate's are zero.
+    fn equations(&self, motion: &Motion) -> Equations {
         let partials: [_; 6] = core::array::from_fn(|k| self.bodies(&motion.moving_at(unit_velocity(k))));
-        let (bodies, _) = self.bodies(motion);
+        let (bodies, lengths) = self.bodies(motion);
         let mut mass = [[DoubleDouble::ZERO; 6]; 6];
         let mut force: [DoubleDouble; 6] = core::array::from_fn(|k| {
             let (_, lengths) = &partials[k];
@@ -310,6 +336,13 @@ impl Precisely {
                 }
             }
         }
+        let slopes = core::array::from_fn(|leg| partials.each_ref().map(|(_, lengths)| lengths[leg].0[1]));
+        Equations { mass, force, slopes, bias: lengths.map(|length| length.0[2]) }
+    }
+
+    /// Accelerations of the plate's six velocities.
+    fn accelerations(&self, motion: &Motion) -> [DoubleDouble; 6] {
+        let Equations { mass, force, .. } = self.equations(motion);
         solve(mass, force)
     }
 
@@ -380,6 +413,21 @@ mod tests {
         let [first, last] = samples[..] else { panic!("two samples") };
         assert!((last.energy - last.work - first.energy).abs() < 1e-13, "{first:?} {last:?}");
         assert!(last.work.abs() > 1e-2 && (last.energy - first.energy).abs() > 1e-2, "{last:?}");
+    }
+
+    /// Accelerations that the forces have by themselves need no driver.
+    #[test]
+    fn a_free_platform_needs_no_drivers() {
+        const STEP: f64 = 1e-6;
+        let platform = StewartPlatform::plate_of_ten_kilograms();
+        let [here, after] = platform.solve(&[0.0, STEP])[..] else { panic!("two samples") };
+        let slopes = core::array::from_fn(|leg| (after.lengths[leg][1] - here.lengths[leg][1]) / STEP);
+        for force in platform.driver_forces(slopes) {
+            // A one-sided difference.
+            assert!(force.abs() < 1e-4, "{force}");
+        }
+        let held = platform.driver_forces([0.0; 6]);
+        assert!(held.iter().all(|force| force.abs() > 1e-2), "{held:?}");
     }
 
     /// Cylinder and piston turn alike, and about the axes of the universal joint only.

@@ -1,21 +1,20 @@
-//! Slider-cranks, Peaucellier's linkage, planets and a differential against their references: all with one coordinate, or
-//! with each by itself.
+//! Slider-cranks, Peaucellier's linkage, planets and a differential against their references: all with one coordinate,
+//! or with each by itself.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_reference::{AxisForce, OneAxis, Peaucellier, Pendulum, SliderCrank};
+use gyro_reference::{AxisForce, OneAxis, Peaucellier, Pendulum, SliderCrank, StewartPlatform};
 use gyro_runner::Settings;
-use gyro_sim_suite::{Run, check, coordinate, generated, model, rotation, simulate, times};
+use gyro_sim_suite::{Run, check, coordinate, generated, model, output, rotation, simulate, times};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Over one and the value.
+/// Angles, lengths and their rates, of steps that turn no body by more than a hundredth of a radian.
 const MOTION: f64 = 1e-8;
+const STEP: f64 = 1e-4;
 
-/// Steps of the model file's length over half a second, or to where a linkage folds.
 fn run(page: &str, t_end: f64) -> Run {
-    let model = model(page);
-    let step = model.simulation.step;
-    let settings = Settings { t_end, step, correct_every: Some(5.0 * step), sample_every: t_end / 10.0 };
-    simulate(&generated(page), &model, &settings)
+    let settings =
+        Settings { t_end, step: STEP, correct_every: Some(5.0 * STEP), sample_every: t_end / 10.0 };
+    simulate(&generated(page), &model(page), &settings)
 }
 
 /// An angle within half a turn of zero.
@@ -101,6 +100,40 @@ fn the_differential_turns_as_case_and_pinion_by_themselves() {
         ((0..4).flat_map(|joint| <[f64; 2]>::from(coordinate(sample, joint))).collect(), expected)
     });
     assert!(reference[10].rate < 24.0, "friction brakes it");
+}
+
+/// The platform of the model file, as long as its legs are driven at a time; and how these lengths accelerate.
+fn driven(t: f64) -> (StewartPlatform, [f64; 6]) {
+    let middle = [0.34, 0.35, 0.335, 0.345, 0.33, 0.355];
+    let leg = |k: usize| {
+        let (size, speed) = (0.01 * (k % 3 + 1) as f64, (3 + k % 2) as f64);
+        let (sin, cos) = (speed * t + 0.5 * k as f64).sin_cos();
+        [0.6 + middle[k] + size * sin, size * speed * cos, -size * speed * speed * sin]
+    };
+    let of = |order: usize| std::array::from_fn(|k| leg(k)[order]);
+    let platform = StewartPlatform::plate_of_ten_kilograms();
+    (StewartPlatform { lengths: of(0), rates: of(1), forces: [0.0; 6], ..platform }, of(2))
+}
+
+#[test]
+fn the_driven_platform_takes_the_forces_of_its_reference() {
+    let run = run("driven-stewart", 0.1);
+    let mechanism = generated("driven-stewart");
+    check("driven Stewart platform", &run, MOTION, |_, sample| {
+        let (platform, accelerations) = driven(sample.t);
+        let (expected, forces) = (platform.solve(&[0.0])[0], platform.driver_forces(accelerations));
+        let plate = &sample.bodies[0];
+        let [x, y, z, e0, e1, e2, e3] = plate.pose;
+        let found = [rotation([e0, e1, e2, e3]).concat(), vec![x, y, z], plate.velocity.to_vec()].concat();
+        let asked = ["force1", "force5"].map(|name| output(&mechanism, sample, name)).concat();
+        let of_plate = expected.plate;
+        let rates = [of_plate.velocity, of_plate.angular_velocity].concat();
+        (
+            [found, asked].concat(),
+            [of_plate.rotation.concat(), of_plate.position.to_vec(), rates, vec![forces[0], forces[4]]]
+                .concat(),
+        )
+    });
 }
 
 #[test]

@@ -36,6 +36,7 @@ pub fn generated(page: &str) -> Engine {
         "driven-four-bar" => Engine::new(own::driven_four_bar::DrivenFourBar::default()),
         "driven-gyroscope" => Engine::of_tree(shipped::driven_gyroscope::DrivenGyroscope::default()),
         "driven-shaft" => Engine::new(own::driven_shaft::DrivenShaft::default()),
+        "driven-stewart" => Engine::new(own::driven_stewart::DrivenStewart::default()),
         "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
         "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
         "four-bar-revolute" => Engine::new(shipped::four_bar_revolute::FourBarRevolute::default()),

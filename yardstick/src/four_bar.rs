@@ -8,8 +8,8 @@
 //! w = ½ (r² + l² − b²)     r² p = w L + σ L⊥     σ² = l² r² − w²     σ = p ∧ q     p·q = l² − w
 //! ```
 //!
-//! C = a d cos θ and S = a d sin θ are all that changes in r², w, and in the crank's A'·L = −S and A'·L⊥ = C − a², where
-//! ' = d/dθ. So coupler and rocker turn at κ₂ and κ₃ per unit of the crank's rate, with x = S/σ and u = 1/r²:
+//! C = a d cos θ and S = a d sin θ are all that changes in r², w, and in the crank's A'·L = −S and A'·L⊥ = C − a²,
+//! where ' = d/dθ. So coupler and rocker turn at κ₂ and κ₃ per unit of the crank's rate, with x = S/σ and u = 1/r²:
 //!
 //! ```text
 //! κ₃ = u (x w + a² − C)     κ₃' = u (x' w + S (1 − κ₂ − κ₃))
@@ -17,7 +17,8 @@
 //! ```
 //!
 //! The coupler's mass counts as two point masses in its joints, which go round with crank and rocker, and a moment of
-//! inertia (which may be negative) that is missing: I₂ = J₂ − m₂ ε (1 − ε) l² for a mass centre at ε of its length. Then
+//! inertia (which may be negative) that is missing: I₂ = J₂ − m₂ ε (1 − ε) l² for a mass centre at ε of its length.
+//! Then
 //!
 //! ```text
 //! M  = I₁ + I₂ κ₂² + I₃ κ₃²      V' = G₁ C + G₃ κ₃ d q_x      r² d q_x = (w − r²) (d² − C) + σ S

@@ -1,16 +1,16 @@
 //! The slider-crank of `models/slider-crank.toml`, derived by hand and reduced to its crank.
 //!
-//! Crank a and connecting rod l, the slider on the line through the crank's pivot; the crank stands at θ. With r = a sin θ
-//! and y = a cos θ, the rod reaches h = √(l² − r²) along the line and turns at −κ per unit of the crank's rate, and the
-//! slider moves at −v:
+//! Crank a and connecting rod l, the slider on the line through the crank's pivot; the crank stands at θ. With r = a
+//! sin θ and y = a cos θ, the rod reaches h = √(l² − r²) along the line and turns at −κ per unit of the crank's rate,
+//! and the slider moves at −v:
 //!
 //! ```text
 //! κ = y/h     κ' = (κ² − 1) r/h     v = r (1 + κ)     v' = y (1 + κ) + r κ'          ' = d/dθ
 //! ```
 //!
 //! The rod's mass counts as two point masses in its joints, which go with the crank's end and with the slider, and a
-//! moment of inertia (which may be negative) that is missing, as in the [four-bar linkage](crate::FourBar). Only what goes
-//! with the crank has weight that does work:
+//! moment of inertia (which may be negative) that is missing, as in the [four-bar linkage](crate::FourBar). Only what
+//! goes with the crank has weight that does work:
 //!
 //! ```text
 //! M  = I₁ + I₂ κ² + m₃ v²      θ̈ = −(G y + (I₂ κ κ' + m₃ v v') θ̇²) / M
@@ -49,9 +49,9 @@ impl<T: Number> SliderCrank<T> {
         }
     }
 
-    /// The crank at 40 degrees, with 15 rad/s.
+    /// The crank at 40 degrees, with 12 rad/s.
     pub fn start() -> [T; 2] {
-        [40f64.to_radians(), 15.0].map(T::constant)
+        [40f64.to_radians(), 12.0].map(T::constant)
     }
 
     /// θ̈.

@@ -1,8 +1,8 @@
 //! The Stewart platform of `models/stewart-platform.toml`, derived by hand in the pose of its plate.
 //!
 //! Everything is resolved in the plate's frame. For a leg, s leads from its joint on the base to that on the plate, at
-//! b = (X, Y, 0) from the mass centre; L = |s| and u = s/L. Cylinder and piston, slender and each with its mass centre on
-//! the leg, need at the plate's joint the force
+//! b = (X, Y, 0) from the mass centre; L = |s| and u = s/L. Cylinder and piston, slender and each with its mass centre
+//! on the leg, need at the plate's joint the force
 //!
 //! ```text
 //! F = M s̈ + h                      M = j 1 + (m − j) u uᵀ + J w wᵀ          j = I/L²    I = I₀ + m e²    e = L − c
@@ -10,10 +10,10 @@
 //! k = 2 L̇ (m e − I/L) / L²         γ = g (m' a − m c) / L
 //! ```
 //!
-//! with the piston's mass m, its mass centre c below the plate's joint, the cylinder's mass m' and its mass centre a above
-//! the base's joint, I₀ the moments of inertia across the leg with the cylinder's about its joint, and f the actuator's
-//! force. z is the global vertical. J is the moment of inertia about the leg, at which the universal joint with its first
-//! axis along global x has it turn at ω = w·ṡ: with R² = s·s − (x·s)²,
+//! with the piston's mass m, its mass centre c below the plate's joint, the cylinder's mass m' and its mass centre a
+//! above the base's joint, I₀ the moments of inertia across the leg with the cylinder's about its joint, and f the
+//! actuator's force. z is the global vertical. J is the moment of inertia about the leg, at which the universal joint
+//! with its first axis along global x has it turn at ω = w·ṡ: with R² = s·s − (x·s)²,
 //!
 //! ```text
 //! φ̇ = x·(s×ṡ)/R²     w = (x·u) x×s/R²     ω = (x·u) φ̇     ẇ·ṡ = φ̇ ((x·ṡ − L̇ x·u)/L − 2 (x·u) (s·ṡ − x·s x·ṡ)/R²)
@@ -21,9 +21,9 @@
 //!
 //! and w, as a field, has the curl −s/L³: that of cos θ dφ on the sphere, which the last term of h comes from.
 //!
-//! The joints' accelerations s̈ = a + X S₁ + Y S₂ have S₁ and S₂ the first two columns of ω̇× + ω×ω×. So of the legs' mass
-//! matrices and forces only sums are needed, with weights 1, X, Y, X², XY and Y². As a pair of legs has the same X and
-//! opposite Y, sums and differences of two legs come first.
+//! The joints' accelerations s̈ = a + X S₁ + Y S₂ have S₁ and S₂ the first two columns of ω̇× + ω×ω×. So of the legs'
+//! mass matrices and forces only sums are needed, with weights 1, X, Y, X², XY and Y². As a pair of legs has the same X
+//! and opposite Y, sums and differences of two legs come first.
 
 use crate::Number;
 use gyro_sim::Ode;
@@ -135,8 +135,8 @@ impl<T: Number> Stewart<T> {
         }
     }
 
-    /// Where the legs have the lengths and rates of the model file: r, p, and velocity and angular velocity in the plate's
-    /// frame.
+    /// Where the legs have the lengths and rates of the model file: r, p, and velocity and angular velocity in the
+    /// plate's frame.
     pub fn start() -> [T; 13] {
         START.map(T::constant)
     }
