@@ -102,7 +102,9 @@ fn costs<D, C, const N: usize>(
         .map(|(state, _)| state)
         .collect();
     let [overlapped, waiting] = evaluation(&floor, &states).map(|seconds| 1e9 * seconds);
-    println!("{name}: {cost:?}, {overlapped:.1} ns an evaluation, {waiting:.1} ns where each waits for the last");
+    println!(
+        "{name}: {cost:?}, {overlapped:.1} ns an evaluation, {waiting:.1} ns where each waits for the last"
+    );
 }
 
 /// Errors of the first coordinate, rad, which is that of the reference.

@@ -344,11 +344,11 @@ fn solve<T: Number, const N: usize>(mut a: [[T; N]; N], mut b: [T; N]) -> [T; N]
     let mut inverse = [one; N];
     for pivot in 0..N {
         inverse[pivot] = one / a[pivot][pivot];
+        let below: [T; N] = core::array::from_fn(|row| a[row][pivot]);
         for row in pivot + 1..N {
-            let factor = a[row][pivot] * inverse[pivot];
-            for column in pivot + 1..=row {
-                // What is left of a column below its pivot has not been divided by it yet.
-                a[row][column] = a[row][column] - factor * a[column][pivot];
+            let factor = below[row] * inverse[pivot];
+            for (entry, across) in a[row].iter_mut().zip(below).take(row + 1).skip(pivot + 1) {
+                *entry = *entry - factor * across;
             }
             b[row] = b[row] - factor * b[pivot];
         }
