@@ -15,6 +15,9 @@
 //! | [`HeavyTop`] | a body on a spherical joint |
 //! | [`HookePendulum`] | a body on a universal joint |
 //! | [`FourBar`] | a planar four-bar linkage, reduced to its crank |
+//! | [`SliderCrank`] | plane and spatial slider-cranks, reduced to the crank |
+//! | [`Peaucellier`] | the linkage that draws a straight line, reduced to its crank |
+//! | [`StewartPlatform`] | a plate on six legs that forces act along |
 //! | [`OneAxis`] | a rotor or slider with springs, friction, stops and a sampled input |
 //! | [`Pendulum`] | a compound pendulum, its bearing's force, and the parallelogram linkage |
 //! | [`Slider`], [`PlanarBlock`], [`FallingSpindle`], [`FallingScrew`], [`GearedDiscs`] | prismatic, planar, cylindrical and screw joint and a gear, in closed form |
@@ -56,16 +59,21 @@ mod four_bar;
 mod gyroscope;
 mod heavy_top;
 mod hooke;
+mod jet;
 mod link;
 pub mod moving_base;
 mod newton_euler;
 mod one_axis;
+mod one_freedom;
+mod peaucellier;
 mod pendulum;
 mod real;
 mod reduced;
 mod rotation;
 mod scene;
+mod slider_crank;
 mod solution;
+mod stewart;
 mod tabulated;
 mod tether;
 mod trajectory;
@@ -86,11 +94,14 @@ pub use heavy_top::{HeavyTop, TopSample};
 pub use hooke::{HookePendulum, HookeSample};
 pub use link::{Freedom, Link};
 pub use one_axis::{AxisForce, AxisSample, OneAxis, SampledInput, Side};
+pub use peaucellier::{Peaucellier, PeaucellierSample};
 pub use pendulum::{Pendulum, PendulumSample};
 pub use real::Real;
 pub use reduced::ReducedGyroscope;
 pub use scene::{JointRow, Orientation, SceneReference, scene};
+pub use slider_crank::{Member, SliderCrank, SliderCrankSample};
 pub use solution::Sample;
+pub use stewart::{LegPart, StewartPlatform, StewartSample};
 pub use tabulated::{Scene, tabulated};
 pub use tether::{Tether, TetherSample};
 pub use trajectory::SolveError;

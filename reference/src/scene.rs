@@ -3,9 +3,11 @@
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use crate::moving_base::{rolling, rolling_and_pitching, rolling_fast};
+use crate::vector::{dot, sub};
 use crate::{
-    AxisForce, Bar, Chain, FourBar, FourBarSample, Gyroscope, HeavyTop, OneAxis, Pendulum, PendulumSample,
-    ReducedGyroscope, Sample, TopSample,
+    AxisForce, Bar, BodyState, Chain, FourBar, FourBarSample, Gyroscope, HeavyTop, OneAxis, Pendulum,
+    PendulumSample, ReducedGyroscope, Sample, SliderCrank, SliderCrankSample, StewartPlatform, StewartSample,
+    TopSample,
 };
 
 /// Joint coordinates of a mechanism at one time.
@@ -46,6 +48,9 @@ enum Motion {
     Axis(OneAxis),
     Pendulum(Pendulum),
     FourBar(FourBar, Joints),
+    /// In a plane.
+    SliderCrank(SliderCrank),
+    Stewart(Box<StewartPlatform>),
     /// A parallelogram as a pendulum, its crank's angle counted from the horizontal.
     Parallelogram(Pendulum),
 }
@@ -80,7 +85,9 @@ pub fn scene(model_name: &str) -> Option<SceneReference> {
         "gyroscope-long" => Motion::Periodic(ReducedGyroscope::free_nutation()),
         "heavy-top" => Motion::Top(steady_top()),
         "pitching-gyroscope" => Motion::Carried(Box::new(rolling_and_pitching())),
+        "slider-crank" => Motion::SliderCrank(SliderCrank::in_line()),
         "spinning-top" => Motion::Top(HeavyTop::benchmark()),
+        "stewart-platform" => Motion::Stewart(Box::new(StewartPlatform::plate_of_ten_kilograms())),
         "torsion" => Motion::Axis(OneAxis::torsion()),
         name => Motion::Reduced(extreme(name)?),
     };
@@ -123,6 +130,8 @@ impl SceneReference {
             Motion::FourBar(linkage, joints) => {
                 linkage.solve(times).iter().map(|sample| of_four_bar(sample, *joints)).collect()
             }
+            Motion::SliderCrank(mechanism) => mechanism.solve(times).iter().map(of_slider_crank).collect(),
+            Motion::Stewart(platform) => platform.solve(times).iter().map(of_stewart).collect(),
             Motion::Parallelogram(pendulum) => pendulum.solve(times).iter().map(of_parallelogram).collect(),
         }
     }
@@ -153,6 +162,40 @@ fn of_four_bar(sample: &FourBarSample, joints: Joints) -> JointRow {
             JointRow { orientations: vec![about_z(knee, knee_rate)], ..scalars }
         }
     }
+}
+
+/// Crank, crank pin, wrist pin, rail; the rod leans by less than a right angle.
+fn of_slider_crank(sample: &SliderCrankSample) -> JointRow {
+    let [[cos, ..], [sin, ..], _] = sample.rod.rotation;
+    let (lean, lean_rate) = (sin.atan2(cos), sample.rod.angular_velocity[2]);
+    JointRow::of_scalars(
+        sample.t,
+        &[sample.angle, lean - sample.angle, -lean, sample.displacement],
+        &[sample.rate, lean_rate - sample.rate, -lean_rate, sample.displacement_rate],
+    )
+}
+
+/// Of each leg: universal joint on the base, how far the piston is out, spherical joint on the plate.
+fn of_stewart(sample: &StewartSample) -> JointRow {
+    let of_leg = |part: usize| {
+        let legs = sample.hinges.iter().zip(&sample.lengths);
+        legs.flat_map(move |([first, second], length)| [first[part], second[part], length[part]])
+    };
+    // Both mass centres are 0.3 m from the leg's ends.
+    let beside = |(k, x): (usize, f64)| if k % 3 == 2 { x - 0.6 } else { x };
+    let positions: Vec<f64> = of_leg(0).enumerate().map(beside).collect();
+    let rates: Vec<f64> = of_leg(1).collect();
+    let orientations = sample.pistons.iter().map(|piston| relative(piston, &sample.plate)).collect();
+    JointRow { orientations, ..JointRow::of_scalars(sample.t, &positions, &rates) }
+}
+
+/// How the second body is turned and turns in the first.
+fn relative(first: &BodyState, second: &BodyState) -> Orientation {
+    let columns = |body: &BodyState| [0, 1, 2].map(|k| body.rotation.map(|row| row[k]));
+    let (a, b) = (columns(first), columns(second));
+    let rotation = a.map(|x| b.map(|y| dot(x, y)));
+    let seen = [0, 1, 2].map(|k| dot(rotation.map(|row| row[k]), first.angular_velocity));
+    Orientation { rotation, angular_velocity: sub(second.angular_velocity, seen) }
 }
 
 /// The coupler keeps its direction: crank and rocker turn against it alike.

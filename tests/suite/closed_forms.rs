@@ -160,8 +160,13 @@ const DRIFT_OF_SINGULAR: f64 = 1e-7;
 const UP_TO_POSE: [&str; 2] = ["peaucellier", "two-four-bars"];
 const BEFORE_POSE: f64 = 0.2;
 
+/// Thirteen bodies, each of whose steps costs a hundred of the others'.
+const LARGE: [&str; 2] = ["stewart-platform", "driven-stewart"];
+const OF_LARGE: f64 = 0.1;
+
 /// The paper's second; where a model file asks for shorter steps, as many of those; through the pose in line, the model
-/// file's own, as there shorter ones lose more.
+/// file's own,
+/// as there shorter ones lose more.
 fn settings(page: &str, model: &Model) -> Settings {
     let asked = &model.simulation;
     if page == "four-bar-in-line" {
@@ -169,6 +174,9 @@ fn settings(page: &str, model: &Model) -> Settings {
     }
     if UP_TO_POSE.contains(&page) {
         return Settings { t_end: BEFORE_POSE, ..PAPER };
+    }
+    if LARGE.contains(&page) {
+        return Settings { t_end: OF_LARGE, ..PAPER };
     }
     if asked.step >= PAPER.step {
         return PAPER;

@@ -20,6 +20,7 @@ mod joint_kinds;
 mod joint_readings;
 mod joint_space;
 mod lanes;
+mod linkages;
 mod long_run;
 mod moving_base;
 mod no_std_probe;

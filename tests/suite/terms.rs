@@ -16,6 +16,9 @@ use nalgebra::{DMatrix, Matrix3, Matrix6};
 const STATES: usize = 1000;
 const STATES_OF_TEST_PAGES: usize = 200;
 
+/// No more than this over the square of the number of bodies: linear systems cost as much as its cube.
+const STATES_OF_MANY_BODIES: usize = 10_000;
+
 /// Linear systems, the dense one above all, are solved at every fifth.
 const SOLVED_EVERY: usize = 5;
 
@@ -285,7 +288,9 @@ fn compare(page: &str, mechanism: &Engine) {
     let (mut random, mut to_careful, mut to_dense) = (Random::new(7), Worst::default(), Worst::default());
     let mut most_lost = 0.0_f64;
     let is_shipped = fixture_folders()[0].pages().iter().any(|shipped| shipped == page);
-    for index in 0..if is_shipped { STATES } else { STATES_OF_TEST_PAGES } {
+    let n_states = if is_shipped { STATES } else { STATES_OF_TEST_PAGES };
+    let n_bodies = model.coordinate_bodies().len();
+    for index in 0..n_states.min(STATES_OF_MANY_BODIES / (n_bodies * n_bodies)) {
         let (values, condition) = drawn(mechanism, &model, &mut random);
         let uneven = UNEVEN.iter().find(|(uneven, _)| *uneven == page);
         let lost = uneven.map_or((ROUNDINGS * f64::EPSILON * condition).min(LOST), |(_, lost)| *lost);

@@ -23,7 +23,7 @@ fn rates(stem: &str) -> Vec<f64> {
 #[test]
 fn every_page_is_named_after_its_file() {
     let pages = crate::support::pages("models");
-    assert!(pages.len() >= 28);
+    assert!(pages.len() >= 30);
     for (path, _) in pages {
         let stem = path.file_stem().and_then(|s| s.to_str()).expect("a name");
         assert_eq!(model(stem).name, stem.replace('-', "_"));
