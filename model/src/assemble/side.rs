@@ -2,13 +2,14 @@
 //!
 //! Where as many equations as unknowns place a mechanism, the determinant of their Jacobian changes its sign where two
 //! of its branches meet: it is one sign for each of the two ways to close a triangle. With more unknowns than equations
-//! the Jacobian's rows span a subspace, whose orientation is carried along a path by `det(J_k J_{k+1}ᵀ)`.
+//! the Jacobian's rows span a subspace, whose orientation is carried along a path by `det(J_k J_{k+1}ᵀ)`. Of equations
+//! that depend on each other where they are satisfied, those combinations count that do not.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::projection::{Configuration, System};
 
-/// Part of a row that is not in the span of the others, below which it depends on them.
+/// Singular values below this part of the largest one are zero: the equations depend on each other.
 const INDEPENDENT: f64 = 1e-7;
 
 /// Rotation of a body between two poses of the path, rad: rows of small steps are at acute angles.
@@ -22,8 +23,8 @@ const PARTS: usize = 40;
 
 /// Whether two configurations are on one side, the second one satisfying the equations.
 pub(super) fn is_same(system: &System<'_>, guess: &Configuration, closed: &Configuration) -> bool {
-    let rows = independent_rows(&system.jacobian(closed));
-    let space = |at: &Configuration| row_space(&system.jacobian(at).select_rows(&rows));
+    let combinations = combinations(system.jacobian(closed));
+    let space = |at: &Configuration| row_space(&combinations.tr_mul(&system.jacobian(at)));
     let far = system.scaled_difference(closed, guess).amax();
     let count = (far / STEP).ceil().clamp(1.0, 100.0);
     let mut sign = 1.0;
@@ -61,20 +62,11 @@ fn row_space(rows: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
     is_regular.then(|| (qr.q(), diagonal.iter().map(|x| x.signum()).product()))
 }
 
-/// The first rows that are independent of the ones before them.
-fn independent_rows(jacobian: &DMatrix<f64>) -> Vec<usize> {
-    let mut basis: Vec<DVector<f64>> = Vec::new();
-    let mut rows = Vec::new();
-    for row in 0..jacobian.nrows() {
-        let mut left = jacobian.row(row).transpose();
-        let size = left.norm();
-        for _ in 0..2 {
-            basis.iter().for_each(|unit| left -= unit * unit.dot(&left));
-        }
-        if left.norm() > INDEPENDENT * size {
-            basis.push(left.normalize());
-            rows.push(row);
-        }
-    }
-    rows
+/// Orthonormal combinations of the equations that are independent where they are satisfied, in columns.
+fn combinations(jacobian: DMatrix<f64>) -> DMatrix<f64> {
+    let svd = jacobian.svd(true, false);
+    let least = INDEPENDENT * svd.singular_values.amax();
+    let is_independent = |k: &usize| svd.singular_values[*k] > least;
+    let independent: Vec<usize> = (0..svd.singular_values.len()).filter(is_independent).collect();
+    svd.u.expect("asked for").select_columns(&independent)
 }
