@@ -251,8 +251,19 @@ pub enum RowOwner {
 pub struct RedundantRow {
     /// The row that was dropped.
     pub row: Row,
+    /// Along which axes its owner's point rows are, those that stay among them: see [`Model::point_axes`].
+    pub axes: PointAxes,
     /// Owners of the rows that it depends on, its own among them if they are: their multipliers are not unique.
     pub shared_with: Vec<RowOwner>,
+}
+
+/// The axes along which coincident points are compared, paper eq. (7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointAxes {
+    /// The global ones.
+    Global,
+    /// Those of the joint frame (f, g, h) on the first body, with which they turn.
+    FirstBody,
 }
 
 /// Unit of a constraint row.

@@ -1,8 +1,8 @@
 //! What can be asked of a model: units, rows, sizes, and the model with other parameters.
 
 use crate::{
-    CoordinateKind, Force, ForceKind, Joint, JointCoordinate, JointKind, Model, Number, Rational, RedundantRow, Row,
-    RowOwner, RowUnit, Support, analyse, to_f64,
+    CoordinateKind, Force, ForceKind, Joint, JointCoordinate, JointKind, Model, Number, PointAxes, Rational,
+    RedundantRow, Row, RowOwner, RowUnit, Support, analyse, to_f64,
 };
 use std::ops::Range;
 
@@ -36,8 +36,21 @@ impl JointKind {
         6 - self.row_units().len()
     }
 
+    /// Whether the joint's first three rows say that its points coincide, paper eq. (7).
+    pub fn joins_points(self) -> bool {
+        matches!(self, Self::Revolute | Self::Spherical | Self::Fixed | Self::Universal)
+    }
+
     /// What the joint's rows are, in their order, as messages write them.
-    pub fn row_symbols(self) -> &'static [&'static str] {
+    pub fn row_symbols(self, axes: PointAxes) -> Vec<&'static str> {
+        let mut symbols = self.global_row_symbols().to_vec();
+        if self.joins_points() && axes == PointAxes::FirstBody {
+            symbols[..3].copy_from_slice(&["f_i.d", "g_i.d", "h_i.d"]);
+        }
+        symbols
+    }
+
+    fn global_row_symbols(self) -> &'static [&'static str] {
         match self {
             Self::Revolute => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j"],
             Self::Spherical => &["d x", "d y", "d z"],
@@ -111,7 +124,7 @@ impl Model {
     /// A constrained body has three position rows `r - r0` and three orientation rows, the vector part of `p0* p`. With
     /// (f, g, h) the joint frame on a body (unit zero direction, `g = h × f`, unit axis) and `d` from the first body's
     /// joint point to the second's, both in the global frame, joints have
-    /// - revolute, spherical, fixed, universal: `d` (three components, eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute,
+    /// - revolute, spherical, fixed, universal: `d` (three components along [`Model::point_axes`], eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute,
     ///   fixed; eqs. (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
     /// - cylindrical, prismatic, screw: `f_i·d`, `g_i·d`; `h_i·d − lead · angle` (screw); `f_i·h_j`, `g_i·h_j`;
     ///   `f_i·g_j` (prismatic);
@@ -123,6 +136,13 @@ impl Model {
     pub fn rows(&self) -> Vec<Row> {
         let all = self.all_rows();
         all.into_iter().filter(|row| !self.redundant.iter().any(|dropped| dropped.row == *row)).collect()
+    }
+
+    /// Along which axes the rows of a joint compare its points: global ones, unless the joint loses some of these rows
+    /// and which ones depends on how its bodies have turned in space, but not as its first body sees it.
+    pub fn point_axes(&self, joint: usize) -> PointAxes {
+        let own = |dropped: &&RedundantRow| dropped.row.owner == RowOwner::Joint(joint);
+        self.redundant.iter().find(own).map_or(PointAxes::Global, |dropped| dropped.axes)
     }
 
     /// The same with the redundant rows.
@@ -252,7 +272,7 @@ impl Model {
     /// The rows that are dropped shape the formulas: other parameters must leave them as they are.
     fn keeps_redundant_rows(&self) -> Result<(), String> {
         let found = analyse(self).map_err(|error| error.to_string())?;
-        let rows = |redundant: &[RedundantRow]| redundant.iter().map(|r| r.row).collect::<Vec<Row>>();
+        let rows = |redundant: &[RedundantRow]| redundant.iter().map(|r| (r.row, r.axes)).collect::<Vec<_>>();
         if rows(&found.redundant) == rows(&self.redundant) {
             return Ok(());
         }

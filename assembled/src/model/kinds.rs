@@ -1,6 +1,6 @@
 //! Which of the textbook's constraint primitives each kind of joint is made of.
 
-use gyro_model::JointKind;
+use gyro_model::{JointKind, PointAxes};
 
 /// A direction of a joint frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,16 @@ pub(crate) enum Primitive {
     Dot2(Axis),
     /// `½ (d·d / l − l)` with the joint's length l.
     Distance,
+}
+
+impl Primitive {
+    /// The primitive with which a row compares points along these axes; any other row stays what it is.
+    pub(crate) fn along(self, axes: PointAxes) -> Self {
+        match (self, axes) {
+            (Self::Point(k), PointAxes::FirstBody) => Self::Dot2([Axis::F, Axis::G, Axis::H][k]),
+            _ => self,
+        }
+    }
 }
 
 /// The rows of a kind of joint, in the order of [`gyro_model::Model::rows`]. To the displacement `h_i·d` of a screw

@@ -43,7 +43,7 @@ impl<T: Number> Row<T> {
                 Self::Constrained { body: before.filter(held).count(), component: row.index }
             }
             RowOwner::Joint(joint) => {
-                let primitive = primitives(joints[joint].kind)[row.index];
+                let primitive = primitives(joints[joint].kind)[row.index].along(model.point_axes(joint));
                 let mut terms =
                     vec![Term { factor: T::one(), joint, measure: Measure::Primitive(primitive) }];
                 if joints[joint].kind == JointKind::Screw && primitive == Primitive::Dot2(Axis::H) {

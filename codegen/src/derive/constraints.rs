@@ -6,7 +6,7 @@ use crate::derive::joint_coordinate;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::Vec3;
-use gyro_model::{Coupler, JointCoordinate, JointKind, Support};
+use gyro_model::{Coupler, JointCoordinate, JointKind, PointAxes, Support};
 
 /// The rows of `Model::rows`, in their order.
 pub fn rows(system: &mut System) -> Vec<ExprId> {
@@ -37,10 +37,10 @@ fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
     let (i, j) = (&joint.first, &joint.second);
     let aligned = [(i.f, j.h), (i.g, j.h), (i.f, j.g)];
     let (mut rows, dots) = match joint.kind {
-        JointKind::Revolute => (coincident(system, &joint), &aligned[..2]),
-        JointKind::Spherical => (coincident(system, &joint), &aligned[..0]),
-        JointKind::Fixed => (coincident(system, &joint), &aligned[..]),
-        JointKind::Universal => (coincident(system, &joint), &[(i.h, j.h)][..]),
+        JointKind::Revolute => (coincident(system, index), &aligned[..2]),
+        JointKind::Spherical => (coincident(system, index), &aligned[..0]),
+        JointKind::Fixed => (coincident(system, index), &aligned[..]),
+        JointKind::Universal => (coincident(system, index), &[(i.h, j.h)][..]),
         JointKind::Cylindrical => (dot2(system, &joint, &[i.f, i.g]), &aligned[..2]),
         JointKind::Prismatic => (dot2(system, &joint, &[i.f, i.g]), &aligned[..]),
         JointKind::Planar => (dot2(system, &joint, &[i.h]), &aligned[..2]),
@@ -86,9 +86,13 @@ fn held(system: &mut System, moving_body: usize) -> Vec<ExprId> {
     position.into_iter().chain(orientation).collect()
 }
 
-/// Points that coincide: eq. (7).
-fn coincident(system: &mut System, joint: &JointFrames) -> Vec<ExprId> {
-    joint_coordinate::between_points(system, joint).to_vec()
+/// Points that coincide: eq. (7), along global axes or along those of the first body's joint frame.
+fn coincident(system: &mut System, index: usize) -> Vec<ExprId> {
+    let joint = system.joints[index];
+    match system.model.point_axes(index) {
+        PointAxes::Global => joint_coordinate::between_points(system, &joint).to_vec(),
+        PointAxes::FirstBody => dot2(system, &joint, &[joint.first.f, joint.first.g, joint.first.h]),
+    }
 }
 
 /// `(A_i u')·d` for directions of the first body: Haug (1989), section 9.4, dot-2.

@@ -48,12 +48,12 @@ impl Model {
     }
 
     /// What each row of an owner is: see [`Model::rows`].
-    fn row_symbols(&self, owner: RowOwner) -> &'static [&'static str] {
+    fn row_symbols(&self, owner: RowOwner) -> Vec<&'static str> {
         match owner {
-            RowOwner::Body(_) => &["r x", "r y", "r z", "p x", "p y", "p z"],
-            RowOwner::Coupler(_) => &["second - ratio * first - offset"],
-            RowOwner::Driver(_) => &["coordinate - motion"],
-            RowOwner::Joint(index) => self.joints[index].kind.row_symbols(),
+            RowOwner::Body(_) => vec!["r x", "r y", "r z", "p x", "p y", "p z"],
+            RowOwner::Coupler(_) => vec!["second - ratio * first - offset"],
+            RowOwner::Driver(_) => vec!["coordinate - motion"],
+            RowOwner::Joint(index) => self.joints[index].kind.row_symbols(self.point_axes(index)),
         }
     }
 }

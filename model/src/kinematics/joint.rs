@@ -2,7 +2,7 @@
 
 use super::exact::{cross, exact};
 use super::geometry::{Pose, Scalar, angle, dot};
-use crate::{CoordinateKind, Joint, JointEnd, JointKind, Model, Quaternion, Vector, unit_vector};
+use crate::{CoordinateKind, JointEnd, JointKind, Model, PointAxes, Quaternion, Vector, unit_vector};
 
 /// A joint in `f64`.
 #[derive(Clone, Debug)]
@@ -10,6 +10,8 @@ pub(crate) struct JointGeometry {
     pub(crate) kind: JointKind,
     pub(crate) first: EndGeometry,
     pub(crate) second: EndGeometry,
+    /// Along which the points are compared, if they coincide.
+    pub(crate) axes: PointAxes,
     /// Screw: advance, m/rad.
     pub(crate) lead: f64,
     /// Rod: length, m.
@@ -50,11 +52,13 @@ impl EndGeometry {
 }
 
 impl JointGeometry {
-    pub(crate) fn of(model: &Model, joint: &Joint) -> Self {
+    pub(crate) fn of(model: &Model, index: usize) -> Self {
+        let joint = &model.joints[index];
         Self {
             kind: joint.kind,
             first: EndGeometry::of(model, &joint.first),
             second: EndGeometry::of(model, &joint.second),
+            axes: model.point_axes(index),
             lead: model.value(&joint.lead),
             length: model.value(&joint.length),
         }
@@ -89,7 +93,10 @@ impl<D: Scalar> Posed<'_, D> {
     pub(crate) fn rows(&self, near: f64) -> Vec<D> {
         let ([fi, gi, hi], [_, gj, hj]) = (self.first, self.second);
         let d = self.d;
-        let coincident = d.to_vec();
+        let coincident = match self.joint.axes {
+            PointAxes::Global => d.to_vec(),
+            PointAxes::FirstBody => self.first.map(|axis| dot(axis, d)).to_vec(),
+        };
         let parallel = [dot(fi, hj), dot(gi, hj)];
         let on_axis = [dot(fi, d), dot(gi, d)];
         match self.joint.kind {

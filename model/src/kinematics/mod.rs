@@ -102,7 +102,7 @@ impl Kinematics {
         let time = Dual64::from_re(t).derivative();
         Self {
             rows: model.all_rows(),
-            joints: model.joints.iter().map(|joint| JointGeometry::of(model, joint)).collect(),
+            joints: (0..model.joints.len()).map(|joint| JointGeometry::of(model, joint)).collect(),
             couplers: model.couplers.iter().map(|coupler| CouplerNumbers::of(model, coupler)).collect(),
             drivers: model
                 .drivers

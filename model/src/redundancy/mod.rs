@@ -1,13 +1,15 @@
 //! Rows of Φ that say what others say already: found by rank, at several poses of the mechanism.
 
+mod axes;
 mod sample;
 mod select;
 
 use crate::assemble::projection::{Configuration, Scales, System};
 use crate::kinematics::{Equation, Kinematics};
-use crate::{AssemblyError, Model, RedundantRow, Row, RowOwner, Start, Support, Tree};
+use crate::{AssemblyError, Model, PointAxes, RedundantRow, Row, RowOwner, Start, Support, Tree};
+use axes::Poses;
 use sample::{Samples, samples};
-use select::{dependencies, select};
+use select::{Selection, dependencies, generic, select};
 
 /// What the rank of the constraint rows says about a mechanism.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +40,7 @@ impl Model {
 /// satisfy the joints and couplers (drivers released), and the largest counts: a singular start does not fool it. Rows
 /// are kept in this order as long as they are independent: constrained bodies, joints of the trees, couplers, joints
 /// that close loops, drivers; so loop-closing joints lose rows first, later joints before earlier ones. Of one joint
-/// the rows that are most independent stay. Open trees have no redundant rows by construction and cost no more than
+/// the rows that are most independent stay, point rows along the axes that [`RedundantRow::axes`] names. Open trees have no redundant rows by construction and cost no more than
 /// their start.
 ///
 /// # Errors
@@ -46,6 +48,8 @@ impl Model {
 /// fixed without it; a mechanism that can neither move nor is driven; driven bodies whose motions contradict redundant
 /// rows later.
 pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
+    // Point rows are along global axes until it is known that others are better.
+    let model = &Model { redundant: Vec::new(), ..model.clone() };
     let (start, tree) = (model.assemble()?, Tree::of(model));
     if model.is_open(&tree) {
         let rank = model.all_rows().len();
@@ -60,24 +64,51 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
         return Err(over_constrained(model, &tree));
     }
     let all = System::new(&kinematics, driven, &scales);
-    let jacobians: Vec<_> = around.with(start.clone()).iter().map(|at| all.jacobian(at)).collect();
-    let selection = select(&jacobians, &groups(&kinematics, &tree));
-    let shared = dependencies(&selection, kinematics.rows());
-    let redundant: Vec<RedundantRow> = selection
-        .dropped
-        .iter()
-        .zip(shared)
-        .map(|(&row, shared_with)| RedundantRow { row: kinematics.rows()[row], shared_with })
-        .collect();
+    let (poses, groups) = (around.with(start.clone()), groups(&kinematics, &tree));
+    let jacobians: Vec<_> = poses.iter().map(|at| all.jacobian(at)).collect();
+    let generic = generic(&jacobians, &groups);
+    let poses = Poses {
+        model,
+        kinematics: &kinematics,
+        at: generic.iter().map(|&pose| &poses[pose]).collect(),
+        jacobians: generic.iter().map(|&pose| jacobians[pose].clone()).collect(),
+        groups: &groups,
+    };
+    let (selection, turning) = selected(&poses);
+    let redundant = redundant(&selection, kinematics.rows(), &turning);
     check_drivers(model, &redundant)?;
-    check_later(model, &scales, &selection.dropped, &start)?;
+    check_later(
+        &Model { redundant: redundant.clone(), ..model.clone() },
+        &scales,
+        &selection.dropped,
+        &start,
+    )?;
     let rank = selection.kept.len();
     let degrees_of_freedom = 6 * model.coordinate_bodies().len() - rank;
     if degrees_of_freedom == 0 && !model.is_driven() {
         return Err(over_constrained(model, &tree));
     }
-    let singular_start = selection.first_rank < rank;
+    let singular_start = generic.first() != Some(&0);
     Ok(Analysis { redundant, rank, degrees_of_freedom, singular_start })
+}
+
+/// Rows by rank, point rows along global axes or, of the joints that come with them, along those of the first body.
+fn selected(poses: &Poses<'_>) -> (Selection, Vec<usize>) {
+    let selection = select(&poses.jacobians, poses.groups);
+    let turning = poses.joints_that_turn(&selection.dropped);
+    if turning.is_empty() {
+        return (selection, turning);
+    }
+    (select(&poses.turned(&turning), poses.groups), turning)
+}
+
+fn redundant(selection: &Selection, rows: &[Row], turning: &[usize]) -> Vec<RedundantRow> {
+    let axes = |row: Row| match row.owner {
+        RowOwner::Joint(joint) if turning.contains(&joint) => PointAxes::FirstBody,
+        _ => PointAxes::Global,
+    };
+    let dropped = selection.dropped.iter().map(|&row| rows[row]).zip(dependencies(selection, rows));
+    dropped.map(|(row, shared_with)| RedundantRow { row, axes: axes(row), shared_with }).collect()
 }
 
 fn configuration(kinematics: &Kinematics, start: &Start) -> Configuration {
@@ -111,7 +142,7 @@ fn groups(kinematics: &Kinematics, tree: &Tree) -> Vec<Vec<usize>> {
 
 /// A driver's row is never dropped: its motion in time would be ignored.
 fn check_drivers(model: &Model, redundant: &[RedundantRow]) -> Result<(), AssemblyError> {
-    for RedundantRow { row, shared_with } in redundant {
+    for RedundantRow { row, shared_with, .. } in redundant {
         if let RowOwner::Driver(driver) = row.owner {
             let with = shared_with.iter().map(|&owner| model.named(owner)).collect();
             return Err(AssemblyError::Driver { driver, name: model.drivers[driver].name.clone(), with });

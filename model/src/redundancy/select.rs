@@ -5,9 +5,8 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 use crate::{Row, RowOwner};
 
 /// Part of a row that is not in the span of the others, below which it depends on them. Poses satisfy their equations
-/// to about 1e-13; a row that is independent only by a slip of a model file's last digits is not taken for a dependent
-/// one.
-const INDEPENDENT: f64 = 1e-7;
+/// to about 1e-13; a row that is independent only by a slip of a model file's last digits is not taken for a dependent one.
+pub(super) const INDEPENDENT: f64 = 1e-7;
 
 /// Of the rows of one owner the first whose independent part is at least this part of the largest is taken next: so
 /// that rounding does not decide between rows that are equally good.
@@ -21,30 +20,31 @@ const TAKES_PART: f64 = 1e-6;
 pub(super) struct Selection {
     pub(super) kept: Vec<usize>,
     pub(super) dropped: Vec<usize>,
-    /// Rank at the first pose.
-    pub(super) first_rank: usize,
-    /// The Jacobians of largest rank, rows of length one.
+    /// The Jacobians, rows of length one.
     jacobians: Vec<DMatrix<f64>>,
 }
 
-/// Selects rows at the poses of largest rank. Groups of rows, one for each owner, come in the order of preference.
+/// The poses of largest rank, by their Jacobians.
+pub(super) fn generic(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Vec<usize> {
+    let rank = |jacobian: &DMatrix<f64>| kept(&[with_unit_rows(jacobian)], groups).len();
+    let ranks: Vec<usize> = jacobians.iter().map(rank).collect();
+    let largest = ranks.iter().copied().max();
+    (0..ranks.len()).filter(|&pose| Some(ranks[pose]) == largest).collect()
+}
+
+/// Selects rows at poses of one rank. Groups of rows, one for each owner, come in the order of preference.
 pub(super) fn select(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Selection {
-    let unit: Vec<DMatrix<f64>> = jacobians.iter().map(with_unit_rows).collect();
-    let ranks: Vec<usize> = unit.iter().map(|one| kept(std::slice::from_ref(one), groups).len()).collect();
-    let largest = ranks.iter().copied().max().unwrap_or(0);
-    let first_rank = ranks.first().copied().unwrap_or(0);
-    let generic = unit.into_iter().zip(ranks).filter(|(_, rank)| *rank == largest).map(|(one, _)| one);
-    let jacobians: Vec<_> = generic.collect();
+    let jacobians: Vec<DMatrix<f64>> = jacobians.iter().map(with_unit_rows).collect();
     let mut kept = kept(&jacobians, groups);
     kept.sort_unstable();
     let mut dropped: Vec<usize> =
         groups.iter().flatten().copied().filter(|row| !kept.contains(row)).collect();
     dropped.sort_unstable();
-    Selection { kept, dropped, first_rank, jacobians }
+    Selection { kept, dropped, jacobians }
 }
 
 /// Rows on zero length stay as they are: nothing that has coordinates is in them.
-fn with_unit_rows(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn with_unit_rows(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     let mut unit = jacobian.clone();
     for mut row in unit.row_iter_mut() {
         let norm = row.norm();
@@ -76,9 +76,7 @@ fn kept(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Vec<usize> {
             }
             let taken = (0..left.len()).find(|&k| measure(k) >= AS_GOOD * largest).expect("the largest is");
             for (basis, part) in bases.iter_mut().zip(&parts[taken]) {
-                if part.norm() > INDEPENDENT {
-                    basis.push(part.normalize());
-                }
+                extend(basis, part.clone());
             }
             kept.push(left.remove(taken));
         }
@@ -86,8 +84,16 @@ fn kept(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Vec<usize> {
     kept
 }
 
+/// Adds to an orthonormal basis what a row of length one is outside of it, if it is.
+pub(super) fn extend(basis: &mut Vec<DVector<f64>>, row: DVector<f64>) {
+    let part = outside(row, basis);
+    if part.norm() > INDEPENDENT {
+        basis.push(part.normalize());
+    }
+}
+
 /// The part of a vector that is orthogonal to an orthonormal basis; done twice, as one pass loses digits.
-fn outside(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVector<f64> {
+pub(super) fn outside(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVector<f64> {
     for _ in 0..2 {
         for unit in basis {
             let along = unit.dot(&vector);

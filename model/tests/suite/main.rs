@@ -2,6 +2,8 @@
 
 mod assembly;
 mod bad_models;
+mod branches;
+mod carried;
 mod closing;
 mod closing_kinds;
 mod cures;

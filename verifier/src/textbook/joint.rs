@@ -5,7 +5,7 @@ use super::linear::Vector;
 use super::pose::Pose;
 use super::scope::Scope;
 use crate::field::Field;
-use gyro_model::{Joint, JointEnd, JointKind};
+use gyro_model::{JointEnd, JointKind, Model, PointAxes};
 
 /// A joint on one of its bodies, in that body's frame: joint point and frame (f, g, h) with `g = h × f`.
 #[derive(Clone, Debug)]
@@ -23,6 +23,7 @@ pub struct JointFrames<F> {
     pub kind: JointKind,
     pub first: End<F>,
     pub second: End<F>,
+    pub axes: PointAxes,
     pub lead: Jet<F>,
     pub length: Jet<F>,
 }
@@ -42,11 +43,13 @@ pub struct Placed<F> {
 
 impl<F: Field> JointFrames<F> {
     /// `None` if an axis is zero, or a zero direction along the axis.
-    pub fn new(scope: &Scope<'_, F>, joint: &Joint) -> Option<Self> {
+    pub fn new(scope: &Scope<'_, F>, model: &Model, index: usize) -> Option<Self> {
+        let joint = &model.joints[index];
         Some(Self {
             kind: joint.kind,
             first: End::new(scope, &joint.first)?,
             second: End::new(scope, &joint.second)?,
+            axes: model.point_axes(index),
             lead: scope.number(&joint.lead),
             length: scope.number(&joint.length),
         })
@@ -85,8 +88,11 @@ impl<F: Field> Placed<F> {
         angle: Option<&Jet<F>>,
     ) -> Option<Vec<Jet<F>>> {
         // Eqs. (7), (9) and (10); Haug (1989), section 9.4: dot-1, dot-2 and distance.
-        let point = || self.d.0.to_vec();
         let across = || vec![self.f_i.dot(&self.d), self.g_i.dot(&self.d)];
+        let point = || match joint.axes {
+            PointAxes::Global => self.d.0.to_vec(),
+            PointAxes::FirstBody => [across(), vec![self.h_i.dot(&self.d)]].concat(),
+        };
         let parallel = || vec![self.f_i.dot(&self.h_j), self.g_i.dot(&self.h_j)];
         let no_turn = || vec![self.f_i.dot(&self.g_j)];
         Some(match joint.kind {

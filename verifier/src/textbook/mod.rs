@@ -104,8 +104,9 @@ impl<'m> Textbook<'m> {
         atoms: &'a dyn Atoms<F>,
     ) -> Option<Evaluation<'a, F>> {
         let scope = Scope::new(point, atoms);
+        let joints = 0..self.model.joints.len();
         let joints =
-            self.model.joints.iter().map(|joint| JointFrames::new(&scope, joint)).collect::<Option<_>>()?;
+            joints.map(|joint| JointFrames::new(&scope, self.model, joint)).collect::<Option<_>>()?;
         let prescribed = self.prescribed(&scope)?;
         let (moving, still) = (Vec::new(), Vec::new());
         let mut evaluation = Evaluation { textbook: self, scope, joints, prescribed, moving, still };
