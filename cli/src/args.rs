@@ -158,8 +158,8 @@ pub struct SimulateArgs {
     /// Error tolerated in each step, relative and absolute: steps are then as long as it allows
     #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
-    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code
-    /// only)
+    /// What is integrated: positions and Euler parameters of all bodies, or joint coordinates (generated code of
+    /// mechanisms that have them)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
     pub(crate) coordinates: Coordinates,
     /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
@@ -176,8 +176,8 @@ pub struct SimulateArgs {
     /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
-    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and
-    /// eigenvalues. Trees only
+    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there (with
+    /// loops, of independent ones): A, B, eigenvalues, frequencies and damping ratios
     #[arg(long, value_name = "S", value_parser = seconds_or_none, allow_hyphen_values = true, conflicts_with = "t_end")]
     pub(crate) linearize: Option<f64>,
     /// Number type of the run

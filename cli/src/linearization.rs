@@ -4,29 +4,38 @@ use crate::columns;
 use crate::verdict::eigenvalues;
 use crate::words::{number, table};
 use gyro_model::Model;
-use gyro_runner::motion::Linear;
+use gyro_runner::motion::{Element, Linear};
+use gyro_sim::JointPlace;
 use serde_json::{Value, json};
+use std::f64::consts::TAU;
 
-/// Names of the joint state's elements, as far as joints and free bodies name them: coordinates, then rates.
-fn names(model: &Model, n: usize) -> Vec<String> {
-    let (mut positions, mut rates) = (Vec::new(), Vec::new());
-    let numbered = |name: &str, n: usize| (0..n).map(|k| format!("{name}.{k}")).collect::<Vec<_>>();
-    for coordinate in columns::coordinates(model) {
-        if coordinate.is_orientation() {
-            positions.extend(numbered(&coordinate.name, 4));
-            rates.extend(numbered(&format!("{}_rate", coordinate.name), 3));
-        } else {
-            rates.push(format!("{}_rate", coordinate.name));
-            positions.push(coordinate.name);
+/// Names of the state's elements.
+fn names(model: &Model, linear: &Linear) -> Vec<String> {
+    linear.elements.iter().map(|element| name(model, element)).collect()
+}
+
+fn name(model: &Model, element: &Element) -> String {
+    let (place, component, what) = match *element {
+        Element::Position { place, component } => (place, component, ""),
+        Element::Turn { place, component } => (place, component, "_turn"),
+        Element::Rate { place, component } => (place, component, "_rate"),
+    };
+    match place {
+        JointPlace::Scalar { joint, coordinate } => {
+            let joint = usize::from(joint);
+            let shown = columns::coordinates(model).into_iter();
+            let mut own = shown.filter(|shown| shown.joint == joint && !shown.is_orientation());
+            let shown = own.nth(coordinate.into()).expect("a joint has the coordinates of its states");
+            format!("{}{what}", shown.name)
+        }
+        JointPlace::Orientation { joint } => {
+            format!("{}{what}.{component}", model.joints[usize::from(joint)].name)
+        }
+        JointPlace::Body { body } => {
+            let body = model.coordinate_bodies()[usize::from(body)];
+            format!("{}{what}.{component}", model.bodies[body].name)
         }
     }
-    for (_, body) in crate::scene::observed(model) {
-        positions.extend(numbered(body, 7));
-        rates.extend(numbered(&format!("{body}_rate"), 6));
-    }
-    let mut names = positions;
-    names.extend(rates);
-    if names.len() == n { names } else { numbered("x", n) }
 }
 
 /// The object of `--json`.
@@ -37,7 +46,7 @@ pub(crate) fn object(model: &Model, linear: &Linear) -> Value {
     };
     json!({
         "t": linear.t,
-        "states": names(model, n),
+        "states": names(model, linear),
         "inputs": model.inputs.iter().map(|input| input.name.clone()).collect::<Vec<_>>(),
         "state": linear.state,
         "derivative": linear.slope,
@@ -49,7 +58,7 @@ pub(crate) fn object(model: &Model, linear: &Linear) -> Value {
 
 /// The tables of the summary.
 pub(crate) fn text(model: &Model, linear: &Linear) -> String {
-    let (names, n, m) = (names(model, linear.state.len()), linear.state.len(), model.inputs.len());
+    let (names, n, m) = (names(model, linear), linear.state.len(), model.inputs.len());
     let inputs: Vec<String> = model.inputs.iter().map(|input| input.name.clone()).collect();
     let mut text = format!("\nlinearised about t = {} s: d/dt x = f + A (x - x0) + B (u - u0)\n", linear.t);
     let head = |title: &str, columns: &[String]| {
@@ -71,12 +80,14 @@ pub(crate) fn text(model: &Model, linear: &Linear) -> String {
     }
     let mut rows = vec![head(
         "eigenvalue",
-        &["real, 1/s".to_owned(), "imaginary, rad/s".to_owned(), "damping ratio".to_owned()],
+        &["real, 1/s", "imaginary, rad/s", "frequency, Hz", "damping ratio"].map(str::to_owned),
     )];
     for (index, [re, im]) in eigenvalues(linear).into_iter().enumerate() {
         let size = re.hypot(im);
         let damping = if size > 0.0 { number(-re / size, 4) } else { String::new() };
-        rows.push(vec![(index + 1).to_string(), number(re, DIGITS), number(im, DIGITS), damping]);
+        // What does not oscillate has no frequency; of what does it is the undamped one.
+        let frequency = if im == 0.0 { String::new() } else { number(size / TAU, DIGITS) };
+        rows.push(vec![(index + 1).to_string(), number(re, DIGITS), number(im, DIGITS), frequency, damping]);
     }
     text + &format!("\n{}", table(&rows))
 }

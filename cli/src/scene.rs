@@ -96,14 +96,15 @@ pub(crate) fn read_counting_work(path: &Path) -> Result<Model, Failure> {
     read(path).map(|model| Model { counts_work: true, ..model })
 }
 
-/// Joint coordinates are for trees, and for generated code: which of the two is missing, and what to leave out.
+/// Joint coordinates are for generated code of mechanisms that have them: which of the two is missing, and what to
+/// leave out.
 fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Failure> {
     if args.coordinates != Coordinates::Joint {
         return Ok(());
     }
-    let words = match (args.engine, what_is_no_tree(model)) {
+    let words = match (args.engine, lacks_joint_coordinates(model)) {
         (_, Some(what)) => {
-            format!("joint coordinates are for trees of joints, and `{}` has {what}", model.name)
+            format!("joint coordinates are for mechanisms that have them, and `{}` has {what}", model.name)
         }
         (Engine::Recursive, None) => {
             "the recursive form runs in maximal states, though it solves in joint coordinates: \
@@ -119,8 +120,8 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Fa
     Err(Failure::Usage(format!("--coordinates joint: {words}")))
 }
 
-/// What keeps a mechanism from being described by its joints' coordinates alone.
-fn what_is_no_tree(model: &Model) -> Option<String> {
+/// What keeps generated code of a mechanism from having joint coordinates.
+fn lacks_joint_coordinates(model: &Model) -> Option<String> {
     let named = |what: &str, name: &str| Some(format!("{what} `{name}`"));
     let driver = model.drivers.first().map(|driver| &driver.name);
     let coupler = model.couplers.first().map(|coupler| &coupler.name);
@@ -145,12 +146,12 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
 /// What the engine and the model allow.
 fn offers(model: &Model, args: &SimulateArgs) -> Offers {
     let is_generated = args.engine == Engine::Generated;
-    let is_tree = Tree::of(model).is_open() && model.couplers.is_empty() && model.drivers.is_empty();
+    let joint_space = is_generated && lacks_joint_coordinates(model).is_none();
     let epsilon = match args.precision {
         Precision::F32 => f64::from(f32::EPSILON),
         Precision::F64 => f64::EPSILON,
     };
-    Offers { joint_space: is_generated && is_tree, derivatives: is_generated, epsilon, ..Offers::ALL }
+    Offers { joint_space, derivatives: is_generated, epsilon, ..Offers::ALL }
 }
 
 /// An input that changes a conservative force while it acts does work that the mechanism does not count.
@@ -171,7 +172,8 @@ fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
 /// What cannot be done as it was asked for. Under error control the page's step is none of the run's.
 fn refusal(offers: &Offers, settings: &Settings, approach: &Approach, args: &SimulateArgs) -> Option<String> {
     if args.linearize.is_some() && !offers.joint_space {
-        let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
+        let words =
+            "--linearize is about joint coordinates: for mechanisms that have them, and --engine generated";
         return Some(words.to_owned());
     }
     offers.refusal(&gyro_runner::scheduled(settings, approach), approach)

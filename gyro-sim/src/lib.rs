@@ -14,14 +14,15 @@
 //! | [`Mechanism`] | description, Φ, energy, inputs, outputs | generated and runtime-assembled mechanisms |
 //! | [`Equations`] | the equations of motion term by term | the same |
 //! | [`Partition`] | independent and dependent coordinates | the same |
-//! | [`JointSpace`] | joint coordinates | generated trees |
+//! | [`JointSpace`] | joint coordinates | generated mechanisms that have them |
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
 //! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
 //!   types. [`Mechanism::buffers`], [`Equations::terms`] and [`JointSpace::joint_buffers`] return them, zeroed.
 //! * **Equations.** The equations are a value without content, and the mechanism stays the caller's: its inputs and
 //!   parameters may change between two calls. [`Exact`] holds at any state, [`Corrected`] takes fewer operations near
-//!   the constraints, [`Joint`] integrates joint coordinates, which satisfy them by construction.
+//!   the constraints, [`Joint`] integrates joint coordinates, which satisfy all of them by construction but those of
+//!   loops.
 //! * **Corrections** admit some equations and not others: a `Correction<D, M>` is one for the equations `D` of a model
 //!   `M`. [`MassWeighted`] needs [`Exact`] ones; with others the program does not compile.
 //! * **What a program does not use costs nothing:** a mechanism is straight-line code for each function, and a solver
@@ -119,8 +120,8 @@ pub use contract::{
     System, Terms, set_turn_references,
 };
 pub use correct::{
-    Baumgarte, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning, Uncorrected, Watched,
-    When,
+    Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,
+    Uncorrected, Watched, When,
 };
 pub use dual::{ByDuals, Dual};
 pub use error::Error;

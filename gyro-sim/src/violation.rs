@@ -1,6 +1,6 @@
 //! How far a state is off its constraints.
 
-use crate::{Mechanism, Owner, Real};
+use crate::{Mechanism, Owner, Real, RowInfo};
 
 /// The worst violated row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,17 @@ pub(crate) fn constraint_violation<M: Mechanism, T: Real>(
     worst(joint_rows(mechanism, rows, &read).chain(normalisations))
 }
 
+/// The worst of the rows of the closure, which are these of the joint rows.
+pub(crate) fn closure_violation<M: Mechanism<Scalar: Real>>(
+    mechanism: &M,
+    rows: &[u16],
+    closure: &[M::Scalar],
+) -> Violation<M::Scalar> {
+    let size = mechanism.size();
+    let described = rows.iter().filter_map(|&row| mechanism.description().rows.get(usize::from(row)));
+    worst(closure.iter().zip(described).map(|(&value, row)| measured(value, row, size)))
+}
+
 /// Size and owner of each joint row.
 fn joint_rows<M: Mechanism, T: Real>(
     mechanism: &M,
@@ -37,10 +48,11 @@ fn joint_rows<M: Mechanism, T: Real>(
     read: impl Fn(M::Scalar) -> T,
 ) -> impl Iterator<Item = (T, Owner)> {
     let size = read(mechanism.size());
-    rows.iter().zip(mechanism.description().rows).map(move |(&value, row)| {
-        let value = read(value);
-        (if row.is_length { (value / size).abs() } else { value.abs() }, row.owner)
-    })
+    rows.iter().zip(mechanism.description().rows).map(move |(&value, row)| measured(read(value), row, size))
+}
+
+fn measured<T: Real>(value: T, row: &RowInfo, size: T) -> (T, Owner) {
+    (if row.is_length { (value / size).abs() } else { value.abs() }, row.owner)
 }
 
 fn worst<T: Real>(rows: impl Iterator<Item = (T, Owner)>) -> Violation<T> {

@@ -47,7 +47,7 @@ pub enum Coordinates {
     /// Positions and Euler parameters of all bodies, the paper's.
     #[default]
     Maximal,
-    /// Joint coordinates and their rates: trees only, generated code only.
+    /// Joint coordinates and their rates: generated code only, of mechanisms that have them.
     Joint,
 }
 

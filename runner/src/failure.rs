@@ -1,8 +1,8 @@
 //! Failures in words, with names instead of indices.
 
-use crate::Coordinates;
 use crate::advice::{Advice, try_words};
-use gyro_sim::{Coordinate, Error, Mechanism, Owner, Passage};
+use gyro_sim::{Error, JointLayout, JointPlace, Mechanism, Owner, Passage};
+use std::iter::repeat_n;
 use std::{fmt, io};
 
 /// Why a run has ended early.
@@ -51,7 +51,7 @@ impl Failure {
 
 /// An error of the solvers in words: when, whose and how much.
 pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
-    describe_in(mechanism, Coordinates::Maximal, error)
+    describe_in(mechanism, None, error)
 }
 
 /// What an error says besides where steps of fixed length had passed a singular pose before.
@@ -62,11 +62,11 @@ pub(crate) fn behind<M: Mechanism>(mechanism: &M, passage: &Passage) -> String {
     format!("; before, at t = {} s, the steps had passed a singular pose{whose}", passage.t)
 }
 
-/// The same for a motion in these coordinates.
-pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error: &Error) -> String {
-    let element = |index: &u16| match coordinates {
-        Coordinates::Maximal => element(mechanism, usize::from(*index)),
-        Coordinates::Joint => joint_element(mechanism, usize::from(*index)),
+/// The same for a motion in joint coordinates, if a layout is given.
+pub fn describe_in<M: Mechanism>(mechanism: &M, layout: Option<&JointLayout<'_>>, error: &Error) -> String {
+    let element = |index: &u16| match layout {
+        None => element(mechanism, usize::from(*index)),
+        Some(layout) => joint_element(mechanism, layout, usize::from(*index)),
     };
     match error {
         Error::NotFinite { t, index } => format!("at t = {t} s {} is no longer finite", element(index)),
@@ -132,26 +132,19 @@ fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
     format!("the {what} of body `{}`", mechanism.description().bodies[body])
 }
 
-/// What an element of the joint state is: the coordinates of each joint, then their rates.
-fn joint_element<M: Mechanism>(mechanism: &M, index: usize) -> String {
-    let sizes = |of: fn(&Coordinate) -> usize| {
-        let joints =
-            (0..mechanism.description().joints.len()).map(|joint| mechanism.description().joints[joint]);
-        joints.flat_map(move |joint| {
-            let size = joint.coordinates.iter().map(of).sum();
-            std::iter::repeat_n(joint.name.to_owned(), size)
-        })
-    };
-    let positions = sizes(|coordinate| if *coordinate == Coordinate::Orientation { 4 } else { 1 });
-    let rates = sizes(|coordinate| if *coordinate == Coordinate::Orientation { 3 } else { 1 });
-    let all = positions.map(|name| ("position", name)).chain(rates.map(|name| ("rate", name)));
-    match all.into_iter().nth(index) {
-        Some((what, name)) => format!("the {what} of joint `{name}`"),
-        // Each joint of a tree carries one body, the others are free.
-        None if mechanism.description().joints.len() == mechanism.description().bodies.len() => {
-            "the work done".to_owned()
+/// What an element of the joint state is: coordinates, then their rates, then the work.
+fn joint_element<M: Mechanism>(mechanism: &M, layout: &JointLayout<'_>, index: usize) -> String {
+    let places = layout.places.iter();
+    let positions = places.clone().flat_map(|place| repeat_n((place, "position"), place.n_coordinates()));
+    let rates = places.flat_map(|place| repeat_n((place, "rate"), place.n_rates()));
+    match positions.chain(rates).nth(index) {
+        Some((JointPlace::Scalar { joint, .. } | JointPlace::Orientation { joint }, what)) => {
+            format!("the {what} of {}", name(mechanism, Owner::Joint(*joint)))
         }
-        None => "a free body's motion or the work done".to_owned(),
+        Some((JointPlace::Body { body }, what)) => {
+            format!("the {what} of {}", name(mechanism, Owner::Body(*body)))
+        }
+        None => "the work done".to_owned(),
     }
 }
 
@@ -198,6 +191,33 @@ mod tests {
             let found = describe(&spinner, &error);
             assert!(found.starts_with(words), "{found}");
             assert!(!found.contains("try"), "{found}");
+        }
+    }
+    #[test]
+    fn elements_of_a_joint_state_are_named_by_its_layout() {
+        let layout = JointLayout {
+            places: &[
+                JointPlace::Orientation { joint: 0 },
+                JointPlace::Body { body: 0 },
+                JointPlace::Scalar { joint: 0, coordinate: 0 },
+            ],
+            closure_rows: &[],
+        };
+        for (index, words) in [
+            (0, "the position of joint `axle`"),
+            (3, "the position of joint `axle`"),
+            (4, "the position of body `rotor`"),
+            (10, "the position of body `rotor`"),
+            (11, "the position of joint `axle`"),
+            (12, "the rate of joint `axle`"),
+            (15, "the rate of body `rotor`"),
+            (20, "the rate of body `rotor`"),
+            (21, "the rate of joint `axle`"),
+            (22, "the work done"),
+        ] {
+            let error = Error::NotFinite { t: 0.25, index };
+            let found = describe_in(&Spinner::default(), Some(&layout), &error);
+            assert!(found.starts_with(&format!("at t = 0.25 s {words} is no longer")), "{index}: {found}");
         }
     }
 }

@@ -47,4 +47,8 @@ pub use summary::{Summary, Tracker, energy_error};
 pub use timing::{Timing, time_by};
 
 #[cfg(test)]
+mod linkage;
+#[cfg(test)]
+mod loops;
+#[cfg(test)]
 mod spinner;

@@ -70,7 +70,7 @@ impl Offers {
     fn refused_method(&self, approach: &Approach) -> Option<String> {
         let words = match (approach.coordinates, approach.correction) {
             (Coordinates::Joint, _) if !self.joint_space => {
-                "joint coordinates are for generated code of trees"
+                "joint coordinates are for generated code of mechanisms that have them"
             }
             (Coordinates::Maximal, Correction::ClosedForm) if !self.joint_space => {
                 "the closed form is for generated code of trees"

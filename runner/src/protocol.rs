@@ -76,8 +76,9 @@ pub fn read<T: DeserializeOwned>(input: &mut impl BufRead) -> io::Result<Option<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::Element;
     use crate::{BodySample, Coordinates, Correction, Input, Integrator, JointSample, When};
-    use gyro_sim::{Owner, Passage, Statistics};
+    use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
 
     const AWKWARD: [f64; 7] = [0.1, -1.0 / 3.0, 5e-324, -0.0, f64::MAX, 1e-300, 0.300_000_000_000_000_04];
@@ -152,6 +153,10 @@ mod tests {
             Reply::Sample(sample),
             Reply::Linear(Linear {
                 t: AWKWARD[0],
+                elements: vec![
+                    Element::Position { place: JointPlace::Scalar { joint: 1, coordinate: 0 }, component: 0 },
+                    Element::Rate { place: JointPlace::Body { body: 2 }, component: 5 },
+                ],
                 state: AWKWARD[..2].to_vec(),
                 slope: AWKWARD[2..4].to_vec(),
                 by_state: AWKWARD[1..5].to_vec(),

@@ -12,7 +12,7 @@ use crate::{
     Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
     describe, describe_in,
 };
-use gyro_sim::{Error, JointCoordinate, Partition, Real, Scalar, Turns};
+use gyro_sim::{Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -111,7 +111,7 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
             run.tell_state(&mut told).map_err(Failure::Output)?;
             let passed =
                 run.summary.statistics.first_passage.filter(|_| !matches!(error, Error::Singular { .. }));
-            let words = describe_in(run.mechanism, approach.coordinates, &error)
+            let words = describe_in(run.mechanism, layout(run.mechanism, builder, approach), &error)
                 + &passed.map_or(String::new(), |passage| behind(run.mechanism, &passage));
             let plan = Plan { settings: &settings, approach, offers: &offers };
             // The steps' length is asked about only where stability may limit it.
@@ -122,6 +122,15 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
             Err(Failure::Run { words, advice: plan.after(&error, &run.summary.statistics, fastest) })
         }
     }
+}
+
+/// Where the numbers of the integrated state stand, if it is a joint state.
+pub(crate) fn layout<'a, M: Partition<Scalar: Real>>(
+    mechanism: &'a M,
+    builder: &dyn MotionBuilder<M>,
+    approach: &Approach,
+) -> Option<&'a JointLayout<'a>> {
+    (approach.coordinates == Coordinates::Joint).then(|| builder.joint_layout(mechanism)).flatten()
 }
 
 /// Why a run ends before its time.
@@ -226,8 +235,6 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     /// When the turns were last read, s.
     read_at: f64,
     observer: Observer<'a, M>,
-    /// Whether the state ends with the work, which is no state of a linearisation.
-    counts_work: bool,
     summary: Summary,
 }
 
@@ -249,7 +256,6 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
             observer: Observer::new(mechanism, &start.observed_bodies),
-            counts_work: counts_work(mechanism, start),
             mechanism,
             y,
             summary: Summary::default(),
@@ -279,7 +285,6 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             .examine
             .then(|| builder.linearise(self.mechanism, settings.t_end, &self.y, &self.angles()));
         if let Some(linear) = linear.flatten() {
-            let linear = if self.counts_work { linear.without_last() } else { linear };
             (told.tell)(Event::Linear(&linear))?;
         }
         tracker.finish(&mut self.summary);
@@ -440,11 +445,6 @@ pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::Sta
         *element = Scalar::constant(*value);
     }
     Ok(state)
-}
-
-/// Whether the state holds more than positions, velocities and turn references.
-fn counts_work<M: Partition>(mechanism: &M, start: &Start) -> bool {
-    mechanism.start().as_ref().len() > 13 * mechanism.description().bodies.len() + start.turn_references.len()
 }
 
 /// At most the work is left of the state when positions, velocities and turn references are taken away.

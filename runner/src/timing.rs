@@ -1,7 +1,7 @@
 //! What a run costs without being looked at.
 
 use crate::motion::MotionBuilder;
-use crate::run::{scheduled, state};
+use crate::run::{layout, scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
 use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
 use gyro_yardstick::{Measured, beside};
@@ -33,7 +33,8 @@ pub fn time_by<M: Partition<Scalar: Real> + 'static>(
     let mut statistics = Statistics::default();
     let once = || -> Result<(), Failure> {
         let mut motion = builder.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
-        let in_words = |error: Error| Failure::run(describe_in(mechanism, approach.coordinates, &error));
+        let layout = layout(mechanism, builder, approach);
+        let in_words = |error: Error| Failure::run(describe_in(mechanism, layout, &error));
         if approach.tolerance.is_some() {
             // As the motion counts time: in single precision the end may come before this number.
             let t_end = M::Scalar::constant(settings.t_end).to_f64();

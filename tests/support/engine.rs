@@ -6,7 +6,7 @@ mod erased;
 pub use erased::Choice;
 
 use erased::{Erased, ErasedDuals, ErasedTree, Numbers, Term};
-use gyro_runner::motion::{COLUMNS, MotionBuilder, TreeWithJacobian, WithDuals};
+use gyro_runner::motion::{COLUMNS, Closing, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{
     Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointLayout, JointSpace,
     Mechanism, Partition, Real, Terms,
@@ -132,6 +132,13 @@ impl<T: Real + 'static> Mechanism for Duals<T> {
     }
     fn set_input(&mut self, index: usize, value: Self::Scalar) -> bool {
         self.0.as_mut().is_some_and(|duals| duals.set_input(index, value))
+    }
+}
+
+/// For loops, which are linearised without an engine.
+impl<T: Real + 'static> Closing for Duals<T> {
+    fn close(&self, _: Self::Scalar, _: &mut [Self::Scalar]) {
+        unreachable!("{NOT_FORWARDED}")
     }
 }
 

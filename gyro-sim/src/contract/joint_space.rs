@@ -100,6 +100,7 @@ pub struct JointLayout<'a> {
 
 /// Some coordinates and their rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointPlace {
     /// An angle or a displacement. One number in x, one in u.
     Scalar {

@@ -63,7 +63,7 @@ pub struct Exact;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Corrected;
 
-/// The equations of motion of a tree in joint coordinates: [`JointSpace::joint_derivative`].
+/// The equations of motion in joint coordinates: [`JointSpace::joint_derivative`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Joint;
 

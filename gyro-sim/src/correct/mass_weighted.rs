@@ -1,6 +1,6 @@
 //! Projection onto the constraints in the metric of the masses.
 
-use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, reach};
+use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
 use crate::pivoting::{self, is_met, silence};
 use crate::violation::{Violation, constraint_violation, violation};
 use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, Real, Scalar, refer_turns};
@@ -38,10 +38,6 @@ pub struct MassWeighted<M: Equations> {
     rows: M::Rows,
     change: M::Velocities,
 }
-
-/// A change of more than this many radians, or lengths in units of the mechanism's size, leads to another pose and is
-/// refused.
-const FARTHEST: f64 = 0.5;
 
 impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
     /// Work space for a mechanism.
@@ -89,7 +85,8 @@ impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
         let mut worst = Violation { value: tolerance, owner: None };
         for iteration in 0..=MAX_ITERATIONS {
-            normalise(&mut y.as_mut()[..7 * mechanism.description().bodies.len()]);
+            let positions = &mut y.as_mut()[..7 * mechanism.description().bodies.len()];
+            positions.chunks_exact_mut(7).for_each(|body| normalise(&mut body[3..]));
             mechanism.phi(t, y, &mut self.phi);
             worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
             let is_small = worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y);
@@ -163,16 +160,6 @@ where
 
 fn negate<T: Scalar>(numbers: &mut [T]) {
     numbers.iter_mut().for_each(|x| *x = -*x);
-}
-
-/// Makes unit vectors of all Euler parameters of `(r, p)` body after body.
-fn normalise<T: Scalar>(positions: &mut [T]) {
-    for body in positions.chunks_exact_mut(7) {
-        let p = &mut body[3..];
-        let square = p.iter().fold(T::constant(0.0), |sum, e| T::fused(*e, *e, sum));
-        let scale = T::constant(1.0) / square.sqrt();
-        p.iter_mut().for_each(|e| *e = *e * scale);
-    }
 }
 
 /// `r + δr` and `p + ½ G(p)ᵀ δπ'` of one body.

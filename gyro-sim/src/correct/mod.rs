@@ -4,17 +4,20 @@
 //! |---|---|
 //! | [`Partitioning`] | the independent coordinates as they were integrated (eqs. (18) to (20)); any mechanism |
 //! | [`ClosedForm`] | the joint coordinates; trees, no iteration |
+//! | [`CloseLoops`] | in joint coordinates, what generated code keeps; any mechanism that has them |
 //! | [`MassWeighted`] | nothing exactly, but it makes the smallest change in the metric of the masses; any mechanism |
 //! | [`Baumgarte`] | nothing: its accelerations reduce violations; equations, not a correction |
 //! | [`Uncorrected`] | everything: direct integration, and systems that have no constraints |
 //! | [`Watched`] | everything, but drift and singular poses are detected |
 
 mod baumgarte;
+mod close_loops;
 mod closed_form;
 mod mass_weighted;
 mod partition;
 
 pub use baumgarte::Baumgarte;
+pub use close_loops::CloseLoops;
 pub use closed_form::ClosedForm;
 pub use mass_weighted::MassWeighted;
 pub use partition::{Direct, Partitioned, Partitioning};
@@ -117,12 +120,23 @@ pub(crate) const MAX_ITERATIONS: u32 = 10;
 /// is judged by what it subtracts: see [`Partition::is_met`](crate::Partition::is_met).
 pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
+/// A change of more than this many radians, or lengths in units of the mechanism's size, leads to another pose and is
+/// refused.
+pub(crate) const FARTHEST: f64 = 0.5;
+
 /// The largest coordinate of a mass centre in units of the mechanism's size.
 fn reach<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
     let bodies = y.as_ref().chunks_exact(7).take(mechanism.description().bodies.len());
     let coordinates = bodies.flat_map(|body| body.iter().take(3));
     let zero = M::Scalar::constant(0.0);
     coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
+}
+
+/// Makes a unit vector of Euler parameters.
+fn normalise<T: Scalar>(p: &mut [T]) {
+    let square = p.iter().fold(T::constant(0.0), |sum, e| T::fused(*e, *e, sum));
+    let scale = T::constant(1.0) / square.sqrt();
+    p.iter_mut().for_each(|e| *e = *e * scale);
 }
 
 /// Refuses start and end times that are not finite: equations that do not depend on time would not reveal them.

@@ -1,15 +1,17 @@
 //! What can be begun with which mechanism: the more it implements, the more there is.
 
-use super::contract::{COLUMNS, Linear, Motion, MotionBuilder, in_f64};
+use super::contract::{COLUMNS, Element, Linear, Motion, MotionBuilder, in_f64};
 use super::correction::{Boxed, keeping, partitioning};
+use super::independent::{Closing, reduced};
 use super::lens::{Slopes, input_column, joint_duals, joints, joints_near};
 use super::moving::{adaptive, explicit};
-use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator, When};
+use crate::failure::describe_in;
 use crate::offers::Offers;
 use crate::pivots;
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Corrected, Dual, Equations, Exact, Joint, JointSpace, Mechanism, Ode,
-    Partition, Real, Rodas4, Scalar, Uncorrected, Watched,
+    Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, Dual, Equations, Exact, Joint, JointLayout,
+    JointSpace, Mechanism, Ode, Partition, Real, Rodas4, Scalar, Watched,
 };
 use std::fmt::Debug;
 
@@ -25,11 +27,11 @@ pub struct Projecting;
 #[derive(Clone, Copy, Debug)]
 pub struct WithDuals<D>(pub D);
 
-/// For trees.
+/// For mechanisms in joint coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Tree<D>(pub D);
 
-/// For trees with a generated Jacobian.
+/// For mechanisms in joint coordinates with a generated Jacobian.
 #[derive(Clone, Copy, Debug)]
 pub struct TreeWithJacobian<D>(pub D);
 
@@ -108,12 +110,12 @@ where
         if approach.coordinates == Coordinates::Maximal {
             return in_maximal(mechanism, approach, &self.0, y);
         }
-        let x = joints(mechanism, y);
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         if approach.integrator == Integrator::Rodas4 {
             let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
-            return Ok(adaptive(joint_duals(&self.0), method, Uncorrected, approach, &x));
+            return Ok(adaptive(joint_duals(&self.0), method, closing, &approach, &x));
         }
-        Ok(explicit(Joint, Uncorrected, approach, &x))
+        Ok(explicit(Joint, closing, &approach, &x))
     }
 
     fn offers(&self) -> Offers {
@@ -128,12 +130,14 @@ where
         Some(pivots::smallest(mechanism, t, y))
     }
 
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        Some(mechanism.joint_layout())
+    }
+
     fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
-        let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
+        let (x, time) = (closed_near(mechanism, t, y, nearest)?, Scalar::constant(t));
         let zero = M::Scalar::constant(0.0);
         let (mut by_state, mut by_time) = (vec![zero; square(x.as_ref())], x.clone());
-        let mut slope = x.clone();
-        mechanism.joint_derivative(time, &x, &mut slope);
         joint_duals(&self.0).jacobian(mechanism, time, &x, &mut by_state, &mut by_time);
         let n_inputs = mechanism.description().inputs.len();
         let mut by_inputs = vec![zero; n_inputs * x.as_ref().len()];
@@ -143,13 +147,7 @@ where
                 row[input] = slope;
             }
         }
-        Some(Linear {
-            t,
-            state: in_f64(x.as_ref()),
-            slope: in_f64(slope.as_ref()),
-            by_state: in_f64(&by_state),
-            by_inputs: in_f64(&by_inputs),
-        })
+        Some(linear(mechanism, &self.0, t, &x, [&by_state, &by_inputs]))
     }
 }
 
@@ -160,18 +158,18 @@ where
             Jacobian: AsRef<[M::Scalar]> + AsMut<[M::Scalar]> + Debug,
             InputJacobian: AsRef<[M::Scalar]>,
         > + 'static,
-    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
             return in_maximal(mechanism, approach, &self.0, y);
         }
-        let x = joints(mechanism, y);
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         if approach.integrator == Integrator::Rodas4 {
             let method = Rodas4::new(&x, mechanism.joint_buffers().jacobian);
-            return Ok(adaptive(Joint, method, Uncorrected, approach, &x));
+            return Ok(adaptive(Joint, method, closing, &approach, &x));
         }
-        Ok(explicit(Joint, Uncorrected, approach, &x))
+        Ok(explicit(Joint, closing, &approach, &x))
     }
 
     fn offers(&self) -> Offers {
@@ -186,29 +184,83 @@ where
         Some(pivots::smallest(mechanism, t, y))
     }
 
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        Some(mechanism.joint_layout())
+    }
+
     fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
-        let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
-        let (mut slope, mut by_time) = (x.clone(), x.clone());
-        let buffers = mechanism.joint_buffers();
+        let (x, time) = (closed_near(mechanism, t, y, nearest)?, Scalar::constant(t));
+        let (mut by_time, buffers) = (x.clone(), mechanism.joint_buffers());
         let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
-        mechanism.joint_derivative(time, &x, &mut slope);
         mechanism.joint_jacobian(time, &x, &mut by_state, &mut by_time);
         mechanism.joint_input_jacobian(time, &x, &mut by_inputs);
-        Some(Linear {
-            t,
-            state: in_f64(x.as_ref()),
-            slope: in_f64(slope.as_ref()),
-            by_state: in_f64(by_state.as_ref()),
-            by_inputs: in_f64(by_inputs.as_ref()),
-        })
+        Some(linear(mechanism, &self.0, t, &x, [by_state.as_ref(), by_inputs.as_ref()]))
     }
+}
+
+/// The joint state of a maximal one, its loops closed, what closes them and when.
+fn in_joints<M: JointSpace<Scalar: Real>>(
+    mechanism: &M,
+    approach: &Approach,
+    y: &M::State,
+) -> Result<(M::Joints, CloseLoops<M>, Approach), String> {
+    let (mut x, mut closing) = (joints(mechanism, y), CloseLoops::new(mechanism));
+    let layout = mechanism.joint_layout();
+    let in_words = |error| describe_in(mechanism, Some(layout), &error);
+    closing.correct(mechanism, Scalar::constant(0.0), &mut x).map_err(in_words)?;
+    let has_loops = !layout.closure_rows.is_empty();
+    let correction =
+        if has_loops && approach.correction != Keeping::None { Keeping::Partition } else { Keeping::None };
+    let when = approach.when.or(Some(When::Steps(1)));
+    Ok((x, closing, Approach { correction, when, ..*approach }))
+}
+
+/// The joint state of a maximal one near given angles, its loops closed; `None` where that fails.
+fn closed_near<M: JointSpace<Scalar: Real>>(
+    mechanism: &M,
+    t: f64,
+    y: &M::State,
+    nearest: &[f64],
+) -> Option<M::Joints> {
+    let mut x = joints_near(mechanism, t, y, nearest);
+    CloseLoops::new(mechanism).correct(mechanism, Scalar::constant(t), &mut x).ok()?;
+    Some(x)
+}
+
+/// The linearisation of all joint coordinates, or with loops that of independent ones.
+fn linear<M, D>(
+    mechanism: &M,
+    duals: &D,
+    t: f64,
+    x: &M::Joints,
+    [by_state, by_inputs]: [&[M::Scalar]; 2],
+) -> Linear
+where
+    M: JointSpace<Scalar: Real>,
+    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>>,
+{
+    let mut slope = x.clone();
+    mechanism.joint_derivative(Scalar::constant(t), x, &mut slope);
+    let all = Linear {
+        t,
+        elements: Element::all(mechanism.joint_layout()),
+        state: in_f64(x.as_ref()),
+        slope: in_f64(slope.as_ref()),
+        by_state: in_f64(by_state),
+        by_inputs: in_f64(by_inputs),
+    };
+    let all = if mechanism.description().has_work { all.without_last() } else { all };
+    if mechanism.joint_layout().closure_rows.is_empty() {
+        return all;
+    }
+    reduced(mechanism, duals, x.as_ref(), &all)
 }
 
 fn only_maximal(approach: &Approach) -> Result<(), String> {
     match approach.coordinates {
         Coordinates::Maximal => Ok(()),
         Coordinates::Joint => {
-            Err("joint coordinates are for trees of joints, and for generated code".to_owned())
+            Err("joint coordinates are for generated code of mechanisms that have them".to_owned())
         }
     }
 }
@@ -236,7 +288,7 @@ fn square<T>(state: &[T]) -> usize {
     state.len() * state.len()
 }
 
-/// Maximal coordinates of trees.
+/// Maximal coordinates of mechanisms that have joint coordinates too.
 fn in_maximal<M, D>(
     mechanism: &M,
     approach: &Approach,

@@ -2,7 +2,7 @@
 
 use crate::approach::Approach;
 use crate::offers::Offers;
-use gyro_sim::{Error, Mechanism, Partition, Real, Statistics};
+use gyro_sim::{Error, JointLayout, JointPlace, Mechanism, Partition, Real, Statistics};
 use std::fmt::Debug;
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
@@ -58,7 +58,12 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     fn smallest_pivot(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<f64> {
         None
     }
-    /// The linearisation of the joint form about a maximal state; `None` for what has no joint form.
+    /// Where the numbers of the mechanism's joint states stand; `None` for what has no joint form.
+    fn joint_layout<'a>(&self, _mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        None
+    }
+    /// The linearisation of the joint form about a maximal state; `None` for what has no joint form, and where its
+    /// loops cannot be closed.
     ///
     /// `nearest` has for each coordinate, joint after joint, the continuous angle, which the state alone does not tell.
     fn linearise(&self, _mechanism: &M, _t: f64, _y: &M::State, _nearest: &[f64]) -> Option<Linear> {
@@ -66,11 +71,14 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     }
 }
 
-/// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs.
+/// The joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs. Of a
+/// mechanism with loops x has the independent ones alone. The work, on which nothing depends, is left out.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Linear {
     /// Time, s.
     pub t: f64,
+    /// What each element of the state is.
+    pub elements: Vec<Element>,
     /// The joint state.
     pub state: Vec<f64>,
     /// Its derivative.
@@ -81,20 +89,59 @@ pub struct Linear {
     pub by_inputs: Vec<f64>,
 }
 
+/// An element of a joint state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Element {
+    /// A number of x.
+    Position {
+        /// Its place.
+        place: JointPlace,
+        /// Which of the place's numbers it is.
+        component: usize,
+    },
+    /// A component of the small turn from an orientation, rad; independent Euler parameters do not exist.
+    Turn {
+        /// The place of the orientation.
+        place: JointPlace,
+        /// Which component it is, in the turning body's frame.
+        component: usize,
+    },
+    /// A number of u.
+    Rate {
+        /// Its place.
+        place: JointPlace,
+        /// Which of the place's rates it is.
+        component: usize,
+    },
+}
+
 impl Linear {
-    /// The same without the last element of the state: the work done, on which nothing depends.
-    pub(crate) fn without_last(self) -> Self {
+    /// The same without the last element of the state.
+    pub(super) fn without_last(self) -> Self {
         let n = self.state.len();
         let n_inputs = self.by_inputs.len().checked_div(n).unwrap_or(0);
         let Some(kept) = n.checked_sub(1) else { return self };
         let rows = self.by_state.chunks_exact(n).take(kept);
         Self {
-            t: self.t,
             by_state: rows.flat_map(|row| &row[..kept]).copied().collect(),
             by_inputs: self.by_inputs[..kept * n_inputs].to_vec(),
             state: self.state[..kept].to_vec(),
             slope: self.slope[..kept].to_vec(),
+            ..self
         }
+    }
+}
+
+impl Element {
+    /// All of a joint state.
+    pub(super) fn all(layout: &JointLayout<'_>) -> Vec<Self> {
+        let places = layout.places.iter();
+        let positions = places.clone().flat_map(|&place| {
+            (0..place.n_coordinates()).map(move |component| Self::Position { place, component })
+        });
+        let rates = places
+            .flat_map(|&place| (0..place.n_rates()).map(move |component| Self::Rate { place, component }));
+        positions.chain(rates).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! The equations that are integrated, and the maximal state as seen through each of them.
 
 use super::contract::COLUMNS;
-use gyro_sim::{ByDuals, Coordinate, Dual, Exact, Joint, JointSpace, Mechanism, Ode, Real, Scalar};
+use gyro_sim::{ByDuals, Dual, Exact, Joint, JointPlace, JointSpace, Mechanism, Ode, Real, Scalar};
 
 /// ∂f/∂u of one input. What the input is set to does not matter: it enters linearly.
 pub(super) fn input_column<T: Real, D>(duals: &D, input: usize, t: T, x: &[T]) -> Vec<T>
@@ -23,14 +23,17 @@ where
 /// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
 /// joint.
 pub(super) fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
-    let mut x = mechanism.joint_start();
-    let coordinates = mechanism.description().joints.iter().flat_map(|joint| joint.coordinates);
-    let mut place = 0;
-    for (coordinate, angle) in coordinates.zip(nearest) {
-        if let (Coordinate::Angle, Some(x)) = (coordinate, x.as_mut().get_mut(place)) {
-            *x = Scalar::constant(*angle);
+    let (mut x, joints) = (mechanism.joint_start(), mechanism.description().joints);
+    let mut at = 0;
+    for place in mechanism.joint_layout().places {
+        if let JointPlace::Scalar { joint, coordinate } = *place {
+            let (joint, coordinate) = (usize::from(joint), usize::from(coordinate));
+            let before: usize = joints[..joint].iter().map(|joint| joint.coordinates.len()).sum();
+            if let Some(&angle) = nearest.get(before + coordinate) {
+                x.as_mut()[at] = Scalar::constant(angle);
+            }
         }
-        place += if *coordinate == Coordinate::Orientation { 4 } else { 1 };
+        at += place.n_coordinates();
     }
     mechanism.to_joints(Scalar::constant(t), y, &mut x);
     x

@@ -3,8 +3,10 @@
 mod builders;
 mod contract;
 mod correction;
+mod independent;
 mod lens;
 mod moving;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
-pub use contract::{COLUMNS, Linear, Motion, MotionBuilder};
+pub use contract::{COLUMNS, Element, Linear, Motion, MotionBuilder};
+pub use independent::Closing;

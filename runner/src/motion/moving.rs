@@ -2,7 +2,7 @@
 
 use super::contract::Motion;
 use super::lens::Lens;
-use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::approach::{Approach, Correction as Keeping, Integrator};
 use gyro_sim::integrate::Method;
 use gyro_sim::{
     Control, Correction, Dop853, Error, Kutta4, Mechanism, Real, Scalar, Solver, Statistics, Tsit5, When,
@@ -58,8 +58,7 @@ where
         control = control.with_tolerance(tolerance);
     }
     control.budget = approach.budget.unwrap_or(control.budget);
-    let has_corrections = approach.coordinates == Coordinates::Maximal
-        && !matches!(approach.correction, Keeping::None | Keeping::Baumgarte(_));
+    let has_corrections = !matches!(approach.correction, Keeping::None | Keeping::Baumgarte(_));
     control.when = match (approach.when, approach.tolerance) {
         (Some(when), _) if has_corrections => when.into(),
         (None, Some(_)) if has_corrections => When::Steps(1),

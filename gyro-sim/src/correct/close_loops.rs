@@ -1,0 +1,188 @@
+//! The correction of loops in joint coordinates.
+
+use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
+use crate::violation::{Violation, closure_violation};
+use crate::{
+    ByDuals, Coordinate, Error, Joint, JointLayout, JointPlace, JointSpace, Mechanism, Ode, Owner, Real,
+    Scalar,
+};
+
+/// Closes the loops of a mechanism in joint coordinates: positions by Newton's iteration
+/// ([`JointSpace::close_positions`]), then velocities. Trees, which have no loops, are left as they are.
+///
+/// Positions are corrected until no row exceeds a few roundings: of one, or of the largest coordinate of a mass centre
+/// in units of the mechanism's size, times the largest angle, of which no more digits are known. A change by more than
+/// half a radian or half the mechanism's size in one iteration may lead to another way to assemble the mechanism and is
+/// refused.
+#[derive(Clone, Debug)]
+pub struct CloseLoops<M: JointSpace> {
+    closure: M::Closure,
+    before: M::Joints,
+    maximal: M::State,
+}
+
+impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
+    /// Work space for a mechanism.
+    pub fn new(mechanism: &M) -> Self {
+        Self {
+            closure: mechanism.joint_buffers().closure,
+            before: mechanism.joint_start(),
+            maximal: mechanism.start(),
+        }
+    }
+
+    /// Closes positions and velocities.
+    ///
+    /// # Errors
+    /// [`Error`], with `x` as it was when the failure was noticed.
+    pub fn correct(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
+        if mechanism.joint_layout().closure_rows.is_empty() {
+            return Ok(());
+        }
+        self.close_positions(mechanism, t, x)?;
+        mechanism.close_velocities(t, x);
+        check_finite(t, x.as_ref())
+    }
+
+    fn close_positions(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
+        let mut worst = Violation { value: M::Scalar::constant(0.0), owner: None };
+        for iteration in 0..=MAX_ITERATIONS {
+            normalise_orientations(mechanism.joint_layout(), x.as_mut());
+            check_finite(t, x.as_ref())?;
+            worst = self.worst(mechanism, t, x);
+            let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+            let is_small = worst.value <= tolerance;
+            if is_small || iteration > 0 && worst.value <= tolerance * self.magnitude(mechanism, t, x) {
+                return Ok(());
+            }
+            self.before.as_mut().copy_from_slice(x.as_ref());
+            mechanism.close_positions(t, x);
+            self.refuse_jump(mechanism, t, (x, worst.owner))?;
+        }
+        let owner = worst.owner.unwrap_or(Owner::Body(0));
+        Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })
+    }
+
+    fn worst(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Violation<M::Scalar> {
+        mechanism.loop_closure(t, x, &mut self.closure);
+        closure_violation(mechanism, mechanism.joint_layout().closure_rows, self.closure.as_ref())
+    }
+
+    /// How large the numbers are that a row subtracts, at least one: mass centres in units of the mechanism's size,
+    /// times angles.
+    fn magnitude(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
+        mechanism.to_maximal(t, x, &mut self.maximal);
+        let one = M::Scalar::constant(1.0);
+        let reach = reach(mechanism, &self.maximal);
+        let mut largest = one;
+        for (place, x) in positions(mechanism.joint_layout(), x.as_ref()) {
+            if let ([angle], true) = (x, is_angle(mechanism, place)) {
+                largest = if angle.abs() > largest { angle.abs() } else { largest };
+            }
+        }
+        if reach > one { largest * reach } else { largest }
+    }
+
+    /// What is not finite is left to be noticed later.
+    fn refuse_jump(
+        &self,
+        mechanism: &M,
+        t: M::Scalar,
+        (x, owner): (&M::Joints, Option<Owner>),
+    ) -> Result<(), Error> {
+        let layout = mechanism.joint_layout();
+        let (one, two) = (M::Scalar::constant(1.0), M::Scalar::constant(2.0));
+        let ends = positions(layout, self.before.as_ref()).zip(positions(layout, x.as_ref()));
+        for ((place, before), (_, after)) in ends {
+            for (index, (before, after)) in before.iter().zip(after).enumerate() {
+                // Euler parameters change by half the angle of a turn.
+                let scale = match place {
+                    JointPlace::Scalar { .. } if is_angle(mechanism, place) => one,
+                    JointPlace::Body { .. } if index >= 3 => two,
+                    JointPlace::Orientation { .. } => two,
+                    JointPlace::Scalar { .. } | JointPlace::Body { .. } => one / mechanism.size(),
+                };
+                let change = ((*after - *before) * scale).abs();
+                if change > M::Scalar::constant(FARTHEST) {
+                    let (change, owner) = (change.to_f64(), owner.unwrap_or(Owner::Body(0)));
+                    return Err(Error::Jump { t: t.to_f64(), change, limit: FARTHEST, owner });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<M: JointSpace<Scalar: Real>> Correction<Joint, M> for CloseLoops<M> {
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
+        self.correct(mechanism, t, x)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
+        self.worst(mechanism, t, x).value
+    }
+}
+
+/// The same equations with a Jacobian.
+impl<M, Dualled, S, J, const N: usize> Correction<ByDuals<Joint, Dualled, S, J, N>, M> for CloseLoops<M>
+where
+    M: JointSpace<Scalar: Real>,
+    ByDuals<Joint, Dualled, S, J, N>: Ode<M, Scalar = M::Scalar, State = M::Joints>,
+{
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
+        self.correct(mechanism, t, x)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
+        Correction::<Joint, M>::violation(self, mechanism, t, x)
+    }
+}
+
+/// The numbers of each place in x.
+fn positions<'a, T>(layout: &JointLayout<'a>, x: &'a [T]) -> impl Iterator<Item = (JointPlace, &'a [T])> {
+    let mut rest = x;
+    layout.places.iter().map(move |&place| {
+        let (own, others) = rest.split_at_checked(place.n_coordinates()).unwrap_or((rest, &[]));
+        rest = others;
+        (place, own)
+    })
+}
+
+fn is_angle<M: Mechanism>(mechanism: &M, place: JointPlace) -> bool {
+    let JointPlace::Scalar { joint, coordinate } = place else { return false };
+    let joint = mechanism.description().joints.get(usize::from(joint));
+    let kind = joint.and_then(|joint| joint.coordinates.get(usize::from(coordinate)));
+    kind == Some(&Coordinate::Angle)
+}
+
+/// Makes unit vectors of all Euler parameters.
+fn normalise_orientations<T: Scalar>(layout: &JointLayout<'_>, x: &mut [T]) {
+    let mut rest = x;
+    for place in layout.places {
+        let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { return };
+        match place {
+            JointPlace::Scalar { .. } => {}
+            JointPlace::Orientation { .. } => normalise(own),
+            JointPlace::Body { .. } => normalise(&mut own[3..]),
+        }
+        rest = others;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn euler_parameters_are_normalised_where_they_stand() {
+        let layout = JointLayout {
+            places: &[
+                JointPlace::Scalar { joint: 0, coordinate: 0 },
+                JointPlace::Body { body: 0 },
+                JointPlace::Orientation { joint: 1 },
+            ],
+            closure_rows: &[],
+        };
+        let mut x = [7.0, 1.0, 2.0, 3.0, 1.0, -1.0, 1.0, 1.0, 2.0, 0.0, 0.0, 0.0, 9.0];
+        normalise_orientations(&layout, &mut x);
+        assert_eq!(x, [7.0, 1.0, 2.0, 3.0, 0.5, -0.5, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0, 9.0]);
+    }
+}

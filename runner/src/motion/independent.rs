@@ -1,0 +1,316 @@
+//! Linearisation of loops in independent coordinates.
+
+use super::contract::{COLUMNS, Element, Linear};
+use gyro_sim::{Coordinate, Description, Dual, JointPlace, JointSpace, Mechanism, Real, Scalar};
+
+/// A mechanism in dual numbers of which the loops can be closed.
+pub trait Closing: Mechanism {
+    /// Closes positions and velocities of a joint state, by one step each.
+    fn close(&self, t: Self::Scalar, x: &mut [Self::Scalar]);
+}
+
+impl<D: JointSpace> Closing for D {
+    fn close(&self, t: D::Scalar, x: &mut [D::Scalar]) {
+        let mut joints = self.joint_start();
+        joints.as_mut().copy_from_slice(x);
+        self.close_positions(t, &mut joints);
+        self.close_velocities(t, &mut joints);
+        x.copy_from_slice(joints.as_ref());
+    }
+}
+
+/// The linearisation about a closed state in as many coordinates as there are degrees of freedom; `linear` is that in
+/// all coordinates, without the work.
+pub(super) fn reduced<M, D>(mechanism: &M, duals: &D, x: &[M::Scalar], linear: &Linear) -> Linear
+where
+    M: JointSpace<Scalar: Real>,
+    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>>,
+{
+    let tangent = Tangent::of(mechanism, duals, x, linear);
+    let n = linear.state.len();
+    let n_inputs = linear.by_inputs.len() / n;
+    let by_state = tangent.directions().into_iter().map(|direction| {
+        let change: Vec<_> = linear.by_state.chunks(n).map(|row| dot(row, &direction)).collect();
+        tangent.kept(&change)
+    });
+    let by_inputs = (0..n_inputs).map(|input| {
+        let change: Vec<_> = linear.by_inputs.iter().skip(input).step_by(n_inputs).copied().collect();
+        tangent.kept(&change)
+    });
+    let places = || tangent.independent.iter().map(|&k| &tangent.rates[k]);
+    let positions = places().map(|rate| rate.position_at.map_or(0.0, |at| linear.state[at]));
+    let rates = tangent.independent.iter().map(|&k| linear.state[tangent.n_coordinates + k]);
+    Linear {
+        t: linear.t,
+        elements: places().map(Rate::element).chain(places().map(Rate::element_of_rate)).collect(),
+        state: positions.chain(rates).collect(),
+        slope: tangent.kept(&linear.slope),
+        by_state: rows(&by_state.collect::<Vec<_>>()),
+        by_inputs: rows(&by_inputs.collect::<Vec<_>>()),
+    }
+}
+
+/// One number of u.
+struct Rate {
+    place: JointPlace,
+    /// Which of the place's it is.
+    component: usize,
+    /// Where the number of which it is the derivative stands in x; none for rates of turning.
+    position_at: Option<usize>,
+    /// The derivative of x where this rate is one and the others are zero.
+    derivative: Vec<f64>,
+    /// Its unit: the mechanism's size for lengths.
+    unit: f64,
+}
+
+impl Rate {
+    /// All of u.
+    fn all<M: JointSpace>(mechanism: &M, x: &[f64]) -> Vec<Self> {
+        let (layout, mut rates, mut from) = (mechanism.joint_layout(), Vec::new(), 0);
+        for &place in layout.places {
+            let n_lengths = match place {
+                JointPlace::Scalar { .. } => 1,
+                JointPlace::Orientation { .. } => 0,
+                JointPlace::Body { .. } => 3,
+            };
+            for component in 0..place.n_rates() {
+                let mut derivative = vec![0.0; layout.n_coordinates()];
+                let position_at = (component < n_lengths).then_some(from + component);
+                match position_at {
+                    Some(at) => derivative[at] = 1.0,
+                    None => {
+                        let [e0, e1, e2, e3] = core::array::from_fn(|k| x[from + n_lengths + k] / 2.0);
+                        // ½ G(p)ᵀ
+                        let turning = [[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]];
+                        derivative[from + n_lengths..][..4].copy_from_slice(&turning[component - n_lengths]);
+                    }
+                }
+                let is_length = position_at.is_some() && !is_angle(mechanism.description(), place);
+                let unit = if is_length { mechanism.description().size } else { 1.0 };
+                rates.push(Self { place, component, position_at, derivative, unit });
+            }
+            from += place.n_coordinates();
+        }
+        rates
+    }
+
+    fn element(&self) -> Element {
+        let (place, component) = (self.place, self.component);
+        match (self.position_at, place) {
+            (Some(_), _) => Element::Position { place, component },
+            (None, JointPlace::Body { .. }) => Element::Turn { place, component: component - 3 },
+            (None, _) => Element::Turn { place, component },
+        }
+    }
+
+    fn element_of_rate(&self) -> Element {
+        Element::Rate { place: self.place, component: self.component }
+    }
+}
+
+fn is_angle(description: &Description<'_>, place: JointPlace) -> bool {
+    let JointPlace::Scalar { joint, coordinate } = place else { return false };
+    description.joints[usize::from(joint)].coordinates.get(usize::from(coordinate))
+        == Some(&Coordinate::Angle)
+}
+
+/// How a state can change on the closure: x by `T N δq`, u by `W δq + N δq̇`, with q the independent coordinates. T has
+/// the derivatives of x by each rate, the columns of N span the null space of the closure's Jacobian, and W is how
+/// rates follow positions.
+struct Tangent {
+    n_coordinates: usize,
+    rates: Vec<Rate>,
+    /// Indices of the independent rates: N is one there and W zero.
+    independent: Vec<usize>,
+    /// N above W, column by column.
+    columns: Vec<Vec<f64>>,
+}
+
+impl Tangent {
+    /// The columns are what closing leaves of a change along each rate, as far as they are independent.
+    fn of<M, D>(mechanism: &M, duals: &D, x: &[M::Scalar], linear: &Linear) -> Self
+    where
+        M: JointSpace<Scalar: Real>,
+        D: Closing<Scalar = Dual<M::Scalar, COLUMNS>>,
+    {
+        let layout = mechanism.joint_layout();
+        let rates = Rate::all(mechanism, &linear.state);
+        let n_coordinates = layout.n_coordinates();
+        let tangent = Self { n_coordinates, rates, independent: Vec::new(), columns: Vec::new() };
+        let changes = tangent.closed(duals, linear.t, x).into_iter().zip(&tangent.rates);
+        let columns = changes.map(|(change, rate)| {
+            let rates = change[n_coordinates..].iter().take(tangent.rates.len()).copied();
+            tangent.along_rates(&change).into_iter().chain(rates).map(|part| part * rate.unit).collect()
+        });
+        let n_free = tangent.rates.len() - layout.closure_rows.len();
+        let (independent, columns) = eliminate(columns.collect(), n_free, &tangent.rates);
+        Self { independent, columns, ..tangent }
+    }
+
+    /// The change of the closed state as the coordinate of each rate changes.
+    fn closed<T: Real, D>(&self, duals: &D, t: f64, x: &[T]) -> Vec<Vec<f64>>
+    where
+        D: Closing<Scalar = Dual<T, COLUMNS>>,
+    {
+        let mut changes = Vec::new();
+        for rates in self.rates.chunks(COLUMNS) {
+            let slopes = |k: usize| {
+                let of = |rate: &Rate| T::constant(rate.derivative.get(k).copied().unwrap_or(0.0));
+                core::array::from_fn(|column| rates.get(column).map_or(T::constant(0.0), of))
+            };
+            let mut state: Vec<_> =
+                x.iter().enumerate().map(|(k, &value)| Dual { value, slopes: slopes(k) }).collect();
+            duals.close(Dual::constant(t), &mut state);
+            let column =
+                |column: usize| state.iter().map(|number| number.slopes[column].to_f64()).collect::<Vec<_>>();
+            changes.extend((0..rates.len()).map(column));
+        }
+        changes
+    }
+
+    /// A change of x in terms of rates.
+    fn along_rates(&self, change: &[f64]) -> Vec<f64> {
+        let along = |rate: &Rate| dot(&rate.derivative, change) / dot(&rate.derivative, &rate.derivative);
+        self.rates.iter().map(along).collect()
+    }
+
+    /// The changes of (x, u) as each independent coordinate and each independent rate changes.
+    fn directions(&self) -> Vec<Vec<f64>> {
+        let n_rates = self.rates.len();
+        let mut directions = Vec::new();
+        for column in &self.columns {
+            let (free, following) = column.split_at(n_rates);
+            let mut direction = vec![0.0; self.n_coordinates];
+            for (rate, part) in self.rates.iter().zip(free) {
+                direction
+                    .iter_mut()
+                    .zip(&rate.derivative)
+                    .for_each(|(sum, derivative)| *sum += derivative * part);
+            }
+            directions.push([&direction, following].concat());
+        }
+        let at_rest = vec![0.0; self.n_coordinates];
+        directions.extend(self.columns.iter().map(|column| [&at_rest, &column[..n_rates]].concat()));
+        directions
+    }
+
+    /// What a change of (x, u) is in independent coordinates and rates.
+    fn kept(&self, change: &[f64]) -> Vec<f64> {
+        let (positions, rates) = (self.along_rates(change), &change[self.n_coordinates..]);
+        let of = |all: &[f64]| self.independent.iter().map(|&k| all[k]).collect::<Vec<_>>();
+        [of(&positions), of(rates)].concat()
+    }
+}
+
+/// Chooses so many of the upper rows and combines the columns until they are one there: Gauss and Jordan with the
+/// largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8). The same rows of the lower half are
+/// then made zero.
+fn eliminate(mut columns: Vec<Vec<f64>>, n: usize, rates: &[Rate]) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
+    while chosen.len() < n {
+        let free = |row: &usize| chosen.iter().all(|(other, _)| other != row);
+        let elements = columns.iter().enumerate().flat_map(|(column, values)| {
+            (0..rates.len()).map(move |row| (row, column, (values[row] / rates[row].unit).abs()))
+        });
+        let elements = elements.filter(|(row, ..)| free(row));
+        let Some((row, column, _)) = elements.max_by(|a, b| a.2.total_cmp(&b.2)) else { break };
+        let mut pivot = columns.swap_remove(column);
+        let scale = 1.0 / pivot[row];
+        pivot.iter_mut().for_each(|value| *value *= scale);
+        for other in columns.iter_mut().chain(chosen.iter_mut().map(|(_, column)| column)) {
+            let share = other[row];
+            subtract(other, share, &pivot);
+        }
+        chosen.push((row, pivot));
+    }
+    chosen.sort_by_key(|(row, _)| *row);
+    let (independent, mut columns): (Vec<_>, Vec<_>) = chosen.into_iter().unzip();
+    let motions: Vec<Vec<f64>> = columns.iter().map(|column| column[..rates.len()].to_vec()).collect();
+    for column in &mut columns {
+        let following = &mut column[rates.len()..];
+        for (&row, motion) in independent.iter().zip(&motions) {
+            let share = following[row];
+            subtract(following, share, motion);
+        }
+    }
+    (independent, columns)
+}
+
+fn subtract(from: &mut [f64], share: f64, what: &[f64]) {
+    from.iter_mut().zip(what).for_each(|(from, what)| *from -= share * what);
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Row by row what is given column by column.
+fn rows(columns: &[Vec<f64>]) -> Vec<f64> {
+    let n_rows = columns.first().map_or(0, Vec::len);
+    (0..n_rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyro_mechanisms::heavy_top::HeavyTop;
+    use gyro_sim::{ByDuals, Joint, Ode};
+
+    type Duals = HeavyTop<Dual<f64, COLUMNS>>;
+
+    /// A top has no loop to reduce by, but an orientation: A by turns and rates against differences along turns.
+    #[test]
+    fn orientations_are_linearised_by_turns() {
+        let (top, duals) = (HeavyTop::<f64>::default(), Duals::default());
+        let p = [0.5, -0.1, 0.7, (1.0_f64 - 0.25 - 0.01 - 0.49).sqrt()];
+        let x = [p[0], p[1], p[2], p[3], 0.3, -2.0, 5.0];
+        let (mut by_state, mut by_time, mut slope) = (vec![0.0; 49], x, x);
+        top.joint_derivative(0.0, &x, &mut slope);
+        let form: ByDuals<_, _, _, Vec<f64>, COLUMNS> = ByDuals::new(Joint, duals, duals.joint_start());
+        form.jacobian(&top, 0.0, &x, &mut by_state, &mut by_time);
+        let all = Linear { state: x.to_vec(), slope: slope.to_vec(), by_state, ..Linear::default() };
+        let found = reduced(&top, &duals, &x, &all);
+        let place = JointPlace::Orientation { joint: 0 };
+        assert_eq!(found.elements[2], Element::Turn { place, component: 2 });
+        assert_eq!(found.elements[3], Element::Rate { place, component: 0 });
+        assert_eq!(found.state, [0.0, 0.0, 0.0, 0.3, -2.0, 5.0]);
+        // Turned by twice the vector's length, to second order, then as fast as these rates say.
+        let moved = |z: &[f64; 6]| {
+            let [a, b, c] = [z[0] / 2.0, z[1] / 2.0, z[2] / 2.0];
+            let w = (1.0 - a * a - b * b - c * c).sqrt();
+            [
+                p[0] * w - p[1] * a - p[2] * b - p[3] * c,
+                p[1] * w + p[0] * a - p[3] * b + p[2] * c,
+                p[2] * w + p[3] * a + p[0] * b - p[1] * c,
+                p[3] * w - p[2] * a + p[1] * b + p[0] * c,
+                x[4] + z[3],
+                x[5] + z[4],
+                x[6] + z[5],
+            ]
+        };
+        // The rate of the vector 2 Im(p̄₀ p), and the rates' rates.
+        let slopes = |z: &[f64; 6]| {
+            let mut d = x;
+            top.joint_derivative(0.0, &moved(z), &mut d);
+            [
+                2.0 * (p[0] * d[1] - p[1] * d[0] - p[2] * d[3] + p[3] * d[2]),
+                2.0 * (p[0] * d[2] - p[2] * d[0] - p[3] * d[1] + p[1] * d[3]),
+                2.0 * (p[0] * d[3] - p[3] * d[0] - p[1] * d[2] + p[2] * d[1]),
+                d[4],
+                d[5],
+                d[6],
+            ]
+        };
+        let here = slopes(&[0.0; 6]);
+        for (k, (slope, here)) in found.slope.iter().zip(here).enumerate() {
+            assert!((slope - here).abs() < 1e-12, "{k}: {found:?}");
+            let along = |step: f64| slopes(&core::array::from_fn(|l| if l == k { step } else { 0.0 }));
+            let [far, near, beyond, past] = [-2e-3, -1e-3, 1e-3, 2e-3].map(along);
+            for row in 0..6 {
+                let expected = (8.0 * (beyond[row] - near[row]) - (past[row] - far[row])) / 12e-3;
+                let error = found.by_state[6 * row + k] - expected;
+                assert!(error.abs() < 1e-8 * expected.abs().max(1.0), "{row} {k}: {error:e}");
+            }
+        }
+    }
+}
