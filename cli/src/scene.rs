@@ -96,13 +96,13 @@ pub(crate) fn read_counting_work(path: &Path) -> Result<Model, Failure> {
     read(path).map(|model| Model { counts_work: true, ..model })
 }
 
-/// Joint coordinates are for generated code of mechanisms that have them: which of the two is missing, and what to leave
-/// out.
+/// Joint coordinates are for generated code of mechanisms that have them: which of the two is missing, and what to
+/// leave out.
 fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Failure> {
     if args.coordinates != Coordinates::Joint {
         return Ok(());
     }
-    let words = match (args.engine, lacks_joint_coordinates(model)) {
+    let words = match (args.engine, gyro_codegen::lacks_joint_coordinates(model)) {
         (_, Some(what)) => {
             format!("joint coordinates are for mechanisms that have them, and `{}` has {what}", model.name)
         }
@@ -120,20 +120,6 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Fa
     Err(Failure::Usage(format!("--coordinates joint: {words}")))
 }
 
-/// What keeps generated code of a mechanism from having joint coordinates.
-fn lacks_joint_coordinates(model: &Model) -> Option<String> {
-    let named = |what: &str, name: &str| Some(format!("{what} `{name}`"));
-    let driver = model.drivers.first().map(|driver| &driver.name);
-    let coupler = model.couplers.first().map(|coupler| &coupler.name);
-    let closing = Tree::of(model).loop_joints.first().map(|&joint| &model.joints[joint].name);
-    match (driver, coupler, closing) {
-        (Some(name), ..) => named("the driver", name),
-        (_, Some(name), _) => named("the coupler", name),
-        (.., Some(name)) => named("a loop, which is closed by joint", name),
-        _ => None,
-    }
-}
-
 fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Failure> {
     for (k, (name, _)) in set.iter().enumerate() {
         if set[..k].iter().any(|(earlier, _)| earlier == name) {
@@ -146,7 +132,7 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
 /// What the engine and the model allow.
 fn offers(model: &Model, args: &SimulateArgs) -> Offers {
     let is_generated = args.engine == Engine::Generated;
-    let joint_space = is_generated && lacks_joint_coordinates(model).is_none();
+    let joint_space = is_generated && gyro_codegen::lacks_joint_coordinates(model).is_none();
     let epsilon = match args.precision {
         Precision::F32 => f64::from(f32::EPSILON),
         Precision::F64 => f64::EPSILON,

@@ -57,7 +57,7 @@ use derive::system::System;
 use derive::{Observed, Textbook};
 use emit::module;
 use equations::{Equations, Parts, Rotations};
-use joint_space::{Candidates, Coordinates, JointSpace};
+use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
 use kernels::Kernels;
 use solve::Solution;
 use solve::forward_dynamics::ForwardDynamics;
@@ -141,6 +141,12 @@ pub fn generate_with(
     generate_model(file_name, &model)
 }
 
+/// What keeps a mechanism from being described in joint coordinates, in words that follow "it has"; `None` if nothing
+/// does.
+pub fn lacks_joint_coordinates(model: &Model) -> Option<String> {
+    obstacle(model)
+}
+
 /// How eq. (17) is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Elimination {
@@ -184,7 +190,7 @@ fn equations<'m>(model: &'m Model, elimination: Elimination, start: &Start) -> E
     let definitions = system.definitions.clone();
     let mut rotations = Rotations::of(&mut system, &definitions);
     let solved = rotations.cheapest(&mut system.graph, &solution.solved);
-    let joint_space = Coordinates::cover(&system).then(|| {
+    let joint_space = obstacle(model).is_none().then(|| {
         let coordinates = Coordinates::derive(&mut system, &textbook);
         let candidates = Candidates::solve(&mut system, &textbook, &coordinates);
         JointSpace::choose(&mut system, (&textbook, &observed), coordinates, candidates, &solved.roots, start)

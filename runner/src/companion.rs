@@ -8,9 +8,9 @@ const FINEST: f64 = 2e-15;
 /// Steps that a companion may take before another one is tried.
 const PATIENCE: u64 = 2_000_000;
 
-/// Runs to compare with, the best first, in double precision all of them: joint coordinates under error control, which
-/// only trees have and where inputs are constant; else the same by finer means, and with a correction where the run has
-/// none or its own comes to no end.
+/// Runs to compare with, the best first, in double precision all of them: joint coordinates under error control, where
+/// there are any and inputs are constant; else the same by finer means, and with a correction where the run has none or
+/// its own comes to no end.
 pub fn companions(settings: &Settings, approach: &Approach, inputs_vary: bool) -> Vec<(Settings, Approach)> {
     let mut companions = Vec::new();
     if !inputs_vary {

@@ -6,7 +6,7 @@ use crate::{
     Approach, Coordinates, Correction, Event, Failure, Integrator, Sample, Settings, Start, describe_in,
     run_by,
 };
-use gyro_sim::{CloseLoops, Dual, Error, JointPlace, JointSpace, Mechanism, Owner, Real};
+use gyro_sim::{CloseLoops, ClosedForm, Dual, Error, JointPlace, JointSpace, Mechanism, Owner, Real};
 
 const KNEE: Owner = Owner::Joint(3);
 
@@ -70,6 +70,17 @@ fn loops_are_closed_to_rounding() {
     CloseLoops::new(&linkage).correct(&linkage, 0.0, &mut x).unwrap();
     assert!(violations(&linkage, &x).into_iter().all(|violation| violation < 1e-14));
     assert!(x.iter().zip(before).all(|(a, b)| (a - b).abs() < 0.1), "{x:?}");
+}
+
+#[test]
+fn loops_are_closed_by_way_of_joint_coordinates_too() {
+    let linkage = Linkage::<f64>::default();
+    let (mut x, mut y) = (closed(&linkage, 1.3, 5.0), linkage.start());
+    (x[1], x[4]) = (x[1] + 1e-3, x[4] + 0.1);
+    linkage.to_maximal(0.0, &x, &mut y);
+    ClosedForm::new(&linkage).correct(&linkage, 0.0, &mut y).unwrap();
+    linkage.to_joints(0.0, &y, &mut x);
+    assert!(violations(&linkage, &x).into_iter().all(|violation| violation < 1e-14));
 }
 
 /// Angles of many turns are known to fewer digits; a correction that asks for more finds none.
@@ -217,6 +228,20 @@ fn a_linearised_loop_has_its_degrees_of_freedom_and_the_slopes_of_its_closed_mot
             }
         }
     }
+}
+
+/// A maximal state does not know of turns: they are told.
+#[test]
+fn a_linearised_loop_has_the_turns_that_it_has_made() {
+    let mut x = closed(&Linkage::default(), 1.3, 5.0);
+    for (angle, turns) in x.iter_mut().zip([2.0, -1.0, -3.0]) {
+        *angle += core::f64::consts::TAU * turns;
+    }
+    let linear = linear(&x);
+    let Element::Position { place: JointPlace::Scalar { joint, .. }, .. } = linear.elements[0] else {
+        panic!("{linear:?}")
+    };
+    assert!((linear.state[0] - x[usize::from(joint)]).abs() < 1e-12, "{linear:?}");
 }
 
 /// About the pose of least potential energy V the motion is `θ̈ = −(V″/M) θ`, M from the kinetic energy at a rate of

@@ -73,7 +73,7 @@ impl Offers {
                 "joint coordinates are for generated code of mechanisms that have them"
             }
             (Coordinates::Maximal, Correction::ClosedForm) if !self.joint_space => {
-                "the closed form is for generated code of trees"
+                "the closed form is for generated code with joint coordinates"
             }
             (Coordinates::Maximal, Correction::MassWeighted | Correction::Baumgarte(_))
                 if !self.projection =>

@@ -137,7 +137,7 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
         (&["--input", "drag=drag.csv"], "with -0.5 at t = 1 s the damping"),
         (&["--input", "torque=1e300"], "input `torque` is too large or too small to compute with"),
         (&["--coordinates", "joint"], "runtime-assembled models run in maximal coordinates"),
-        (&["--correction", "closed-form"], "the closed form is for generated code of trees"),
+        (&["--correction", "closed-form"], "the closed form is for generated code with joint coordinates"),
         (&["--linearize", "0.5"], "--linearize is about joint coordinates"),
         (&["--integrator", "rodas4"], "rodas4 needs derivatives"),
         (&["--tolerance", "1e-9"], "rk4 has no error estimate"),

@@ -24,9 +24,8 @@ pub struct Pose {
 #[derive(Debug)]
 pub struct System<'m> {
     pub model: &'m Model,
+    /// In whose joint coordinates the mechanism is described, too.
     pub tree: Tree,
-    /// The tree in whose joint coordinates the mechanism is described.
-    pub joint_tree: Tree,
     pub graph: Graph,
     pub definitions: Definitions,
     /// Bodies with coordinates: moving body to index into the model's bodies.
@@ -43,12 +42,10 @@ pub struct System<'m> {
 
 impl<'m> System<'m> {
     pub fn new(model: &'m Model) -> Self {
-        let (moving_bodies, tree) = (model.coordinate_bodies(), Tree::of(model));
-        let joint_tree = Tree::of_coordinates(model);
+        let (moving_bodies, tree) = (model.coordinate_bodies(), Tree::of_coordinates(model));
         let mut system = Self {
             model,
             tree,
-            joint_tree,
             graph: Graph::new(),
             definitions: Definitions::default(),
             moving_bodies,

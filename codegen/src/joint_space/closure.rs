@@ -41,7 +41,7 @@ pub fn rows(
     (layout, angles): (&Layout, &WholeAngles),
     unit: &[Vec<ExprId>],
 ) -> Vec<(usize, ExprId)> {
-    let joints = system.joint_tree.loop_joints.clone();
+    let joints = system.tree.loop_joints.clone();
     let rows: Vec<_> =
         joints.into_iter().flat_map(|joint| system.model.rows_of(RowOwner::Joint(joint))).collect();
     let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
@@ -101,7 +101,7 @@ impl Closure {
         unit: &[Vec<ExprId>],
     ) -> Self {
         let (rows, phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
-        if system.joint_tree.loop_joints.is_empty() {
+        if system.tree.loop_joints.is_empty() {
             return Self::default();
         }
         let directions = Directions { layout, angles, embedding };

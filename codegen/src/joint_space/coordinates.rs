@@ -15,7 +15,7 @@ use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::ZERO3;
-use gyro_model::{JointCoordinate, RowOwner};
+use gyro_model::{JointCoordinate, Model, RowOwner, Tree};
 
 /// Joint coordinates and how they go with the maximal ones.
 #[derive(Debug)]
@@ -50,16 +50,8 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// Whether joint coordinates describe the mechanism: nothing acts on the coordinates of a joint that closes a loop,
-    /// and couplers and drivers determine coordinates of the tree.
-    pub fn cover(system: &System) -> bool {
-        let tree = &system.joint_tree;
-        let is_free = |joint: &usize| !system.model.acts_on_coordinates(*joint);
-        tree.loop_joints.iter().all(is_free) && coordinates_beside_joints(system).1.is_empty()
-    }
-
     pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
-        let (mut known, _) = coordinates_beside_joints(system);
+        let (mut known, _) = coordinates_beside_joints(system.model, &system.tree);
         loop {
             let layout = Layout::of(system, known.clone());
             let determined = determined::values(system, &layout);
@@ -182,10 +174,29 @@ impl Coordinates {
 /// atoms of which the squares sum to one, rows.
 type Derived = (Layout, Values, Vec<LinkKinematics>, WholeAngles, Vec<Vec<ExprId>>, Vec<(usize, ExprId)>);
 
+/// Why joint coordinates do not describe a mechanism, in words that follow "it has"; `None` if they do. Nothing may act
+/// on the coordinates of a joint that closes a loop, and couplers and drivers must determine coordinates of the tree.
+pub fn obstacle(model: &Model) -> Option<String> {
+    let tree = Tree::of_coordinates(model);
+    let acted_on = tree.loop_joints.iter().find(|joint| model.acts_on_coordinates(**joint));
+    let name = |joint: &usize| format!("forces on joint `{}`, which closes a loop", model.joints[*joint].name);
+    acted_on.map(name).or_else(|| match coordinates_beside_joints(model, &tree).1.first()? {
+        RowOwner::Driver(driver) => Some(format!(
+            "the driver `{}` of a coordinate that is determined already",
+            model.drivers[*driver].name
+        )),
+        RowOwner::Coupler(coupler) => Some(format!(
+            "the coupler `{}` of coordinates that are determined already",
+            model.couplers[*coupler].name
+        )),
+        RowOwner::Joint(_) | RowOwner::Body(_) => None,
+    })
+}
+
 /// What couplers and drivers determine, and the owners of the rows that determine no coordinate of the tree.
-fn coordinates_beside_joints(system: &System) -> (Vec<Determined>, Vec<RowOwner>) {
-    let is_on_tree = |on: JointCoordinate| !system.joint_tree.loop_joints.contains(&on.joint);
-    determined::determined(system.model, is_on_tree)
+fn coordinates_beside_joints(model: &Model, tree: &Tree) -> (Vec<Determined>, Vec<RowOwner>) {
+    let is_on_tree = |on: JointCoordinate| !tree.loop_joints.contains(&on.joint);
+    determined::determined(model, is_on_tree)
 }
 
 fn loops_of(system: &mut System, closure: &Closure) -> Loops {

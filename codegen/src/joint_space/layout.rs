@@ -50,7 +50,7 @@ pub struct Place {
 
 impl Layout {
     pub fn of(system: &System, determined: Vec<Determined>) -> Self {
-        let mut links = system.joint_tree.links.clone();
+        let mut links = system.tree.links.clone();
         links.sort_by_key(|link| match link.attachment {
             Attachment::Joint { joint, .. } => (0, joint),
             Attachment::Free | Attachment::Constrained => (1, link.body),
@@ -65,7 +65,7 @@ impl Layout {
             let place = layout.determined.iter().position(|known| known.coordinate == scalar.coordinate);
             scalar.place = place.map_or(scalar.place, behind);
         }
-        let order = |link: &LinkCoordinates| system.joint_tree.links.iter().position(|l| l.body == link.link.body);
+        let order = |link: &LinkCoordinates| system.tree.links.iter().position(|l| l.body == link.link.body);
         layout.links.sort_by_key(order);
         layout
     }

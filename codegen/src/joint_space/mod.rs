@@ -24,5 +24,5 @@ mod whole_angles;
 
 pub use candidates::Candidates;
 pub use choose::JointSpace;
-pub use coordinates::Coordinates;
+pub use coordinates::{Coordinates, obstacle};
 pub use jacobian::Jacobian;

@@ -1,13 +1,14 @@
-//! The correction of trees that needs no iteration: to joint coordinates and back.
+//! The correction by way of joint coordinates: there and back. Trees need no iteration for it.
 
-use super::{Correction, check_finite};
+use super::{CloseLoops, Correction, check_finite};
 use crate::violation::constraint_violation;
 use crate::{Error, JointSpace, Ode, Real, refer_turns};
 
-/// Joint coordinates and their rates are kept, and all else follows from them.
+/// Joint coordinates and their rates are kept, but for what closes loops, and all else follows from them.
 #[derive(Clone, Debug)]
 pub struct ClosedForm<M: JointSpace> {
     joints: M::Joints,
+    loops: CloseLoops<M>,
     before: M::State,
     phi: M::Constraints,
 }
@@ -17,6 +18,7 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
     pub fn new(mechanism: &M) -> Self {
         Self {
             joints: mechanism.joint_start(),
+            loops: CloseLoops::new(mechanism),
             before: mechanism.start(),
             phi: mechanism.buffers().constraints,
         }
@@ -25,17 +27,18 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
     /// Corrects positions and velocities. The work, which follows the velocities in the state, is left as it is.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the state is not finite.
+    /// [`Error::NotFinite`] if the state is not finite, and what [`CloseLoops::correct`] returns.
     pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         self.before.as_mut().copy_from_slice(y.as_ref());
         mechanism.to_joints(t, y, &mut self.joints);
+        let closed = self.loops.correct(mechanism, t, &mut self.joints);
         mechanism.to_maximal(t, &self.joints, y);
         let kept =
             y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * mechanism.description().bodies.len());
         kept.for_each(|(element, before)| *element = *before);
         refer_turns(mechanism, t, y);
         // Angles are continued from these: what is not finite must not stay among them.
-        check_finite(t, y.as_ref()).inspect_err(|_| self.joints = mechanism.joint_start())
+        check_finite(t, y.as_ref()).and(closed).inspect_err(|_| self.joints = mechanism.joint_start())
     }
 }
 

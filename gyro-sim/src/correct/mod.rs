@@ -3,7 +3,7 @@
 //! | correction | what it keeps |
 //! |---|---|
 //! | [`Partitioning`] | the independent coordinates as they were integrated (eqs. (18) to (20)); any mechanism |
-//! | [`ClosedForm`] | the joint coordinates; trees, no iteration |
+//! | [`ClosedForm`] | the joint coordinates, but for what closes loops; no iteration for trees |
 //! | [`CloseLoops`] | in joint coordinates, what generated code keeps; any mechanism that has them |
 //! | [`MassWeighted`] | nothing exactly, but it makes the smallest change in the metric of the masses; any mechanism |
 //! | [`Baumgarte`] | nothing: its accelerations reduce violations; equations, not a correction |

@@ -50,7 +50,7 @@ impl Model {
 pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     // Point rows are along global axes until it is known that others are better.
     let model = &Model { redundant: Vec::new(), ..model.clone() };
-    let (start, tree) = (model.assemble()?, Tree::of(model));
+    let (start, tree) = (model.assemble()?, Tree::of_coordinates(model));
     if model.is_open(&tree) {
         let rank = model.all_rows().len();
         let degrees_of_freedom = (6 * model.coordinate_bodies().len()).saturating_sub(rank);

@@ -58,7 +58,9 @@ where
         Keeping::Partition => return Ok(partitioning(mechanism, y)),
         Keeping::MassWeighted => Box::new(MassWeighted::new(mechanism)),
         Keeping::None | Keeping::Baumgarte(_) => Box::new(Watched::new(mechanism)),
-        Keeping::ClosedForm => return Err("the closed form is for generated code of trees".to_owned()),
+        Keeping::ClosedForm => {
+            return Err("the closed form is for generated code with joint coordinates".to_owned());
+        }
     }))
 }
 

@@ -203,8 +203,8 @@ impl Tangent {
 }
 
 /// Chooses so many of the upper rows and combines the columns until they are one there: Gauss and Jordan with the
-/// largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8). In the lower rows, those of the same
-/// rates are then made zero.
+/// largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8). The same rows of the lower half are
+/// then made zero.
 fn eliminate(mut columns: Vec<Vec<f64>>, n: usize, rates: &[Rate]) -> (Vec<usize>, Vec<Vec<f64>>) {
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
     while chosen.len() < n {
@@ -302,8 +302,8 @@ mod tests {
             ]
         };
         let here = slopes(&[0.0; 6]);
-        for k in 0..6 {
-            assert!((found.slope[k] - here[k]).abs() < 1e-12, "{k}: {found:?}");
+        for (k, (slope, here)) in found.slope.iter().zip(here).enumerate() {
+            assert!((slope - here).abs() < 1e-12, "{k}: {found:?}");
             let along = |step: f64| slopes(&core::array::from_fn(|l| if l == k { step } else { 0.0 }));
             let [far, near, beyond, past] = [-2e-3, -1e-3, 1e-3, 2e-3].map(along);
             for row in 0..6 {
