@@ -20,20 +20,8 @@ pub(super) fn check(
         let name = model.joints[joint].name.clone();
         return Err(AssemblyError::Flipped { joint, name, direction });
     }
-    let turned = |moving_body: usize| {
-        let p = |at: &Configuration| {
-            let q = &at.q[7 * moving_body + 3..7 * moving_body + 7];
-            Quaternion([q[0], q[1], q[2], q[3]])
-        };
-        rotation_vector(p(guess).conjugate() * p(closed)).iter().map(|x| x * x).sum::<f64>().sqrt()
-    };
-    let farthest = model
-        .coordinate_bodies()
-        .into_iter()
-        .enumerate()
-        .map(|(moving_body, body)| (turned(moving_body), body));
-    match farthest.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((turned, body)) if turned > QUARTER_TURN => Err(AssemblyError::Jump {
+    match most_turned(model, guess, closed) {
+        (turned, body) if turned > QUARTER_TURN => Err(AssemblyError::Jump {
             body,
             name: model.bodies[body].name.clone(),
             turned,
@@ -41,6 +29,27 @@ pub(super) fn check(
         }),
         _ => Ok(()),
     }
+}
+
+/// What is to be said of a pose that is on another branch than the guess.
+pub(super) fn other(model: &Model, guess: &Configuration, closed: &Configuration) -> AssemblyError {
+    let (turned, body) = most_turned(model, guess, closed);
+    let name = model.bodies[body].name.clone();
+    AssemblyError::OtherBranch { body, name, turned, coordinates: coordinates_of(model, body, closed) }
+}
+
+/// The body that is turned most from its guess, and by how much.
+fn most_turned(model: &Model, guess: &Configuration, closed: &Configuration) -> (f64, usize) {
+    let turned = |moving_body: usize| {
+        let p = |at: &Configuration| {
+            let q = &at.q[7 * moving_body + 3..7 * moving_body + 7];
+            Quaternion([q[0], q[1], q[2], q[3]])
+        };
+        rotation_vector(p(guess).conjugate() * p(closed)).iter().map(|x| x * x).sum::<f64>().sqrt()
+    };
+    let bodies = model.coordinate_bodies().into_iter().enumerate();
+    let each = bodies.map(|(moving_body, body)| (turned(moving_body), body));
+    each.max_by(|a, b| a.0.total_cmp(&b.0)).expect("a loop has a body with coordinates")
 }
 
 /// The first joint that is closed the wrong way round.

@@ -5,7 +5,7 @@ use super::guess::{Guess, Source, Told, guesses};
 use super::projection::{Configuration, Scales, System, rotation_vector, scattered};
 use super::velocity::velocities;
 use super::walk::{State, Walk, check_finite, relative, roots};
-use super::{JointStart, Move, Start, branch};
+use super::{JointStart, Move, Start, branch, side};
 use crate::kinematics::{Equation, Kinematics};
 use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, Tree, Vector};
 
@@ -52,7 +52,9 @@ fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, Ass
     let guessed = Walk::of(model, tree, kinematics.joints(), guesses, roots(model, tree));
     check_finite(model, &tree.links, &guessed.states)?;
     let guess = configuration(&kinematics, tree, guesses, &guessed);
-    let closed = Closing { model, kinematics: &kinematics, scales: &scales }.positions(guesses, &guess)?;
+    let chooses = chooses_branch(tree, guesses);
+    let closing = Closing { model, kinematics: &kinematics, scales: &scales, chooses };
+    let closed = closing.positions(guesses, &guess)?;
     branch::check(model, &kinematics, &guess, &closed)?;
 
     let (placed, states) = settled(model, tree, guesses, &guessed.states, &closed);
@@ -65,6 +67,14 @@ fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, Ass
     let joints = joint_starts(&kinematics, &states, &at, &v);
     let moved = moves(model, tree, &scales, [&guessed.states, &states], [&guess, &at]);
     Ok(Start { q: at.q, v, joints, moved })
+}
+
+/// Whether the page tells every coordinate that places a body on another: a pose that nobody wrote chooses nothing.
+fn chooses_branch(tree: &Tree, guesses: &[Guess]) -> bool {
+    tree.links.iter().all(|link| match link.attachment {
+        crate::Attachment::Joint { joint, .. } => guesses[joint].told() == Told::All,
+        _ => true,
+    })
 }
 
 /// The guessed pose, with the turns of angles as they are guessed; a screw of which nothing is known is on the turn
@@ -90,6 +100,8 @@ struct Closing<'a> {
     model: &'a Model,
     kinematics: &'a Kinematics,
     scales: &'a Scales,
+    /// Whether the guess chooses a branch.
+    chooses: bool,
 }
 
 impl Closing<'_> {
@@ -100,7 +112,7 @@ impl Closing<'_> {
         let all = System::new(self.kinematics, [&rows[..], &held].concat(), self.scales);
         let free = System::new(self.kinematics, rows, self.scales);
         match self.close(&all, guess) {
-            Ok(closed) => Ok(all.approach(closed, guess)),
+            Ok(closed) => self.on_branch(&all, guess, all.approach(closed, guess)),
             Err(_) => match self.close(&free, guess) {
                 Ok(closed) => Err(self.cannot_hold(&held, &free.approach(closed, guess))),
                 Err(best) => Err(self.impossible(&free, &best)),
@@ -108,12 +120,34 @@ impl Closing<'_> {
         }
     }
 
+    /// The closed configuration if it is on the branch of the guess, or another one that is.
+    fn on_branch(
+        &self,
+        system: &System<'_>,
+        guess: &Configuration,
+        closed: Configuration,
+    ) -> Result<Configuration, AssemblyError> {
+        let is_good = |at: &Configuration| system.is_met(at) && side::is_same(system, guess, at);
+        if !self.chooses || side::is_same(system, guess, &closed) {
+            return Ok(closed);
+        }
+        let gradual = || system.approach(side::close_gradually(system, guess), guess);
+        let scattered = (1..=ATTEMPTS).map(|attempt| system.project(&self.near(system, guess, attempt)));
+        let mut others = std::iter::once_with(gradual).chain(scattered);
+        others.find(is_good).ok_or_else(|| branch::other(self.model, guess, &closed))
+    }
+
+    /// A configuration near the guess, for another attempt.
+    fn near(&self, system: &System<'_>, guess: &Configuration, attempt: usize) -> Configuration {
+        let away = scattered(self.scales.columns.len(), attempt) * (SCATTER * attempt as f64);
+        system.moved(guess, &away)
+    }
+
     /// Meets the equations from the guess or from near it; else how near one comes.
     fn close(&self, system: &System<'_>, guess: &Configuration) -> Result<Configuration, Configuration> {
         let mut best: Option<(f64, Configuration)> = None;
         for attempt in 0..=ATTEMPTS {
-            let away = scattered(self.scales.columns.len(), attempt) * (SCATTER * attempt as f64);
-            let closed = system.project(&system.moved(guess, &away));
+            let closed = system.project(&self.near(system, guess, attempt));
             if system.is_met(&closed) {
                 return Ok(closed);
             }

@@ -81,6 +81,17 @@ pub enum AssemblyError {
         /// Joint coordinates where it would close, as text for a message.
         coordinates: String,
     },
+    /// The mechanism closes, but only beyond a pose in which the branch of its guess meets another one.
+    OtherBranch {
+        /// Index into [`crate::Model::bodies`]: the body that is turned most.
+        body: usize,
+        /// Name of the body.
+        name: String,
+        /// Angle by which the body would be turned, rad.
+        turned: f64,
+        /// Joint coordinates where it would close, as text for a message.
+        coordinates: String,
+    },
     /// No velocities satisfy the constraints together with the rates of the drivers and of the page.
     Rate {
         /// Whose rate is missed most.
@@ -137,9 +148,10 @@ impl AssemblyError {
     pub(crate) fn place(&self) -> Option<Place> {
         match self {
             Self::AngularVelocity { body, .. } => Some(Place::body(*body, "angular_velocity")),
-            Self::NotFinite { body, .. } | Self::Jump { body, .. } | Self::Unconnected { body, .. } => {
-                Some(Place::body(*body, ""))
-            }
+            Self::NotFinite { body, .. }
+            | Self::Jump { body, .. }
+            | Self::OtherBranch { body, .. }
+            | Self::Unconnected { body, .. } => Some(Place::body(*body, "")),
             Self::Held { joint, .. } => Some(Place::joint(*joint, "")),
             Self::Link { force, .. } => Some(Place::force(*force, "")),
             Self::Flipped { joint, direction, .. } => Some(Place::joint(*joint, direction)),
@@ -172,7 +184,7 @@ impl AssemblyError {
             Self::Flipped { .. } => {
                 "turn the zero direction of one end, or start the joints near the pose that is meant".to_owned()
             }
-            Self::Jump { .. } => {
+            Self::Jump { .. } | Self::OtherBranch { .. } => {
                 "start the joints near the pose that is meant; with rough = true they are guesses".to_owned()
             }
             Self::Rate { is_given: true, .. } => "correct the rate, or leave it out".to_owned(),
@@ -244,6 +256,12 @@ impl fmt::Display for AssemblyError {
             Self::Jump { name, turned, coordinates, .. } => write!(
                 f,
                 "the mechanism closes only if body `{name}` is turned by {:.1} degrees from its guess{coordinates}",
+                turned.to_degrees()
+            ),
+            Self::OtherBranch { name, turned, coordinates, .. } => write!(
+                f,
+                "the mechanism closes only on another branch than the one that its guess is on: body `{name}` would be \
+                 turned by {:.1} degrees from its guess{coordinates}",
                 turned.to_degrees()
             ),
             Self::Rate { name, residual, unit, is_given, .. } => {

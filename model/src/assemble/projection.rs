@@ -219,11 +219,33 @@ impl<'k> System<'k> {
         at
     }
 
+    /// The configuration on the way from one to another, each body turning about one axis.
+    pub(crate) fn between(&self, from: &Configuration, to: &Configuration, part: f64) -> Configuration {
+        from.changed(self.kinematics, &(to.difference(from) * part))
+    }
+
+    /// The least change that makes the equations miss by as much as is given.
+    pub(crate) fn project_onto(&self, from: &Configuration, missed: &DVector<f64>) -> Configuration {
+        let mut at = from.clone();
+        for _ in 0..MAX_CORRECTIONS {
+            let left = self.residual(&at) - missed;
+            let Some(change) = least_change(&self.jacobian(&at), &left, DAMPING[1]) else { break };
+            at = self.moved(&at, &-&change);
+            if change.amax() < NEAREST {
+                break;
+            }
+        }
+        at
+    }
+
     /// From one configuration to another, scaled.
     pub(crate) fn scaled_difference(&self, to: &Configuration, from: &Configuration) -> DVector<f64> {
         to.difference(from).component_div(&self.scales.columns)
     }
 }
+
+/// Newton's steps after a short step along a path.
+const MAX_CORRECTIONS: usize = 6;
 
 /// Slides along the constraints that may follow a projection.
 const MAX_APPROACHES: usize = 30;

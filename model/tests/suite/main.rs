@@ -2,6 +2,7 @@
 
 mod assembly;
 mod bad_models;
+mod branches;
 mod closing;
 mod closing_kinds;
 mod cures;
