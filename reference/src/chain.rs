@@ -283,7 +283,10 @@ fn body_state(frame: &FrameMotion) -> BodyState {
 }
 
 /// x of A x = b for a symmetric positive definite A: elimination without pivoting.
-fn solve<const N: usize>(mut a: [[DoubleDouble; N]; N], mut b: [DoubleDouble; N]) -> [DoubleDouble; N] {
+pub(crate) fn solve<const N: usize>(
+    mut a: [[DoubleDouble; N]; N],
+    mut b: [DoubleDouble; N],
+) -> [DoubleDouble; N] {
     for pivot in 0..N {
         for row in pivot + 1..N {
             let factor = a[row][pivot] / a[pivot][pivot];

@@ -15,6 +15,9 @@
 //! | [`HeavyTop`] | a body on a spherical joint |
 //! | [`HookePendulum`] | a body on a universal joint |
 //! | [`FourBar`] | a planar four-bar linkage, reduced to its crank |
+//! | [`CarriedFourBar`] | the same linkage on a carrier that is free in space |
+//! | [`GyroscopeFourBar`] | the gyroscope, its inner ring rocked from the base by a crank |
+//! | [`DoubleWishbone`] | a quarter of a car on a wheel suspension of two arms |
 //! | [`OneAxis`] | a rotor or slider with springs, friction, stops and a sampled input |
 //! | [`Pendulum`] | a compound pendulum, its bearing's force, and the parallelogram linkage |
 //! | [`Slider`], [`PlanarBlock`], [`FallingSpindle`], [`FallingScrew`], [`GearedDiscs`] | prismatic, planar, cylindrical and screw joint and a gear, in closed form |
@@ -45,17 +48,23 @@
 mod base_motion;
 mod body;
 mod carried;
+mod carried_four_bar;
 mod chain;
 mod closed_forms;
+mod closing;
 mod decimal;
 mod double_double;
+mod double_wishbone;
 mod dynamics;
 mod elementary;
 mod extrapolation;
 mod four_bar;
 mod gyroscope;
+mod gyroscope_four_bar;
 mod heavy_top;
 mod hooke;
+mod jet;
+mod kane;
 mod link;
 pub mod moving_base;
 mod newton_euler;
@@ -75,13 +84,16 @@ mod vector;
 pub use base_motion::{BaseMotion, Sinusoid};
 pub use body::BodyState;
 pub use carried::{Bead, BeadSample, FreeBody, RodPendulum, RodSample};
+pub use carried_four_bar::{CarriedFourBar, Constants};
 pub use chain::{Chain, ChainSample, InertialReading, Wrench};
 pub use closed_forms::{Derivatives, FallingScrew, FallingSpindle, GearedDiscs, PlanarBlock, Slider};
 pub use decimal::ParseDecimalError;
 pub use double_double::DoubleDouble;
+pub use double_wishbone::DoubleWishbone;
 pub use extrapolation::{NotConverged, Scheme};
 pub use four_bar::{Bar, Branch, FourBar, FourBarSample};
 pub use gyroscope::{Gyroscope, Start};
+pub use gyroscope_four_bar::GyroscopeFourBar;
 pub use heavy_top::{HeavyTop, TopSample};
 pub use hooke::{HookePendulum, HookeSample};
 pub use link::{Freedom, Link};

@@ -4,8 +4,8 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use crate::moving_base::{rolling, rolling_and_pitching, rolling_fast};
 use crate::{
-    AxisForce, Bar, Chain, FourBar, FourBarSample, Gyroscope, HeavyTop, OneAxis, Pendulum, PendulumSample,
-    ReducedGyroscope, Sample, TopSample,
+    AxisForce, Bar, Chain, DoubleWishbone, FourBar, FourBarSample, Gyroscope, GyroscopeFourBar, HeavyTop,
+    OneAxis, Pendulum, PendulumSample, ReducedGyroscope, Sample, TopSample,
 };
 
 /// Joint coordinates of a mechanism at one time.
@@ -46,6 +46,8 @@ enum Motion {
     Axis(OneAxis),
     Pendulum(Pendulum),
     FourBar(FourBar, Joints),
+    Wishbone(DoubleWishbone),
+    GyroscopeFourBar(GyroscopeFourBar),
     /// A parallelogram as a pendulum, its crank's angle counted from the horizontal.
     Parallelogram(Pendulum),
 }
@@ -66,6 +68,7 @@ pub fn scene(model_name: &str) -> Option<SceneReference> {
     let motion = match model_name {
         "compound-pendulum" => Motion::Pendulum(Pendulum::slender_rod()),
         "driven-gyroscope" => Motion::Carried(Box::new(rolling())),
+        "double-wishbone" => Motion::Wishbone(DoubleWishbone::default()),
         "four-bar" => Motion::FourBar(FourBar::crank_rocker(), Joints::UniversalAndSpherical),
         "four-bar-in-line" => Motion::Parallelogram(thrown_parallelogram()),
         "four-bar-revolute" => Motion::FourBar(FourBar::crank_rocker(), Joints::Revolute),
@@ -73,6 +76,7 @@ pub fn scene(model_name: &str) -> Option<SceneReference> {
             Motion::Gyroscope(Box::new(Gyroscope::paper()))
         }
         "gyroscope-combined-offsets" => Motion::Gyroscope(Box::new(Gyroscope::combined_offsets())),
+        "gyroscope-four-bar" => Motion::GyroscopeFourBar(GyroscopeFourBar::default()),
         "gyroscope-free-nutation" => Motion::Gyroscope(Box::new(Gyroscope::free_nutation())),
         "gyroscope-radial-imbalance" => Motion::Gyroscope(Box::new(Gyroscope::radial_imbalance())),
         "gyroscope-viscous" => Motion::Gyroscope(Box::new(Gyroscope::viscous_bearings())),
@@ -123,6 +127,8 @@ impl SceneReference {
             Motion::FourBar(linkage, joints) => {
                 linkage.solve(times).iter().map(|sample| of_four_bar(sample, *joints)).collect()
             }
+            Motion::Wishbone(wishbone) => wishbone.solve(times),
+            Motion::GyroscopeFourBar(gyroscope) => gyroscope.solve(times),
             Motion::Parallelogram(pendulum) => pendulum.solve(times).iter().map(of_parallelogram).collect(),
         }
     }
