@@ -11,7 +11,7 @@ use crate::assemble::projection::Configuration;
 use crate::kinematics::{Kinematics, value_of};
 use crate::{Model, RowOwner};
 
-/// Changes of a projector below this are rounding: poses that are sampled differ by some tenths of a radian.
+/// Changes of these directions below this are rounding: poses that are sampled differ by some tenths of a radian.
 const STAYS: f64 = 1e-5;
 
 /// Instants of the run at which prescribed rotations are looked at, as parts of it: without a pattern, so that no
@@ -69,23 +69,21 @@ impl Poses<'_> {
         in_space > STAYS && on_first < in_space
     }
 
-    /// The projector on the directions along which the joint's points coincide by what is preferred to the joint.
+    /// What points contribute to the combinations of the joint's rows that are nothing by what is preferred to the joint:
+    /// the sum of c cᵀ over an orthonormal basis of these combinations, of whose coefficients c is the points' part.
     fn redundant_directions(&self, joint: usize, jacobian: &DMatrix<f64>) -> Matrix3<f64> {
-        let first = self.first_row(joint);
         let (mut basis, unit) = (Vec::new(), with_unit_rows(jacobian));
-        for &row in self.groups.iter().take_while(|group| !group.contains(&first)).flatten() {
-            extend(&mut basis, unit.row(row).transpose());
-        }
-        let left: Vec<_> =
-            (first..first + 3).map(|row| outside(jacobian.row(row).transpose(), &basis)).collect();
+        let own = self.groups.iter().position(|group| group.contains(&self.first_row(joint)));
+        let (before, own) = self.groups.split_at(own.expect("each row is in a group"));
+        before.iter().flatten().for_each(|&row| extend(&mut basis, unit.row(row).transpose()));
+        let left: Vec<_> = own[0].iter().map(|&row| outside(jacobian.row(row).transpose(), &basis)).collect();
+        let size = own[0].iter().map(|&row| jacobian.row(row).norm()).fold(0.0, f64::max);
         let svd = DMatrix::from_columns(&left).svd(false, true);
-        let directions = svd.v_t.expect("asked for");
-        let size = jacobian.rows(first, 3).norm();
-        let redundant =
-            svd.singular_values.iter().enumerate().filter(|(_, value)| **value <= INDEPENDENT * size);
-        redundant.fold(Matrix3::zeros(), |sum, (k, _)| {
-            let direction = Vector3::from_fn(|axis, _| directions[(k, axis)]);
-            sum + direction * direction.transpose()
+        let combinations = svd.v_t.expect("asked for");
+        let values = svd.singular_values.iter().enumerate();
+        values.filter(|(_, value)| **value <= INDEPENDENT * size).fold(Matrix3::zeros(), |sum, (k, _)| {
+            let points = Vector3::from_fn(|axis, _| combinations[(k, axis)]);
+            sum + points * points.transpose()
         })
     }
 
@@ -102,8 +100,8 @@ impl Poses<'_> {
 }
 
 /// The largest difference from the first.
-fn change(projectors: &[Matrix3<f64>]) -> f64 {
-    projectors.iter().map(|projector| (projector - projectors[0]).amax()).fold(0.0, f64::max)
+fn change(directions: &[Matrix3<f64>]) -> f64 {
+    directions.iter().map(|each| (each - directions[0]).amax()).fold(0.0, f64::max)
 }
 
 /// How fast driven bodies would turn directions that they carry, in parts of their angular velocity: w × N − N w ×.

@@ -3,6 +3,7 @@
 mod assembly;
 mod bad_models;
 mod branches;
+mod carried;
 mod closing;
 mod closing_kinds;
 mod cures;
