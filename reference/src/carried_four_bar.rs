@@ -9,13 +9,16 @@ use crate::trajectory::{decimal, decimals, smooth_trajectory};
 use crate::vector::{Vector, add, cross, scale};
 use crate::{DoubleDouble, JointRow};
 
-/// The carrier and the linkage of `tests/models/carried-four-bar.toml`.
+/// The carrier and the linkage of `tests/models/carried-four-bar.toml`, and their start. Numbers are the decimals they
+/// print as.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarriedFourBar {
-    /// Rate of the crank at time zero, rad/s.
-    pub crank_rate: f64,
-    /// Angular velocity of the carrier at time zero in its frame, rad/s.
-    pub angular_velocity: [f64; 3],
+    /// Angle of the crank at time zero, rad, and its rate, rad/s.
+    pub crank: [f64; 2],
+    /// Mass centre of the carrier at time zero, m, and its Euler parameters.
+    pub pose: [f64; 7],
+    /// Its velocity, m/s, and w' in its frame, rad/s.
+    pub velocity: [f64; 6],
 }
 
 /// What stays the same of a body that nothing acts on.
@@ -34,12 +37,6 @@ const BARS: [(f64, f64, [f64; 3]); 3] = [
     (0.4, 0.8, [4e-5, 1.08e-2, 1.08e-2]),
 ];
 const BASE: f64 = 0.5;
-
-impl Default for CarriedFourBar {
-    fn default() -> Self {
-        Self { crank_rate: 30.0, angular_velocity: [25.0, 40.0, -35.0] }
-    }
-}
 
 impl CarriedFourBar {
     /// The joints of the model file at `times` (s, ascending from zero; each the decimal it prints as), rounded once.
@@ -62,14 +59,11 @@ impl CarriedFourBar {
     }
 
     fn start(&self) -> [DoubleDouble; 15] {
-        let third = core::f64::consts::FRAC_PI_3;
-        // 60 degrees, exactly: the angle of (1, √3).
-        let crank = DoubleDouble::new(3.0).sqrt().atan2(DoubleDouble::new(1.0));
-        debug_assert!((crank.to_f64() - third).abs() < 1e-15);
-        let [x, y, z, e0, e1, e2, e3] = decimals([0.1, -0.2, 0.3, 0.8, 0.2, -0.4, 0.4]);
-        let [a, b, c] = decimals([0.02, 0.01, -0.03]);
-        let [u, v, w] = decimals(self.angular_velocity);
-        [crank, x, y, z, e0, e1, e2, e3, decimal(self.crank_rate), a, b, c, u, v, w]
+        let ([angle, rate], [x, y, z, e0, e1, e2, e3]) = (decimals(self.crank), decimals(self.pose));
+        let [a, b, c, u, v, w] = decimals(self.velocity);
+        let length = (e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3).sqrt();
+        let [e0, e1, e2, e3] = [e0, e1, e2, e3].map(|e| e / length);
+        [angle, x, y, z, e0, e1, e2, e3, rate, a, b, c, u, v, w]
     }
 }
 
@@ -153,9 +147,17 @@ impl Mechanism<8, 7> for CarriedFourBar {
 mod tests {
     use super::*;
 
+    fn tumbling() -> CarriedFourBar {
+        CarriedFourBar {
+            crank: [1.0, 30.0],
+            pose: [0.1, -0.2, 0.3, 0.8, 0.2, -0.4, 0.4],
+            velocity: [0.02, 0.01, -0.03, 25.0, 40.0, -35.0],
+        }
+    }
+
     #[test]
     fn energy_and_angular_momentum_are_kept() {
-        let linkage = CarriedFourBar::default();
+        let linkage = tumbling();
         let (start, before) = (linkage.start(), linkage.constants());
         let end = smooth_trajectory(|t, state| derivative::<8, 7, 15>(&linkage, t, state), start, &[0.02]);
         let scene = moving::<8, 7, 15>(&linkage, end[0].0, &end[0].1);
@@ -168,7 +170,7 @@ mod tests {
     /// A carrier that does not turn and is much heavier than its bars would leave the loop alone; this one is moved by it.
     #[test]
     fn the_linkage_turns_its_carrier() {
-        let still = CarriedFourBar { angular_velocity: [0.0; 3], ..CarriedFourBar::default() };
+        let still = CarriedFourBar { velocity: [0.0; 6], ..tumbling() };
         let state = derivative::<8, 7, 15>(&still, DoubleDouble::ZERO, &still.start());
         assert!(state[12].to_f64().abs() > 1.0, "{:?}", &state[12..]);
     }

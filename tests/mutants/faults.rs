@@ -48,6 +48,7 @@ const FAULTS: &[Fault] = &[
     fault("derive/constraints.rs", "free-body", "«system.graph.sub(square, one)»", "square"),
     fault("derive/constraints.rs", "gear", "«system.graph.sub(lag, offset)»", "system.graph.add(lag, offset)"),
     fault("derive/constraints.rs", "rod", "let difference = «graph.sub(quotient, joint.length)»;", "quotient"),
+    fault("derive/constraints.rs", "carried-four-bar", "dot2(system, &joint, &[joint.first.f, «joint.first.g», joint.first.h]),", "joint.first.h"),
     fault("derive/constraints.rs", "screw", "rows[2] = «system.graph.sub(rows[2], advance)»;", "system.graph.add(rows[2], advance)"),
     fault("derive/joint_coordinate.rs", "bob", "«graph.mat_vec(&j.a, &joint.second.point)»);\n    let (point_i", "graph.transposed_vec(&j.a, &joint.second.point)"),
     fault("derive/joint_coordinate.rs", "slider", "let u = «system.graph.mat_vec(&a, u)»;", "*u"),

@@ -5,6 +5,7 @@ mod all_joints;
 mod allocation;
 mod branches;
 mod build_script;
+mod carried_loops;
 mod closed_forms;
 mod convergence;
 mod estimate;

@@ -30,9 +30,11 @@ pub fn generated(page: &str) -> Engine {
         "cam" => Engine::new(own::cam::Cam::default()),
         "carried" => Engine::new(own::carried::Carried::default()),
         "carried-block" => Engine::new(own::carried_block::CarriedBlock::default()),
+        "carried-four-bar" => Engine::new(own::carried_four_bar::CarriedFourBar::default()),
         "compound-pendulum" => Engine::of_tree(shipped::compound_pendulum::CompoundPendulum::default()),
         "cylindrical" => Engine::new(own::cylindrical::Cylindrical::default()),
         "differential" => Engine::new(own::differential::Differential::default()),
+        "double-wishbone" => Engine::new(shipped::double_wishbone::DoubleWishbone::default()),
         "driven-four-bar" => Engine::new(own::driven_four_bar::DrivenFourBar::default()),
         "driven-gyroscope" => Engine::of_tree(shipped::driven_gyroscope::DrivenGyroscope::default()),
         "driven-shaft" => Engine::new(own::driven_shaft::DrivenShaft::default()),
@@ -51,6 +53,7 @@ pub fn generated(page: &str) -> Engine {
         }
         "gyroscope-coulomb" => Engine::of_tree(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
         "gyroscope-fast" => Engine::of_tree(shipped::gyroscope_fast::GyroscopeFast::default()),
+        "gyroscope-four-bar" => Engine::new(shipped::gyroscope_four_bar::GyroscopeFourBar::default()),
         "gyroscope-free-nutation" => {
             Engine::of_tree(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
         }

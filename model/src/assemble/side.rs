@@ -15,6 +15,9 @@ const INDEPENDENT: f64 = 1e-7;
 /// Rotation of a body between two poses of the path, rad: rows of small steps are at acute angles.
 const STEP: f64 = 0.2;
 
+/// A guess that is nearer than this to the closed pose, rad or parts of the size, is that pose.
+const NEAR: f64 = 1e-3;
+
 /// Below this cosine between row spaces the poses are so nearly where branches meet that the guess chooses none.
 const UNDECIDED: f64 = 1e-6;
 
@@ -23,9 +26,12 @@ const PARTS: usize = 40;
 
 /// Whether two configurations are on one side, the second one satisfying the equations.
 pub(super) fn is_same(system: &System<'_>, guess: &Configuration, closed: &Configuration) -> bool {
+    let far = system.scaled_difference(closed, guess).amax();
+    if far < NEAR {
+        return true;
+    }
     let combinations = combinations(system.jacobian(closed));
     let space = |at: &Configuration| row_space(&combinations.tr_mul(&system.jacobian(at)));
-    let far = system.scaled_difference(closed, guess).amax();
     let count = (far / STEP).ceil().clamp(1.0, 100.0);
     let mut sign = 1.0;
     let Some(mut before) = space(guess) else { return true };
