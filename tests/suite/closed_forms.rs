@@ -145,9 +145,17 @@ fn a_motion_that_is_a_little_wrong_is_noticed() {
 const DRIFT: f64 = 1e-11;
 
 /// Of tops that turn faster for their size, of a stop that throws a body back within a hundredth of a second, of rings
-/// that turn fast in gimbal lock, and of springs that give up their energy within milliseconds.
-const FAST: [&str; 5] =
-    ["spinning-top", "stops", "gyroscope-gimbal-lock", "gyroscope-stiff", "gyroscope-overdamped"];
+/// that turn fast in gimbal lock, of springs that give up their energy within milliseconds, of a wheel that hops on its
+/// tyre, and of a crank that shakes a gyroscope.
+const FAST: [&str; 7] = [
+    "spinning-top",
+    "stops",
+    "gyroscope-gimbal-lock",
+    "gyroscope-stiff",
+    "gyroscope-overdamped",
+    "double-wishbone",
+    "gyroscope-four-bar",
+];
 const DRIFT_OF_FAST: f64 = 1e-10;
 
 /// Of linkages that pass a pose in which their rows depend on each other: on both sides of it accelerations are
