@@ -130,10 +130,9 @@ fn accelerations<const P: usize, const N: usize>(
             let change = add(tensor_times(body.inertia, acceleration), cross(own, momentum));
             let inertial = sub(mechanism.gravity(), seconds(body.centre));
             forces[r] = forces[r] + body.mass * dot(v, inertial) - dot(w, change);
-            for s in 0..N {
+            for (s, entry) in matrix[r].iter_mut().enumerate() {
                 let (other, turn) = of(s);
-                matrix[r][s] =
-                    matrix[r][s] + body.mass * dot(v, other) + dot(w, tensor_times(body.inertia, turn));
+                *entry = *entry + body.mass * dot(v, other) + dot(w, tensor_times(body.inertia, turn));
             }
         }
     }

@@ -24,11 +24,14 @@ impl Random {
     }
 }
 
+/// Which way a start has closed.
+type Side = Box<dyn Fn(&Model, &Start) -> f64>;
+
 /// A mechanism, the sign that its guess chooses, and how to read that sign from a start.
 struct Case {
     page: String,
     chosen: f64,
-    side: Box<dyn Fn(&Model, &Start) -> f64>,
+    side: Side,
 }
 
 fn bodies(names: &[&str]) -> String {
