@@ -124,8 +124,8 @@ impl Model {
     /// A constrained body has three position rows `r - r0` and three orientation rows, the vector part of `p0* p`. With
     /// (f, g, h) the joint frame on a body (unit zero direction, `g = h × f`, unit axis) and `d` from the first body's
     /// joint point to the second's, both in the global frame, joints have
-    /// - revolute, spherical, fixed, universal: `d` (three components along [`Model::point_axes`], eq. (7)); then `f_i·h_j`, `g_i·h_j` (revolute,
-    ///   fixed; eqs. (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
+    /// - revolute, spherical, fixed, universal: `d` (three components along [`Model::point_axes`], eq. (7)); then
+    ///   `f_i·h_j`, `g_i·h_j` (revolute, fixed; eqs. (9), (10)), `f_i·g_j` (fixed), `h_i·h_j` (universal);
     /// - cylindrical, prismatic, screw: `f_i·d`, `g_i·d`; `h_i·d − lead · angle` (screw); `f_i·h_j`, `g_i·h_j`;
     ///   `f_i·g_j` (prismatic);
     /// - planar: `h_i·d`, `f_i·h_j`, `g_i·h_j`;

@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// A carrier that does not turn and is much heavier than its bars would leave the loop alone; this one is moved by it.
+    /// A much heavier carrier would leave the loop alone; this one is moved by it.
     #[test]
     fn the_linkage_turns_its_carrier() {
         let still = CarriedFourBar { velocity: [0.0; 6], ..tumbling() };

@@ -1,8 +1,9 @@
-//! The gyroscope of `models/gyroscope-four-bar.toml`, its inner ring rocked from the base, in two coordinates: the angle
-//! of the outer ring and that of the rotor.
+//! The gyroscope of `models/gyroscope-four-bar.toml`, its inner ring rocked from the base, in two coordinates: the
+//! angle of the outer ring and that of the rotor.
 //!
 //! The inner ring's angle β closes the loop: its arm's end P = Ry(α) Rz(β) (0, −r, 0) is at the coupler's length from
-//! the crank's pin, which gives `a cos β + b sin β = c`. The coupler's y axis is across the crank's axis and the coupler.
+//! the crank's pin, which gives `a cos β + b sin β = c`. The coupler's y axis is across the crank's axis and the
+//! coupler.
 
 use crate::closing::{Side, fixed, point, sine_and_cosine};
 use crate::time_jet::{Jet, constant, unit};

@@ -1,5 +1,5 @@
-//! A planar loop of revolute joints on a carrier that tumbles in space, and loops that are closed in space, against their
-//! references.
+//! A planar loop of revolute joints on a carrier that tumbles in space, and loops that are closed in space, against
+//! their references.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::{Model, PointAxes, RowOwner};

@@ -176,7 +176,12 @@ impl Module {
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
         let jacobian = text.contains("fn joint_jacobian(");
         let corrected_derivative = text.contains("fn corrected_derivative(");
-        let has = Has { choice, jacobian, corrected_derivative, parameter_setup: text.contains("fn parameter_setup(") };
+        let has = Has {
+            choice,
+            jacobian,
+            corrected_derivative,
+            parameter_setup: text.contains("fn parameter_setup("),
+        };
         let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
         let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());

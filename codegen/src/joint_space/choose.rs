@@ -84,8 +84,7 @@ impl JointSpace {
         let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
         let along = dynamics::power_along(system, &coordinates.layout);
         let along = system.expanded(&coordinates.determined, &[along])[0];
-        let power =
-            Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
+        let power = Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
         let reduced = maps::reduced(system, &coordinates.layout, &coordinates.of_joints);
@@ -174,9 +173,12 @@ impl Power<'_> {
             let motions = system.expanded(&coordinates.in_joints, &motions);
             let mut values = coordinates.in_joints.clone();
             values.extend(motions::accelerations_by_symbol(&motions));
-            let beside: Vec<_> = system.loop_closure_rows().iter().map(|&row| self.multipliers[row]).collect();
+            let beside: Vec<_> =
+                system.loop_closure_rows().iter().map(|&row| self.multipliers[row]).collect();
             let beside = system.expanded(&values, &beside);
-            values.extend(beside.into_iter().enumerate().map(|(place, value)| (Symbol::LoopMultiplier(place), value)));
+            values.extend(
+                beside.into_iter().enumerate().map(|(place, value)| (Symbol::LoopMultiplier(place), value)),
+            );
             let others = system.expanded(&values, &[self.others])[0];
             system.graph.add(self.along, others)
         })

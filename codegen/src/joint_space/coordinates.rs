@@ -179,7 +179,8 @@ type Derived = (Layout, Values, Vec<LinkKinematics>, WholeAngles, Vec<Vec<ExprId
 pub fn obstacle(model: &Model) -> Option<String> {
     let tree = Tree::of_coordinates(model);
     let acted_on = tree.loop_joints.iter().find(|joint| model.acts_on_coordinates(**joint));
-    let name = |joint: &usize| format!("forces on joint `{}`, which closes a loop", model.joints[*joint].name);
+    let name =
+        |joint: &usize| format!("forces on joint `{}`, which closes a loop", model.joints[*joint].name);
     acted_on.map(name).or_else(|| match coordinates_beside_joints(model, &tree).1.first()? {
         RowOwner::Driver(driver) => Some(format!(
             "the driver `{}` of a coordinate that is determined already",
@@ -259,7 +260,9 @@ fn unit_atoms(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec
         }
     }
     for (place, _) in angles.places() {
-        unit.push([Symbol::Cosine(place.x), Symbol::Sine(place.x)].map(|symbol| graph.symbol(symbol)).to_vec());
+        unit.push(
+            [Symbol::Cosine(place.x), Symbol::Sine(place.x)].map(|symbol| graph.symbol(symbol)).to_vec(),
+        );
     }
     unit
 }

@@ -184,8 +184,7 @@ impl JointDynamics {
     /// What the unknowns become by the multipliers that meet the remaining rows: `M⁻¹ Jᵀ μ` is added, such that
     /// `J z = γ`.
     fn closed(&self, graph: &mut Graph, tree: &Eliminated, mut found: Vec<ExprId>) -> Vec<ExprId> {
-        let responses: Vec<_> =
-            self.rows.iter().map(|(row, _)| self.response_to(graph, tree, row)).collect();
+        let responses: Vec<_> = self.rows.iter().map(|(row, _)| self.response_to(graph, tree, row)).collect();
         let mut matrix = BTreeMap::new();
         for (k, (row, _)) in self.rows.iter().enumerate() {
             for (l, response) in responses[..=k].iter().enumerate() {

@@ -42,7 +42,8 @@ impl Loops {
         let rates: Vec<_> = groups.iter().map(|rows| closure.rates_of(rows)).collect();
         let mut loops = Self::default();
         for (place, rows) in groups.iter().enumerate() {
-            let is_alone = (0..groups.len()).all(|other| other == place || rates[other].is_disjoint(&rates[place]));
+            let is_alone =
+                (0..groups.len()).all(|other| other == place || rates[other].is_disjoint(&rates[place]));
             match Single::of(graph, closure, rows, &rates[place]) {
                 Some(single) if is_alone => loops.single.push(single),
                 _ => loops.others.extend(rows),
@@ -58,7 +59,9 @@ impl Loops {
         for single in &self.single {
             let rhs = single.rows.iter().map(|&row| closure.gamma[row]).collect();
             let motion = single.motion(graph).into_iter().zip(single.least(graph, rhs));
-            in_loops.extend(single.rates.iter().zip(motion).map(|(&rate, motion)| (rate, (motion, single.rates[0]))));
+            in_loops.extend(
+                single.rates.iter().zip(motion).map(|(&rate, motion)| (rate, (motion, single.rates[0]))),
+            );
         }
         let mut unknowns = BTreeMap::new();
         for rate in 0..n_rates {
@@ -70,11 +73,21 @@ impl Loops {
     }
 
     /// The least rates with `J δ = b`.
-    pub fn changes(&self, graph: &mut Graph, closure: &Closure, rhs: &[ExprId], n_rates: usize) -> Vec<ExprId> {
+    pub fn changes(
+        &self,
+        graph: &mut Graph,
+        closure: &Closure,
+        rhs: &[ExprId],
+        n_rates: usize,
+    ) -> Vec<ExprId> {
         let mut changes = vec![Graph::ZERO; n_rates];
         for single in &self.single {
             let rhs = single.rows.iter().map(|&row| rhs[row]).collect();
-            single.rates.iter().zip(single.least(graph, rhs)).for_each(|(&rate, change)| changes[rate] = change);
+            single
+                .rates
+                .iter()
+                .zip(single.least(graph, rhs))
+                .for_each(|(&rate, change)| changes[rate] = change);
         }
         let rhs = self.others.iter().map(|&row| rhs[row]).collect();
         let weights = self.solve_square(graph, closure, rhs);

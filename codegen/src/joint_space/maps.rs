@@ -1,7 +1,7 @@
 //! Between joint coordinates and maximal ones, both ways.
 
-use super::dynamics;
 use super::closure::held_at_zero;
+use super::dynamics;
 use super::layout::{Layout, LinkCoordinates, Place, Scalar};
 use super::link_kinematics::{LinkKinematics, at_zero};
 use super::whole_angles::WholeAngles;

@@ -29,8 +29,7 @@ pub fn of(
     coordinates: &Coordinates,
 ) -> Vec<ExprId> {
     let n_bodies = system.moving_bodies.len();
-    let lacking: Vec<_> =
-        (0..n_bodies).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
+    let lacking: Vec<_> = (0..n_bodies).map(|moving_body| imbalance(system, dynamics, moving_body)).collect();
     let mut lambda = vec![Graph::ZERO; kinematics.phi.len()];
     let joints: Vec<_> = (coordinates.layout.links.iter().zip(&coordinates.links))
         .map(|(link, link_kinematics)| Held::of(system, kinematics, link, link_kinematics))
@@ -139,7 +138,12 @@ fn left_over(
 
 /// The multipliers of the rows that no joint of the tree owns, from the force that is left over along each rate of the
 /// tree: `left = Φ_xᵀ λ`.
-fn beside_joints(system: &mut System, coordinates: &Coordinates, mut left: Vec<ExprId>, lambda: &mut [ExprId]) {
+fn beside_joints(
+    system: &mut System,
+    coordinates: &Coordinates,
+    mut left: Vec<ExprId>,
+    lambda: &mut [ExprId],
+) {
     let Coordinates { layout, closure, loops, .. } = coordinates;
     let n_closing = closure.rows.len();
     let on_state = coordinates.by_rates.projected(&mut system.graph, &left);

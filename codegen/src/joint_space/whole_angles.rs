@@ -43,11 +43,16 @@ impl Sum {
     }
 
     /// Sine and cosine, from those of the angles.
-    pub fn sine_and_cosine(&self, graph: &mut Graph, of: impl Fn(Place) -> (ExprId, ExprId)) -> (ExprId, ExprId) {
+    pub fn sine_and_cosine(
+        &self,
+        graph: &mut Graph,
+        of: impl Fn(Place) -> (ExprId, ExprId),
+    ) -> (ExprId, ExprId) {
         self.0.iter().fold((Graph::ZERO, Graph::ONE), |(s, c), &(place, is_negative)| {
             let (sine, cosine) = of(place);
             let sine = if is_negative { graph.neg(sine) } else { sine };
-            let [sc, cs, cc, ss] = [(s, cosine), (c, sine), (c, cosine), (s, sine)].map(|(a, b)| graph.mul(a, b));
+            let [sc, cs, cc, ss] =
+                [(s, cosine), (c, sine), (c, cosine), (s, sine)].map(|(a, b)| graph.mul(a, b));
             (graph.add(sc, cs), graph.sub(cc, ss))
         })
     }
@@ -173,7 +178,9 @@ impl Attitude {
             (true, ..) => own,
             (_, true, _) => own.plus(&self.angle, false),
             (_, _, true) => own.plus(&self.angle, true),
-            _ => return Self { before: Some(*frame), base: turn.at_zero, axis, angle: own }.normalised(graph),
+            _ => {
+                return Self { before: Some(*frame), base: turn.at_zero, axis, angle: own }.normalised(graph);
+            }
         };
         let base = graph.mat_mul(&self.base, &turn.at_zero);
         Self { before: self.before, base, axis, angle }.normalised(graph)

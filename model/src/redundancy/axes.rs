@@ -69,8 +69,8 @@ impl Poses<'_> {
         in_space > STAYS && on_first < in_space
     }
 
-    /// What points contribute to the combinations of the joint's rows that are nothing by what is preferred to the joint:
-    /// the sum of c cᵀ over an orthonormal basis of these combinations, of whose coefficients c is the points' part.
+    /// What points contribute to the combinations of the joint's rows that are nothing by what is preferred to it: the
+    /// sum of c cᵀ over an orthonormal basis of these combinations, of whose coefficients c is the points' part.
     fn redundant_directions(&self, joint: usize, jacobian: &DMatrix<f64>) -> Matrix3<f64> {
         let (mut basis, unit) = (Vec::new(), with_unit_rows(jacobian));
         let own = self.groups.iter().position(|group| group.contains(&self.first_row(joint)));

@@ -40,8 +40,8 @@ impl Model {
 /// satisfy the joints and couplers (drivers released), and the largest counts: a singular start does not fool it. Rows
 /// are kept in this order as long as they are independent: constrained bodies, joints of the trees, couplers, joints
 /// that close loops, drivers; so loop-closing joints lose rows first, later joints before earlier ones. Of one joint
-/// the rows that are most independent stay, point rows along the axes that [`RedundantRow::axes`] names. Open trees have no redundant rows by construction and cost no more than
-/// their start.
+/// the rows that are most independent stay, point rows along the axes that [`RedundantRow::axes`] names. Open trees
+/// have no redundant rows by construction and cost no more than their start.
 ///
 /// # Errors
 /// Those of [`Model::assemble`], whose rows all have to be met, redundant ones too; a driver of a coordinate that is

@@ -146,6 +146,8 @@ impl ModuleWriter<'_> {
     pub fn is_element_of(&self, buffer: &str, root: ExprId, place: usize) -> bool {
         let Node::Symbol(symbol) = self.equations.graph.node(root) else { return false };
         let (buffer, place) = (ident(buffer), index(place));
-        self.variable(*symbol).1.is_some_and(|source| source.to_string() == quote! { #buffer[#place] }.to_string())
+        self.variable(*symbol)
+            .1
+            .is_some_and(|source| source.to_string() == quote! { #buffer[#place] }.to_string())
     }
 }
