@@ -56,7 +56,8 @@ impl Tree {
     /// coordinates, so that few rows are left, and on whose coordinates nothing acts.
     pub fn of_coordinates(model: &Model) -> Self {
         let free = |joint: usize| u8::try_from(model.joints[joint].kind.n_free()).unwrap_or(u8::MAX);
-        let is_acted_on: Vec<_> = (0..model.joints.len()).map(|joint| model.acts_on_coordinates(joint)).collect();
+        let is_acted_on: Vec<_> =
+            (0..model.joints.len()).map(|joint| model.acts_on_coordinates(joint)).collect();
         if is_acted_on.contains(&true) {
             Self::along(model, |joint| if is_acted_on[joint] { 0 } else { free(joint).max(1) })
         } else {

@@ -2,9 +2,9 @@
 //! and of its turning. The loop is closed in its own plane; the plane is carried along.
 
 use crate::closing::{along, direction, fixed, point};
-use crate::time_jet::Jet;
 use crate::kane::{Mechanism, Placed, Scene, carried, derivative, moving};
 use crate::rotation::{ORIGIN, Precise, euler_parameter_rates};
+use crate::time_jet::Jet;
 use crate::trajectory::{decimal, decimals, smooth_trajectory};
 use crate::vector::{Vector, add, cross, scale};
 use crate::{DoubleDouble, JointRow};

@@ -6,9 +6,9 @@
 //! its inner end.
 
 use crate::closing::{Side, direction, fixed, point, sine_and_cosine};
-use crate::time_jet::{Jet, unit};
 use crate::kane::{Mechanism, Placed, Scene, Strut, carried, derivative, global, moving, turned};
 use crate::rotation::Precise;
+use crate::time_jet::{Jet, unit};
 use crate::trajectory::{decimal, decimals, smooth_trajectory};
 use crate::vector::{Vector, add, cross, dot, scale, sub};
 use crate::{DoubleDouble, JointRow};

@@ -6,9 +6,9 @@
 //! coupler.
 
 use crate::closing::{Side, fixed, point, sine_and_cosine};
-use crate::time_jet::{Jet, constant, unit};
 use crate::kane::{Mechanism, Placed, Scene, carried, derivative, global, moving, turned};
 use crate::rotation::Precise;
+use crate::time_jet::{Jet, constant, unit};
 use crate::trajectory::{decimal, decimals, smooth_trajectory};
 use crate::vector::{Vector, add, cross, dot, scale, sub};
 use crate::{DoubleDouble, JointRow, Real};

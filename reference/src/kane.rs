@@ -13,8 +13,8 @@
 
 use crate::chain::solve;
 use crate::extrapolation::State;
-use crate::time_jet::Jet;
 use crate::rotation::{ORIGIN, Precise, tensor_times};
+use crate::time_jet::Jet;
 use crate::vector::{Vector, add, cross, dot, scale, sub};
 use crate::{DoubleDouble, JointRow, Orientation};
 

@@ -84,9 +84,9 @@ mod solution;
 mod stewart;
 mod tabulated;
 mod tether;
+mod time_jet;
 mod trajectory;
 mod trigonometry;
-mod time_jet;
 mod vector;
 
 pub use base_motion::{BaseMotion, Sinusoid};

@@ -5,7 +5,9 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 use crate::moving_base::{rolling, rolling_and_pitching, rolling_fast};
 use crate::vector::{dot, sub};
 use crate::{
-    AxisForce, Bar, BodyState, Chain, DoubleWishbone, FourBar, FourBarSample, Gyroscope, GyroscopeFourBar, HeavyTop, OneAxis, Pendulum, PendulumSample, ReducedGyroscope, Sample, SliderCrank, SliderCrankSample, StewartPlatform, StewartSample, TopSample,
+    AxisForce, Bar, BodyState, Chain, DoubleWishbone, FourBar, FourBarSample, Gyroscope, GyroscopeFourBar,
+    HeavyTop, OneAxis, Pendulum, PendulumSample, ReducedGyroscope, Sample, SliderCrank, SliderCrankSample,
+    StewartPlatform, StewartSample, TopSample,
 };
 
 /// Joint coordinates of a mechanism at one time.
