@@ -86,6 +86,11 @@ fn call(kernel: Kernel) -> Option<Call> {
             "x, out",
             "",
         ],
+        Kernel::LoopClosure => {
+            ["loop_closure", "x: &Joints, out: &mut <Module as JointSpace>::Closure", "x, out", ""]
+        }
+        Kernel::ClosePositions => ["close_positions", "x: &mut Joints", "x", ""],
+        Kernel::CloseVelocities => ["close_velocities", "x: &mut Joints", "x", ""],
     };
     Some(Call { function, takes, passes, returns })
 }

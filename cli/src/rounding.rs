@@ -258,6 +258,9 @@ where
         | Kernel::ToMaximal
         | Kernel::ToJoints
         | Kernel::CorrectedSolution
+        | Kernel::LoopClosure
+        | Kernel::ClosePositions
+        | Kernel::CloseVelocities
         | Kernel::JointJacobian
         | Kernel::JointInputJacobian => return None,
     })

@@ -4,7 +4,7 @@ use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Spinner;
 use crate::{files, inputs, remarks};
-use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support, Tree};
+use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
 use gyro_runner::{Approach, Coordinates, Correction, Input, Offers, Settings, Start, any_varies};
 use std::path::Path;
 
