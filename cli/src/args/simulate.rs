@@ -48,7 +48,7 @@ pub struct SimulateArgs {
     /// Error tolerance of each step, relative and absolute; the step size is then chosen automatically
     #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
-    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code
+    /// What is integrated: positions and Euler parameters of all bodies, or joint coordinates (generated code
     /// only)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
     pub(crate) coordinates: Coordinates,
@@ -67,8 +67,8 @@ pub struct SimulateArgs {
     /// Run a second time with a finer step or tolerance and report how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
-    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there: A, B and
-    /// eigenvalues. Trees only
+    /// End the run at this time, 0 for the start, and print the linearisation of the joint coordinates there, with
+    /// loops of independent ones: A, B, eigenvalues, frequencies and damping ratios
     #[arg(long, value_name = "S", value_parser = seconds_or_none, allow_hyphen_values = true, conflicts_with = "t_end")]
     pub(crate) linearize: Option<f64>,
     /// Number type of the run
