@@ -8,11 +8,10 @@
 //! * unknowns of eq. (17): 35
 //! * non-zeros: Φ_q 114 of 420, (Φ_r, Φ_π') 66 of 306
 //! * left out: coordinates of `ground` (fixed: folded into constants)
-//! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * left out: outputs (the page asks for none)
+//! * left out: outputs (the model file asks for none)
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|
@@ -29,6 +28,18 @@
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 |
+//! | joint_accelerations | u̇ in joint coordinates | 53 | 89 | 2 | 144 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 11 | 38 | 0 | 49 | 18 of 39 |
+//! | to_joints | (x, u) of a maximal state | 62 | 76 | 0 | 138 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 94 | 151 | 2 | 247 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 150 | 235 | 2 | 387 | 0 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 118 | 176 | 1 | 295 | 0 of 17 |
+//! | corrected_solution | both | 221 | 341 | 2 | 564 | 0 of 35 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 264 | 391 | 2 | 657 | 21 of 42 |
+//! | loop_closure | Φ of the joints that close loops, in joint coordinates | 7 | 10 | 0 | 17 | 0 of 2 |
+//! | close_positions | one Newton step of joint coordinates that closes loops | 23 | 34 | 1 | 58 | 0 of 3 |
+//! | close_velocities | rates that keep loops closed | 23 | 43 | 1 | 67 | 0 of 3 |
 //!
 //! # Proof
 //!
@@ -38,6 +49,14 @@
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
+//! * loop_closure, close_positions, close_velocities: Newton's step for closed loops
+//! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
+//! * joint_accelerations: eq. (17) on the constraints
+//! * joint_derivative: eqs. (14) and (16) on the constraints
+//! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
+//! * corrected_derivative: eqs. (14) and (16) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
@@ -229,6 +248,143 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = [T::constant(0.0); 21];
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_sx = y[21];
+        let crank_sy = y[22];
+        let crank_sz = y[23];
+        let coupler_sx = y[27];
+        let coupler_sy = y[28];
+        let coupler_sz = y[29];
+        let rocker_sx = y[33];
+        let rocker_sy = y[34];
+        let rocker_sz = y[35];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        *dy = [
+            crank_sx,
+            crank_sy,
+            crank_sz,
+            -(k(0.5)
+                * T::fused(
+                    crank_e3,
+                    crank_wz,
+                    T::fused(crank_e2, crank_wy, crank_e1 * crank_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    crank_e2,
+                    crank_wz,
+                    T::fused(-crank_e3, crank_wy, crank_e0 * crank_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -crank_e1,
+                    crank_wz,
+                    T::fused(crank_e0, crank_wy, crank_e3 * crank_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -crank_e0,
+                    crank_wz,
+                    T::fused(-crank_e1, crank_wy, crank_e2 * crank_wx),
+                )),
+            coupler_sx,
+            coupler_sy,
+            coupler_sz,
+            -(k(0.5)
+                * T::fused(
+                    coupler_e3,
+                    coupler_wz,
+                    T::fused(coupler_e2, coupler_wy, coupler_e1 * coupler_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    coupler_e2,
+                    coupler_wz,
+                    T::fused(-coupler_e3, coupler_wy, coupler_e0 * coupler_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -coupler_e1,
+                    coupler_wz,
+                    T::fused(coupler_e0, coupler_wy, coupler_e3 * coupler_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -coupler_e0,
+                    coupler_wz,
+                    T::fused(-coupler_e1, coupler_wy, coupler_e2 * coupler_wx),
+                )),
+            rocker_sx,
+            rocker_sy,
+            rocker_sz,
+            -(k(0.5)
+                * T::fused(
+                    rocker_e3,
+                    rocker_wz,
+                    T::fused(rocker_e2, rocker_wy, rocker_e1 * rocker_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rocker_e2,
+                    rocker_wz,
+                    T::fused(-rocker_e3, rocker_wy, rocker_e0 * rocker_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rocker_e1,
+                    rocker_wz,
+                    T::fused(rocker_e0, rocker_wy, rocker_e3 * rocker_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rocker_e0,
+                    rocker_wz,
+                    T::fused(-rocker_e1, rocker_wy, rocker_e2 * rocker_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 18];
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let crank_e0 = y[3];
         let crank_e1 = y[4];
@@ -3261,5 +3417,1746 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -t167,
             T::fused(t288, t291, -T::fused(t243, t292, T::fused(t203, t293, t172))),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    type Solution = [T; 35];
+    type Closure = [T; 2];
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
+        const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
+            places: &[
+                gyro_sim::JointPlace::Scalar {
+                    joint: 0,
+                    coordinate: 0,
+                },
+                gyro_sim::JointPlace::Scalar {
+                    joint: 1,
+                    coordinate: 0,
+                },
+                gyro_sim::JointPlace::Scalar {
+                    joint: 2,
+                    coordinate: 0,
+                },
+            ],
+            closure_rows: &[14, 15],
+        };
+        &LAYOUT
+    }
+    fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+        gyro_sim::JointBuffers {
+            rates: [T::constant(0.0); 3],
+            solution: [T::constant(0.0); 35],
+            closure: [T::constant(0.0); 2],
+            jacobian: [T::constant(0.0); 36],
+            input_jacobian: [T::constant(0.0); 0],
+        }
+    }
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(1.0471975511965976),
+            k(1.4530116432395257),
+            k(-0.5826179968832255),
+            k(6.0),
+            k(1.9764195357198873),
+            k(-7.13443554847139),
+        ]
+    }
+    /// Writes u̇: 144 operations (53 ±, 89 ×, 2 ÷) and 6 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = u0 + u2;
+        let t1 = t0 * t0;
+        let t2 = x2.sin();
+        let t3 = x0.sin();
+        let t4 = x2.cos();
+        let t5 = x0.cos();
+        let t6 = k(0.5) * T::fused(-t3, t2, t5 * t4);
+        let t7 = k(0.2) * t5;
+        let t8 = u0 * u0;
+        let t9 = x1.cos();
+        let t10 = k(0.4) * t9;
+        let t11 = u1 * u1;
+        let t12 = T::fused(-t6, t1, T::fused(-t8, t7, t11 * t10));
+        let t13 = t6 + t7;
+        let t14 = k(0.5) * T::fused(t5, t2, t3 * t4);
+        let t15 = k(0.2) * t3;
+        let t16 = k(0.4) * x1.sin();
+        let t17 = T::fused(-t14, t1, T::fused(-t8, t15, t11 * t16));
+        let t18 = t14 + t15;
+        let t19 = T::fused(t13, t12, t18 * t17);
+        let t20 = T::fused(-t14, t13, t6 * t18);
+        let t21 = T::fused(t10, t12, t16 * t17);
+        let t22 = T::fused(-t6, t16, t14 * t10);
+        let t23 = T::fused(-t10, t18, t16 * t13);
+        let t24 = k(1.0) / T::fused(t23, t23, T::fused(t22, t22, t20 * t20));
+        let t25 = t24 * T::fused(-t20, t19, t22 * t21);
+        let t26 = T::fused(t6, t12, t14 * t17);
+        let t27 = T::fused(-t23, t21, t26 * t20) * t24;
+        let t28 = t27 + t25;
+        let t29 = u0 * (k(0.1) * u0);
+        let t30 = T::fused(-k(9.81), t3, t29);
+        let t31 = k(0.1) * t27;
+        let t32 = T::fused(k(9.81), t5, t31);
+        let t33 = t31 + t32;
+        let t34 = T::fused(k(0.25), t28, T::fused(t2, t29, T::fused(t2, t30, t4 * t33)));
+        let t35 = T::fused(k(0.021), t28, k(0.25) * t34);
+        let t36 = t24 * T::fused(-t22, t26, t23 * t19);
+        let t37 = T::fused(
+            -t23,
+            t35,
+            t20
+                * T::fused(
+                    -k(0.0108),
+                    t36,
+                    k(0.16) * T::fused(-k(0.2), t36, k(9.81) * t9),
+                ),
+        );
+        let t38 = T::fused(t0, k(0.25) * t0, t4 * t29) - T::fused(-t4, t30, t2 * t33);
+        let t39 = T::fused(-t2, t38, t4 * t34);
+        let t40 = T::fused(
+            k(0.1),
+            T::fused(k(0.4), t32, t39),
+            T::fused(k(0.00135), t27, T::fused(k(0.1), t39, t35)),
+        );
+        let t41 = k(0.0835) * t23;
+        let t42 = k(0.1) * (t4 * (k(0.25) * t23));
+        let t43 = T::fused(
+            t20,
+            k(0.0428) * t20,
+            T::fused(k(2.0), t22 * (t42 + (t42 + t41)), t23 * t41),
+        );
+        let t44 = T::fused(
+            k(0.2),
+            T::fused(k(0.25), t4, k(0.1)),
+            k(0.014) + (k(0.00135) + T::fused(k(0.05), t4, k(0.0935))),
+        );
+        let t45 = T::fused(t22, t40, -t37) / T::fused(t22, t44 * t22, t43);
+        *out = [
+            T::fused(-t22, t45, t27),
+            T::fused(t20, t45, -t36),
+            T::fused(-t23, t45, t25),
+        ];
+    }
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = [T::constant(0.0); 3];
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 49 operations (11 ±, 38 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = T::fused(-t1, t1, k(0.5));
+        let t3 = t0.sin();
+        let t4 = t3 * t1;
+        let t5 = k(0.5) * x2;
+        let t6 = t5.cos();
+        let t7 = t5.sin();
+        let t8 = T::fused(-t1, t6, t3 * t7);
+        let t9 = T::fused(-t8, t8, k(0.5));
+        let t10 = T::fused(t3, t6, t1 * t7);
+        let t11 = t8 * t10;
+        let t12 = k(0.5) * x1;
+        let t13 = t12.cos();
+        let t14 = T::fused(-t13, t13, k(0.5));
+        let t15 = t12.sin();
+        let t16 = t15 * t13;
+        let t17 = k(0.1) * u0;
+        let t18 = k(2.0) * t4 * t17;
+        let t19 = k(2.0) * t2 * t17;
+        let t20 = u0 + u2;
+        let t21 = k(0.25) * t20;
+        let t22 = k(0.2) * u1;
+        *y = [
+            -(k(0.2) * t2),
+            k(0.2) * t4,
+            k(0.0),
+            t1,
+            k(0.0),
+            k(0.0),
+            t3,
+            -T::fused(k(0.5), t9, k(0.4) * t2),
+            T::fused(-k(0.5), t11, k(0.4) * t4),
+            k(0.0),
+            -t8,
+            k(0.0),
+            k(0.0),
+            t10,
+            T::fused(-k(0.4), t14, k(0.5)),
+            k(0.4) * t16,
+            k(0.0),
+            t13,
+            k(0.0),
+            k(0.0),
+            t15,
+            -t18,
+            -t19,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            T::fused(-k(2.0), t18, t21 * (k(2.0) * t11)),
+            -T::fused(t21, k(2.0) * t9, k(2.0) * t19),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t20,
+            -(k(2.0) * t16 * t22),
+            -(k(2.0) * t14 * t22),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u1,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 138 operations (62 ±, 76 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wz = y[38];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = crank_e0 * crank_e3;
+        let t2 = crank_e1 * crank_e2;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = crank_e2 * crank_e2;
+        let t6 = crank_e0 * crank_e0;
+        let t7 = T::fused(crank_e1, crank_e1, t6);
+        let t8 = crank_e3 * crank_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = T::fused(k(2.0), k(0.5) - t7, -t9);
+        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
+        let t12 = x1.sin();
+        let t13 = k(2.0) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
+        let t14 = x1.cos();
+        let t15 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
+        let t16 = T::fused(
+            k(2.0),
+            k(0.5) - t15,
+            -(k(1.0)
+                - T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t15))),
+        );
+        let t17 = T::fused(t13, t14, t16 * t12).atan2(T::fused(-t16, t14, t13 * t12));
+        let t18 = x2.sin();
+        let t19 = coupler_e0 * coupler_e1;
+        let t20 = coupler_e2 * coupler_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = coupler_e2 * coupler_e2;
+        let t25 = coupler_e0 * coupler_e0;
+        let t26 = T::fused(coupler_e1, coupler_e1, t25);
+        let t27 = coupler_e3 * coupler_e3;
+        let t28 = k(2.0) * (k(0.5) - (t25 + t24));
+        let t29 = t28 - (k(1.0) - (t27 + (t26 + t24)));
+        let t30 = coupler_e0 * coupler_e3;
+        let t31 = coupler_e1 * coupler_e2;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = T::fused(-(k(2.0) * (t23 - t22)), t21, T::fused(t3, t29, t32 * t10));
+        let t34 = x2.cos();
+        let t35 = crank_e0 * crank_e1;
+        let t36 = crank_e2 * crank_e3;
+        let t37 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            t29,
+            k(2.0) * (t2 - t1) * t32,
+        );
+        let t38 = T::fused(k(2.0) * (t36 + t35), t21, t37);
+        let t39 = T::fused(-t38, t18, t33 * t34).atan2(T::fused(t33, t18, t38 * t34));
+        let t40 = k(2.0) * (t23 + t22);
+        let t41 = k(2.0) * (t36 - t35);
+        let t42 = T::fused(-t40, k(2.0) * (k(0.5) - t26), t41 * (k(2.0) * (t31 + t30)));
+        let t43 = coupler_e0 * coupler_e2;
+        let t44 = coupler_e1 * coupler_e3;
+        let t45 = k(2.0) * (k(0.5) - (t6 + t8));
+        let t46 = T::fused(
+            coupler_wx,
+            T::fused(t45, k(2.0) * (t44 - t43), -t42),
+            coupler_wy * T::fused(t45, t21, -T::fused(-t41, t28, t40 * t32)),
+        );
+        let t47 = T::fused(t41, k(2.0) * (t20 - t19), t40 * (k(2.0) * (t44 + t43)));
+        let t48 = T::fused(
+            coupler_wz,
+            T::fused(t45, k(2.0) * (k(0.5) - (t25 + t27)), t47),
+            -t46,
+        );
+        x[0] = x0 + t11;
+        x[1] = x1 + t17;
+        x[2] = x2 + t39;
+        x[3] = crank_wz;
+        x[4] = rocker_wz;
+        x[5] = t48 - crank_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 247 operations (94 ±, 151 ×, 2 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e3 = y[20];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wz = y[38];
+        let t0 = coupler_e0 * coupler_e0;
+        let t1 = crank_e0 * crank_e2;
+        let t2 = crank_e1 * crank_e3;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = coupler_e0 * coupler_e3;
+        let t5 = coupler_e1 * coupler_e2;
+        let t6 = crank_e0 * crank_e1;
+        let t7 = crank_e2 * crank_e3;
+        let t8 = k(2.0) * (t7 - t6);
+        let t9 = T::fused(
+            -t3,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t0)),
+            t8 * (k(2.0) * (t5 + t4)),
+        );
+        let t10 = coupler_e0 * coupler_e2;
+        let t11 = coupler_e1 * coupler_e3;
+        let t12 = crank_e0 * crank_e0;
+        let t13 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t12));
+        let t14 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t0));
+        let t15 = k(2.0) * (t5 - t4);
+        let t16 = coupler_e0 * coupler_e1;
+        let t17 = coupler_e2 * coupler_e3;
+        let t18 = k(2.0) * (t17 + t16);
+        let t19 = T::fused(
+            coupler_wx,
+            T::fused(t13, k(2.0) * (t11 - t10), -t9),
+            coupler_wy * T::fused(t13, t18, -T::fused(-t8, t14, t3 * t15)),
+        );
+        let t20 = T::fused(t8, k(2.0) * (t17 - t16), t3 * (k(2.0) * (t11 + t10)));
+        let t21 = T::fused(
+            coupler_wz,
+            T::fused(t13, k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t0)), t20),
+            -t19,
+        );
+        let t22 = crank_wz - (crank_wz - t21);
+        let t23 = t22 * t22;
+        let t24 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t25 = crank_e0 * crank_e3;
+        let t26 = crank_e1 * crank_e2;
+        let t27 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t12)),
+            t14,
+            k(2.0) * (t26 - t25) * t15,
+        );
+        let t28 = T::fused(k(2.0) * (t7 + t6), t18, t27);
+        let t29 = crank_e0 * (k(2.0) * crank_e3);
+        let t30 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12)),
+            t15,
+            k(2.0) * (t26 + t25) * t14,
+        );
+        let t31 = T::fused(k(2.0) * (t2 - t1), t18, -t30);
+        let t32 = k(0.5) * T::fused(t28, t24, t31 * t29);
+        let t33 = k(0.2) * t24;
+        let t34 = crank_wz * crank_wz;
+        let t35 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t36 = k(0.4) * t35;
+        let t37 = rocker_wz * rocker_wz;
+        let t38 = T::fused(-t32, t23, T::fused(-t34, t33, t37 * t36));
+        let t39 = t32 + t33;
+        let t40 = k(0.5) * T::fused(-t28, t29, t31 * t24);
+        let t41 = k(0.2) * t29;
+        let t42 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
+        let t43 = T::fused(t40, t23, T::fused(-t34, t41, t37 * t42));
+        let t44 = t40 - t41;
+        let t45 = T::fused(-t39, t38, t44 * t43);
+        let t46 = T::fused(-t40, t39, t32 * t44);
+        let t47 = T::fused(t36, t38, t42 * t43);
+        let t48 = T::fused(t32, t42, t40 * t36);
+        let t49 = T::fused(t36, t44, t42 * t39);
+        let t50 = k(1.0) / T::fused(t49, t49, T::fused(t48, t48, t46 * t46));
+        let t51 = t50 * T::fused(t46, t45, t48 * t47);
+        let t52 = T::fused(-t32, t38, t40 * t43);
+        let t53 = T::fused(-t49, t47, t52 * t46) * t50;
+        let t54 = t53 - t51;
+        let t55 = crank_wz * (k(0.1) * crank_wz);
+        let t56 = T::fused(-k(9.81), t29, t55);
+        let t57 = k(0.1) * t53;
+        let t58 = T::fused(k(9.81), t24, t57);
+        let t59 = t57 + t58;
+        let t60 = T::fused(
+            k(0.25),
+            t54,
+            -T::fused(t31, t55, -T::fused(-t31, t56, t28 * t59)),
+        );
+        let t61 = T::fused(k(0.021), t54, k(0.25) * t60);
+        let t62 = t50 * T::fused(t48, t52, t49 * t45);
+        let t63 = T::fused(
+            t49,
+            t61,
+            t46
+                * T::fused(
+                    k(0.0108),
+                    t62,
+                    k(0.16) * T::fused(k(0.2), t62, k(9.81) * t35),
+                ),
+        );
+        let t64 = T::fused(t22, k(0.25) * t22, t28 * t55)
+            + T::fused(t28, t56, t31 * t59);
+        let t65 = T::fused(t31, t64, t28 * t60);
+        let t66 = T::fused(
+            k(0.1),
+            T::fused(k(0.4), t58, t65),
+            T::fused(k(0.00135), t53, T::fused(k(0.1), t65, t61)),
+        );
+        let t67 = k(0.0835) * t49;
+        let t68 = k(0.1) * (t28 * (k(0.25) * t49));
+        let t69 = T::fused(
+            t46,
+            k(0.0428) * t46,
+            T::fused(-k(2.0), t48 * (t68 + (t68 + t67)), t49 * t67),
+        );
+        let t70 = T::fused(
+            k(0.2),
+            T::fused(k(0.25), t28, k(0.1)),
+            k(0.014) + (k(0.00135) + T::fused(k(0.05), t28, k(0.0935))),
+        );
+        let t71 = T::fused(t48, t66, -t63) / T::fused(t48, t70 * t48, t69);
+        *out = [
+            T::fused(-t48, t71, t53),
+            T::fused(t46, t71, t62),
+            T::fused(t49, t71, -t51),
+        ];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 387 operations (150 ±, 235 ×, 2 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        let t0 = coupler_e0 * coupler_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t0));
+        let t2 = crank_e0 * crank_e2;
+        let t3 = crank_e1 * crank_e3;
+        let t4 = k(2.0) * (t3 + t2);
+        let t5 = coupler_e0 * coupler_e3;
+        let t6 = coupler_e1 * coupler_e2;
+        let t7 = k(2.0) * (t6 + t5);
+        let t8 = crank_e0 * crank_e1;
+        let t9 = crank_e2 * crank_e3;
+        let t10 = k(2.0) * (t9 - t8);
+        let t11 = coupler_e0 * coupler_e2;
+        let t12 = coupler_e1 * coupler_e3;
+        let t13 = k(2.0) * (t12 - t11);
+        let t14 = crank_e0 * crank_e0;
+        let t15 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t14));
+        let t16 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t0));
+        let t17 = k(2.0) * (t6 - t5);
+        let t18 = coupler_e0 * coupler_e1;
+        let t19 = coupler_e2 * coupler_e3;
+        let t20 = k(2.0) * (t19 + t18);
+        let t21 = T::fused(
+            coupler_wx,
+            T::fused(t15, t13, -T::fused(-t4, t1, t10 * t7)),
+            coupler_wy * T::fused(t15, t20, -T::fused(-t10, t16, t4 * t17)),
+        );
+        let t22 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t0));
+        let t23 = k(2.0) * (t19 - t18);
+        let t24 = k(2.0) * (t12 + t11);
+        let t25 = T::fused(
+            coupler_wz,
+            T::fused(t15, t22, T::fused(t10, t23, t4 * t24)),
+            -t21,
+        );
+        let t26 = crank_wz - t25;
+        let t27 = crank_wz - t26;
+        let t28 = t27 * t27;
+        let t29 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t30 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t14));
+        let t31 = crank_e0 * crank_e3;
+        let t32 = crank_e1 * crank_e2;
+        let t33 = k(2.0) * (t32 - t31);
+        let t34 = k(2.0) * (t9 + t8);
+        let t35 = T::fused(t34, t20, T::fused(t30, t16, t33 * t17));
+        let t36 = crank_e0 * (k(2.0) * crank_e3);
+        let t37 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t14));
+        let t38 = k(2.0) * (t32 + t31);
+        let t39 = k(2.0) * (t3 - t2);
+        let t40 = T::fused(t39, t20, -T::fused(t37, t17, t38 * t16));
+        let t41 = k(0.5) * T::fused(t35, t29, t40 * t36);
+        let t42 = k(0.2) * t29;
+        let t43 = crank_wz * crank_wz;
+        let t44 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t45 = k(0.4) * t44;
+        let t46 = rocker_wz * rocker_wz;
+        let t47 = T::fused(-t41, t28, T::fused(-t43, t42, t46 * t45));
+        let t48 = t41 + t42;
+        let t49 = k(0.5) * T::fused(-t35, t36, t40 * t29);
+        let t50 = k(0.2) * t36;
+        let t51 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
+        let t52 = T::fused(t49, t28, T::fused(-t43, t50, t46 * t51));
+        let t53 = t49 - t50;
+        let t54 = T::fused(-t48, t47, t53 * t52);
+        let t55 = T::fused(-t49, t48, t41 * t53);
+        let t56 = T::fused(t45, t47, t51 * t52);
+        let t57 = T::fused(t41, t51, t49 * t45);
+        let t58 = T::fused(t45, t53, t51 * t48);
+        let t59 = k(1.0) / T::fused(t58, t58, T::fused(t57, t57, t55 * t55));
+        let t60 = t59 * T::fused(t55, t54, t57 * t56);
+        let t61 = T::fused(-t41, t47, t49 * t52);
+        let t62 = T::fused(-t58, t56, t61 * t55) * t59;
+        let t63 = t62 - t60;
+        let t64 = k(0.1) * crank_wz;
+        let t65 = crank_wz * t64;
+        let t66 = T::fused(-k(9.81), t36, t65);
+        let t67 = k(0.1) * t62;
+        let t68 = T::fused(k(9.81), t29, t67);
+        let t69 = t67 + t68;
+        let t70 = T::fused(
+            k(0.25),
+            t63,
+            -T::fused(t40, t65, -T::fused(-t40, t66, t35 * t69)),
+        );
+        let t71 = T::fused(k(0.021), t63, k(0.25) * t70);
+        let t72 = t59 * T::fused(t57, t61, t58 * t54);
+        let t73 = T::fused(
+            t58,
+            t71,
+            t55
+                * T::fused(
+                    k(0.0108),
+                    t72,
+                    k(0.16) * T::fused(k(0.2), t72, k(9.81) * t44),
+                ),
+        );
+        let t74 = T::fused(t27, k(0.25) * t27, t35 * t65)
+            + T::fused(t35, t66, t40 * t69);
+        let t75 = T::fused(t40, t74, t35 * t70);
+        let t76 = T::fused(
+            k(0.1),
+            T::fused(k(0.4), t68, t75),
+            T::fused(k(0.00135), t62, T::fused(k(0.1), t75, t71)),
+        );
+        let t77 = k(0.0835) * t58;
+        let t78 = k(0.1) * (t35 * (k(0.25) * t58));
+        let t79 = T::fused(
+            t55,
+            k(0.0428) * t55,
+            T::fused(-k(2.0), t57 * (t78 + (t78 + t77)), t58 * t77),
+        );
+        let t80 = T::fused(
+            k(0.2),
+            T::fused(k(0.25), t35, k(0.1)),
+            k(0.014) + (k(0.00135) + T::fused(k(0.05), t35, k(0.0935))),
+        );
+        let t81 = T::fused(t57, t76, -t73) / T::fused(t57, t80 * t57, t79);
+        let t82 = T::fused(-t57, t81, t62);
+        let t83 = k(0.1) * t82;
+        let t84 = k(0.1) * crank_wy;
+        let t85 = crank_wx * t84;
+        let t86 = t85 + t83;
+        let t87 = T::fused(crank_wy, t84, t65);
+        let t88 = crank_wx * crank_wz;
+        let t89 = k(0.1) * t88;
+        let t90 = crank_wx * t64;
+        let t91 = t90 + t89;
+        let t92 = crank_wy * crank_wz;
+        let t93 = t83 + t86;
+        let t94 = t35 * t87;
+        let t95 = k(0.25) * coupler_wz;
+        let t96 = k(0.25) * coupler_wy;
+        let t97 = T::fused(coupler_wz, t95, coupler_wy * t96) + T::fused(t40, t85, t94)
+            + T::fused(t40, t93, t94);
+        let t98 = t40 * t87;
+        let t99 = T::fused(coupler_wx, t96, T::fused(t35, t85, -t98))
+            - T::fused(-t35, t93, t98);
+        let t100 = t82 - T::fused(-t58, t81, t60);
+        let t101 = T::fused(k(0.25), t100, t99);
+        let t102 = T::fused(coupler_wx, t26, -T::fused(-t92, t40, t88 * t35));
+        let t103 = T::fused(
+            -k(0.25),
+            t102,
+            T::fused(coupler_wx, t95, t90) + (t89 + t91),
+        );
+        let t104 = T::fused(t55, t81, t72);
+        let t105 = k(0.2) * rocker_wy;
+        let t106 = T::fused(k(0.2), t104, rocker_wx * t105);
+        let t107 = rocker_e0 * rocker_e3;
+        let t108 = rocker_e1 * rocker_e2;
+        let t109 = k(0.2) * rocker_wz;
+        let t110 = T::fused(rocker_wz, t109, rocker_wy * t105);
+        let t111 = rocker_e0 * rocker_e0;
+        let t112 = T::fused(
+            k(2.0) * (t108 - t107),
+            t106,
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t111)) * t110,
+        );
+        let t113 = rocker_wx * rocker_wz;
+        let t114 = T::fused(k(0.2), t113, rocker_wx * t109);
+        let t115 = rocker_e0 * rocker_e2;
+        let t116 = rocker_e1 * rocker_e3;
+        let t117 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t111)),
+            t106,
+            k(2.0) * (t108 + t107) * t110,
+        );
+        let t118 = rocker_e0 * rocker_e1;
+        let t119 = rocker_e2 * rocker_e3;
+        let t120 = T::fused(
+            -(k(2.0) * (t119 + t118)),
+            t106,
+            k(2.0) * (t116 - t115) * t110,
+        );
+        *out = [
+            T::fused(t4, t91, T::fused(t33, t86, t37 * t87)),
+            T::fused(t10, t91, -T::fused(t30, t86, t38 * t87)),
+            -T::fused(t15, t91, T::fused(-t34, t86, t39 * t87)),
+            t92,
+            -t88,
+            t82,
+            T::fused(t24, t103, T::fused(t1, t97, t17 * t101)),
+            T::fused(t23, t103, -T::fused(t7, t97, t16 * t101)),
+            T::fused(-t22, t103, T::fused(-t13, t97, t20 * t101)),
+            T::fused(-coupler_wy, t26, T::fused(t88, t40, t92 * t35)),
+            t102,
+            t100,
+            T::fused(k(2.0) * (t116 + t115), t114, t112),
+            T::fused(k(2.0) * (t119 - t118), t114, -t117),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t111)),
+                t114,
+                t120,
+            ),
+            rocker_wy * rocker_wz,
+            -t113,
+            t104,
+        ];
+    }
+    /// Writes λ: 295 operations (118 ±, 176 ×, 1 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        let crank_dsx = accelerations[0];
+        let crank_dsy = accelerations[1];
+        let crank_dsz = accelerations[2];
+        let crank_dwx = accelerations[3];
+        let crank_dwy = accelerations[4];
+        let crank_dwz = accelerations[5];
+        let coupler_dsx = accelerations[6];
+        let coupler_dsy = accelerations[7];
+        let coupler_dsz = accelerations[8];
+        let coupler_dwx = accelerations[9];
+        let coupler_dwy = accelerations[10];
+        let coupler_dwz = accelerations[11];
+        let rocker_dsx = accelerations[12];
+        let rocker_dsy = accelerations[13];
+        let rocker_dsz = accelerations[14];
+        let rocker_dwx = accelerations[15];
+        let rocker_dwy = accelerations[16];
+        let rocker_dwz = accelerations[17];
+        let t0 = k(0.02095) * coupler_wx;
+        let t1 = T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
+        let t2 = coupler_e0 * coupler_e0;
+        let t3 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
+        let t4 = k(9.81) + coupler_dsy;
+        let t5 = coupler_e0 * coupler_e1;
+        let t6 = coupler_e2 * coupler_e3;
+        let t7 = t6 + t5;
+        let t8 = T::fused(
+            coupler_dsz,
+            k(0.5) * t7,
+            -T::fused(-coupler_dsx, k(0.5) * t1, t4 * (k(0.5) * t3)),
+        );
+        let t9 = t8 + T::fused(coupler_wy, t0, k(0.021) * coupler_dwz);
+        let t10 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t11 = k(2.0) * t3;
+        let t12 = crank_e0 * crank_e0;
+        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
+        let t14 = k(2.0) * t1;
+        let t15 = crank_e0 * crank_e3;
+        let t16 = crank_e1 * crank_e2;
+        let t17 = t16 - t15;
+        let t18 = k(2.0) * t7;
+        let t19 = crank_e0 * crank_e1;
+        let t20 = crank_e2 * crank_e3;
+        let t21 = t20 + t19;
+        let t22 = T::fused(
+            k(2.0) * t21,
+            t18,
+            T::fused(k(2.0) * t13, t11, k(2.0) * t17 * t14),
+        );
+        let t23 = crank_e0 * (k(2.0) * crank_e3);
+        let t24 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12)),
+            t14,
+            k(2.0) * (t16 + t15) * t11,
+        );
+        let t25 = crank_e0 * crank_e2;
+        let t26 = crank_e1 * crank_e3;
+        let t27 = T::fused(k(2.0) * (t26 - t25), t18, -t24);
+        let t28 = k(0.5) * T::fused(t22, t10, t27 * t23);
+        let t29 = T::fused(k(0.2), t10, t28);
+        let t30 = k(0.5) * T::fused(-t22, t23, t27 * t10);
+        let t31 = T::fused(-k(0.2), t23, t30);
+        let t32 = T::fused(-t30, t29, t28 * t31);
+        let t33 = rocker_e0 * (k(2.0) * rocker_e3);
+        let t34 = k(0.4) * t33;
+        let t35 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t36 = k(0.4) * t35;
+        let t37 = T::fused(t28, t34, t30 * t36);
+        let t38 = k(0.01076) * rocker_wx;
+        let t39 = k(0.8) * rocker_dsx;
+        let t40 = rocker_e0 * rocker_e0;
+        let t41 = T::fused(k(0.8), rocker_dsy, k(7.848));
+        let t42 = T::fused(
+            -t39,
+            k(0.4) * T::fused(-rocker_e0, rocker_e3, rocker_e1 * rocker_e2),
+            t41 * (k(0.4) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t40))),
+        );
+        let t43 = rocker_e0 * rocker_e1;
+        let t44 = rocker_e2 * rocker_e3;
+        let t45 = k(0.8) * rocker_dsz;
+        let t46 = T::fused(t45, k(0.4) * (t44 + t43), -t42)
+            + T::fused(rocker_wy, t38, k(0.0108) * rocker_dwz);
+        let t47 = T::fused(t36, t31, t34 * t29);
+        let t48 = k(0.00133) * crank_wx;
+        let t49 = k(0.2) * t17;
+        let t50 = k(0.2) * t13;
+        let t51 = k(0.2) * t21;
+        let t52 = T::fused(coupler_dsz, t51, -T::fused(-coupler_dsx, t49, t4 * t50)) + t9
+            + T::fused(crank_wy, t48, k(0.00135) * crank_dwz);
+        let t53 = k(0.4) * crank_dsx;
+        let t54 = T::fused(k(0.4), crank_dsy, k(3.924));
+        let t55 = k(0.4) * crank_dsz;
+        let t56 = T::fused(
+            t51,
+            t55 + coupler_dsz,
+            -T::fused(-t49, t53 + coupler_dsx, t50 * (t54 + t4)),
+        );
+        let t57 = t56 + t52;
+        let t58 = T::fused(
+            T::fused(t28, t37, t29 * t47),
+            t46,
+            T::fused(t36, t47, t28 * t32) * t57,
+        );
+        let t59 = k(1.0) / T::fused(t47, t47, T::fused(t37, t37, t32 * t32));
+        let t60 = t59 * T::fused(T::fused(-t29, t32, t36 * t37), t9, t58);
+        let t61 = coupler_dsx - t60;
+        let t62 = t53 + t61;
+        let t63 = T::fused(
+            -T::fused(t31, t47, t30 * t37),
+            t46,
+            T::fused(-t30, t32, t34 * t47) * t57,
+        );
+        let t64 = t59 * T::fused(T::fused(t34, t37, t31 * t32), t9, t63);
+        let t65 = t4 - t64;
+        let t66 = t54 + t65;
+        let t67 = T::fused(-coupler_wz, t0, k(0.021) * coupler_dwy);
+        let t68 = k(0.5) * T::fused(coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
+        let t69 = k(0.5) * (t6 - t5);
+        let t70 = k(0.5) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t2));
+        let t71 = k(2.0)
+            * (T::fused(coupler_dsz, t70, -T::fused(coupler_dsx, t68, t4 * t69)) + t67);
+        let t72 = coupler_dsz + t71;
+        let t73 = t55 + t72;
+        let t74 = k(0.2) * (k(0.5) - T::fused(crank_e3, crank_e3, t12));
+        let t75 = k(0.2) * (t20 - t19);
+        let t76 = k(0.2) * (t26 + t25);
+        let t77 = T::fused(t70, t71, T::fused(t69, t64, T::fused(t68, t60, t67)))
+            - T::fused(-t70, t72, T::fused(t69, t65, t68 * t61));
+        let t78 = k(5e-5) * coupler_dwx;
+        let t79 = T::fused(-t22, t77, t78 * t27)
+            + T::fused(-t74, t72, T::fused(t75, t65, t76 * t61));
+        let t80 = t79 - T::fused(-crank_wz, t48, k(0.00135) * crank_dwy)
+            + T::fused(-t74, t73, T::fused(t75, t66, t76 * t62));
+        let t81 = T::fused(k(2e-5), crank_dwx, T::fused(t27, t77, t78 * t22));
+        let t82 = t39 + t60;
+        let t83 = t41 + t64;
+        let t84 = t45 - t71;
+        let t85 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t40));
+        let t86 = k(0.4) * (t44 - t43);
+        let t87 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t88 = T::fused(
+            t86,
+            t64,
+            T::fused(t87, t60, -T::fused(-rocker_wz, t38, k(0.0108) * rocker_dwy)),
+        );
+        let t89 = T::fused(t85, t71, t88)
+            + T::fused(-t85, t84, T::fused(t86, t83, t87 * t82));
+        let t90 = k(4e-5) * rocker_dwx;
+        *lambda = [
+            -t62,
+            -t66,
+            -t73,
+            T::fused(-t23, t81, t10 * t80),
+            T::fused(t23, t80, t10 * t81),
+            -t82,
+            -t83,
+            -t84,
+            T::fused(-t90, t33, t35 * t89),
+            T::fused(t33, t89, t90 * t35),
+            -t61,
+            -t65,
+            -t72,
+            -t78,
+            t60,
+            t64,
+            -t71,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 564 operations (221 ±, 341 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        let t0 = coupler_e0 * coupler_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t0));
+        let t2 = crank_e0 * crank_e2;
+        let t3 = crank_e1 * crank_e3;
+        let t4 = t3 + t2;
+        let t5 = k(2.0) * t4;
+        let t6 = coupler_e0 * coupler_e3;
+        let t7 = coupler_e1 * coupler_e2;
+        let t8 = k(2.0) * (t7 + t6);
+        let t9 = crank_e0 * crank_e1;
+        let t10 = crank_e2 * crank_e3;
+        let t11 = t10 - t9;
+        let t12 = k(2.0) * t11;
+        let t13 = coupler_e0 * coupler_e2;
+        let t14 = coupler_e1 * coupler_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = crank_e0 * crank_e0;
+        let t17 = k(0.5) - T::fused(crank_e3, crank_e3, t16);
+        let t18 = k(2.0) * t17;
+        let t19 = k(0.5) - T::fused(coupler_e2, coupler_e2, t0);
+        let t20 = k(2.0) * t19;
+        let t21 = t7 - t6;
+        let t22 = k(2.0) * t21;
+        let t23 = coupler_e0 * coupler_e1;
+        let t24 = coupler_e2 * coupler_e3;
+        let t25 = t24 + t23;
+        let t26 = k(2.0) * t25;
+        let t27 = T::fused(
+            coupler_wx,
+            T::fused(t18, t15, -T::fused(-t5, t1, t12 * t8)),
+            coupler_wy * T::fused(t18, t26, -T::fused(-t12, t20, t5 * t22)),
+        );
+        let t28 = k(0.5) - T::fused(coupler_e3, coupler_e3, t0);
+        let t29 = k(2.0) * t28;
+        let t30 = t24 - t23;
+        let t31 = k(2.0) * t30;
+        let t32 = t14 + t13;
+        let t33 = k(2.0) * t32;
+        let t34 = T::fused(
+            coupler_wz,
+            T::fused(t18, t29, T::fused(t12, t31, t5 * t33)),
+            -t27,
+        );
+        let t35 = crank_wz - t34;
+        let t36 = crank_wz - t35;
+        let t37 = t36 * t36;
+        let t38 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t39 = k(0.5) - T::fused(crank_e2, crank_e2, t16);
+        let t40 = k(2.0) * t39;
+        let t41 = crank_e0 * crank_e3;
+        let t42 = crank_e1 * crank_e2;
+        let t43 = t42 - t41;
+        let t44 = k(2.0) * t43;
+        let t45 = t10 + t9;
+        let t46 = k(2.0) * t45;
+        let t47 = T::fused(t46, t26, T::fused(t40, t20, t44 * t22));
+        let t48 = crank_e0 * (k(2.0) * crank_e3);
+        let t49 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t16));
+        let t50 = k(2.0) * (t42 + t41);
+        let t51 = k(2.0) * (t3 - t2);
+        let t52 = T::fused(t51, t26, -T::fused(t49, t22, t50 * t20));
+        let t53 = k(0.5) * T::fused(t47, t38, t52 * t48);
+        let t54 = k(0.2) * t38;
+        let t55 = crank_wz * crank_wz;
+        let t56 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t57 = k(0.4) * t56;
+        let t58 = rocker_wz * rocker_wz;
+        let t59 = T::fused(-t53, t37, T::fused(-t55, t54, t58 * t57));
+        let t60 = t53 + t54;
+        let t61 = k(0.5) * T::fused(-t47, t48, t52 * t38);
+        let t62 = k(0.2) * t48;
+        let t63 = rocker_e0 * (k(2.0) * rocker_e3);
+        let t64 = k(0.4) * t63;
+        let t65 = T::fused(t61, t37, T::fused(-t55, t62, t58 * t64));
+        let t66 = t61 - t62;
+        let t67 = T::fused(-t60, t59, t66 * t65);
+        let t68 = T::fused(-t61, t60, t53 * t66);
+        let t69 = T::fused(t57, t59, t64 * t65);
+        let t70 = T::fused(t53, t64, t61 * t57);
+        let t71 = T::fused(t57, t66, t64 * t60);
+        let t72 = k(1.0) / T::fused(t71, t71, T::fused(t70, t70, t68 * t68));
+        let t73 = t72 * T::fused(t68, t67, t70 * t69);
+        let t74 = T::fused(-t53, t59, t61 * t65);
+        let t75 = T::fused(-t71, t69, t74 * t68) * t72;
+        let t76 = t75 - t73;
+        let t77 = k(0.1) * crank_wz;
+        let t78 = crank_wz * t77;
+        let t79 = T::fused(-k(9.81), t48, t78);
+        let t80 = k(0.1) * t75;
+        let t81 = T::fused(k(9.81), t38, t80);
+        let t82 = t80 + t81;
+        let t83 = T::fused(
+            k(0.25),
+            t76,
+            -T::fused(t52, t78, -T::fused(-t52, t79, t47 * t82)),
+        );
+        let t84 = T::fused(k(0.021), t76, k(0.25) * t83);
+        let t85 = t72 * T::fused(t70, t74, t71 * t67);
+        let t86 = T::fused(
+            t71,
+            t84,
+            t68
+                * T::fused(
+                    k(0.0108),
+                    t85,
+                    k(0.16) * T::fused(k(0.2), t85, k(9.81) * t56),
+                ),
+        );
+        let t87 = T::fused(t36, k(0.25) * t36, t47 * t78)
+            + T::fused(t47, t79, t52 * t82);
+        let t88 = T::fused(t52, t87, t47 * t83);
+        let t89 = T::fused(
+            k(0.1),
+            T::fused(k(0.4), t81, t88),
+            T::fused(k(0.00135), t75, T::fused(k(0.1), t88, t84)),
+        );
+        let t90 = k(0.0835) * t71;
+        let t91 = k(0.1) * (t47 * (k(0.25) * t71));
+        let t92 = T::fused(
+            t68,
+            k(0.0428) * t68,
+            T::fused(-k(2.0), t70 * (t91 + (t91 + t90)), t71 * t90),
+        );
+        let t93 = T::fused(
+            k(0.2),
+            T::fused(k(0.25), t47, k(0.1)),
+            k(0.014) + (k(0.00135) + T::fused(k(0.05), t47, k(0.0935))),
+        );
+        let t94 = T::fused(t70, t89, -t86) / T::fused(t70, t93 * t70, t92);
+        let t95 = T::fused(-t70, t94, t75);
+        let t96 = k(0.1) * t95;
+        let t97 = k(0.1) * crank_wy;
+        let t98 = crank_wx * t97;
+        let t99 = t98 + t96;
+        let t100 = T::fused(crank_wy, t97, t78);
+        let t101 = crank_wx * crank_wz;
+        let t102 = k(0.1) * t101;
+        let t103 = crank_wx * t77;
+        let t104 = t103 + t102;
+        let t105 = T::fused(t5, t104, T::fused(t44, t99, t49 * t100));
+        let t106 = T::fused(t12, t104, -T::fused(t40, t99, t50 * t100));
+        let t107 = T::fused(t18, t104, T::fused(-t46, t99, t51 * t100));
+        let t108 = crank_wy * crank_wz;
+        let t109 = t96 + t99;
+        let t110 = t47 * t100;
+        let t111 = k(0.25) * coupler_wz;
+        let t112 = k(0.25) * coupler_wy;
+        let t113 = T::fused(coupler_wz, t111, coupler_wy * t112)
+            + T::fused(t52, t98, t110) + T::fused(t52, t109, t110);
+        let t114 = t52 * t100;
+        let t115 = T::fused(coupler_wx, t112, T::fused(t47, t98, -t114))
+            - T::fused(-t47, t109, t114);
+        let t116 = t95 - T::fused(-t71, t94, t73);
+        let t117 = T::fused(k(0.25), t116, t115);
+        let t118 = T::fused(coupler_wx, t35, -T::fused(-t108, t52, t101 * t47));
+        let t119 = T::fused(
+            -k(0.25),
+            t118,
+            T::fused(coupler_wx, t111, t103) + (t102 + t104),
+        );
+        let t120 = T::fused(t33, t119, T::fused(t1, t113, t22 * t117));
+        let t121 = T::fused(t31, t119, -T::fused(t8, t113, t20 * t117));
+        let t122 = T::fused(t29, t119, -T::fused(-t15, t113, t26 * t117));
+        let t123 = T::fused(-coupler_wy, t35, T::fused(t101, t52, t108 * t47));
+        let t124 = T::fused(t68, t94, t85);
+        let t125 = k(0.2) * rocker_wy;
+        let t126 = T::fused(k(0.2), t124, rocker_wx * t125);
+        let t127 = rocker_e0 * rocker_e3;
+        let t128 = rocker_e1 * rocker_e2;
+        let t129 = t128 - t127;
+        let t130 = k(0.2) * rocker_wz;
+        let t131 = T::fused(rocker_wz, t130, rocker_wy * t125);
+        let t132 = rocker_e0 * rocker_e0;
+        let t133 = T::fused(
+            k(2.0) * t129,
+            t126,
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t132)) * t131,
+        );
+        let t134 = rocker_wx * rocker_wz;
+        let t135 = T::fused(k(0.2), t134, rocker_wx * t130);
+        let t136 = rocker_e0 * rocker_e2;
+        let t137 = rocker_e1 * rocker_e3;
+        let t138 = t137 + t136;
+        let t139 = T::fused(k(2.0) * t138, t135, t133);
+        let t140 = k(0.5) - T::fused(rocker_e2, rocker_e2, t132);
+        let t141 = rocker_e0 * rocker_e1;
+        let t142 = rocker_e2 * rocker_e3;
+        let t143 = t142 - t141;
+        let t144 = T::fused(
+            k(2.0) * t143,
+            t135,
+            -T::fused(k(2.0) * t140, t126, k(2.0) * (t128 + t127) * t131),
+        );
+        let t145 = t142 + t141;
+        let t146 = k(0.5) - T::fused(rocker_e3, rocker_e3, t132);
+        let t147 = T::fused(
+            k(2.0) * t146,
+            t135,
+            T::fused(-(k(2.0) * t145), t126, k(2.0) * (t137 - t136) * t131),
+        );
+        let t148 = rocker_wy * rocker_wz;
+        let t149 = k(0.02095) * coupler_wx;
+        let t150 = k(9.81) + t121;
+        let t151 = T::fused(
+            -(k(0.5) * t25),
+            t122,
+            T::fused(-(k(0.5) * t19), t150, k(0.5) * t21 * t120),
+        );
+        let t152 = t151 + T::fused(coupler_wy, t149, k(0.021) * t116);
+        let t153 = k(0.2) * t45;
+        let t154 = k(0.2) * t39;
+        let t155 = k(0.2) * t43;
+        let t156 = T::fused(k(0.00135), t95, k(0.00133) * (crank_wx * crank_wy))
+            + (T::fused(-t153, t122, T::fused(-t154, t150, t155 * t120)) + t152);
+        let t157 = k(0.4) * t107;
+        let t158 = T::fused(k(0.4), t106, k(3.924));
+        let t159 = k(0.4) * t105;
+        let t160 = T::fused(
+            -t153,
+            t122 + t157,
+            T::fused(-t154, t150 + t158, t155 * (t120 + t159)),
+        );
+        let t161 = t160 + t156;
+        let t162 = k(0.8) * t147;
+        let t163 = T::fused(k(0.8), t144, k(7.848));
+        let t164 = k(0.8) * t139;
+        let t165 = T::fused(
+            -(k(0.4) * t145),
+            t162,
+            T::fused(-(k(0.4) * t140), t163, k(0.4) * t129 * t164),
+        );
+        let t166 = t165
+            + T::fused(k(0.0108), t124, k(0.01076) * (rocker_wx * rocker_wy));
+        let t167 = T::fused(
+            T::fused(t57, t71, t53 * t68),
+            t161,
+            T::fused(t53, t70, t60 * t71) * t166,
+        );
+        let t168 = t72 * T::fused(T::fused(-t60, t68, t57 * t70), t152, t167);
+        let t169 = t120 - t168;
+        let t170 = t159 + t169;
+        let t171 = T::fused(
+            -T::fused(-t61, t68, t64 * t71),
+            t161,
+            T::fused(t66, t71, t61 * t70) * t166,
+        );
+        let t172 = t72 * T::fused(T::fused(t64, t70, t66 * t68), t152, -t171);
+        let t173 = t150 - t172;
+        let t174 = t158 + t173;
+        let t175 = T::fused(-coupler_wz, t149, k(0.021) * t118);
+        let t176 = k(0.5) * t28;
+        let t177 = k(0.5) * t30;
+        let t178 = k(0.5) * t32;
+        let t179 = k(2.0)
+            * (T::fused(t176, t122, T::fused(t177, t150, t178 * t120)) - t175);
+        let t180 = t122 + t179;
+        let t181 = t157 + t180;
+        let t182 = T::fused(t176, t180, T::fused(t178, t169, t177 * t173))
+            + T::fused(t176, t179, -T::fused(t177, t172, T::fused(t178, t168, t175)));
+        let t183 = k(5e-5) * t123;
+        let t184 = T::fused(k(2e-5), t108, T::fused(-t52, t182, t47 * t183));
+        let t185 = k(0.2) * t4;
+        let t186 = k(0.2) * t11;
+        let t187 = k(0.2) * t17;
+        let t188 = T::fused(t187, t180, T::fused(t185, t169, t186 * t173))
+            + T::fused(t47, t182, t52 * t183);
+        let t189 = T::fused(t187, t181, T::fused(t185, t170, t186 * t174))
+            + T::fused(k(0.00268), t101, t188);
+        let t190 = t164 + t168;
+        let t191 = t163 + t172;
+        let t192 = t162 - t179;
+        let t193 = k(0.4) * t138;
+        let t194 = k(0.4) * t143;
+        let t195 = k(0.4) * t146;
+        let t196 = T::fused(
+            t195,
+            t179,
+            -T::fused(t194, t172, T::fused(t193, t168, k(0.02156) * t134)),
+        );
+        let t197 = T::fused(t195, t192, T::fused(t193, t190, t194 * t191)) - t196;
+        let t198 = k(4e-5) * t148;
+        *out = [
+            t105,
+            t106,
+            -t107,
+            t108,
+            -t101,
+            t95,
+            t120,
+            t121,
+            -t122,
+            t123,
+            t118,
+            t116,
+            t139,
+            t144,
+            -t147,
+            t148,
+            -t134,
+            t124,
+            -t170,
+            -t174,
+            t181,
+            T::fused(-t48, t184, t38 * t189),
+            T::fused(t38, t184, t48 * t189),
+            -t190,
+            -t191,
+            t192,
+            T::fused(-t63, t198, t56 * t197),
+            T::fused(t63, t197, t56 * t198),
+            -t169,
+            -t173,
+            t180,
+            -t183,
+            t168,
+            t172,
+            t179,
+        ];
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 657 operations (264 ±, 391 ×, 2 ÷) and 6 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let (
+            t15,
+            t20,
+            t21,
+            t69,
+            t71,
+            t73,
+            t92,
+            t98,
+            t109,
+            t112,
+            t115,
+            t117,
+            t124,
+            t126,
+            t130,
+            t135,
+            t137,
+            t145,
+            t147,
+            t156,
+            t158,
+            t169,
+            t170,
+            t176,
+            t178,
+            t185,
+            t186,
+            t189,
+            t191,
+            t198,
+            t199,
+        ) = {
+            let t0 = x2.cos();
+            let t1 = k(0.1) * t0;
+            let t2 = x0.sin();
+            let t3 = k(0.2) * t2;
+            let t4 = x2.sin();
+            let t5 = x0.cos();
+            let t6 = k(0.5) * T::fused(t5, t4, t2 * t0);
+            let t7 = t6 + t3;
+            let t8 = x1.cos();
+            let t9 = k(0.4) * t8;
+            let t10 = k(0.2) * t5;
+            let t11 = k(0.5) * T::fused(-t2, t4, t5 * t0);
+            let t12 = t11 + t10;
+            let t13 = x1.sin();
+            let t14 = k(0.4) * t13;
+            let t15 = T::fused(-t9, t7, t14 * t12);
+            let t16 = k(0.25) * t15;
+            let t17 = t16 * t1;
+            let t18 = k(0.0835) * t15;
+            let t19 = t17 + (t18 + t17);
+            let t20 = T::fused(-t11, t14, t6 * t9);
+            let t21 = T::fused(-t6, t12, t11 * t7);
+            let t22 = k(0.0428) * t21;
+            let t23 = T::fused(
+                k(0.2),
+                T::fused(k(0.25), t0, k(0.1)),
+                k(0.014) + (k(0.00135) + T::fused(k(0.05), t0, k(0.0935))),
+            );
+            let t24 = t23 * t20;
+            let t25 = T::fused(
+                t20,
+                t24,
+                T::fused(t21, t22, T::fused(k(2.0), t20 * t19, t15 * t18)),
+            );
+            let t26 = k(1.0) / t25;
+            let t27 = u0 + u2;
+            let t28 = t27 * t27;
+            let t29 = t11 * t28;
+            let t30 = u0 * u0;
+            let t31 = t30 * t10;
+            let t32 = u1 * u1;
+            let t33 = t32 * t9;
+            let t34 = t33 - t31 - t29;
+            let t35 = t6 * t28;
+            let t36 = t30 * t3;
+            let t37 = t32 * t14;
+            let t38 = t37 - t36 - t35;
+            let t39 = T::fused(t12, t34, t7 * t38);
+            let t40 = T::fused(t9, t34, t14 * t38);
+            let t41 = T::fused(-t21, t39, t20 * t40);
+            let t42 = k(1.0) / T::fused(t15, t15, T::fused(t20, t20, t21 * t21));
+            let t43 = T::fused(t11, t34, t6 * t38);
+            let t44 = T::fused(-t15, t40, t43 * t21);
+            let t45 = t44 * t42;
+            let t46 = T::fused(t42, t41, t45);
+            let t47 = k(9.81) * t2;
+            let t48 = u0 * (k(0.1) * u0);
+            let t49 = t48 - t47;
+            let t50 = t4 * t49;
+            let t51 = k(0.1) * t45;
+            let t52 = k(9.81) * t5;
+            let t53 = t52 + t51;
+            let t54 = t51 + t53;
+            let t55 = t0 * t54;
+            let t56 = t4 * t48;
+            let t57 = T::fused(k(0.25), t46, t56 + (t55 + t50));
+            let t58 = T::fused(k(0.021), t46, k(0.25) * t57);
+            let t59 = T::fused(-t20, t43, t15 * t39);
+            let t60 = t42 * t59;
+            let t61 = T::fused(
+                -k(0.0108),
+                t60,
+                k(0.16) * T::fused(-k(0.2), t60, k(9.81) * t8),
+            );
+            let t62 = t0 * t49;
+            let t63 = t4 * t54;
+            let t64 = t0 * t48;
+            let t65 = T::fused(t27, k(0.25) * t27, t64) - (t63 - t62);
+            let t66 = T::fused(-t4, t65, t0 * t57);
+            let t67 = T::fused(
+                k(0.1),
+                T::fused(k(0.4), t53, t66),
+                T::fused(k(0.00135), t45, T::fused(k(0.1), t66, t58)),
+            );
+            let t68 = T::fused(t20, t67, -T::fused(-t15, t58, t21 * t61));
+            let t69 = t68 * t26;
+            let t70 = T::fused(t9, t11, t6 * t14);
+            let t71 = t70 * t69;
+            let t72 = t70 * t19;
+            let t73 = T::fused(t14, t7, t9 * t12);
+            let t74 = k(0.25) * t73 * t1;
+            let t75 = k(0.0835) * t73;
+            let t76 = T::fused(
+                k(2.0),
+                T::fused(t20, t74 + (t75 + t74), -t72),
+                T::fused(t15, t75, t18 * t73),
+            );
+            let t77 = t23 * t70;
+            let t78 = t24 * t70;
+            let t79 = t26 * t26;
+            let t80 = t68 * (t79 * (T::fused(t20, t77, t78) - t76));
+            let t81 = t42 * t42;
+            let t82 = t20 * t70;
+            let t83 = k(2.0) * T::fused(-t15, t73, t82) * t81;
+            let t84 = t44 * t83;
+            let t85 = t31 + t29;
+            let t86 = t11 * t38;
+            let t87 = t36 + t35;
+            let t88 = t6 * t34;
+            let t89 = T::fused(-t11, t87, t88) - T::fused(-t6, t85, t86);
+            let t90 = T::fused(-t14, t85, t9 * t87);
+            let t91 = t40 * t73;
+            let t92 = T::fused(t42, T::fused(-t21, t89, T::fused(-t15, t90, t91)), -t84);
+            let t93 = k(0.1) * t92;
+            let t94 = t47 - t93;
+            let t95 = t40 * t70;
+            let t96 = T::fused(-t12, t87, t7 * t34) - T::fused(-t7, t85, t12 * t38);
+            let t97 = t41 * t83;
+            let t98 = T::fused(-t42, T::fused(t21, t96, T::fused(t20, t90, t95)), t97);
+            let t99 = t98 - t92;
+            let t100 = t93 - t94;
+            let t101 = T::fused(k(0.25), t99, T::fused(-t0, t100, t4 * t52));
+            let t102 = T::fused(-t0, t101, t4 * T::fused(t4, t100, t0 * t52));
+            let t103 = T::fused(k(0.25), t101, k(0.021) * t99);
+            let t104 = T::fused(
+                k(0.1),
+                T::fused(-k(0.4), t94, t102),
+                T::fused(k(0.00135), t92, -T::fused(-k(0.1), t102, t103)),
+            );
+            let t105 = t67 * t70;
+            let t106 = t39 * t73;
+            let t107 = t43 * t70;
+            let t108 = t59 * t83;
+            let t109 = T::fused(
+                t42,
+                T::fused(-t20, t89, t107) + T::fused(t15, t96, t106),
+                t108,
+            );
+            let t110 = t58 * t73;
+            let t111 = T::fused(t21, k(0.0428) * t109, T::fused(t15, t103, t110))
+                - T::fused(t20, t104, t105);
+            let t112 = T::fused(t111, t26, t80);
+            let t113 = T::fused(-t6, t33, t11 * t37);
+            let t114 = T::fused(t9, t37, t14 * t34) - T::fused(t14, t33, t9 * t38);
+            let t115 = T::fused(
+                -t42,
+                T::fused(t21, t113, T::fused(-t15, t114, t91)),
+                t84,
+            );
+            let t116 = T::fused(-t7, t33, t12 * t37);
+            let t117 = T::fused(
+                t42,
+                T::fused(t21, t116, -T::fused(t20, t114, t95)),
+                t97,
+            );
+            let t118 = t117 + t115;
+            let t119 = k(0.2) * t115;
+            let t120 = T::fused(k(0.25), t118, t0 * t119);
+            let t121 = T::fused(t0, t120, t4 * (t4 * t119));
+            let t122 = T::fused(k(0.25), t120, k(0.021) * t118);
+            let t123 = T::fused(
+                k(0.1),
+                T::fused(k(0.04), t115, t121),
+                T::fused(k(0.00135), t115, T::fused(k(0.1), t121, t122)),
+            );
+            let t124 = T::fused(
+                t42,
+                T::fused(t20, t113, t107) + T::fused(-t15, t116, t106),
+                t108,
+            );
+            let t125 = T::fused(
+                t21,
+                T::fused(
+                    k(0.16),
+                    T::fused(k(9.81), t13, k(0.2) * t124),
+                    k(0.0108) * t124,
+                ),
+                T::fused(t15, t122, t110),
+            );
+            let t126 = T::fused(t125 - T::fused(-t20, t123, t105), t26, t80);
+            let t127 = k(0.1) * T::fused(t0, k(0.25) * t70, t4 * t16);
+            let t128 = k(0.0835) * t70;
+            let t129 = T::fused(
+                k(2.0),
+                T::fused(t20, t127 + (t128 + t127), -t72),
+                T::fused(t15, t128, t18 * t70),
+            );
+            let t130 = T::fused(-t6, t6, t11 * t12) + T::fused(-t11, t11, t6 * t7);
+            let t131 = T::fused(t20, T::fused(-t20, k(0.1) * t4, t77), t78)
+                - (T::fused(t21, k(0.0428) * t130, t22 * t130) + t129);
+            let t132 = t81 * (k(2.0) * T::fused(-t15, t70, T::fused(-t21, t130, t82)));
+            let t133 = T::fused(-t11, t35, t88) - T::fused(-t6, t29, t86);
+            let t134 = T::fused(-t14, t29, t9 * t35);
+            let t135 = T::fused(
+                -t44,
+                t132,
+                t42 * (T::fused(-t15, t134, t95) - T::fused(t43, t130, t21 * t133)),
+            );
+            let t136 = T::fused(-t12, t35, t88) - T::fused(-t7, t29, t86);
+            let t137 = T::fused(
+                -t42,
+                T::fused(t21, t136, t39 * t130) + T::fused(t20, t134, t95),
+                t41 * t132,
+            );
+            let t138 = t137 - t135;
+            let t139 = k(0.2) * t135;
+            let t140 = T::fused(-k(0.25), t138, t64 + (t62 - T::fused(-t0, t139, t63)));
+            let t141 = T::fused(-t4, t56 + (t50 + T::fused(t4, t139, t55)), t0 * t65);
+            let t142 = t141 + T::fused(-t0, t140, t4 * t57);
+            let t143 = T::fused(-k(0.25), t140, k(0.021) * t138);
+            let t144 = T::fused(
+                -k(0.1),
+                T::fused(-k(0.04), t135, t142),
+                T::fused(k(0.00135), t135, -T::fused(k(0.1), t142, t143)),
+            );
+            let t145 = T::fused(
+                t42,
+                T::fused(-t20, t133, t107) + T::fused(t15, t136, t39 * t70),
+                t59 * t132,
+            );
+            let t146 = T::fused(t15, t143, t58 * t70)
+                - T::fused(-t21, k(0.0428) * t145, t61 * t130);
+            let t147 = T::fused(
+                t68,
+                t79 * t131,
+                (t146 - T::fused(t20, t144, t105)) * t26,
+            );
+            let t148 = k(2.0) * u0;
+            let t149 = k(2.0) * t27;
+            let t150 = t6 * t149;
+            let t151 = T::fused(t3, t148, t150);
+            let t152 = t11 * t149;
+            let t153 = T::fused(t10, t148, t152);
+            let t154 = T::fused(t6, t151, t11 * t153);
+            let t155 = T::fused(t14, t151, t9 * t153);
+            let t156 = t42 * T::fused(-t21, t154, t15 * t155);
+            let t157 = T::fused(t7, t151, t12 * t153);
+            let t158 = t42 * T::fused(-t20, t155, t21 * t157);
+            let t159 = t158 + t156;
+            let t160 = k(0.2) * t156;
+            let t161 = k(0.2) * u0;
+            let t162 = t4 * t161;
+            let t163 = T::fused(k(0.25), t159, t162 + T::fused(t0, t160, t162));
+            let t164 = k(0.5) * t27;
+            let t165 = t0 * t161;
+            let t166 = T::fused(
+                -t0,
+                t163,
+                t4 * (T::fused(-t4, t160, t165) + (t165 + t164)),
+            );
+            let t167 = T::fused(k(0.25), t163, k(0.021) * t159);
+            let t168 = T::fused(
+                -k(0.1),
+                T::fused(-k(0.04), t156, t166),
+                T::fused(k(0.00135), t156, T::fused(-k(0.1), t166, t167)),
+            );
+            let t169 = t42 * T::fused(-t15, t157, t20 * t154);
+            let t170 = T::fused(t20, t168, T::fused(t21, k(0.0428) * t169, t15 * t167))
+                * t26;
+            let t171 = k(2.0) * u1;
+            let t172 = t14 * t171;
+            let t173 = t9 * t171;
+            let t174 = T::fused(t6, t172, t11 * t173);
+            let t175 = T::fused(t14, t172, t9 * t173);
+            let t176 = t42 * T::fused(-t21, t174, t15 * t175);
+            let t177 = T::fused(t7, t172, t12 * t173);
+            let t178 = t42 * T::fused(-t20, t175, t21 * t177);
+            let t179 = t178 + t176;
+            let t180 = k(0.2) * t176;
+            let t181 = T::fused(k(0.25), t179, t0 * t180);
+            let t182 = T::fused(t0, t181, t4 * (t4 * t180));
+            let t183 = T::fused(k(0.25), t181, k(0.021) * t179);
+            let t184 = T::fused(
+                k(0.1),
+                T::fused(k(0.04), t176, t182),
+                T::fused(k(0.00135), t176, T::fused(k(0.1), t182, t183)),
+            );
+            let t185 = t42 * T::fused(-t15, t177, t20 * t174);
+            let t186 = T::fused(t20, t184, T::fused(t21, k(0.0428) * t185, t15 * t183))
+                * t26;
+            let t187 = T::fused(t6, t150, t11 * t152);
+            let t188 = T::fused(t14, t150, t9 * t152);
+            let t189 = t42 * T::fused(-t21, t187, t15 * t188);
+            let t190 = T::fused(t7, t150, t12 * t152);
+            let t191 = t42 * T::fused(-t20, t188, t21 * t190);
+            let t192 = t191 + t189;
+            let t193 = k(0.2) * t189;
+            let t194 = T::fused(k(0.25), t192, t0 * t193);
+            let t195 = T::fused(-t0, t194, t4 * T::fused(-t4, t193, t164));
+            let t196 = T::fused(k(0.25), t194, k(0.021) * t192);
+            let t197 = T::fused(
+                -k(0.1),
+                T::fused(-k(0.04), t189, t195),
+                T::fused(k(0.00135), t189, T::fused(-k(0.1), t195, t196)),
+            );
+            let t198 = t42 * T::fused(-t15, t190, t20 * t187);
+            let t199 = T::fused(t20, t197, T::fused(t21, k(0.0428) * t198, t15 * t196))
+                * t26;
+            (
+                t15,
+                t20,
+                t21,
+                t69,
+                t71,
+                t73,
+                t92,
+                t98,
+                t109,
+                t112,
+                t115,
+                t117,
+                t124,
+                t126,
+                t130,
+                t135,
+                t137,
+                t145,
+                t147,
+                t156,
+                t158,
+                t169,
+                t170,
+                t176,
+                t178,
+                t185,
+                t186,
+                t189,
+                t191,
+                t198,
+                t199,
+            )
+        };
+        let (t200,) = {
+            let t200 = t73 * t69;
+            (t200,)
+        };
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            t92 + T::fused(t20, t112, -t71),
+            t115 + T::fused(-t20, t126, t71),
+            t135 - T::fused(-t20, t147, t71),
+            T::fused(-t20, t170, t156),
+            T::fused(t20, t186, -t176),
+            T::fused(-t20, t199, t189),
+            T::fused(-t21, t112, t109),
+            T::fused(t21, t126, -t124),
+            t145 - T::fused(t130, t69, t21 * t147),
+            T::fused(t21, t170, -t169),
+            T::fused(-t21, t186, t185),
+            T::fused(t21, t199, -t198),
+            T::fused(t15, t112, t200) - t98,
+            t117 - T::fused(t15, t126, t200),
+            T::fused(t15, t147, t71) - t137,
+            T::fused(-t15, t170, t158),
+            T::fused(t15, t186, -t178),
+            T::fused(-t15, t199, t191),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
+    /// Writes Φ of the joints that close loops: 17 operations (7 ±, 10 ×, 0 ÷) and 6 functions.
+    fn loop_closure(&self, _t: T, x: &Self::Joints, out: &mut Self::Closure) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.cos();
+        let t1 = x2.sin();
+        let t2 = x0.sin();
+        let t3 = x2.cos();
+        let t4 = T::fused(
+            k(0.5),
+            T::fused(-t2, t1, t0 * t3),
+            -T::fused(k(0.4), x1.cos(), T::fused(-k(0.2), t0, k(0.5))),
+        );
+        let t5 = T::fused(
+            k(0.5),
+            T::fused(t0, t1, t2 * t3),
+            -T::fused(-k(0.2), t2, k(0.4) * x1.sin()),
+        );
+        *out = [-t4, -t5];
+    }
+    /// One Newton step of the joint coordinates towards closed loops: 58 operations (23 ±, 34 ×, 1 ÷) and 6 functions.
+    fn close_positions(&self, _t: T, x: &mut Self::Joints) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.cos();
+        let t1 = k(0.2) * t0;
+        let t2 = k(0.4) * x1.cos();
+        let t3 = x2.sin();
+        let t4 = x0.sin();
+        let t5 = x2.cos();
+        let t6 = k(0.5) * T::fused(-t4, t3, t0 * t5);
+        let t7 = t6 - (t2 + (k(0.5) - t1));
+        let t8 = k(0.2) * t4;
+        let t9 = k(0.4) * x1.sin();
+        let t10 = k(0.5) * T::fused(t0, t3, t4 * t5);
+        let t11 = t10 - (t9 - t8);
+        let t12 = T::fused(t2, t7, t9 * t11);
+        let t13 = t10 + t8;
+        let t14 = t6 + t1;
+        let t15 = T::fused(-t2, t13, t9 * t14);
+        let t16 = T::fused(t6, t7, t10 * t11);
+        let t17 = T::fused(-t10, t14, t6 * t13);
+        let t18 = T::fused(-t6, t9, t10 * t2);
+        let t19 = k(1.0) / T::fused(t15, t15, T::fused(t18, t18, t17 * t17));
+        let t20 = T::fused(t14, t7, t13 * t11);
+        x[0] = T::fused(t19, T::fused(-t15, t12, t17 * t16), x0);
+        x[1] = T::fused(-t19, T::fused(-t18, t16, t15 * t20), x1);
+        x[2] = T::fused(t19, T::fused(-t17, t20, t18 * t12), x2);
+    }
+    /// Changes the rates such that loops stay closed: 67 operations (23 ±, 43 ×, 1 ÷) and 6 functions.
+    fn close_velocities(&self, _t: T, x: &mut Self::Joints) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * (u0 + u2);
+        let t1 = x2.sin();
+        let t2 = x0.cos();
+        let t3 = x2.cos();
+        let t4 = x0.sin();
+        let t5 = T::fused(t2, t1, t4 * t3);
+        let t6 = k(0.2) * u0;
+        let t7 = k(0.4) * u1;
+        let t8 = x1.sin();
+        let t9 = T::fused(-t5, t0, T::fused(-t4, t6, t8 * t7));
+        let t10 = x1.cos();
+        let t11 = k(0.4) * t10;
+        let t12 = T::fused(-t4, t1, t2 * t3);
+        let t13 = T::fused(-t12, t0, T::fused(-t2, t6, t10 * t7));
+        let t14 = k(0.4) * t8;
+        let t15 = T::fused(-t11, t9, t14 * t13);
+        let t16 = k(0.5) * t5;
+        let t17 = T::fused(k(0.2), t4, t16);
+        let t18 = k(0.5) * t12;
+        let t19 = T::fused(k(0.2), t2, t18);
+        let t20 = T::fused(-t11, t17, t14 * t19);
+        let t21 = T::fused(-t18, t9, t16 * t13);
+        let t22 = T::fused(-t16, t19, t18 * t17);
+        let t23 = T::fused(-t18, t14, t16 * t11);
+        let t24 = k(1.0) / T::fused(t20, t20, T::fused(t23, t23, t22 * t22));
+        let t25 = T::fused(-t19, t9, t17 * t13);
+        x[3] = T::fused(-t24, T::fused(-t20, t15, t22 * t21), u0);
+        x[4] = T::fused(t24, T::fused(-t23, t21, t20 * t25), u1);
+        x[5] = T::fused(-t24, T::fused(-t22, t25, t23 * t15), u2);
     }
 }
