@@ -39,6 +39,8 @@ pub struct Coordinates {
     /// The joints that close loops.
     pub closure: Closure,
     pub loops: Loops,
+    /// Where the bodies are, by whole angles.
+    pub angles: WholeAngles,
     /// How all rates of the tree follow those of the state.
     pub by_rates: Embedding,
     /// How all rates of the tree accelerate.
@@ -100,6 +102,7 @@ impl Coordinates {
             in_joints,
             of_joints,
             determined,
+            angles,
             by_rates,
             closure,
             loops,

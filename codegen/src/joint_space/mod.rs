@@ -20,6 +20,7 @@ mod loops;
 mod maps;
 mod motions;
 mod multipliers;
+mod planar;
 mod whole_angles;
 
 pub use candidates::Candidates;
