@@ -13,6 +13,7 @@ mod coordinates;
 mod determined;
 mod dynamics;
 mod embedding;
+mod forces;
 mod jacobian;
 mod layout;
 mod link_kinematics;

@@ -28,15 +28,15 @@
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 |
-//! | joint_accelerations | u̇ in joint coordinates | 53 | 89 | 2 | 144 | 0 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 30 | 65 | 1 | 96 | 0 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
 //! | to_maximal | (q, v) of a joint state | 11 | 38 | 0 | 49 | 18 of 39 |
 //! | to_joints | (x, u) of a maximal state | 62 | 76 | 0 | 138 | 0 of 6 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 94 | 151 | 2 | 247 | 0 of 3 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 150 | 235 | 2 | 387 | 0 of 18 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 71 | 127 | 1 | 199 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 127 | 213 | 1 | 341 | 0 of 18 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 118 | 176 | 1 | 295 | 0 of 17 |
-//! | corrected_solution | both | 221 | 341 | 2 | 564 | 0 of 35 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 264 | 391 | 2 | 657 | 21 of 42 |
+//! | corrected_solution | both | 204 | 326 | 2 | 532 | 0 of 35 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 151 | 242 | 1 | 394 | 21 of 42 |
 //! | loop_closure | Φ of the joints that close loops, in joint coordinates | 7 | 10 | 0 | 17 | 0 of 2 |
 //! | close_positions | one Newton step of joint coordinates that closes loops | 23 | 34 | 1 | 58 | 0 of 3 |
 //! | close_velocities | rates that keep loops closed | 23 | 43 | 1 | 67 | 0 of 3 |
@@ -3466,7 +3466,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
             k(-7.13443554847139),
         ]
     }
-    /// Writes u̇: 144 operations (53 ±, 89 ×, 2 ÷) and 6 functions.
+    /// Writes u̇: 96 operations (30 ±, 65 ×, 1 ÷) and 6 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -3475,78 +3475,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = u0 + u2;
-        let t1 = t0 * t0;
-        let t2 = x2.sin();
-        let t3 = x0.sin();
-        let t4 = x2.cos();
-        let t5 = x0.cos();
-        let t6 = k(0.5) * T::fused(-t3, t2, t5 * t4);
-        let t7 = k(0.2) * t5;
-        let t8 = u0 * u0;
+        let t0 = x2.sin();
+        let t1 = x0.sin();
+        let t2 = x2.cos();
+        let t3 = x0.cos();
+        let t4 = T::fused(-t1, t0, t3 * t2);
+        let t5 = T::fused(t3, t0, t1 * t2);
+        let t6 = k(0.04) * T::fused(t3, t4, t1 * t5);
+        let t7 = k(0.4) * x1.sin();
+        let t8 = k(0.5) * t4;
         let t9 = x1.cos();
         let t10 = k(0.4) * t9;
-        let t11 = u1 * u1;
-        let t12 = T::fused(-t6, t1, T::fused(-t8, t7, t11 * t10));
-        let t13 = t6 + t7;
-        let t14 = k(0.5) * T::fused(t5, t2, t3 * t4);
-        let t15 = k(0.2) * t3;
-        let t16 = k(0.4) * x1.sin();
-        let t17 = T::fused(-t14, t1, T::fused(-t8, t15, t11 * t16));
-        let t18 = t14 + t15;
-        let t19 = T::fused(t13, t12, t18 * t17);
-        let t20 = T::fused(-t14, t13, t6 * t18);
-        let t21 = T::fused(t10, t12, t16 * t17);
-        let t22 = T::fused(-t6, t16, t14 * t10);
-        let t23 = T::fused(-t10, t18, t16 * t13);
-        let t24 = k(1.0) / T::fused(t23, t23, T::fused(t22, t22, t20 * t20));
-        let t25 = t24 * T::fused(-t20, t19, t22 * t21);
-        let t26 = T::fused(t6, t12, t14 * t17);
-        let t27 = T::fused(-t23, t21, t26 * t20) * t24;
-        let t28 = t27 + t25;
-        let t29 = u0 * (k(0.1) * u0);
-        let t30 = T::fused(-k(9.81), t3, t29);
-        let t31 = k(0.1) * t27;
-        let t32 = T::fused(k(9.81), t5, t31);
-        let t33 = t31 + t32;
-        let t34 = T::fused(k(0.25), t28, T::fused(t2, t29, T::fused(t2, t30, t4 * t33)));
-        let t35 = T::fused(k(0.021), t28, k(0.25) * t34);
-        let t36 = t24 * T::fused(-t22, t26, t23 * t19);
-        let t37 = T::fused(
-            -t23,
-            t35,
-            t20
-                * T::fused(
-                    -k(0.0108),
-                    t36,
-                    k(0.16) * T::fused(-k(0.2), t36, k(9.81) * t9),
-                ),
+        let t11 = k(0.5) * t5;
+        let t12 = T::fused(-t8, t7, t11 * t10);
+        let t13 = k(0.2) * t1;
+        let t14 = k(0.2) * t3;
+        let t15 = T::fused(-t10, t13, t7 * t14);
+        let t16 = T::fused(t12, t6, k(0.0585) * t15);
+        let t17 = u0 + u2;
+        let t18 = t17 * t17;
+        let t19 = u0 * u0;
+        let t20 = u1 * u1;
+        let t21 = T::fused(-t8, t18, T::fused(-t19, t14, t20 * t10));
+        let t22 = T::fused(-t11, t18, T::fused(-t19, t13, t20 * t7));
+        let t23 = T::fused(t10, t21, t7 * t22);
+        let t24 = T::fused(-t11, t14, t8 * t13);
+        let t25 = k(0.0588) * t24;
+        let t26 = T::fused(t8, t21, t11 * t22);
+        let t27 = k(0.04) * T::fused(-t3, t5, t1 * t4);
+        let t28 = T::fused(
+            -t12,
+            T::fused(k(2.1582), t3, t18 * t27),
+            t24 * (k(1.962) * t9),
         );
-        let t38 = T::fused(t0, k(0.25) * t0, t4 * t29) - T::fused(-t4, t30, t2 * t33);
-        let t39 = T::fused(-t2, t38, t4 * t34);
-        let t40 = T::fused(
-            k(0.1),
-            T::fused(k(0.4), t32, t39),
-            T::fused(k(0.00135), t27, T::fused(k(0.1), t39, t35)),
+        let t29 = T::fused(t15, T::fused(-k(1.962), t4, t19 * t27), t28);
+        let t30 = T::fused(k(0.04135), t12, t15 * t6);
+        let t31 = k(1.0) / T::fused(t15, t16, T::fused(t12, t30, t24 * t25));
+        let t32 = t31 * T::fused(t12, t29, T::fused(-t23, t16, t26 * t25));
+        let t33 = T::fused(t14, t21, t13 * t22);
+        let t34 = T::fused(
+            -t31,
+            T::fused(t15, t29, T::fused(-t25, t33, t23 * t30)),
+            t32,
         );
-        let t41 = k(0.0835) * t23;
-        let t42 = k(0.1) * (t4 * (k(0.25) * t23));
-        let t43 = T::fused(
-            t20,
-            k(0.0428) * t20,
-            T::fused(k(2.0), t22 * (t42 + (t42 + t41)), t23 * t41),
-        );
-        let t44 = T::fused(
-            k(0.2),
-            T::fused(k(0.25), t4, k(0.1)),
-            k(0.014) + (k(0.00135) + T::fused(k(0.05), t4, k(0.0935))),
-        );
-        let t45 = T::fused(t22, t40, -t37) / T::fused(t22, t44 * t22, t43);
-        *out = [
-            T::fused(-t22, t45, t27),
-            T::fused(t20, t45, -t36),
-            T::fused(-t23, t45, t25),
-        ];
+        *out = [t32, -(t31 * T::fused(t24, t29, T::fused(-t26, t30, t16 * t33))), -t34];
     }
     /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -3727,7 +3699,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         x[4] = rocker_wz;
         x[5] = t48 - crank_wz;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 247 operations (94 ±, 151 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 199 operations (71 ±, 127 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -3745,131 +3717,94 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         let coupler_wy = y[31];
         let coupler_wz = y[32];
         let rocker_wz = y[38];
-        let t0 = coupler_e0 * coupler_e0;
-        let t1 = crank_e0 * crank_e2;
-        let t2 = crank_e1 * crank_e3;
-        let t3 = k(2.0) * (t2 + t1);
+        let t0 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t1 = coupler_e0 * coupler_e0;
+        let t2 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t1));
+        let t3 = crank_e0 * crank_e0;
         let t4 = coupler_e0 * coupler_e3;
         let t5 = coupler_e1 * coupler_e2;
-        let t6 = crank_e0 * crank_e1;
-        let t7 = crank_e2 * crank_e3;
-        let t8 = k(2.0) * (t7 - t6);
+        let t6 = k(2.0) * (t5 - t4);
+        let t7 = crank_e0 * crank_e3;
+        let t8 = crank_e1 * crank_e2;
         let t9 = T::fused(
-            -t3,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t0)),
-            t8 * (k(2.0) * (t5 + t4)),
+            k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t3)),
+            t2,
+            k(2.0) * (t8 - t7) * t6,
         );
-        let t10 = coupler_e0 * coupler_e2;
-        let t11 = coupler_e1 * coupler_e3;
-        let t12 = crank_e0 * crank_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t12));
-        let t14 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t0));
-        let t15 = k(2.0) * (t5 - t4);
-        let t16 = coupler_e0 * coupler_e1;
-        let t17 = coupler_e2 * coupler_e3;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = T::fused(
+        let t10 = coupler_e0 * coupler_e1;
+        let t11 = coupler_e2 * coupler_e3;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = crank_e0 * crank_e1;
+        let t14 = crank_e2 * crank_e3;
+        let t15 = T::fused(k(2.0) * (t14 + t13), t12, t9);
+        let t16 = crank_e0 * (k(2.0) * crank_e3);
+        let t17 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t3)),
+            t6,
+            k(2.0) * (t8 + t7) * t2,
+        );
+        let t18 = crank_e0 * crank_e2;
+        let t19 = crank_e1 * crank_e3;
+        let t20 = T::fused(k(2.0) * (t19 - t18), t12, -t17);
+        let t21 = T::fused(t15, t0, t20 * t16);
+        let t22 = T::fused(-t15, t16, t20 * t0);
+        let t23 = k(0.04) * T::fused(-t0, t21, t16 * t22);
+        let t24 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
+        let t25 = k(0.5) * t21;
+        let t26 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t27 = k(0.4) * t26;
+        let t28 = k(0.5) * t22;
+        let t29 = T::fused(t25, t24, t28 * t27);
+        let t30 = k(0.2) * t16;
+        let t31 = k(0.2) * t0;
+        let t32 = T::fused(-t27, t30, t24 * t31);
+        let t33 = T::fused(t29, t23, k(0.0585) * t32);
+        let t34 = k(2.0) * (t19 + t18);
+        let t35 = k(2.0) * (t14 - t13);
+        let t36 = T::fused(
+            -t34,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t1)),
+            t35 * (k(2.0) * (t5 + t4)),
+        );
+        let t37 = coupler_e0 * coupler_e2;
+        let t38 = coupler_e1 * coupler_e3;
+        let t39 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t3));
+        let t40 = T::fused(
             coupler_wx,
-            T::fused(t13, k(2.0) * (t11 - t10), -t9),
-            coupler_wy * T::fused(t13, t18, -T::fused(-t8, t14, t3 * t15)),
+            T::fused(t39, k(2.0) * (t38 - t37), -t36),
+            coupler_wy * T::fused(t39, t12, -T::fused(-t35, t2, t34 * t6)),
         );
-        let t20 = T::fused(t8, k(2.0) * (t17 - t16), t3 * (k(2.0) * (t11 + t10)));
-        let t21 = T::fused(
+        let t41 = T::fused(t35, k(2.0) * (t11 - t10), t34 * (k(2.0) * (t38 + t37)));
+        let t42 = T::fused(
             coupler_wz,
-            T::fused(t13, k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t0)), t20),
-            -t19,
+            T::fused(t39, k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t1)), t41),
+            -t40,
         );
-        let t22 = crank_wz - (crank_wz - t21);
-        let t23 = t22 * t22;
-        let t24 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
-        let t25 = crank_e0 * crank_e3;
-        let t26 = crank_e1 * crank_e2;
-        let t27 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t12)),
-            t14,
-            k(2.0) * (t26 - t25) * t15,
+        let t43 = crank_wz - (crank_wz - t42);
+        let t44 = t43 * t43;
+        let t45 = crank_wz * crank_wz;
+        let t46 = rocker_wz * rocker_wz;
+        let t47 = T::fused(-t25, t44, T::fused(-t45, t31, t46 * t27));
+        let t48 = T::fused(t28, t44, T::fused(-t45, t30, t46 * t24));
+        let t49 = T::fused(t27, t47, t24 * t48);
+        let t50 = T::fused(t28, t31, t25 * t30);
+        let t51 = k(0.0588) * t50;
+        let t52 = T::fused(-t25, t47, t28 * t48);
+        let t53 = k(0.04) * T::fused(t0, t22, t16 * t21);
+        let t54 = T::fused(
+            t29,
+            T::fused(k(2.1582), t0, t44 * t53),
+            t50 * (k(1.962) * t26),
         );
-        let t28 = T::fused(k(2.0) * (t7 + t6), t18, t27);
-        let t29 = crank_e0 * (k(2.0) * crank_e3);
-        let t30 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12)),
-            t15,
-            k(2.0) * (t26 + t25) * t14,
-        );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t18, -t30);
-        let t32 = k(0.5) * T::fused(t28, t24, t31 * t29);
-        let t33 = k(0.2) * t24;
-        let t34 = crank_wz * crank_wz;
-        let t35 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
-        let t36 = k(0.4) * t35;
-        let t37 = rocker_wz * rocker_wz;
-        let t38 = T::fused(-t32, t23, T::fused(-t34, t33, t37 * t36));
-        let t39 = t32 + t33;
-        let t40 = k(0.5) * T::fused(-t28, t29, t31 * t24);
-        let t41 = k(0.2) * t29;
-        let t42 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
-        let t43 = T::fused(t40, t23, T::fused(-t34, t41, t37 * t42));
-        let t44 = t40 - t41;
-        let t45 = T::fused(-t39, t38, t44 * t43);
-        let t46 = T::fused(-t40, t39, t32 * t44);
-        let t47 = T::fused(t36, t38, t42 * t43);
-        let t48 = T::fused(t32, t42, t40 * t36);
-        let t49 = T::fused(t36, t44, t42 * t39);
-        let t50 = k(1.0) / T::fused(t49, t49, T::fused(t48, t48, t46 * t46));
-        let t51 = t50 * T::fused(t46, t45, t48 * t47);
-        let t52 = T::fused(-t32, t38, t40 * t43);
-        let t53 = T::fused(-t49, t47, t52 * t46) * t50;
-        let t54 = t53 - t51;
-        let t55 = crank_wz * (k(0.1) * crank_wz);
-        let t56 = T::fused(-k(9.81), t29, t55);
-        let t57 = k(0.1) * t53;
-        let t58 = T::fused(k(9.81), t24, t57);
-        let t59 = t57 + t58;
-        let t60 = T::fused(
-            k(0.25),
-            t54,
-            -T::fused(t31, t55, -T::fused(-t31, t56, t28 * t59)),
-        );
-        let t61 = T::fused(k(0.021), t54, k(0.25) * t60);
-        let t62 = t50 * T::fused(t48, t52, t49 * t45);
-        let t63 = T::fused(
-            t49,
-            t61,
-            t46
-                * T::fused(
-                    k(0.0108),
-                    t62,
-                    k(0.16) * T::fused(k(0.2), t62, k(9.81) * t35),
-                ),
-        );
-        let t64 = T::fused(t22, k(0.25) * t22, t28 * t55)
-            + T::fused(t28, t56, t31 * t59);
-        let t65 = T::fused(t31, t64, t28 * t60);
-        let t66 = T::fused(
-            k(0.1),
-            T::fused(k(0.4), t58, t65),
-            T::fused(k(0.00135), t53, T::fused(k(0.1), t65, t61)),
-        );
-        let t67 = k(0.0835) * t49;
-        let t68 = k(0.1) * (t28 * (k(0.25) * t49));
-        let t69 = T::fused(
-            t46,
-            k(0.0428) * t46,
-            T::fused(-k(2.0), t48 * (t68 + (t68 + t67)), t49 * t67),
-        );
-        let t70 = T::fused(
-            k(0.2),
-            T::fused(k(0.25), t28, k(0.1)),
-            k(0.014) + (k(0.00135) + T::fused(k(0.05), t28, k(0.0935))),
-        );
-        let t71 = T::fused(t48, t66, -t63) / T::fused(t48, t70 * t48, t69);
-        *out = [
-            T::fused(-t48, t71, t53),
-            T::fused(t46, t71, t62),
-            T::fused(t49, t71, -t51),
-        ];
+        let t55 = T::fused(t32, T::fused(-k(1.962), t21, t45 * t53), t54);
+        let t56 = T::fused(k(0.04135), t29, t32 * t23);
+        let t57 = k(1.0) / T::fused(t32, t33, T::fused(t29, t56, t50 * t51));
+        let t58 = t57 * T::fused(t29, t55, T::fused(t49, t33, t52 * t51));
+        let t59 = T::fused(t31, t47, t30 * t48);
+        let t60 = T::fused(t57, T::fused(t32, t55, -T::fused(t51, t59, t49 * t56)), t58);
+        *out = [-t58, -(t57 * T::fused(t50, t55, T::fused(-t52, t56, t33 * t59))), t60];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 387 operations (150 ±, 235 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 341 operations (127 ±, 213 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3898,202 +3833,164 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = coupler_e0 * coupler_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t0));
-        let t2 = crank_e0 * crank_e2;
-        let t3 = crank_e1 * crank_e3;
-        let t4 = k(2.0) * (t3 + t2);
+        let t0 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t1 = coupler_e0 * coupler_e0;
+        let t2 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t1));
+        let t3 = crank_e0 * crank_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t3));
         let t5 = coupler_e0 * coupler_e3;
         let t6 = coupler_e1 * coupler_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = crank_e0 * crank_e1;
-        let t9 = crank_e2 * crank_e3;
+        let t7 = k(2.0) * (t6 - t5);
+        let t8 = crank_e0 * crank_e3;
+        let t9 = crank_e1 * crank_e2;
         let t10 = k(2.0) * (t9 - t8);
-        let t11 = coupler_e0 * coupler_e2;
-        let t12 = coupler_e1 * coupler_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = crank_e0 * crank_e0;
-        let t15 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t14));
-        let t16 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t0));
-        let t17 = k(2.0) * (t6 - t5);
-        let t18 = coupler_e0 * coupler_e1;
-        let t19 = coupler_e2 * coupler_e3;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = T::fused(
+        let t11 = coupler_e0 * coupler_e1;
+        let t12 = coupler_e2 * coupler_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = crank_e0 * crank_e1;
+        let t15 = crank_e2 * crank_e3;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = T::fused(t16, t13, T::fused(t4, t2, t10 * t7));
+        let t18 = crank_e0 * (k(2.0) * crank_e3);
+        let t19 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t3));
+        let t20 = k(2.0) * (t9 + t8);
+        let t21 = crank_e0 * crank_e2;
+        let t22 = crank_e1 * crank_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = T::fused(t23, t13, -T::fused(t19, t7, t20 * t2));
+        let t25 = T::fused(t17, t0, t24 * t18);
+        let t26 = T::fused(-t17, t18, t24 * t0);
+        let t27 = k(0.04) * T::fused(-t0, t25, t18 * t26);
+        let t28 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
+        let t29 = k(0.5) * t25;
+        let t30 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t31 = k(0.4) * t30;
+        let t32 = k(0.5) * t26;
+        let t33 = T::fused(t29, t28, t32 * t31);
+        let t34 = k(0.2) * t18;
+        let t35 = k(0.2) * t0;
+        let t36 = T::fused(-t31, t34, t28 * t35);
+        let t37 = T::fused(t33, t27, k(0.0585) * t36);
+        let t38 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t1));
+        let t39 = k(2.0) * (t22 + t21);
+        let t40 = k(2.0) * (t6 + t5);
+        let t41 = k(2.0) * (t15 - t14);
+        let t42 = coupler_e0 * coupler_e2;
+        let t43 = coupler_e1 * coupler_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t3));
+        let t46 = T::fused(
             coupler_wx,
-            T::fused(t15, t13, -T::fused(-t4, t1, t10 * t7)),
-            coupler_wy * T::fused(t15, t20, -T::fused(-t10, t16, t4 * t17)),
+            T::fused(t45, t44, -T::fused(-t39, t38, t41 * t40)),
+            coupler_wy * T::fused(t45, t13, -T::fused(-t41, t2, t39 * t7)),
         );
-        let t22 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t0));
-        let t23 = k(2.0) * (t19 - t18);
-        let t24 = k(2.0) * (t12 + t11);
-        let t25 = T::fused(
+        let t47 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t1));
+        let t48 = k(2.0) * (t12 - t11);
+        let t49 = k(2.0) * (t43 + t42);
+        let t50 = T::fused(
             coupler_wz,
-            T::fused(t15, t22, T::fused(t10, t23, t4 * t24)),
-            -t21,
+            T::fused(t45, t47, T::fused(t41, t48, t39 * t49)),
+            -t46,
         );
-        let t26 = crank_wz - t25;
-        let t27 = crank_wz - t26;
-        let t28 = t27 * t27;
-        let t29 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
-        let t30 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t14));
-        let t31 = crank_e0 * crank_e3;
-        let t32 = crank_e1 * crank_e2;
-        let t33 = k(2.0) * (t32 - t31);
-        let t34 = k(2.0) * (t9 + t8);
-        let t35 = T::fused(t34, t20, T::fused(t30, t16, t33 * t17));
-        let t36 = crank_e0 * (k(2.0) * crank_e3);
-        let t37 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t14));
-        let t38 = k(2.0) * (t32 + t31);
-        let t39 = k(2.0) * (t3 - t2);
-        let t40 = T::fused(t39, t20, -T::fused(t37, t17, t38 * t16));
-        let t41 = k(0.5) * T::fused(t35, t29, t40 * t36);
-        let t42 = k(0.2) * t29;
-        let t43 = crank_wz * crank_wz;
-        let t44 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
-        let t45 = k(0.4) * t44;
-        let t46 = rocker_wz * rocker_wz;
-        let t47 = T::fused(-t41, t28, T::fused(-t43, t42, t46 * t45));
-        let t48 = t41 + t42;
-        let t49 = k(0.5) * T::fused(-t35, t36, t40 * t29);
-        let t50 = k(0.2) * t36;
-        let t51 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
-        let t52 = T::fused(t49, t28, T::fused(-t43, t50, t46 * t51));
-        let t53 = t49 - t50;
-        let t54 = T::fused(-t48, t47, t53 * t52);
-        let t55 = T::fused(-t49, t48, t41 * t53);
-        let t56 = T::fused(t45, t47, t51 * t52);
-        let t57 = T::fused(t41, t51, t49 * t45);
-        let t58 = T::fused(t45, t53, t51 * t48);
-        let t59 = k(1.0) / T::fused(t58, t58, T::fused(t57, t57, t55 * t55));
-        let t60 = t59 * T::fused(t55, t54, t57 * t56);
-        let t61 = T::fused(-t41, t47, t49 * t52);
-        let t62 = T::fused(-t58, t56, t61 * t55) * t59;
-        let t63 = t62 - t60;
-        let t64 = k(0.1) * crank_wz;
-        let t65 = crank_wz * t64;
-        let t66 = T::fused(-k(9.81), t36, t65);
-        let t67 = k(0.1) * t62;
-        let t68 = T::fused(k(9.81), t29, t67);
-        let t69 = t67 + t68;
-        let t70 = T::fused(
-            k(0.25),
-            t63,
-            -T::fused(t40, t65, -T::fused(-t40, t66, t35 * t69)),
+        let t51 = crank_wz - t50;
+        let t52 = crank_wz - t51;
+        let t53 = t52 * t52;
+        let t54 = crank_wz * crank_wz;
+        let t55 = rocker_wz * rocker_wz;
+        let t56 = T::fused(-t29, t53, T::fused(-t54, t35, t55 * t31));
+        let t57 = T::fused(t32, t53, T::fused(-t54, t34, t55 * t28));
+        let t58 = T::fused(t31, t56, t28 * t57);
+        let t59 = T::fused(t32, t35, t29 * t34);
+        let t60 = k(0.0588) * t59;
+        let t61 = T::fused(-t29, t56, t32 * t57);
+        let t62 = k(0.04) * T::fused(t0, t26, t18 * t25);
+        let t63 = T::fused(
+            t33,
+            T::fused(k(2.1582), t0, t53 * t62),
+            t59 * (k(1.962) * t30),
         );
-        let t71 = T::fused(k(0.021), t63, k(0.25) * t70);
-        let t72 = t59 * T::fused(t57, t61, t58 * t54);
-        let t73 = T::fused(
-            t58,
-            t71,
-            t55
-                * T::fused(
-                    k(0.0108),
-                    t72,
-                    k(0.16) * T::fused(k(0.2), t72, k(9.81) * t44),
-                ),
+        let t64 = T::fused(t36, T::fused(-k(1.962), t25, t54 * t62), t63);
+        let t65 = T::fused(k(0.04135), t33, t36 * t27);
+        let t66 = k(1.0) / T::fused(t36, t37, T::fused(t33, t65, t59 * t60));
+        let t67 = t66 * T::fused(t33, t64, T::fused(t58, t37, t61 * t60));
+        let t68 = k(0.1) * t67;
+        let t69 = k(0.1) * crank_wy;
+        let t70 = crank_wx * t69;
+        let t71 = t70 - t68;
+        let t72 = k(0.1) * crank_wz;
+        let t73 = T::fused(crank_wz, t72, crank_wy * t69);
+        let t74 = crank_wx * crank_wz;
+        let t75 = k(0.1) * t74;
+        let t76 = crank_wx * t72;
+        let t77 = t76 + t75;
+        let t78 = crank_wy * crank_wz;
+        let t79 = t68 - t71;
+        let t80 = t17 * t73;
+        let t81 = k(0.25) * coupler_wz;
+        let t82 = k(0.25) * coupler_wy;
+        let t83 = T::fused(coupler_wz, t81, coupler_wy * t82) + T::fused(t24, t70, t80)
+            + T::fused(-t24, t79, t80);
+        let t84 = t24 * t73;
+        let t85 = T::fused(coupler_wx, t82, T::fused(t17, t70, -t84))
+            - T::fused(t17, t79, t84);
+        let t86 = T::fused(t35, t56, t34 * t57);
+        let t87 = T::fused(t66, T::fused(t36, t64, -T::fused(t60, t86, t58 * t65)), t67);
+        let t88 = t67 - t87;
+        let t89 = T::fused(k(0.25), t88, -t85);
+        let t90 = T::fused(coupler_wx, t51, -T::fused(-t78, t24, t74 * t17));
+        let t91 = T::fused(-k(0.25), t90, T::fused(coupler_wx, t81, t76) + (t75 + t77));
+        let t92 = t66 * T::fused(t59, t64, T::fused(-t61, t65, t37 * t86));
+        let t93 = k(0.2) * rocker_wy;
+        let t94 = T::fused(-k(0.2), t92, rocker_wx * t93);
+        let t95 = rocker_e0 * rocker_e3;
+        let t96 = rocker_e1 * rocker_e2;
+        let t97 = k(0.2) * rocker_wz;
+        let t98 = T::fused(rocker_wz, t97, rocker_wy * t93);
+        let t99 = rocker_e0 * rocker_e0;
+        let t100 = T::fused(
+            k(2.0) * (t96 - t95),
+            t94,
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t99)) * t98,
         );
-        let t74 = T::fused(t27, k(0.25) * t27, t35 * t65)
-            + T::fused(t35, t66, t40 * t69);
-        let t75 = T::fused(t40, t74, t35 * t70);
-        let t76 = T::fused(
-            k(0.1),
-            T::fused(k(0.4), t68, t75),
-            T::fused(k(0.00135), t62, T::fused(k(0.1), t75, t71)),
+        let t101 = rocker_wx * rocker_wz;
+        let t102 = T::fused(k(0.2), t101, rocker_wx * t97);
+        let t103 = rocker_e0 * rocker_e2;
+        let t104 = rocker_e1 * rocker_e3;
+        let t105 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t99)),
+            t94,
+            k(2.0) * (t96 + t95) * t98,
         );
-        let t77 = k(0.0835) * t58;
-        let t78 = k(0.1) * (t35 * (k(0.25) * t58));
-        let t79 = T::fused(
-            t55,
-            k(0.0428) * t55,
-            T::fused(-k(2.0), t57 * (t78 + (t78 + t77)), t58 * t77),
-        );
-        let t80 = T::fused(
-            k(0.2),
-            T::fused(k(0.25), t35, k(0.1)),
-            k(0.014) + (k(0.00135) + T::fused(k(0.05), t35, k(0.0935))),
-        );
-        let t81 = T::fused(t57, t76, -t73) / T::fused(t57, t80 * t57, t79);
-        let t82 = T::fused(-t57, t81, t62);
-        let t83 = k(0.1) * t82;
-        let t84 = k(0.1) * crank_wy;
-        let t85 = crank_wx * t84;
-        let t86 = t85 + t83;
-        let t87 = T::fused(crank_wy, t84, t65);
-        let t88 = crank_wx * crank_wz;
-        let t89 = k(0.1) * t88;
-        let t90 = crank_wx * t64;
-        let t91 = t90 + t89;
-        let t92 = crank_wy * crank_wz;
-        let t93 = t83 + t86;
-        let t94 = t35 * t87;
-        let t95 = k(0.25) * coupler_wz;
-        let t96 = k(0.25) * coupler_wy;
-        let t97 = T::fused(coupler_wz, t95, coupler_wy * t96) + T::fused(t40, t85, t94)
-            + T::fused(t40, t93, t94);
-        let t98 = t40 * t87;
-        let t99 = T::fused(coupler_wx, t96, T::fused(t35, t85, -t98))
-            - T::fused(-t35, t93, t98);
-        let t100 = t82 - T::fused(-t58, t81, t60);
-        let t101 = T::fused(k(0.25), t100, t99);
-        let t102 = T::fused(coupler_wx, t26, -T::fused(-t92, t40, t88 * t35));
-        let t103 = T::fused(
-            -k(0.25),
-            t102,
-            T::fused(coupler_wx, t95, t90) + (t89 + t91),
-        );
-        let t104 = T::fused(t55, t81, t72);
-        let t105 = k(0.2) * rocker_wy;
-        let t106 = T::fused(k(0.2), t104, rocker_wx * t105);
-        let t107 = rocker_e0 * rocker_e3;
-        let t108 = rocker_e1 * rocker_e2;
-        let t109 = k(0.2) * rocker_wz;
-        let t110 = T::fused(rocker_wz, t109, rocker_wy * t105);
-        let t111 = rocker_e0 * rocker_e0;
-        let t112 = T::fused(
-            k(2.0) * (t108 - t107),
-            t106,
-            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t111)) * t110,
-        );
-        let t113 = rocker_wx * rocker_wz;
-        let t114 = T::fused(k(0.2), t113, rocker_wx * t109);
-        let t115 = rocker_e0 * rocker_e2;
-        let t116 = rocker_e1 * rocker_e3;
-        let t117 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t111)),
-            t106,
-            k(2.0) * (t108 + t107) * t110,
-        );
-        let t118 = rocker_e0 * rocker_e1;
-        let t119 = rocker_e2 * rocker_e3;
-        let t120 = T::fused(
-            -(k(2.0) * (t119 + t118)),
-            t106,
-            k(2.0) * (t116 - t115) * t110,
+        let t106 = rocker_e0 * rocker_e1;
+        let t107 = rocker_e2 * rocker_e3;
+        let t108 = T::fused(
+            -(k(2.0) * (t107 + t106)),
+            t94,
+            k(2.0) * (t104 - t103) * t98,
         );
         *out = [
-            T::fused(t4, t91, T::fused(t33, t86, t37 * t87)),
-            T::fused(t10, t91, -T::fused(t30, t86, t38 * t87)),
-            -T::fused(t15, t91, T::fused(-t34, t86, t39 * t87)),
-            t92,
+            T::fused(t39, t77, T::fused(t10, t71, t19 * t73)),
+            T::fused(t41, t77, -T::fused(t4, t71, t20 * t73)),
+            -T::fused(t45, t77, T::fused(-t16, t71, t23 * t73)),
+            t78,
+            -t74,
+            -t67,
+            T::fused(t49, t91, -T::fused(-t38, t83, t7 * t89)),
+            T::fused(t48, t91, T::fused(-t40, t83, t2 * t89)),
+            -T::fused(t47, t91, T::fused(t44, t83, t13 * t89)),
+            T::fused(-coupler_wy, t51, T::fused(t74, t24, t78 * t17)),
+            t90,
             -t88,
-            t82,
-            T::fused(t24, t103, T::fused(t1, t97, t17 * t101)),
-            T::fused(t23, t103, -T::fused(t7, t97, t16 * t101)),
-            T::fused(-t22, t103, T::fused(-t13, t97, t20 * t101)),
-            T::fused(-coupler_wy, t26, T::fused(t88, t40, t92 * t35)),
-            t102,
-            t100,
-            T::fused(k(2.0) * (t116 + t115), t114, t112),
-            T::fused(k(2.0) * (t119 - t118), t114, -t117),
+            T::fused(k(2.0) * (t104 + t103), t102, t100),
+            T::fused(k(2.0) * (t107 - t106), t102, -t105),
             -T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t111)),
-                t114,
-                t120,
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t99)),
+                t102,
+                t108,
             ),
             rocker_wy * rocker_wz,
-            -t113,
-            t104,
+            -t101,
+            -t92,
         ];
     }
     /// Writes λ: 295 operations (118 ±, 176 ×, 1 ÷).
@@ -4294,7 +4191,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
             -t71,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 564 operations (221 ±, 341 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 532 operations (204 ±, 326 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -4318,326 +4215,301 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = coupler_e0 * coupler_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t0));
-        let t2 = crank_e0 * crank_e2;
-        let t3 = crank_e1 * crank_e3;
-        let t4 = t3 + t2;
-        let t5 = k(2.0) * t4;
-        let t6 = coupler_e0 * coupler_e3;
-        let t7 = coupler_e1 * coupler_e2;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = crank_e0 * crank_e1;
-        let t10 = crank_e2 * crank_e3;
-        let t11 = t10 - t9;
-        let t12 = k(2.0) * t11;
-        let t13 = coupler_e0 * coupler_e2;
-        let t14 = coupler_e1 * coupler_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = crank_e0 * crank_e0;
-        let t17 = k(0.5) - T::fused(crank_e3, crank_e3, t16);
+        let t0 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t1 = coupler_e0 * coupler_e0;
+        let t2 = k(0.5) - T::fused(coupler_e2, coupler_e2, t1);
+        let t3 = k(2.0) * t2;
+        let t4 = crank_e0 * crank_e0;
+        let t5 = k(0.5) - T::fused(crank_e2, crank_e2, t4);
+        let t6 = k(2.0) * t5;
+        let t7 = coupler_e0 * coupler_e3;
+        let t8 = coupler_e1 * coupler_e2;
+        let t9 = t8 - t7;
+        let t10 = k(2.0) * t9;
+        let t11 = crank_e0 * crank_e3;
+        let t12 = crank_e1 * crank_e2;
+        let t13 = t12 - t11;
+        let t14 = k(2.0) * t13;
+        let t15 = coupler_e0 * coupler_e1;
+        let t16 = coupler_e2 * coupler_e3;
+        let t17 = t16 + t15;
         let t18 = k(2.0) * t17;
-        let t19 = k(0.5) - T::fused(coupler_e2, coupler_e2, t0);
-        let t20 = k(2.0) * t19;
-        let t21 = t7 - t6;
+        let t19 = crank_e0 * crank_e1;
+        let t20 = crank_e2 * crank_e3;
+        let t21 = t20 + t19;
         let t22 = k(2.0) * t21;
-        let t23 = coupler_e0 * coupler_e1;
-        let t24 = coupler_e2 * coupler_e3;
-        let t25 = t24 + t23;
-        let t26 = k(2.0) * t25;
-        let t27 = T::fused(
+        let t23 = T::fused(t22, t18, T::fused(t6, t3, t14 * t10));
+        let t24 = crank_e0 * (k(2.0) * crank_e3);
+        let t25 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t4));
+        let t26 = k(2.0) * (t12 + t11);
+        let t27 = crank_e0 * crank_e2;
+        let t28 = crank_e1 * crank_e3;
+        let t29 = k(2.0) * (t28 - t27);
+        let t30 = T::fused(t29, t18, -T::fused(t25, t10, t26 * t3));
+        let t31 = T::fused(t23, t0, t30 * t24);
+        let t32 = T::fused(-t23, t24, t30 * t0);
+        let t33 = k(0.04) * T::fused(-t0, t31, t24 * t32);
+        let t34 = rocker_e0 * (k(2.0) * rocker_e3);
+        let t35 = k(0.4) * t34;
+        let t36 = k(0.5) * t31;
+        let t37 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t38 = k(0.4) * t37;
+        let t39 = k(0.5) * t32;
+        let t40 = T::fused(t36, t35, t39 * t38);
+        let t41 = k(0.2) * t24;
+        let t42 = k(0.2) * t0;
+        let t43 = T::fused(-t38, t41, t35 * t42);
+        let t44 = T::fused(t40, t33, k(0.0585) * t43);
+        let t45 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t1));
+        let t46 = t28 + t27;
+        let t47 = k(2.0) * t46;
+        let t48 = k(2.0) * (t8 + t7);
+        let t49 = t20 - t19;
+        let t50 = k(2.0) * t49;
+        let t51 = coupler_e0 * coupler_e2;
+        let t52 = coupler_e1 * coupler_e3;
+        let t53 = k(2.0) * (t52 - t51);
+        let t54 = k(0.5) - T::fused(crank_e3, crank_e3, t4);
+        let t55 = k(2.0) * t54;
+        let t56 = T::fused(
             coupler_wx,
-            T::fused(t18, t15, -T::fused(-t5, t1, t12 * t8)),
-            coupler_wy * T::fused(t18, t26, -T::fused(-t12, t20, t5 * t22)),
+            T::fused(t55, t53, -T::fused(-t47, t45, t50 * t48)),
+            coupler_wy * T::fused(t55, t18, -T::fused(-t50, t3, t47 * t10)),
         );
-        let t28 = k(0.5) - T::fused(coupler_e3, coupler_e3, t0);
-        let t29 = k(2.0) * t28;
-        let t30 = t24 - t23;
-        let t31 = k(2.0) * t30;
-        let t32 = t14 + t13;
-        let t33 = k(2.0) * t32;
-        let t34 = T::fused(
+        let t57 = k(0.5) - T::fused(coupler_e3, coupler_e3, t1);
+        let t58 = k(2.0) * t57;
+        let t59 = t16 - t15;
+        let t60 = k(2.0) * t59;
+        let t61 = t52 + t51;
+        let t62 = k(2.0) * t61;
+        let t63 = T::fused(
             coupler_wz,
-            T::fused(t18, t29, T::fused(t12, t31, t5 * t33)),
-            -t27,
+            T::fused(t55, t58, T::fused(t50, t60, t47 * t62)),
+            -t56,
         );
-        let t35 = crank_wz - t34;
-        let t36 = crank_wz - t35;
-        let t37 = t36 * t36;
-        let t38 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
-        let t39 = k(0.5) - T::fused(crank_e2, crank_e2, t16);
-        let t40 = k(2.0) * t39;
-        let t41 = crank_e0 * crank_e3;
-        let t42 = crank_e1 * crank_e2;
-        let t43 = t42 - t41;
-        let t44 = k(2.0) * t43;
-        let t45 = t10 + t9;
-        let t46 = k(2.0) * t45;
-        let t47 = T::fused(t46, t26, T::fused(t40, t20, t44 * t22));
-        let t48 = crank_e0 * (k(2.0) * crank_e3);
-        let t49 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t16));
-        let t50 = k(2.0) * (t42 + t41);
-        let t51 = k(2.0) * (t3 - t2);
-        let t52 = T::fused(t51, t26, -T::fused(t49, t22, t50 * t20));
-        let t53 = k(0.5) * T::fused(t47, t38, t52 * t48);
-        let t54 = k(0.2) * t38;
-        let t55 = crank_wz * crank_wz;
-        let t56 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
-        let t57 = k(0.4) * t56;
-        let t58 = rocker_wz * rocker_wz;
-        let t59 = T::fused(-t53, t37, T::fused(-t55, t54, t58 * t57));
-        let t60 = t53 + t54;
-        let t61 = k(0.5) * T::fused(-t47, t48, t52 * t38);
-        let t62 = k(0.2) * t48;
-        let t63 = rocker_e0 * (k(2.0) * rocker_e3);
-        let t64 = k(0.4) * t63;
-        let t65 = T::fused(t61, t37, T::fused(-t55, t62, t58 * t64));
-        let t66 = t61 - t62;
-        let t67 = T::fused(-t60, t59, t66 * t65);
-        let t68 = T::fused(-t61, t60, t53 * t66);
-        let t69 = T::fused(t57, t59, t64 * t65);
-        let t70 = T::fused(t53, t64, t61 * t57);
-        let t71 = T::fused(t57, t66, t64 * t60);
-        let t72 = k(1.0) / T::fused(t71, t71, T::fused(t70, t70, t68 * t68));
-        let t73 = t72 * T::fused(t68, t67, t70 * t69);
-        let t74 = T::fused(-t53, t59, t61 * t65);
-        let t75 = T::fused(-t71, t69, t74 * t68) * t72;
-        let t76 = t75 - t73;
-        let t77 = k(0.1) * crank_wz;
-        let t78 = crank_wz * t77;
-        let t79 = T::fused(-k(9.81), t48, t78);
-        let t80 = k(0.1) * t75;
-        let t81 = T::fused(k(9.81), t38, t80);
-        let t82 = t80 + t81;
-        let t83 = T::fused(
-            k(0.25),
-            t76,
-            -T::fused(t52, t78, -T::fused(-t52, t79, t47 * t82)),
+        let t64 = crank_wz - t63;
+        let t65 = crank_wz - t64;
+        let t66 = t65 * t65;
+        let t67 = crank_wz * crank_wz;
+        let t68 = rocker_wz * rocker_wz;
+        let t69 = T::fused(-t36, t66, T::fused(-t67, t42, t68 * t38));
+        let t70 = T::fused(t39, t66, T::fused(-t67, t41, t68 * t35));
+        let t71 = T::fused(t38, t69, t35 * t70);
+        let t72 = T::fused(t39, t42, t36 * t41);
+        let t73 = k(0.0588) * t72;
+        let t74 = T::fused(-t36, t69, t39 * t70);
+        let t75 = k(0.04) * T::fused(t0, t32, t24 * t31);
+        let t76 = T::fused(
+            t40,
+            T::fused(k(2.1582), t0, t66 * t75),
+            t72 * (k(1.962) * t37),
         );
-        let t84 = T::fused(k(0.021), t76, k(0.25) * t83);
-        let t85 = t72 * T::fused(t70, t74, t71 * t67);
-        let t86 = T::fused(
-            t71,
-            t84,
-            t68
-                * T::fused(
-                    k(0.0108),
-                    t85,
-                    k(0.16) * T::fused(k(0.2), t85, k(9.81) * t56),
-                ),
+        let t77 = T::fused(t43, T::fused(-k(1.962), t31, t67 * t75), t76);
+        let t78 = T::fused(k(0.04135), t40, t43 * t33);
+        let t79 = k(1.0) / T::fused(t43, t44, T::fused(t40, t78, t72 * t73));
+        let t80 = t79 * T::fused(t40, t77, T::fused(t71, t44, t74 * t73));
+        let t81 = k(0.1) * t80;
+        let t82 = k(0.1) * crank_wy;
+        let t83 = crank_wx * t82;
+        let t84 = t83 - t81;
+        let t85 = k(0.1) * crank_wz;
+        let t86 = T::fused(crank_wz, t85, crank_wy * t82);
+        let t87 = crank_wx * crank_wz;
+        let t88 = k(0.1) * t87;
+        let t89 = crank_wx * t85;
+        let t90 = t89 + t88;
+        let t91 = T::fused(t47, t90, T::fused(t14, t84, t25 * t86));
+        let t92 = T::fused(t50, t90, -T::fused(t6, t84, t26 * t86));
+        let t93 = T::fused(t55, t90, T::fused(-t22, t84, t29 * t86));
+        let t94 = crank_wy * crank_wz;
+        let t95 = t81 - t84;
+        let t96 = t23 * t86;
+        let t97 = k(0.25) * coupler_wz;
+        let t98 = k(0.25) * coupler_wy;
+        let t99 = T::fused(coupler_wz, t97, coupler_wy * t98) + T::fused(t30, t83, t96)
+            + T::fused(-t30, t95, t96);
+        let t100 = t30 * t86;
+        let t101 = T::fused(coupler_wx, t98, T::fused(t23, t83, -t100))
+            - T::fused(t23, t95, t100);
+        let t102 = T::fused(t42, t69, t41 * t70);
+        let t103 = T::fused(
+            t79,
+            T::fused(t43, t77, -T::fused(t73, t102, t71 * t78)),
+            t80,
         );
-        let t87 = T::fused(t36, k(0.25) * t36, t47 * t78)
-            + T::fused(t47, t79, t52 * t82);
-        let t88 = T::fused(t52, t87, t47 * t83);
-        let t89 = T::fused(
-            k(0.1),
-            T::fused(k(0.4), t81, t88),
-            T::fused(k(0.00135), t75, T::fused(k(0.1), t88, t84)),
-        );
-        let t90 = k(0.0835) * t71;
-        let t91 = k(0.1) * (t47 * (k(0.25) * t71));
-        let t92 = T::fused(
-            t68,
-            k(0.0428) * t68,
-            T::fused(-k(2.0), t70 * (t91 + (t91 + t90)), t71 * t90),
-        );
-        let t93 = T::fused(
-            k(0.2),
-            T::fused(k(0.25), t47, k(0.1)),
-            k(0.014) + (k(0.00135) + T::fused(k(0.05), t47, k(0.0935))),
-        );
-        let t94 = T::fused(t70, t89, -t86) / T::fused(t70, t93 * t70, t92);
-        let t95 = T::fused(-t70, t94, t75);
-        let t96 = k(0.1) * t95;
-        let t97 = k(0.1) * crank_wy;
-        let t98 = crank_wx * t97;
-        let t99 = t98 + t96;
-        let t100 = T::fused(crank_wy, t97, t78);
-        let t101 = crank_wx * crank_wz;
-        let t102 = k(0.1) * t101;
-        let t103 = crank_wx * t77;
-        let t104 = t103 + t102;
-        let t105 = T::fused(t5, t104, T::fused(t44, t99, t49 * t100));
-        let t106 = T::fused(t12, t104, -T::fused(t40, t99, t50 * t100));
-        let t107 = T::fused(t18, t104, T::fused(-t46, t99, t51 * t100));
-        let t108 = crank_wy * crank_wz;
-        let t109 = t96 + t99;
-        let t110 = t47 * t100;
-        let t111 = k(0.25) * coupler_wz;
-        let t112 = k(0.25) * coupler_wy;
-        let t113 = T::fused(coupler_wz, t111, coupler_wy * t112)
-            + T::fused(t52, t98, t110) + T::fused(t52, t109, t110);
-        let t114 = t52 * t100;
-        let t115 = T::fused(coupler_wx, t112, T::fused(t47, t98, -t114))
-            - T::fused(-t47, t109, t114);
-        let t116 = t95 - T::fused(-t71, t94, t73);
-        let t117 = T::fused(k(0.25), t116, t115);
-        let t118 = T::fused(coupler_wx, t35, -T::fused(-t108, t52, t101 * t47));
-        let t119 = T::fused(
+        let t104 = t80 - t103;
+        let t105 = T::fused(k(0.25), t104, -t101);
+        let t106 = T::fused(coupler_wx, t64, -T::fused(-t94, t30, t87 * t23));
+        let t107 = T::fused(
             -k(0.25),
-            t118,
-            T::fused(coupler_wx, t111, t103) + (t102 + t104),
-        );
-        let t120 = T::fused(t33, t119, T::fused(t1, t113, t22 * t117));
-        let t121 = T::fused(t31, t119, -T::fused(t8, t113, t20 * t117));
-        let t122 = T::fused(t29, t119, -T::fused(-t15, t113, t26 * t117));
-        let t123 = T::fused(-coupler_wy, t35, T::fused(t101, t52, t108 * t47));
-        let t124 = T::fused(t68, t94, t85);
-        let t125 = k(0.2) * rocker_wy;
-        let t126 = T::fused(k(0.2), t124, rocker_wx * t125);
-        let t127 = rocker_e0 * rocker_e3;
-        let t128 = rocker_e1 * rocker_e2;
-        let t129 = t128 - t127;
-        let t130 = k(0.2) * rocker_wz;
-        let t131 = T::fused(rocker_wz, t130, rocker_wy * t125);
-        let t132 = rocker_e0 * rocker_e0;
-        let t133 = T::fused(
-            k(2.0) * t129,
-            t126,
-            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t132)) * t131,
-        );
-        let t134 = rocker_wx * rocker_wz;
-        let t135 = T::fused(k(0.2), t134, rocker_wx * t130);
-        let t136 = rocker_e0 * rocker_e2;
-        let t137 = rocker_e1 * rocker_e3;
-        let t138 = t137 + t136;
-        let t139 = T::fused(k(2.0) * t138, t135, t133);
-        let t140 = k(0.5) - T::fused(rocker_e2, rocker_e2, t132);
-        let t141 = rocker_e0 * rocker_e1;
-        let t142 = rocker_e2 * rocker_e3;
-        let t143 = t142 - t141;
-        let t144 = T::fused(
-            k(2.0) * t143,
-            t135,
-            -T::fused(k(2.0) * t140, t126, k(2.0) * (t128 + t127) * t131),
-        );
-        let t145 = t142 + t141;
-        let t146 = k(0.5) - T::fused(rocker_e3, rocker_e3, t132);
-        let t147 = T::fused(
-            k(2.0) * t146,
-            t135,
-            T::fused(-(k(2.0) * t145), t126, k(2.0) * (t137 - t136) * t131),
-        );
-        let t148 = rocker_wy * rocker_wz;
-        let t149 = k(0.02095) * coupler_wx;
-        let t150 = k(9.81) + t121;
-        let t151 = T::fused(
-            -(k(0.5) * t25),
-            t122,
-            T::fused(-(k(0.5) * t19), t150, k(0.5) * t21 * t120),
-        );
-        let t152 = t151 + T::fused(coupler_wy, t149, k(0.021) * t116);
-        let t153 = k(0.2) * t45;
-        let t154 = k(0.2) * t39;
-        let t155 = k(0.2) * t43;
-        let t156 = T::fused(k(0.00135), t95, k(0.00133) * (crank_wx * crank_wy))
-            + (T::fused(-t153, t122, T::fused(-t154, t150, t155 * t120)) + t152);
-        let t157 = k(0.4) * t107;
-        let t158 = T::fused(k(0.4), t106, k(3.924));
-        let t159 = k(0.4) * t105;
-        let t160 = T::fused(
-            -t153,
-            t122 + t157,
-            T::fused(-t154, t150 + t158, t155 * (t120 + t159)),
-        );
-        let t161 = t160 + t156;
-        let t162 = k(0.8) * t147;
-        let t163 = T::fused(k(0.8), t144, k(7.848));
-        let t164 = k(0.8) * t139;
-        let t165 = T::fused(
-            -(k(0.4) * t145),
-            t162,
-            T::fused(-(k(0.4) * t140), t163, k(0.4) * t129 * t164),
-        );
-        let t166 = t165
-            + T::fused(k(0.0108), t124, k(0.01076) * (rocker_wx * rocker_wy));
-        let t167 = T::fused(
-            T::fused(t57, t71, t53 * t68),
-            t161,
-            T::fused(t53, t70, t60 * t71) * t166,
-        );
-        let t168 = t72 * T::fused(T::fused(-t60, t68, t57 * t70), t152, t167);
-        let t169 = t120 - t168;
-        let t170 = t159 + t169;
-        let t171 = T::fused(
-            -T::fused(-t61, t68, t64 * t71),
-            t161,
-            T::fused(t66, t71, t61 * t70) * t166,
-        );
-        let t172 = t72 * T::fused(T::fused(t64, t70, t66 * t68), t152, -t171);
-        let t173 = t150 - t172;
-        let t174 = t158 + t173;
-        let t175 = T::fused(-coupler_wz, t149, k(0.021) * t118);
-        let t176 = k(0.5) * t28;
-        let t177 = k(0.5) * t30;
-        let t178 = k(0.5) * t32;
-        let t179 = k(2.0)
-            * (T::fused(t176, t122, T::fused(t177, t150, t178 * t120)) - t175);
-        let t180 = t122 + t179;
-        let t181 = t157 + t180;
-        let t182 = T::fused(t176, t180, T::fused(t178, t169, t177 * t173))
-            + T::fused(t176, t179, -T::fused(t177, t172, T::fused(t178, t168, t175)));
-        let t183 = k(5e-5) * t123;
-        let t184 = T::fused(k(2e-5), t108, T::fused(-t52, t182, t47 * t183));
-        let t185 = k(0.2) * t4;
-        let t186 = k(0.2) * t11;
-        let t187 = k(0.2) * t17;
-        let t188 = T::fused(t187, t180, T::fused(t185, t169, t186 * t173))
-            + T::fused(t47, t182, t52 * t183);
-        let t189 = T::fused(t187, t181, T::fused(t185, t170, t186 * t174))
-            + T::fused(k(0.00268), t101, t188);
-        let t190 = t164 + t168;
-        let t191 = t163 + t172;
-        let t192 = t162 - t179;
-        let t193 = k(0.4) * t138;
-        let t194 = k(0.4) * t143;
-        let t195 = k(0.4) * t146;
-        let t196 = T::fused(
-            t195,
-            t179,
-            -T::fused(t194, t172, T::fused(t193, t168, k(0.02156) * t134)),
-        );
-        let t197 = T::fused(t195, t192, T::fused(t193, t190, t194 * t191)) - t196;
-        let t198 = k(4e-5) * t148;
-        *out = [
-            t105,
             t106,
-            -t107,
-            t108,
-            -t101,
-            t95,
-            t120,
-            t121,
-            -t122,
+            T::fused(coupler_wx, t97, t89) + (t88 + t90),
+        );
+        let t108 = T::fused(t62, t107, -T::fused(-t45, t99, t10 * t105));
+        let t109 = T::fused(t60, t107, T::fused(-t48, t99, t3 * t105));
+        let t110 = T::fused(t58, t107, T::fused(t53, t99, t18 * t105));
+        let t111 = T::fused(-coupler_wy, t64, T::fused(t87, t30, t94 * t23));
+        let t112 = t79 * T::fused(t72, t77, T::fused(-t74, t78, t44 * t102));
+        let t113 = k(0.2) * rocker_wy;
+        let t114 = T::fused(-k(0.2), t112, rocker_wx * t113);
+        let t115 = rocker_e0 * rocker_e3;
+        let t116 = rocker_e1 * rocker_e2;
+        let t117 = t116 - t115;
+        let t118 = k(0.2) * rocker_wz;
+        let t119 = T::fused(rocker_wz, t118, rocker_wy * t113);
+        let t120 = rocker_e0 * rocker_e0;
+        let t121 = T::fused(
+            k(2.0) * t117,
+            t114,
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t120)) * t119,
+        );
+        let t122 = rocker_wx * rocker_wz;
+        let t123 = T::fused(k(0.2), t122, rocker_wx * t118);
+        let t124 = rocker_e0 * rocker_e2;
+        let t125 = rocker_e1 * rocker_e3;
+        let t126 = t125 + t124;
+        let t127 = T::fused(k(2.0) * t126, t123, t121);
+        let t128 = k(0.5) - T::fused(rocker_e2, rocker_e2, t120);
+        let t129 = rocker_e0 * rocker_e1;
+        let t130 = rocker_e2 * rocker_e3;
+        let t131 = t130 - t129;
+        let t132 = T::fused(
+            k(2.0) * t131,
             t123,
-            t118,
-            t116,
-            t139,
-            t144,
-            -t147,
-            t148,
-            -t134,
-            t124,
-            -t170,
-            -t174,
-            t181,
-            T::fused(-t48, t184, t38 * t189),
-            T::fused(t38, t184, t48 * t189),
-            -t190,
-            -t191,
-            t192,
-            T::fused(-t63, t198, t56 * t197),
-            T::fused(t63, t197, t56 * t198),
-            -t169,
-            -t173,
-            t180,
-            -t183,
-            t168,
+            -T::fused(k(2.0) * t128, t114, k(2.0) * (t116 + t115) * t119),
+        );
+        let t133 = t130 + t129;
+        let t134 = k(0.5) - T::fused(rocker_e3, rocker_e3, t120);
+        let t135 = T::fused(
+            k(2.0) * t134,
+            t123,
+            T::fused(-(k(2.0) * t133), t114, k(2.0) * (t125 - t124) * t119),
+        );
+        let t136 = rocker_wy * rocker_wz;
+        let t137 = k(0.02095) * coupler_wx;
+        let t138 = k(9.81) + t109;
+        let t139 = T::fused(
+            -(k(0.5) * t17),
+            t110,
+            T::fused(-(k(0.5) * t2), t138, k(0.5) * t9 * t108),
+        );
+        let t140 = t139 - T::fused(-coupler_wy, t137, k(0.021) * t104);
+        let t141 = k(0.2) * t21;
+        let t142 = k(0.2) * t5;
+        let t143 = k(0.2) * t13;
+        let t144 = T::fused(-k(0.00135), t80, k(0.00133) * (crank_wx * crank_wy))
+            + (T::fused(-t141, t110, T::fused(-t142, t138, t143 * t108)) + t140);
+        let t145 = k(0.4) * t93;
+        let t146 = T::fused(k(0.4), t92, k(3.924));
+        let t147 = k(0.4) * t91;
+        let t148 = T::fused(
+            -t141,
+            t110 + t145,
+            T::fused(-t142, t138 + t146, t143 * (t108 + t147)),
+        );
+        let t149 = t148 + t144;
+        let t150 = t39 - t41;
+        let t151 = t36 + t42;
+        let t152 = T::fused(t38, t150, t35 * t151);
+        let t153 = T::fused(-t39, t151, t36 * t150);
+        let t154 = k(0.8) * t135;
+        let t155 = T::fused(k(0.8), t132, k(7.848));
+        let t156 = k(0.8) * t127;
+        let t157 = T::fused(
+            -(k(0.4) * t133),
+            t154,
+            T::fused(-(k(0.4) * t128), t155, k(0.4) * t117 * t156),
+        );
+        let t158 = t157
+            + T::fused(-k(0.0108), t112, k(0.01076) * (rocker_wx * rocker_wy));
+        let t159 = T::fused(
+            T::fused(t38, t152, t36 * t153),
+            t149,
+            T::fused(t36, t40, t151 * t152) * t158,
+        );
+        let t160 = k(1.0) / T::fused(t152, t152, T::fused(t40, t40, t153 * t153));
+        let t161 = t160 * T::fused(T::fused(-t151, t153, t38 * t40), t140, t159);
+        let t162 = t108 - t161;
+        let t163 = t147 + t162;
+        let t164 = T::fused(
+            -T::fused(-t39, t153, t35 * t152),
+            t149,
+            T::fused(t150, t152, t39 * t40) * t158,
+        );
+        let t165 = t160 * T::fused(T::fused(t35, t40, t150 * t153), t140, -t164);
+        let t166 = t138 - t165;
+        let t167 = t146 + t166;
+        let t168 = T::fused(-coupler_wz, t137, k(0.021) * t106);
+        let t169 = k(0.5) * t57;
+        let t170 = k(0.5) * t59;
+        let t171 = k(0.5) * t61;
+        let t172 = k(2.0)
+            * (T::fused(t169, t110, T::fused(t170, t138, t171 * t108)) - t168);
+        let t173 = t110 + t172;
+        let t174 = t145 + t173;
+        let t175 = T::fused(t169, t173, T::fused(t171, t162, t170 * t166))
+            + T::fused(t169, t172, -T::fused(t170, t165, T::fused(t171, t161, t168)));
+        let t176 = k(5e-5) * t111;
+        let t177 = T::fused(k(2e-5), t94, T::fused(-t30, t175, t23 * t176));
+        let t178 = k(0.2) * t46;
+        let t179 = k(0.2) * t49;
+        let t180 = k(0.2) * t54;
+        let t181 = T::fused(t180, t173, T::fused(t178, t162, t179 * t166))
+            + T::fused(t23, t175, t30 * t176);
+        let t182 = T::fused(t180, t174, T::fused(t178, t163, t179 * t167))
+            + T::fused(k(0.00268), t87, t181);
+        let t183 = t156 + t161;
+        let t184 = t155 + t165;
+        let t185 = t154 - t172;
+        let t186 = k(0.4) * t126;
+        let t187 = k(0.4) * t131;
+        let t188 = k(0.4) * t134;
+        let t189 = T::fused(
+            t188,
             t172,
-            t179,
+            -T::fused(t187, t165, T::fused(t186, t161, k(0.02156) * t122)),
+        );
+        let t190 = T::fused(t188, t185, T::fused(t186, t183, t187 * t184)) - t189;
+        let t191 = k(4e-5) * t136;
+        *out = [
+            t91,
+            t92,
+            -t93,
+            t94,
+            -t87,
+            -t80,
+            t108,
+            t109,
+            -t110,
+            t111,
+            t106,
+            -t104,
+            t127,
+            t132,
+            -t135,
+            t136,
+            -t122,
+            -t112,
+            -t163,
+            -t167,
+            t174,
+            T::fused(-t24, t177, t0 * t182),
+            T::fused(t0, t177, t24 * t182),
+            -t183,
+            -t184,
+            t185,
+            T::fused(-t34, t191, t37 * t190),
+            T::fused(t34, t190, t37 * t191),
+            -t162,
+            -t166,
+            t173,
+            -t176,
+            t161,
+            t165,
+            t172,
         ];
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 657 operations (264 ±, 391 ×, 2 ÷) and 6 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 394 operations (151 ±, 242 ×, 1 ÷) and 6 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -4652,375 +4524,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let (
-            t15,
-            t20,
-            t21,
-            t69,
-            t71,
-            t73,
+        let t0 = x2.sin();
+        let t1 = x0.cos();
+        let t2 = x2.cos();
+        let t3 = x0.sin();
+        let t4 = T::fused(t1, t0, t3 * t2);
+        let t5 = k(1.962) * t4;
+        let t6 = k(0.2) * t3;
+        let t7 = x1.cos();
+        let t8 = k(0.4) * t7;
+        let t9 = k(0.2) * t1;
+        let t10 = x1.sin();
+        let t11 = k(0.4) * t10;
+        let t12 = T::fused(-t8, t6, t11 * t9);
+        let t13 = T::fused(t11, t6, t8 * t9);
+        let t14 = T::fused(-t3, t0, t1 * t2);
+        let t15 = k(0.04) * T::fused(-t1, t4, t3 * t14);
+        let t16 = u0 * u0;
+        let t17 = T::fused(-k(1.962), t14, t16 * t15);
+        let t18 = t17 * t13;
+        let t19 = k(0.5) * t14;
+        let t20 = k(0.5) * t4;
+        let t21 = T::fused(-t19, t11, t20 * t8);
+        let t22 = T::fused(t8, t19, t20 * t11);
+        let t23 = u0 + u2;
+        let t24 = t23 * t23;
+        let t25 = T::fused(k(2.1582), t1, t24 * t15);
+        let t26 = t25 * t22;
+        let t27 = T::fused(-t21, k(2.1582) * t3, t26) + T::fused(-t12, t5, t18);
+        let t28 = k(1.962) * t7;
+        let t29 = T::fused(-t20, t9, t19 * t6);
+        let t30 = T::fused(t12, t17, T::fused(-t21, t25, t29 * t28));
+        let t31 = t30 * t22;
+        let t32 = t19 * t24;
+        let t33 = t16 * t9;
+        let t34 = t33 + t32;
+        let t35 = t20 * t24;
+        let t36 = t16 * t6;
+        let t37 = u1 * u1;
+        let t38 = t37 * t11;
+        let t39 = t38 - t36 - t35;
+        let t40 = t19 * t39;
+        let t41 = t36 + t35;
+        let t42 = t37 * t8;
+        let t43 = t42 - t33 - t32;
+        let t44 = t20 * t43;
+        let t45 = T::fused(-t19, t41, t44) - T::fused(-t20, t34, t40);
+        let t46 = k(0.0588) * t29;
+        let t47 = k(0.04) * T::fused(t1, t14, t3 * t4);
+        let t48 = t47 * t22;
+        let t49 = T::fused(-k(0.0585), t13, t48);
+        let t50 = T::fused(t8, t43, t11 * t39);
+        let t51 = t50 * t49;
+        let t52 = T::fused(-t11, t34, t8 * t41);
+        let t53 = T::fused(t21, t47, k(0.0585) * t12);
+        let t54 = T::fused(t46, t45, T::fused(t53, t52, t51)) - T::fused(-t21, t27, t31);
+        let t55 = T::fused(k(0.04135), t21, t12 * t47);
+        let t56 = k(1.0) / T::fused(t12, t53, T::fused(t21, t55, t29 * t46));
+        let t57 = t56 * t56;
+        let t58 = k(0.04135) * t22;
+        let t59 = T::fused(-t47, t13, t58);
+        let t60 = t55 * t22;
+        let t61 = (T::fused(t21, t59, t60) - T::fused(-t12, t49, t53 * t13)) * t57;
+        let t62 = T::fused(t19, t43, t20 * t39);
+        let t63 = T::fused(t21, t30, T::fused(-t50, t53, t62 * t46));
+        let t64 = t63 * t61;
+        let t65 = T::fused(t56, t54, t64);
+        let t66 = t18 + T::fused(-t29, k(1.962) * t10, t26);
+        let t67 = T::fused(-t20, t42, t19 * t38);
+        let t68 = T::fused(t8, t38, t11 * t43) - T::fused(t11, t42, t8 * t39);
+        let t69 = T::fused(-t46, t67, T::fused(t53, t68, t51))
+            - T::fused(-t21, t66, t31);
+        let t70 = T::fused(t56, t69, t64);
+        let t71 = T::fused(t20, t6, t19 * t9);
+        let t72 = T::fused(
+            -t12,
+            T::fused(-t16, t47, t5),
+            T::fused(t28, t71, T::fused(-t21, t24 * t47, t26)),
+        );
+        let t73 = k(0.0588) * t71;
+        let t74 = T::fused(-t19, t35, t44) - T::fused(-t20, t32, t40);
+        let t75 = T::fused(t21, t15, t48);
+        let t76 = T::fused(-t11, t32, t8 * t35);
+        let t77 = T::fused(t50, t75, t53 * t76) + T::fused(t62, t73, t46 * t74);
+        let t78 = T::fused(t12, t15, t58);
+        let t79 = T::fused(
+            t12,
+            t75,
+            T::fused(t21, t78, t60) - T::fused(t29, t73, t46 * t71),
+        );
+        let t80 = t57 * t79;
+        let t81 = T::fused(t56, t77 - T::fused(-t21, t72, t31), t63 * t80);
+        let t82 = k(2.0) * u0;
+        let t83 = k(2.0) * t23;
+        let t84 = t21 * (t15 * t83);
+        let t85 = T::fused(-t12, t15 * t82, t84);
+        let t86 = t20 * t83;
+        let t87 = T::fused(t6, t82, t86);
+        let t88 = t19 * t83;
+        let t89 = T::fused(t9, t82, t88);
+        let t90 = T::fused(t20, t87, t19 * t89);
+        let t91 = T::fused(t11, t87, t8 * t89);
+        let t92 = t56 * T::fused(-t21, t85, T::fused(-t46, t90, t53 * t91));
+        let t93 = k(2.0) * u1;
+        let t94 = t11 * t93;
+        let t95 = t8 * t93;
+        let t96 = T::fused(t20, t94, t19 * t95);
+        let t97 = T::fused(t11, t94, t8 * t95);
+        let t98 = t56 * T::fused(-t46, t96, t53 * t97);
+        let t99 = T::fused(t20, t86, t19 * t88);
+        let t100 = T::fused(t11, t86, t8 * t88);
+        let t101 = t56 * T::fused(-t21, t84, T::fused(-t46, t99, t53 * t100));
+        let t102 = T::fused(-t9, t41, t6 * t43) - T::fused(-t6, t34, t9 * t39);
+        let t103 = T::fused(t9, t43, t6 * t39);
+        let t104 = t103 * t49;
+        let t105 = t62 * t59;
+        let t106 = T::fused(
+            -t29,
+            t27,
+            T::fused(t55, t45, -t105) + T::fused(-t53, t102, t104),
+        );
+        let t107 = T::fused(t29, t30, T::fused(-t62, t55, t53 * t103));
+        let t108 = t107 * t61;
+        let t109 = T::fused(-t6, t42, t9 * t38);
+        let t110 = T::fused(
+            t29,
+            t66,
+            T::fused(t55, t67, t105) - T::fused(t53, t109, t104),
+        );
+        let t111 = T::fused(-t6, t32, t9 * t35);
+        let t112 = T::fused(-t62, t78, t55 * t74) + T::fused(t53, t111, t103 * t75);
+        let t113 = T::fused(-t56, t112 - T::fused(t29, t72, t30 * t71), t107 * t80);
+        let t114 = T::fused(t6, t87, t9 * t89);
+        let t115 = T::fused(t6, t94, t9 * t95);
+        let t116 = T::fused(t6, t86, t9 * t88);
+        let t117 = t30 * t13;
+        let t118 = t50 * t59;
+        let t119 = T::fused(t46, t102, T::fused(t55, t52, t118))
+            - T::fused(t12, t27, t117);
+        let t120 = T::fused(t12, t30, T::fused(-t46, t103, t50 * t55));
+        let t121 = t120 * t61;
+        let t122 = T::fused(t46, t109, -T::fused(t55, t68, t118))
+            + T::fused(t12, t66, t117);
+        let t123 = T::fused(-t46, t111, t103 * t73) + T::fused(t50, t78, t55 * t76);
+        let t124 = T::fused(
+            -t56,
+            T::fused(-t12, t85, T::fused(-t55, t91, t46 * t114)),
             t92,
-            t98,
-            t109,
-            t112,
-            t115,
-            t117,
-            t124,
-            t126,
-            t130,
-            t135,
-            t137,
-            t145,
-            t147,
-            t156,
-            t158,
-            t169,
-            t170,
-            t176,
-            t178,
-            t185,
-            t186,
-            t189,
-            t191,
-            t198,
-            t199,
-        ) = {
-            let t0 = x2.cos();
-            let t1 = k(0.1) * t0;
-            let t2 = x0.sin();
-            let t3 = k(0.2) * t2;
-            let t4 = x2.sin();
-            let t5 = x0.cos();
-            let t6 = k(0.5) * T::fused(t5, t4, t2 * t0);
-            let t7 = t6 + t3;
-            let t8 = x1.cos();
-            let t9 = k(0.4) * t8;
-            let t10 = k(0.2) * t5;
-            let t11 = k(0.5) * T::fused(-t2, t4, t5 * t0);
-            let t12 = t11 + t10;
-            let t13 = x1.sin();
-            let t14 = k(0.4) * t13;
-            let t15 = T::fused(-t9, t7, t14 * t12);
-            let t16 = k(0.25) * t15;
-            let t17 = t16 * t1;
-            let t18 = k(0.0835) * t15;
-            let t19 = t17 + (t18 + t17);
-            let t20 = T::fused(-t11, t14, t6 * t9);
-            let t21 = T::fused(-t6, t12, t11 * t7);
-            let t22 = k(0.0428) * t21;
-            let t23 = T::fused(
-                k(0.2),
-                T::fused(k(0.25), t0, k(0.1)),
-                k(0.014) + (k(0.00135) + T::fused(k(0.05), t0, k(0.0935))),
-            );
-            let t24 = t23 * t20;
-            let t25 = T::fused(
-                t20,
-                t24,
-                T::fused(t21, t22, T::fused(k(2.0), t20 * t19, t15 * t18)),
-            );
-            let t26 = k(1.0) / t25;
-            let t27 = u0 + u2;
-            let t28 = t27 * t27;
-            let t29 = t11 * t28;
-            let t30 = u0 * u0;
-            let t31 = t30 * t10;
-            let t32 = u1 * u1;
-            let t33 = t32 * t9;
-            let t34 = t33 - t31 - t29;
-            let t35 = t6 * t28;
-            let t36 = t30 * t3;
-            let t37 = t32 * t14;
-            let t38 = t37 - t36 - t35;
-            let t39 = T::fused(t12, t34, t7 * t38);
-            let t40 = T::fused(t9, t34, t14 * t38);
-            let t41 = T::fused(-t21, t39, t20 * t40);
-            let t42 = k(1.0) / T::fused(t15, t15, T::fused(t20, t20, t21 * t21));
-            let t43 = T::fused(t11, t34, t6 * t38);
-            let t44 = T::fused(-t15, t40, t43 * t21);
-            let t45 = t44 * t42;
-            let t46 = T::fused(t42, t41, t45);
-            let t47 = k(9.81) * t2;
-            let t48 = u0 * (k(0.1) * u0);
-            let t49 = t48 - t47;
-            let t50 = t4 * t49;
-            let t51 = k(0.1) * t45;
-            let t52 = k(9.81) * t5;
-            let t53 = t52 + t51;
-            let t54 = t51 + t53;
-            let t55 = t0 * t54;
-            let t56 = t4 * t48;
-            let t57 = T::fused(k(0.25), t46, t56 + (t55 + t50));
-            let t58 = T::fused(k(0.021), t46, k(0.25) * t57);
-            let t59 = T::fused(-t20, t43, t15 * t39);
-            let t60 = t42 * t59;
-            let t61 = T::fused(
-                -k(0.0108),
-                t60,
-                k(0.16) * T::fused(-k(0.2), t60, k(9.81) * t8),
-            );
-            let t62 = t0 * t49;
-            let t63 = t4 * t54;
-            let t64 = t0 * t48;
-            let t65 = T::fused(t27, k(0.25) * t27, t64) - (t63 - t62);
-            let t66 = T::fused(-t4, t65, t0 * t57);
-            let t67 = T::fused(
-                k(0.1),
-                T::fused(k(0.4), t53, t66),
-                T::fused(k(0.00135), t45, T::fused(k(0.1), t66, t58)),
-            );
-            let t68 = T::fused(t20, t67, -T::fused(-t15, t58, t21 * t61));
-            let t69 = t68 * t26;
-            let t70 = T::fused(t9, t11, t6 * t14);
-            let t71 = t70 * t69;
-            let t72 = t70 * t19;
-            let t73 = T::fused(t14, t7, t9 * t12);
-            let t74 = k(0.25) * t73 * t1;
-            let t75 = k(0.0835) * t73;
-            let t76 = T::fused(
-                k(2.0),
-                T::fused(t20, t74 + (t75 + t74), -t72),
-                T::fused(t15, t75, t18 * t73),
-            );
-            let t77 = t23 * t70;
-            let t78 = t24 * t70;
-            let t79 = t26 * t26;
-            let t80 = t68 * (t79 * (T::fused(t20, t77, t78) - t76));
-            let t81 = t42 * t42;
-            let t82 = t20 * t70;
-            let t83 = k(2.0) * T::fused(-t15, t73, t82) * t81;
-            let t84 = t44 * t83;
-            let t85 = t31 + t29;
-            let t86 = t11 * t38;
-            let t87 = t36 + t35;
-            let t88 = t6 * t34;
-            let t89 = T::fused(-t11, t87, t88) - T::fused(-t6, t85, t86);
-            let t90 = T::fused(-t14, t85, t9 * t87);
-            let t91 = t40 * t73;
-            let t92 = T::fused(t42, T::fused(-t21, t89, T::fused(-t15, t90, t91)), -t84);
-            let t93 = k(0.1) * t92;
-            let t94 = t47 - t93;
-            let t95 = t40 * t70;
-            let t96 = T::fused(-t12, t87, t7 * t34) - T::fused(-t7, t85, t12 * t38);
-            let t97 = t41 * t83;
-            let t98 = T::fused(-t42, T::fused(t21, t96, T::fused(t20, t90, t95)), t97);
-            let t99 = t98 - t92;
-            let t100 = t93 - t94;
-            let t101 = T::fused(k(0.25), t99, T::fused(-t0, t100, t4 * t52));
-            let t102 = T::fused(-t0, t101, t4 * T::fused(t4, t100, t0 * t52));
-            let t103 = T::fused(k(0.25), t101, k(0.021) * t99);
-            let t104 = T::fused(
-                k(0.1),
-                T::fused(-k(0.4), t94, t102),
-                T::fused(k(0.00135), t92, -T::fused(-k(0.1), t102, t103)),
-            );
-            let t105 = t67 * t70;
-            let t106 = t39 * t73;
-            let t107 = t43 * t70;
-            let t108 = t59 * t83;
-            let t109 = T::fused(
-                t42,
-                T::fused(-t20, t89, t107) + T::fused(t15, t96, t106),
-                t108,
-            );
-            let t110 = t58 * t73;
-            let t111 = T::fused(t21, k(0.0428) * t109, T::fused(t15, t103, t110))
-                - T::fused(t20, t104, t105);
-            let t112 = T::fused(t111, t26, t80);
-            let t113 = T::fused(-t6, t33, t11 * t37);
-            let t114 = T::fused(t9, t37, t14 * t34) - T::fused(t14, t33, t9 * t38);
-            let t115 = T::fused(
-                -t42,
-                T::fused(t21, t113, T::fused(-t15, t114, t91)),
-                t84,
-            );
-            let t116 = T::fused(-t7, t33, t12 * t37);
-            let t117 = T::fused(
-                t42,
-                T::fused(t21, t116, -T::fused(t20, t114, t95)),
-                t97,
-            );
-            let t118 = t117 + t115;
-            let t119 = k(0.2) * t115;
-            let t120 = T::fused(k(0.25), t118, t0 * t119);
-            let t121 = T::fused(t0, t120, t4 * (t4 * t119));
-            let t122 = T::fused(k(0.25), t120, k(0.021) * t118);
-            let t123 = T::fused(
-                k(0.1),
-                T::fused(k(0.04), t115, t121),
-                T::fused(k(0.00135), t115, T::fused(k(0.1), t121, t122)),
-            );
-            let t124 = T::fused(
-                t42,
-                T::fused(t20, t113, t107) + T::fused(-t15, t116, t106),
-                t108,
-            );
-            let t125 = T::fused(
-                t21,
-                T::fused(
-                    k(0.16),
-                    T::fused(k(9.81), t13, k(0.2) * t124),
-                    k(0.0108) * t124,
-                ),
-                T::fused(t15, t122, t110),
-            );
-            let t126 = T::fused(t125 - T::fused(-t20, t123, t105), t26, t80);
-            let t127 = k(0.1) * T::fused(t0, k(0.25) * t70, t4 * t16);
-            let t128 = k(0.0835) * t70;
-            let t129 = T::fused(
-                k(2.0),
-                T::fused(t20, t127 + (t128 + t127), -t72),
-                T::fused(t15, t128, t18 * t70),
-            );
-            let t130 = T::fused(-t6, t6, t11 * t12) + T::fused(-t11, t11, t6 * t7);
-            let t131 = T::fused(t20, T::fused(-t20, k(0.1) * t4, t77), t78)
-                - (T::fused(t21, k(0.0428) * t130, t22 * t130) + t129);
-            let t132 = t81 * (k(2.0) * T::fused(-t15, t70, T::fused(-t21, t130, t82)));
-            let t133 = T::fused(-t11, t35, t88) - T::fused(-t6, t29, t86);
-            let t134 = T::fused(-t14, t29, t9 * t35);
-            let t135 = T::fused(
-                -t44,
-                t132,
-                t42 * (T::fused(-t15, t134, t95) - T::fused(t43, t130, t21 * t133)),
-            );
-            let t136 = T::fused(-t12, t35, t88) - T::fused(-t7, t29, t86);
-            let t137 = T::fused(
-                -t42,
-                T::fused(t21, t136, t39 * t130) + T::fused(t20, t134, t95),
-                t41 * t132,
-            );
-            let t138 = t137 - t135;
-            let t139 = k(0.2) * t135;
-            let t140 = T::fused(-k(0.25), t138, t64 + (t62 - T::fused(-t0, t139, t63)));
-            let t141 = T::fused(-t4, t56 + (t50 + T::fused(t4, t139, t55)), t0 * t65);
-            let t142 = t141 + T::fused(-t0, t140, t4 * t57);
-            let t143 = T::fused(-k(0.25), t140, k(0.021) * t138);
-            let t144 = T::fused(
-                -k(0.1),
-                T::fused(-k(0.04), t135, t142),
-                T::fused(k(0.00135), t135, -T::fused(k(0.1), t142, t143)),
-            );
-            let t145 = T::fused(
-                t42,
-                T::fused(-t20, t133, t107) + T::fused(t15, t136, t39 * t70),
-                t59 * t132,
-            );
-            let t146 = T::fused(t15, t143, t58 * t70)
-                - T::fused(-t21, k(0.0428) * t145, t61 * t130);
-            let t147 = T::fused(
-                t68,
-                t79 * t131,
-                (t146 - T::fused(t20, t144, t105)) * t26,
-            );
-            let t148 = k(2.0) * u0;
-            let t149 = k(2.0) * t27;
-            let t150 = t6 * t149;
-            let t151 = T::fused(t3, t148, t150);
-            let t152 = t11 * t149;
-            let t153 = T::fused(t10, t148, t152);
-            let t154 = T::fused(t6, t151, t11 * t153);
-            let t155 = T::fused(t14, t151, t9 * t153);
-            let t156 = t42 * T::fused(-t21, t154, t15 * t155);
-            let t157 = T::fused(t7, t151, t12 * t153);
-            let t158 = t42 * T::fused(-t20, t155, t21 * t157);
-            let t159 = t158 + t156;
-            let t160 = k(0.2) * t156;
-            let t161 = k(0.2) * u0;
-            let t162 = t4 * t161;
-            let t163 = T::fused(k(0.25), t159, t162 + T::fused(t0, t160, t162));
-            let t164 = k(0.5) * t27;
-            let t165 = t0 * t161;
-            let t166 = T::fused(
-                -t0,
-                t163,
-                t4 * (T::fused(-t4, t160, t165) + (t165 + t164)),
-            );
-            let t167 = T::fused(k(0.25), t163, k(0.021) * t159);
-            let t168 = T::fused(
-                -k(0.1),
-                T::fused(-k(0.04), t156, t166),
-                T::fused(k(0.00135), t156, T::fused(-k(0.1), t166, t167)),
-            );
-            let t169 = t42 * T::fused(-t15, t157, t20 * t154);
-            let t170 = T::fused(t20, t168, T::fused(t21, k(0.0428) * t169, t15 * t167))
-                * t26;
-            let t171 = k(2.0) * u1;
-            let t172 = t14 * t171;
-            let t173 = t9 * t171;
-            let t174 = T::fused(t6, t172, t11 * t173);
-            let t175 = T::fused(t14, t172, t9 * t173);
-            let t176 = t42 * T::fused(-t21, t174, t15 * t175);
-            let t177 = T::fused(t7, t172, t12 * t173);
-            let t178 = t42 * T::fused(-t20, t175, t21 * t177);
-            let t179 = t178 + t176;
-            let t180 = k(0.2) * t176;
-            let t181 = T::fused(k(0.25), t179, t0 * t180);
-            let t182 = T::fused(t0, t181, t4 * (t4 * t180));
-            let t183 = T::fused(k(0.25), t181, k(0.021) * t179);
-            let t184 = T::fused(
-                k(0.1),
-                T::fused(k(0.04), t176, t182),
-                T::fused(k(0.00135), t176, T::fused(k(0.1), t182, t183)),
-            );
-            let t185 = t42 * T::fused(-t15, t177, t20 * t174);
-            let t186 = T::fused(t20, t184, T::fused(t21, k(0.0428) * t185, t15 * t183))
-                * t26;
-            let t187 = T::fused(t6, t150, t11 * t152);
-            let t188 = T::fused(t14, t150, t9 * t152);
-            let t189 = t42 * T::fused(-t21, t187, t15 * t188);
-            let t190 = T::fused(t7, t150, t12 * t152);
-            let t191 = t42 * T::fused(-t20, t188, t21 * t190);
-            let t192 = t191 + t189;
-            let t193 = k(0.2) * t189;
-            let t194 = T::fused(k(0.25), t192, t0 * t193);
-            let t195 = T::fused(-t0, t194, t4 * T::fused(-t4, t193, t164));
-            let t196 = T::fused(k(0.25), t194, k(0.021) * t192);
-            let t197 = T::fused(
-                -k(0.1),
-                T::fused(-k(0.04), t189, t195),
-                T::fused(k(0.00135), t189, T::fused(-k(0.1), t195, t196)),
-            );
-            let t198 = t42 * T::fused(-t15, t190, t20 * t187);
-            let t199 = T::fused(t20, t197, T::fused(t21, k(0.0428) * t198, t15 * t196))
-                * t26;
-            (
-                t15,
-                t20,
-                t21,
-                t69,
-                t71,
-                t73,
-                t92,
-                t98,
-                t109,
-                t112,
-                t115,
-                t117,
-                t124,
-                t126,
-                t130,
-                t135,
-                t137,
-                t145,
-                t147,
-                t156,
-                t158,
-                t169,
-                t170,
-                t176,
-                t178,
-                t185,
-                t186,
-                t189,
-                t191,
-                t198,
-                t199,
-            )
-        };
-        let (t200,) = {
-            let t200 = t73 * t69;
-            (t200,)
-        };
+        );
+        let t125 = T::fused(
+            -t56,
+            T::fused(-t12, t84, T::fused(-t55, t100, t46 * t116)),
+            t101,
+        );
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -5040,24 +4696,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
             k(0.0),
             k(0.0),
             k(1.0),
-            t92 + T::fused(t20, t112, -t71),
-            t115 + T::fused(-t20, t126, t71),
-            t135 - T::fused(-t20, t147, t71),
-            T::fused(-t20, t170, t156),
-            T::fused(t20, t186, -t176),
-            T::fused(-t20, t199, t189),
-            T::fused(-t21, t112, t109),
-            T::fused(t21, t126, -t124),
-            t145 - T::fused(t130, t69, t21 * t147),
-            T::fused(t21, t170, -t169),
-            T::fused(-t21, t186, t185),
-            T::fused(t21, t199, -t198),
-            T::fused(t15, t112, t200) - t98,
-            t117 - T::fused(t15, t126, t200),
-            T::fused(t15, t147, t71) - t137,
-            T::fused(-t15, t170, t158),
-            T::fused(t15, t186, -t178),
-            T::fused(-t15, t199, t191),
+            -t65,
+            t70,
+            -t81,
+            t92,
+            -t98,
+            t101,
+            T::fused(-t56, t106, t108),
+            -T::fused(t56, t110, t108),
+            t113,
+            -(t56 * T::fused(-t29, t85, T::fused(-t53, t114, t55 * t90))),
+            t56 * T::fused(-t53, t115, t55 * t96),
+            -(t56 * T::fused(-t29, t84, T::fused(-t53, t116, t55 * t99))),
+            t65 - T::fused(-t56, t119, t121),
+            T::fused(t56, t122, t121) - t70,
+            t81 - T::fused(-t56, T::fused(-t12, t72, t123), t120 * t80),
+            -t124,
+            T::fused(-t56, T::fused(-t55, t97, t46 * t115), t98),
+            -t125,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
