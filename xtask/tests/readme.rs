@@ -168,6 +168,19 @@ fn the_cart_and_pendulum_are_those_that_are_shipped() {
     assert_eq!(blocks(&tutorial, "toml")[0], shipped);
 }
 
+/// The example of loops in the guide of the library is the one that is compiled.
+#[test]
+fn the_example_of_loops_is_a_compiled_one() {
+    let source = fs::read_to_string(root().join("gyro-sim/src/correct/close_loops.rs")).unwrap();
+    let documentation = source.lines().filter_map(|line| line.strip_prefix("///"));
+    let shown = documentation
+        .map(|line| line.strip_prefix(' ').unwrap_or(line))
+        .filter(|line| !line.starts_with("# "));
+    let shown: String = shown.map(|line| format!("{line}\n")).collect();
+    let guide = fs::read_to_string(root().join("docs/library.md")).unwrap();
+    assert!(shown.contains(&blocks(&guide, "rust")[0]), "{shown}");
+}
+
 /// From the mass centre to the hinge.
 fn arm(model: &Model) -> [f64; 3] {
     model.values(&model.joints[0].second.point)
