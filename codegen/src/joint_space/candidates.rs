@@ -2,6 +2,7 @@
 
 use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
+use super::planar;
 use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
@@ -43,6 +44,9 @@ impl Candidates {
         let mut eliminated = vec![("recursion", balance.recursion(system))];
         if embedding.n_unknowns <= MAX_FACTORED && rows.is_empty() {
             eliminated.push((NORMAL_FORM, balance.factored(system, unit, &mut reductions)));
+        }
+        if let Some(found) = planar::accelerations(system, textbook, coordinates) {
+            eliminated.push((planar::PLANAR, found));
         }
         let shortest = expanded(system, &coordinates.in_joints, &eliminated);
         let shortest = FinalPasses::of(false).cheapest(&mut system.graph, shortest).roots;

@@ -4,7 +4,7 @@ use super::candidates::Candidates;
 use super::coordinates::Coordinates;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
-use super::{dynamics, maps, motions, multipliers};
+use super::{forces, maps, motions, multipliers};
 use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
 use crate::expr::definitions::{Expansion, Values};
@@ -82,7 +82,7 @@ impl JointSpace {
         let solution = corrected.roots.iter().copied().chain(solved).collect();
         let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
         let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
-        let along = dynamics::power_along(system, &coordinates.layout);
+        let along = forces::power(system, &coordinates.layout);
         let along = system.expanded(&coordinates.determined, &[along])[0];
         let power = Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);

@@ -7,7 +7,7 @@ use super::layout::Layout;
 use super::link_kinematics::{self, LinkKinematics};
 use super::loops::Loops;
 use super::whole_angles::WholeAngles;
-use super::{dynamics, maps};
+use super::{forces, maps};
 use crate::derive::Textbook;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::system::System;
@@ -39,6 +39,8 @@ pub struct Coordinates {
     /// The joints that close loops.
     pub closure: Closure,
     pub loops: Loops,
+    /// Where the bodies are, by whole angles.
+    pub angles: WholeAngles,
     /// How all rates of the tree follow those of the state.
     pub by_rates: Embedding,
     /// How all rates of the tree accelerate.
@@ -90,7 +92,7 @@ impl Coordinates {
         let embedding = embedding.with_determined(system, &layout, &determined);
         let invariant = invariant_angles(system, &layout, &links, &textbook.dynamics);
         let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
-        let along = dynamics::forces_along(system, &layout);
+        let along = forces::along(system, &layout);
         Self {
             layout,
             links,
@@ -100,6 +102,7 @@ impl Coordinates {
             in_joints,
             of_joints,
             determined,
+            angles,
             by_rates,
             closure,
             loops,

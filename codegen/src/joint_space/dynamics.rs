@@ -5,10 +5,8 @@
 //! ground.
 
 use super::embedding::Embedding;
-use super::layout::Layout;
 use super::link_kinematics::{Bias, LinkKinematics};
 use crate::derive::dynamics::gyroscopic_torque;
-use crate::derive::forces::{self, Readings};
 use crate::derive::joint_coordinate::Load;
 use crate::derive::outputs::time_derivative;
 use crate::derive::system::System;
@@ -16,7 +14,6 @@ use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
 use crate::expr::spatial_vector::SpatialVector;
-use crate::expr::symbol::Symbol;
 use crate::expr::vector::{UNIT3, Vec3, ZERO3};
 use crate::simplify::normal_form::{Reduction, normal_form_of};
 use crate::solve::aggregate_joints::AggregateTree;
@@ -24,7 +21,6 @@ use crate::solve::articulated_body::{Arm, Basis, EliminatedTree, Excitation, Ine
 use crate::solve::gram_schmidt::GramSchmidtTree;
 use crate::solve::ldl::Elimination;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
-use gyro_model::{Attachment, JointCoordinate};
 use std::collections::BTreeMap;
 
 /// Beyond this many rates the polynomials of a reduced mass matrix are seldom shorter than the recursion, and take long
@@ -33,66 +29,6 @@ pub const MAX_FACTORED: usize = 4;
 
 /// As the data sheet calls it.
 pub const NORMAL_FORM: &str = "normal form";
-
-/// Joint coordinates and rates as they are.
-struct OfJoints<'a>(&'a Layout);
-
-impl Readings for OfJoints<'_> {
-    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
-        let scalar = self.0.scalar(on).expect("joints of a tree have their coordinates");
-        system.graph.symbol(Symbol::Coordinate(scalar.place.x))
-    }
-
-    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
-        let scalar = self.0.scalar(on).expect("joints of a tree have their coordinates");
-        system.graph.symbol(Symbol::Rate(scalar.place.u))
-    }
-}
-
-/// The force along each rate of the tree.
-pub fn forces_along(system: &mut System, layout: &Layout) -> Vec<ExprId> {
-    let parts = forces::along_coordinates(system, &OfJoints(layout));
-    summed_along(system, layout, parts)
-}
-
-fn summed_along(system: &mut System, layout: &Layout, parts: Vec<forces::Along>) -> Vec<ExprId> {
-    let mut along = vec![Graph::ZERO; layout.n_tree_rates()];
-    for part in parts {
-        let at = layout.scalar(part.on).expect("joints of a tree have their coordinates").place.u;
-        along[at] = system.graph.add(along[at], part.force);
-    }
-    along
-}
-
-/// The power of what acts along joint coordinates and stores no energy: force times rate, with nothing of where the
-/// bodies are.
-pub fn power_along(system: &mut System, layout: &Layout) -> ExprId {
-    let mut parts = forces::along_coordinates(system, &OfJoints(layout));
-    parts.retain(|part| part.potential.is_none());
-    let mut along = summed_along(system, layout, parts);
-    add_spherical_friction(system, layout, &mut along);
-    let rates = 0..layout.n_tree_rates();
-    let rates: Vec<_> = rates.map(|rate| system.graph.symbol(Symbol::Rate(rate))).collect();
-    rates.iter().zip(along).fold(Graph::ZERO, |sum, (&rate, force)| {
-        let power = system.graph.mul(force, rate);
-        system.graph.add(sum, power)
-    })
-}
-
-/// The rates of a spherical joint are the relative spin that its friction resists.
-fn add_spherical_friction(system: &mut System, layout: &Layout, along: &mut [ExprId]) {
-    for link in &layout.links {
-        let (Attachment::Joint { joint, .. }, Some(place)) = (link.link.attachment, link.orientation) else {
-            continue;
-        };
-        let friction = system.number(&system.model.joints[joint].friction);
-        for (k, along) in along[place.u..place.u + 3].iter_mut().enumerate() {
-            let rate = system.graph.symbol(Symbol::Rate(place.u + k));
-            let drag = system.graph.mul(friction, rate);
-            *along = system.graph.sub(*along, drag);
-        }
-    }
-}
 
 /// A tree in joint coordinates, ready to be solved.
 #[derive(Debug)]

@@ -16,6 +16,7 @@ mod coordinates;
 mod determined;
 mod dynamics;
 mod embedding;
+mod forces;
 mod jacobian;
 mod layout;
 mod link_kinematics;
@@ -23,6 +24,7 @@ mod loops;
 mod maps;
 mod motions;
 mod multipliers;
+mod planar;
 mod whole_angles;
 
 pub use candidates::Candidates;

@@ -17,7 +17,21 @@ pub struct WholeAngles {
     pub poses: Values,
     /// The sums of joint angles, counted on behind the coordinates and rates of the tree.
     pub sums: Vec<Sum>,
+    /// How each moving_body is turned, and where its joint point is.
+    pub bodies: Vec<BodyPlace>,
     first: Place,
+}
+
+/// How a body is turned and carried.
+#[derive(Clone, Debug)]
+pub struct BodyPlace {
+    /// The angle by which it is turned about a constant axis, and that axis in the body's frame and in the global one;
+    /// nothing if it only slides.
+    pub turn: Option<(Place, Vec3, Vec3)>,
+    /// Whether it turns in no other way.
+    pub is_planar: bool,
+    /// The joint point in the body's frame and in the global one.
+    pub joint_point: (Vec3, Vec3),
 }
 
 /// A sum of joint angles with their signs.
@@ -84,7 +98,7 @@ impl WholeAngles {
         is_held: impl Fn(usize) -> bool,
     ) -> Self {
         let first = Place { x: layout.n_tree_coordinates(), u: layout.n_tree_rates() };
-        let mut angles = Self { poses: Values::default(), sums: Vec::new(), first };
+        let mut angles = Self { poses: Values::default(), sums: Vec::new(), bodies: Vec::new(), first };
         let mut attitudes: Vec<Option<Attitude>> = vec![None; system.moving_bodies.len()];
         // The joint point of each body, and where it is.
         let mut held: Vec<(Vec3, Vec3)> = vec![(ZERO3, ZERO3); attitudes.len()];
@@ -121,6 +135,19 @@ impl WholeAngles {
             }
             (attitudes[moving_body], held[moving_body]) = (Some(own), (kinematics.on_body, place));
         }
+        let places: Vec<_> = attitudes
+            .into_iter()
+            .zip(held)
+            .map(|(attitude, joint_point)| {
+                let attitude = attitude.expect("every body is a link");
+                let turn = (!attitude.angle.0.is_empty()).then(|| {
+                    let in_space = system.graph.mat_vec(&attitude.base, &attitude.axis);
+                    (angles.place(&attitude.angle), attitude.axis, in_space)
+                });
+                BodyPlace { turn, is_planar: attitude.before.is_none(), joint_point }
+            })
+            .collect();
+        angles.bodies = places;
         angles
     }
 
@@ -130,16 +157,24 @@ impl WholeAngles {
         self.sums.iter().enumerate().map(move |(k, sum)| (place(k), sum))
     }
 
-    fn place(&mut self, sum: &Sum) -> usize {
+    fn place(&mut self, sum: &Sum) -> Place {
         if let [(place, false)] = sum.0[..] {
-            return place.x;
+            return place;
         }
         let known = self.sums.iter().position(|known| known == sum);
-        self.first.x
-            + known.unwrap_or_else(|| {
-                self.sums.push(sum.clone());
-                self.sums.len() - 1
-            })
+        let place = known.unwrap_or_else(|| {
+            self.sums.push(sum.clone());
+            self.sums.len() - 1
+        });
+        Place { x: self.first.x + place, u: self.first.u + place }
+    }
+
+    /// The angles of joints that make up an angle, with whether they are subtracted.
+    pub fn parts(&self, of: Place) -> Vec<(Place, bool)> {
+        match of.u.checked_sub(self.first.u) {
+            Some(sum) => self.sums[sum].0.clone(),
+            None => vec![(of, false)],
+        }
     }
 
     fn matrix(&mut self, graph: &mut Graph, attitude: &Attitude) -> Mat3 {
@@ -147,7 +182,7 @@ impl WholeAngles {
         let turned = if angle.0.is_empty() {
             *base
         } else {
-            let place = self.place(angle);
+            let place = self.place(angle).x;
             let [sine, cosine] = [Symbol::Sine(place), Symbol::Cosine(place)].map(|s| graph.symbol(s));
             rotated(graph, base, axis, (sine, cosine))
         };

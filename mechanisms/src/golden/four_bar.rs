@@ -8,11 +8,10 @@
 //! * unknowns of eq. (17): 35
 //! * non-zeros: Φ_q 114 of 420, (Φ_r, Φ_π') 66 of 306
 //! * left out: coordinates of `ground` (fixed: folded into constants)
-//! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * left out: outputs (the page asks for none)
+//! * left out: outputs (the model file asks for none)
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|
@@ -29,6 +28,18 @@
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 |
+//! | joint_accelerations | u̇ in joint coordinates | 30 | 65 | 1 | 96 | 0 of 3 |
+//! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 |
+//! | to_maximal | (q, v) of a joint state | 11 | 38 | 0 | 49 | 18 of 39 |
+//! | to_joints | (x, u) of a maximal state | 62 | 76 | 0 | 138 | 0 of 6 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 71 | 127 | 1 | 199 | 0 of 3 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 127 | 213 | 1 | 341 | 0 of 18 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 118 | 176 | 1 | 295 | 0 of 17 |
+//! | corrected_solution | both | 204 | 326 | 2 | 532 | 0 of 35 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 151 | 242 | 1 | 394 | 21 of 42 |
+//! | loop_closure | Φ of the joints that close loops, in joint coordinates | 7 | 10 | 0 | 17 | 0 of 2 |
+//! | close_positions | one Newton step of joint coordinates that closes loops | 23 | 34 | 1 | 58 | 0 of 3 |
+//! | close_velocities | rates that keep loops closed | 23 | 43 | 1 | 67 | 0 of 3 |
 //!
 //! # Proof
 //!
@@ -38,6 +49,14 @@
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
+//! * loop_closure, close_positions, close_velocities: Newton's step for closed loops
+//! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
+//! * joint_accelerations: eq. (17) on the constraints
+//! * joint_derivative: eqs. (14) and (16) on the constraints
+//! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
+//! * corrected_derivative: eqs. (14) and (16) on the constraints
+//! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
@@ -229,6 +248,143 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = [T::constant(0.0); 21];
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_sx = y[21];
+        let crank_sy = y[22];
+        let crank_sz = y[23];
+        let coupler_sx = y[27];
+        let coupler_sy = y[28];
+        let coupler_sz = y[29];
+        let rocker_sx = y[33];
+        let rocker_sy = y[34];
+        let rocker_sz = y[35];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        *dy = [
+            crank_sx,
+            crank_sy,
+            crank_sz,
+            -(k(0.5)
+                * T::fused(
+                    crank_e3,
+                    crank_wz,
+                    T::fused(crank_e2, crank_wy, crank_e1 * crank_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    crank_e2,
+                    crank_wz,
+                    T::fused(-crank_e3, crank_wy, crank_e0 * crank_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -crank_e1,
+                    crank_wz,
+                    T::fused(crank_e0, crank_wy, crank_e3 * crank_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -crank_e0,
+                    crank_wz,
+                    T::fused(-crank_e1, crank_wy, crank_e2 * crank_wx),
+                )),
+            coupler_sx,
+            coupler_sy,
+            coupler_sz,
+            -(k(0.5)
+                * T::fused(
+                    coupler_e3,
+                    coupler_wz,
+                    T::fused(coupler_e2, coupler_wy, coupler_e1 * coupler_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    coupler_e2,
+                    coupler_wz,
+                    T::fused(-coupler_e3, coupler_wy, coupler_e0 * coupler_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -coupler_e1,
+                    coupler_wz,
+                    T::fused(coupler_e0, coupler_wy, coupler_e3 * coupler_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -coupler_e0,
+                    coupler_wz,
+                    T::fused(-coupler_e1, coupler_wy, coupler_e2 * coupler_wx),
+                )),
+            rocker_sx,
+            rocker_sy,
+            rocker_sz,
+            -(k(0.5)
+                * T::fused(
+                    rocker_e3,
+                    rocker_wz,
+                    T::fused(rocker_e2, rocker_wy, rocker_e1 * rocker_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rocker_e2,
+                    rocker_wz,
+                    T::fused(-rocker_e3, rocker_wy, rocker_e0 * rocker_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rocker_e1,
+                    rocker_wz,
+                    T::fused(rocker_e0, rocker_wy, rocker_e3 * rocker_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rocker_e0,
+                    rocker_wz,
+                    T::fused(-rocker_e1, rocker_wy, rocker_e2 * rocker_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
+    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 18];
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
         let k = T::constant;
         let crank_e0 = y[3];
         let crank_e1 = y[4];
@@ -3261,5 +3417,1402 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -t167,
             T::fused(t288, t291, -T::fused(t243, t292, T::fused(t203, t293, t172))),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
+    type Joints = [T; 6];
+    type Rates = [T; 3];
+    type Solution = [T; 35];
+    type Closure = [T; 2];
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
+        const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
+            places: &[
+                gyro_sim::JointPlace::Scalar {
+                    joint: 0,
+                    coordinate: 0,
+                },
+                gyro_sim::JointPlace::Scalar {
+                    joint: 1,
+                    coordinate: 0,
+                },
+                gyro_sim::JointPlace::Scalar {
+                    joint: 2,
+                    coordinate: 0,
+                },
+            ],
+            closure_rows: &[14, 15],
+        };
+        &LAYOUT
+    }
+    fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
+        gyro_sim::JointBuffers {
+            rates: [T::constant(0.0); 3],
+            solution: [T::constant(0.0); 35],
+            closure: [T::constant(0.0); 2],
+            jacobian: [T::constant(0.0); 36],
+            input_jacobian: [T::constant(0.0); 0],
+        }
+    }
+    fn joint_start(&self) -> Self::Joints {
+        let k = T::constant;
+        [
+            k(1.0471975511965976),
+            k(1.4530116432395257),
+            k(-0.5826179968832255),
+            k(6.0),
+            k(1.9764195357198873),
+            k(-7.13443554847139),
+        ]
+    }
+    /// Writes u̇: 96 operations (30 ±, 65 ×, 1 ÷) and 6 functions.
+    fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x2.sin();
+        let t1 = x0.sin();
+        let t2 = x2.cos();
+        let t3 = x0.cos();
+        let t4 = T::fused(-t1, t0, t3 * t2);
+        let t5 = T::fused(t3, t0, t1 * t2);
+        let t6 = k(0.04) * T::fused(t3, t4, t1 * t5);
+        let t7 = k(0.4) * x1.sin();
+        let t8 = k(0.5) * t4;
+        let t9 = x1.cos();
+        let t10 = k(0.4) * t9;
+        let t11 = k(0.5) * t5;
+        let t12 = T::fused(-t8, t7, t11 * t10);
+        let t13 = k(0.2) * t1;
+        let t14 = k(0.2) * t3;
+        let t15 = T::fused(-t10, t13, t7 * t14);
+        let t16 = T::fused(t12, t6, k(0.0585) * t15);
+        let t17 = u0 + u2;
+        let t18 = t17 * t17;
+        let t19 = u0 * u0;
+        let t20 = u1 * u1;
+        let t21 = T::fused(-t8, t18, T::fused(-t19, t14, t20 * t10));
+        let t22 = T::fused(-t11, t18, T::fused(-t19, t13, t20 * t7));
+        let t23 = T::fused(t10, t21, t7 * t22);
+        let t24 = T::fused(-t11, t14, t8 * t13);
+        let t25 = k(0.0588) * t24;
+        let t26 = T::fused(t8, t21, t11 * t22);
+        let t27 = k(0.04) * T::fused(-t3, t5, t1 * t4);
+        let t28 = T::fused(
+            -t12,
+            T::fused(k(2.1582), t3, t18 * t27),
+            t24 * (k(1.962) * t9),
+        );
+        let t29 = T::fused(t15, T::fused(-k(1.962), t4, t19 * t27), t28);
+        let t30 = T::fused(k(0.04135), t12, t15 * t6);
+        let t31 = k(1.0) / T::fused(t15, t16, T::fused(t12, t30, t24 * t25));
+        let t32 = t31 * T::fused(t12, t29, T::fused(-t23, t16, t26 * t25));
+        let t33 = T::fused(t14, t21, t13 * t22);
+        let t34 = T::fused(
+            -t31,
+            T::fused(t15, t29, T::fused(-t25, t33, t23 * t30)),
+            t32,
+        );
+        *out = [t32, -(t31 * T::fused(t24, t29, T::fused(-t26, t30, t16 * t33))), -t34];
+    }
+    /// Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
+        let mut rates = [T::constant(0.0); 3];
+        gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
+    }
+    /// Writes the maximal state of a joint state: 49 operations (11 ±, 38 ×, 0 ÷) and 6 functions.
+    fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * x0;
+        let t1 = t0.cos();
+        let t2 = T::fused(-t1, t1, k(0.5));
+        let t3 = t0.sin();
+        let t4 = t3 * t1;
+        let t5 = k(0.5) * x2;
+        let t6 = t5.cos();
+        let t7 = t5.sin();
+        let t8 = T::fused(-t1, t6, t3 * t7);
+        let t9 = T::fused(-t8, t8, k(0.5));
+        let t10 = T::fused(t3, t6, t1 * t7);
+        let t11 = t8 * t10;
+        let t12 = k(0.5) * x1;
+        let t13 = t12.cos();
+        let t14 = T::fused(-t13, t13, k(0.5));
+        let t15 = t12.sin();
+        let t16 = t15 * t13;
+        let t17 = k(0.1) * u0;
+        let t18 = k(2.0) * t4 * t17;
+        let t19 = k(2.0) * t2 * t17;
+        let t20 = u0 + u2;
+        let t21 = k(0.25) * t20;
+        let t22 = k(0.2) * u1;
+        *y = [
+            -(k(0.2) * t2),
+            k(0.2) * t4,
+            k(0.0),
+            t1,
+            k(0.0),
+            k(0.0),
+            t3,
+            -T::fused(k(0.5), t9, k(0.4) * t2),
+            T::fused(-k(0.5), t11, k(0.4) * t4),
+            k(0.0),
+            -t8,
+            k(0.0),
+            k(0.0),
+            t10,
+            T::fused(-k(0.4), t14, k(0.5)),
+            k(0.4) * t16,
+            k(0.0),
+            t13,
+            k(0.0),
+            k(0.0),
+            t15,
+            -t18,
+            -t19,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u0,
+            T::fused(-k(2.0), t18, t21 * (k(2.0) * t11)),
+            -T::fused(t21, k(2.0) * t9, k(2.0) * t19),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t20,
+            -(k(2.0) * t16 * t22),
+            -(k(2.0) * t14 * t22),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            u1,
+        ];
+    }
+    /// Writes the joint state of a maximal state: 138 operations (62 ±, 76 ×, 0 ÷) and 9 functions.
+    fn to_joints(&self, _t: T, y: &Self::State, x: &mut Self::Joints) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wz = y[38];
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.sin();
+        let t1 = crank_e0 * crank_e3;
+        let t2 = crank_e1 * crank_e2;
+        let t3 = k(2.0) * (t2 + t1);
+        let t4 = x0.cos();
+        let t5 = crank_e2 * crank_e2;
+        let t6 = crank_e0 * crank_e0;
+        let t7 = T::fused(crank_e1, crank_e1, t6);
+        let t8 = crank_e3 * crank_e3;
+        let t9 = k(1.0) - (t8 + (t7 + t5));
+        let t10 = T::fused(k(2.0), k(0.5) - t7, -t9);
+        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
+        let t12 = x1.sin();
+        let t13 = k(2.0) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
+        let t14 = x1.cos();
+        let t15 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
+        let t16 = T::fused(
+            k(2.0),
+            k(0.5) - t15,
+            -(k(1.0)
+                - T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t15))),
+        );
+        let t17 = T::fused(t13, t14, t16 * t12).atan2(T::fused(-t16, t14, t13 * t12));
+        let t18 = x2.sin();
+        let t19 = coupler_e0 * coupler_e1;
+        let t20 = coupler_e2 * coupler_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = coupler_e2 * coupler_e2;
+        let t25 = coupler_e0 * coupler_e0;
+        let t26 = T::fused(coupler_e1, coupler_e1, t25);
+        let t27 = coupler_e3 * coupler_e3;
+        let t28 = k(2.0) * (k(0.5) - (t25 + t24));
+        let t29 = t28 - (k(1.0) - (t27 + (t26 + t24)));
+        let t30 = coupler_e0 * coupler_e3;
+        let t31 = coupler_e1 * coupler_e2;
+        let t32 = k(2.0) * (t31 - t30);
+        let t33 = T::fused(-(k(2.0) * (t23 - t22)), t21, T::fused(t3, t29, t32 * t10));
+        let t34 = x2.cos();
+        let t35 = crank_e0 * crank_e1;
+        let t36 = crank_e2 * crank_e3;
+        let t37 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            t29,
+            k(2.0) * (t2 - t1) * t32,
+        );
+        let t38 = T::fused(k(2.0) * (t36 + t35), t21, t37);
+        let t39 = T::fused(-t38, t18, t33 * t34).atan2(T::fused(t33, t18, t38 * t34));
+        let t40 = k(2.0) * (t23 + t22);
+        let t41 = k(2.0) * (t36 - t35);
+        let t42 = T::fused(-t40, k(2.0) * (k(0.5) - t26), t41 * (k(2.0) * (t31 + t30)));
+        let t43 = coupler_e0 * coupler_e2;
+        let t44 = coupler_e1 * coupler_e3;
+        let t45 = k(2.0) * (k(0.5) - (t6 + t8));
+        let t46 = T::fused(
+            coupler_wx,
+            T::fused(t45, k(2.0) * (t44 - t43), -t42),
+            coupler_wy * T::fused(t45, t21, -T::fused(-t41, t28, t40 * t32)),
+        );
+        let t47 = T::fused(t41, k(2.0) * (t20 - t19), t40 * (k(2.0) * (t44 + t43)));
+        let t48 = T::fused(
+            coupler_wz,
+            T::fused(t45, k(2.0) * (k(0.5) - (t25 + t27)), t47),
+            -t46,
+        );
+        x[0] = x0 + t11;
+        x[1] = x1 + t17;
+        x[2] = x2 + t39;
+        x[3] = crank_wz;
+        x[4] = rocker_wz;
+        x[5] = t48 - crank_wz;
+    }
+    /// Writes u̇ at a state that satisfies the constraints: 199 operations (71 ±, 127 ×, 1 ÷).
+    fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e3 = y[20];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wz = y[38];
+        let t0 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t1 = coupler_e0 * coupler_e0;
+        let t2 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t1));
+        let t3 = crank_e0 * crank_e0;
+        let t4 = coupler_e0 * coupler_e3;
+        let t5 = coupler_e1 * coupler_e2;
+        let t6 = k(2.0) * (t5 - t4);
+        let t7 = crank_e0 * crank_e3;
+        let t8 = crank_e1 * crank_e2;
+        let t9 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t3)),
+            t2,
+            k(2.0) * (t8 - t7) * t6,
+        );
+        let t10 = coupler_e0 * coupler_e1;
+        let t11 = coupler_e2 * coupler_e3;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = crank_e0 * crank_e1;
+        let t14 = crank_e2 * crank_e3;
+        let t15 = T::fused(k(2.0) * (t14 + t13), t12, t9);
+        let t16 = crank_e0 * (k(2.0) * crank_e3);
+        let t17 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t3)),
+            t6,
+            k(2.0) * (t8 + t7) * t2,
+        );
+        let t18 = crank_e0 * crank_e2;
+        let t19 = crank_e1 * crank_e3;
+        let t20 = T::fused(k(2.0) * (t19 - t18), t12, -t17);
+        let t21 = T::fused(t15, t0, t20 * t16);
+        let t22 = T::fused(-t15, t16, t20 * t0);
+        let t23 = k(0.04) * T::fused(-t0, t21, t16 * t22);
+        let t24 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
+        let t25 = k(0.5) * t21;
+        let t26 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t27 = k(0.4) * t26;
+        let t28 = k(0.5) * t22;
+        let t29 = T::fused(t25, t24, t28 * t27);
+        let t30 = k(0.2) * t16;
+        let t31 = k(0.2) * t0;
+        let t32 = T::fused(-t27, t30, t24 * t31);
+        let t33 = T::fused(t29, t23, k(0.0585) * t32);
+        let t34 = k(2.0) * (t19 + t18);
+        let t35 = k(2.0) * (t14 - t13);
+        let t36 = T::fused(
+            -t34,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t1)),
+            t35 * (k(2.0) * (t5 + t4)),
+        );
+        let t37 = coupler_e0 * coupler_e2;
+        let t38 = coupler_e1 * coupler_e3;
+        let t39 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t3));
+        let t40 = T::fused(
+            coupler_wx,
+            T::fused(t39, k(2.0) * (t38 - t37), -t36),
+            coupler_wy * T::fused(t39, t12, -T::fused(-t35, t2, t34 * t6)),
+        );
+        let t41 = T::fused(t35, k(2.0) * (t11 - t10), t34 * (k(2.0) * (t38 + t37)));
+        let t42 = T::fused(
+            coupler_wz,
+            T::fused(t39, k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t1)), t41),
+            -t40,
+        );
+        let t43 = crank_wz - (crank_wz - t42);
+        let t44 = t43 * t43;
+        let t45 = crank_wz * crank_wz;
+        let t46 = rocker_wz * rocker_wz;
+        let t47 = T::fused(-t25, t44, T::fused(-t45, t31, t46 * t27));
+        let t48 = T::fused(t28, t44, T::fused(-t45, t30, t46 * t24));
+        let t49 = T::fused(t27, t47, t24 * t48);
+        let t50 = T::fused(t28, t31, t25 * t30);
+        let t51 = k(0.0588) * t50;
+        let t52 = T::fused(-t25, t47, t28 * t48);
+        let t53 = k(0.04) * T::fused(t0, t22, t16 * t21);
+        let t54 = T::fused(
+            t29,
+            T::fused(k(2.1582), t0, t44 * t53),
+            t50 * (k(1.962) * t26),
+        );
+        let t55 = T::fused(t32, T::fused(-k(1.962), t21, t45 * t53), t54);
+        let t56 = T::fused(k(0.04135), t29, t32 * t23);
+        let t57 = k(1.0) / T::fused(t32, t33, T::fused(t29, t56, t50 * t51));
+        let t58 = t57 * T::fused(t29, t55, T::fused(t49, t33, t52 * t51));
+        let t59 = T::fused(t31, t47, t30 * t48);
+        let t60 = T::fused(t57, T::fused(t32, t55, -T::fused(t51, t59, t49 * t56)), t58);
+        *out = [-t58, -(t57 * T::fused(t50, t55, T::fused(-t52, t56, t33 * t59))), t60];
+    }
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 341 operations (127 ±, 213 ×, 1 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        let t0 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t1 = coupler_e0 * coupler_e0;
+        let t2 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t1));
+        let t3 = crank_e0 * crank_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t3));
+        let t5 = coupler_e0 * coupler_e3;
+        let t6 = coupler_e1 * coupler_e2;
+        let t7 = k(2.0) * (t6 - t5);
+        let t8 = crank_e0 * crank_e3;
+        let t9 = crank_e1 * crank_e2;
+        let t10 = k(2.0) * (t9 - t8);
+        let t11 = coupler_e0 * coupler_e1;
+        let t12 = coupler_e2 * coupler_e3;
+        let t13 = k(2.0) * (t12 + t11);
+        let t14 = crank_e0 * crank_e1;
+        let t15 = crank_e2 * crank_e3;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = T::fused(t16, t13, T::fused(t4, t2, t10 * t7));
+        let t18 = crank_e0 * (k(2.0) * crank_e3);
+        let t19 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t3));
+        let t20 = k(2.0) * (t9 + t8);
+        let t21 = crank_e0 * crank_e2;
+        let t22 = crank_e1 * crank_e3;
+        let t23 = k(2.0) * (t22 - t21);
+        let t24 = T::fused(t23, t13, -T::fused(t19, t7, t20 * t2));
+        let t25 = T::fused(t17, t0, t24 * t18);
+        let t26 = T::fused(-t17, t18, t24 * t0);
+        let t27 = k(0.04) * T::fused(-t0, t25, t18 * t26);
+        let t28 = k(0.4) * (rocker_e0 * (k(2.0) * rocker_e3));
+        let t29 = k(0.5) * t25;
+        let t30 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t31 = k(0.4) * t30;
+        let t32 = k(0.5) * t26;
+        let t33 = T::fused(t29, t28, t32 * t31);
+        let t34 = k(0.2) * t18;
+        let t35 = k(0.2) * t0;
+        let t36 = T::fused(-t31, t34, t28 * t35);
+        let t37 = T::fused(t33, t27, k(0.0585) * t36);
+        let t38 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t1));
+        let t39 = k(2.0) * (t22 + t21);
+        let t40 = k(2.0) * (t6 + t5);
+        let t41 = k(2.0) * (t15 - t14);
+        let t42 = coupler_e0 * coupler_e2;
+        let t43 = coupler_e1 * coupler_e3;
+        let t44 = k(2.0) * (t43 - t42);
+        let t45 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t3));
+        let t46 = T::fused(
+            coupler_wx,
+            T::fused(t45, t44, -T::fused(-t39, t38, t41 * t40)),
+            coupler_wy * T::fused(t45, t13, -T::fused(-t41, t2, t39 * t7)),
+        );
+        let t47 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t1));
+        let t48 = k(2.0) * (t12 - t11);
+        let t49 = k(2.0) * (t43 + t42);
+        let t50 = T::fused(
+            coupler_wz,
+            T::fused(t45, t47, T::fused(t41, t48, t39 * t49)),
+            -t46,
+        );
+        let t51 = crank_wz - t50;
+        let t52 = crank_wz - t51;
+        let t53 = t52 * t52;
+        let t54 = crank_wz * crank_wz;
+        let t55 = rocker_wz * rocker_wz;
+        let t56 = T::fused(-t29, t53, T::fused(-t54, t35, t55 * t31));
+        let t57 = T::fused(t32, t53, T::fused(-t54, t34, t55 * t28));
+        let t58 = T::fused(t31, t56, t28 * t57);
+        let t59 = T::fused(t32, t35, t29 * t34);
+        let t60 = k(0.0588) * t59;
+        let t61 = T::fused(-t29, t56, t32 * t57);
+        let t62 = k(0.04) * T::fused(t0, t26, t18 * t25);
+        let t63 = T::fused(
+            t33,
+            T::fused(k(2.1582), t0, t53 * t62),
+            t59 * (k(1.962) * t30),
+        );
+        let t64 = T::fused(t36, T::fused(-k(1.962), t25, t54 * t62), t63);
+        let t65 = T::fused(k(0.04135), t33, t36 * t27);
+        let t66 = k(1.0) / T::fused(t36, t37, T::fused(t33, t65, t59 * t60));
+        let t67 = t66 * T::fused(t33, t64, T::fused(t58, t37, t61 * t60));
+        let t68 = k(0.1) * t67;
+        let t69 = k(0.1) * crank_wy;
+        let t70 = crank_wx * t69;
+        let t71 = t70 - t68;
+        let t72 = k(0.1) * crank_wz;
+        let t73 = T::fused(crank_wz, t72, crank_wy * t69);
+        let t74 = crank_wx * crank_wz;
+        let t75 = k(0.1) * t74;
+        let t76 = crank_wx * t72;
+        let t77 = t76 + t75;
+        let t78 = crank_wy * crank_wz;
+        let t79 = t68 - t71;
+        let t80 = t17 * t73;
+        let t81 = k(0.25) * coupler_wz;
+        let t82 = k(0.25) * coupler_wy;
+        let t83 = T::fused(coupler_wz, t81, coupler_wy * t82) + T::fused(t24, t70, t80)
+            + T::fused(-t24, t79, t80);
+        let t84 = t24 * t73;
+        let t85 = T::fused(coupler_wx, t82, T::fused(t17, t70, -t84))
+            - T::fused(t17, t79, t84);
+        let t86 = T::fused(t35, t56, t34 * t57);
+        let t87 = T::fused(t66, T::fused(t36, t64, -T::fused(t60, t86, t58 * t65)), t67);
+        let t88 = t67 - t87;
+        let t89 = T::fused(k(0.25), t88, -t85);
+        let t90 = T::fused(coupler_wx, t51, -T::fused(-t78, t24, t74 * t17));
+        let t91 = T::fused(-k(0.25), t90, T::fused(coupler_wx, t81, t76) + (t75 + t77));
+        let t92 = t66 * T::fused(t59, t64, T::fused(-t61, t65, t37 * t86));
+        let t93 = k(0.2) * rocker_wy;
+        let t94 = T::fused(-k(0.2), t92, rocker_wx * t93);
+        let t95 = rocker_e0 * rocker_e3;
+        let t96 = rocker_e1 * rocker_e2;
+        let t97 = k(0.2) * rocker_wz;
+        let t98 = T::fused(rocker_wz, t97, rocker_wy * t93);
+        let t99 = rocker_e0 * rocker_e0;
+        let t100 = T::fused(
+            k(2.0) * (t96 - t95),
+            t94,
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t99)) * t98,
+        );
+        let t101 = rocker_wx * rocker_wz;
+        let t102 = T::fused(k(0.2), t101, rocker_wx * t97);
+        let t103 = rocker_e0 * rocker_e2;
+        let t104 = rocker_e1 * rocker_e3;
+        let t105 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t99)),
+            t94,
+            k(2.0) * (t96 + t95) * t98,
+        );
+        let t106 = rocker_e0 * rocker_e1;
+        let t107 = rocker_e2 * rocker_e3;
+        let t108 = T::fused(
+            -(k(2.0) * (t107 + t106)),
+            t94,
+            k(2.0) * (t104 - t103) * t98,
+        );
+        *out = [
+            T::fused(t39, t77, T::fused(t10, t71, t19 * t73)),
+            T::fused(t41, t77, -T::fused(t4, t71, t20 * t73)),
+            -T::fused(t45, t77, T::fused(-t16, t71, t23 * t73)),
+            t78,
+            -t74,
+            -t67,
+            T::fused(t49, t91, -T::fused(-t38, t83, t7 * t89)),
+            T::fused(t48, t91, T::fused(-t40, t83, t2 * t89)),
+            -T::fused(t47, t91, T::fused(t44, t83, t13 * t89)),
+            T::fused(-coupler_wy, t51, T::fused(t74, t24, t78 * t17)),
+            t90,
+            -t88,
+            T::fused(k(2.0) * (t104 + t103), t102, t100),
+            T::fused(k(2.0) * (t107 - t106), t102, -t105),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t99)),
+                t102,
+                t108,
+            ),
+            rocker_wy * rocker_wz,
+            -t101,
+            -t92,
+        ];
+    }
+    /// Writes λ: 295 operations (118 ±, 176 ×, 1 ÷).
+    fn corrected_multipliers(
+        &self,
+        _t: T,
+        y: &Self::State,
+        accelerations: &Self::Velocities,
+        lambda: &mut Self::Rows,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        let crank_dsx = accelerations[0];
+        let crank_dsy = accelerations[1];
+        let crank_dsz = accelerations[2];
+        let crank_dwx = accelerations[3];
+        let crank_dwy = accelerations[4];
+        let crank_dwz = accelerations[5];
+        let coupler_dsx = accelerations[6];
+        let coupler_dsy = accelerations[7];
+        let coupler_dsz = accelerations[8];
+        let coupler_dwx = accelerations[9];
+        let coupler_dwy = accelerations[10];
+        let coupler_dwz = accelerations[11];
+        let rocker_dsx = accelerations[12];
+        let rocker_dsy = accelerations[13];
+        let rocker_dsz = accelerations[14];
+        let rocker_dwx = accelerations[15];
+        let rocker_dwy = accelerations[16];
+        let rocker_dwz = accelerations[17];
+        let t0 = k(0.02095) * coupler_wx;
+        let t1 = T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
+        let t2 = coupler_e0 * coupler_e0;
+        let t3 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
+        let t4 = k(9.81) + coupler_dsy;
+        let t5 = coupler_e0 * coupler_e1;
+        let t6 = coupler_e2 * coupler_e3;
+        let t7 = t6 + t5;
+        let t8 = T::fused(
+            coupler_dsz,
+            k(0.5) * t7,
+            -T::fused(-coupler_dsx, k(0.5) * t1, t4 * (k(0.5) * t3)),
+        );
+        let t9 = t8 + T::fused(coupler_wy, t0, k(0.021) * coupler_dwz);
+        let t10 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t11 = k(2.0) * t3;
+        let t12 = crank_e0 * crank_e0;
+        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
+        let t14 = k(2.0) * t1;
+        let t15 = crank_e0 * crank_e3;
+        let t16 = crank_e1 * crank_e2;
+        let t17 = t16 - t15;
+        let t18 = k(2.0) * t7;
+        let t19 = crank_e0 * crank_e1;
+        let t20 = crank_e2 * crank_e3;
+        let t21 = t20 + t19;
+        let t22 = T::fused(
+            k(2.0) * t21,
+            t18,
+            T::fused(k(2.0) * t13, t11, k(2.0) * t17 * t14),
+        );
+        let t23 = crank_e0 * (k(2.0) * crank_e3);
+        let t24 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12)),
+            t14,
+            k(2.0) * (t16 + t15) * t11,
+        );
+        let t25 = crank_e0 * crank_e2;
+        let t26 = crank_e1 * crank_e3;
+        let t27 = T::fused(k(2.0) * (t26 - t25), t18, -t24);
+        let t28 = k(0.5) * T::fused(t22, t10, t27 * t23);
+        let t29 = T::fused(k(0.2), t10, t28);
+        let t30 = k(0.5) * T::fused(-t22, t23, t27 * t10);
+        let t31 = T::fused(-k(0.2), t23, t30);
+        let t32 = T::fused(-t30, t29, t28 * t31);
+        let t33 = rocker_e0 * (k(2.0) * rocker_e3);
+        let t34 = k(0.4) * t33;
+        let t35 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t36 = k(0.4) * t35;
+        let t37 = T::fused(t28, t34, t30 * t36);
+        let t38 = k(0.01076) * rocker_wx;
+        let t39 = k(0.8) * rocker_dsx;
+        let t40 = rocker_e0 * rocker_e0;
+        let t41 = T::fused(k(0.8), rocker_dsy, k(7.848));
+        let t42 = T::fused(
+            -t39,
+            k(0.4) * T::fused(-rocker_e0, rocker_e3, rocker_e1 * rocker_e2),
+            t41 * (k(0.4) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t40))),
+        );
+        let t43 = rocker_e0 * rocker_e1;
+        let t44 = rocker_e2 * rocker_e3;
+        let t45 = k(0.8) * rocker_dsz;
+        let t46 = T::fused(t45, k(0.4) * (t44 + t43), -t42)
+            + T::fused(rocker_wy, t38, k(0.0108) * rocker_dwz);
+        let t47 = T::fused(t36, t31, t34 * t29);
+        let t48 = k(0.00133) * crank_wx;
+        let t49 = k(0.2) * t17;
+        let t50 = k(0.2) * t13;
+        let t51 = k(0.2) * t21;
+        let t52 = T::fused(coupler_dsz, t51, -T::fused(-coupler_dsx, t49, t4 * t50)) + t9
+            + T::fused(crank_wy, t48, k(0.00135) * crank_dwz);
+        let t53 = k(0.4) * crank_dsx;
+        let t54 = T::fused(k(0.4), crank_dsy, k(3.924));
+        let t55 = k(0.4) * crank_dsz;
+        let t56 = T::fused(
+            t51,
+            t55 + coupler_dsz,
+            -T::fused(-t49, t53 + coupler_dsx, t50 * (t54 + t4)),
+        );
+        let t57 = t56 + t52;
+        let t58 = T::fused(
+            T::fused(t28, t37, t29 * t47),
+            t46,
+            T::fused(t36, t47, t28 * t32) * t57,
+        );
+        let t59 = k(1.0) / T::fused(t47, t47, T::fused(t37, t37, t32 * t32));
+        let t60 = t59 * T::fused(T::fused(-t29, t32, t36 * t37), t9, t58);
+        let t61 = coupler_dsx - t60;
+        let t62 = t53 + t61;
+        let t63 = T::fused(
+            -T::fused(t31, t47, t30 * t37),
+            t46,
+            T::fused(-t30, t32, t34 * t47) * t57,
+        );
+        let t64 = t59 * T::fused(T::fused(t34, t37, t31 * t32), t9, t63);
+        let t65 = t4 - t64;
+        let t66 = t54 + t65;
+        let t67 = T::fused(-coupler_wz, t0, k(0.021) * coupler_dwy);
+        let t68 = k(0.5) * T::fused(coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
+        let t69 = k(0.5) * (t6 - t5);
+        let t70 = k(0.5) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t2));
+        let t71 = k(2.0)
+            * (T::fused(coupler_dsz, t70, -T::fused(coupler_dsx, t68, t4 * t69)) + t67);
+        let t72 = coupler_dsz + t71;
+        let t73 = t55 + t72;
+        let t74 = k(0.2) * (k(0.5) - T::fused(crank_e3, crank_e3, t12));
+        let t75 = k(0.2) * (t20 - t19);
+        let t76 = k(0.2) * (t26 + t25);
+        let t77 = T::fused(t70, t71, T::fused(t69, t64, T::fused(t68, t60, t67)))
+            - T::fused(-t70, t72, T::fused(t69, t65, t68 * t61));
+        let t78 = k(5e-5) * coupler_dwx;
+        let t79 = T::fused(-t22, t77, t78 * t27)
+            + T::fused(-t74, t72, T::fused(t75, t65, t76 * t61));
+        let t80 = t79 - T::fused(-crank_wz, t48, k(0.00135) * crank_dwy)
+            + T::fused(-t74, t73, T::fused(t75, t66, t76 * t62));
+        let t81 = T::fused(k(2e-5), crank_dwx, T::fused(t27, t77, t78 * t22));
+        let t82 = t39 + t60;
+        let t83 = t41 + t64;
+        let t84 = t45 - t71;
+        let t85 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t40));
+        let t86 = k(0.4) * (t44 - t43);
+        let t87 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t88 = T::fused(
+            t86,
+            t64,
+            T::fused(t87, t60, -T::fused(-rocker_wz, t38, k(0.0108) * rocker_dwy)),
+        );
+        let t89 = T::fused(t85, t71, t88)
+            + T::fused(-t85, t84, T::fused(t86, t83, t87 * t82));
+        let t90 = k(4e-5) * rocker_dwx;
+        *lambda = [
+            -t62,
+            -t66,
+            -t73,
+            T::fused(-t23, t81, t10 * t80),
+            T::fused(t23, t80, t10 * t81),
+            -t82,
+            -t83,
+            -t84,
+            T::fused(-t90, t33, t35 * t89),
+            T::fused(t33, t89, t90 * t35),
+            -t61,
+            -t65,
+            -t72,
+            -t78,
+            t60,
+            t64,
+            -t71,
+        ];
+    }
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 532 operations (204 ±, 326 ×, 2 ÷).
+    fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let crank_wx = y[24];
+        let crank_wy = y[25];
+        let crank_wz = y[26];
+        let coupler_wx = y[30];
+        let coupler_wy = y[31];
+        let coupler_wz = y[32];
+        let rocker_wx = y[36];
+        let rocker_wy = y[37];
+        let rocker_wz = y[38];
+        let t0 = (crank_e0 - crank_e3) * (crank_e0 + crank_e3);
+        let t1 = coupler_e0 * coupler_e0;
+        let t2 = k(0.5) - T::fused(coupler_e2, coupler_e2, t1);
+        let t3 = k(2.0) * t2;
+        let t4 = crank_e0 * crank_e0;
+        let t5 = k(0.5) - T::fused(crank_e2, crank_e2, t4);
+        let t6 = k(2.0) * t5;
+        let t7 = coupler_e0 * coupler_e3;
+        let t8 = coupler_e1 * coupler_e2;
+        let t9 = t8 - t7;
+        let t10 = k(2.0) * t9;
+        let t11 = crank_e0 * crank_e3;
+        let t12 = crank_e1 * crank_e2;
+        let t13 = t12 - t11;
+        let t14 = k(2.0) * t13;
+        let t15 = coupler_e0 * coupler_e1;
+        let t16 = coupler_e2 * coupler_e3;
+        let t17 = t16 + t15;
+        let t18 = k(2.0) * t17;
+        let t19 = crank_e0 * crank_e1;
+        let t20 = crank_e2 * crank_e3;
+        let t21 = t20 + t19;
+        let t22 = k(2.0) * t21;
+        let t23 = T::fused(t22, t18, T::fused(t6, t3, t14 * t10));
+        let t24 = crank_e0 * (k(2.0) * crank_e3);
+        let t25 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t4));
+        let t26 = k(2.0) * (t12 + t11);
+        let t27 = crank_e0 * crank_e2;
+        let t28 = crank_e1 * crank_e3;
+        let t29 = k(2.0) * (t28 - t27);
+        let t30 = T::fused(t29, t18, -T::fused(t25, t10, t26 * t3));
+        let t31 = T::fused(t23, t0, t30 * t24);
+        let t32 = T::fused(-t23, t24, t30 * t0);
+        let t33 = k(0.04) * T::fused(-t0, t31, t24 * t32);
+        let t34 = rocker_e0 * (k(2.0) * rocker_e3);
+        let t35 = k(0.4) * t34;
+        let t36 = k(0.5) * t31;
+        let t37 = (rocker_e0 - rocker_e3) * (rocker_e0 + rocker_e3);
+        let t38 = k(0.4) * t37;
+        let t39 = k(0.5) * t32;
+        let t40 = T::fused(t36, t35, t39 * t38);
+        let t41 = k(0.2) * t24;
+        let t42 = k(0.2) * t0;
+        let t43 = T::fused(-t38, t41, t35 * t42);
+        let t44 = T::fused(t40, t33, k(0.0585) * t43);
+        let t45 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t1));
+        let t46 = t28 + t27;
+        let t47 = k(2.0) * t46;
+        let t48 = k(2.0) * (t8 + t7);
+        let t49 = t20 - t19;
+        let t50 = k(2.0) * t49;
+        let t51 = coupler_e0 * coupler_e2;
+        let t52 = coupler_e1 * coupler_e3;
+        let t53 = k(2.0) * (t52 - t51);
+        let t54 = k(0.5) - T::fused(crank_e3, crank_e3, t4);
+        let t55 = k(2.0) * t54;
+        let t56 = T::fused(
+            coupler_wx,
+            T::fused(t55, t53, -T::fused(-t47, t45, t50 * t48)),
+            coupler_wy * T::fused(t55, t18, -T::fused(-t50, t3, t47 * t10)),
+        );
+        let t57 = k(0.5) - T::fused(coupler_e3, coupler_e3, t1);
+        let t58 = k(2.0) * t57;
+        let t59 = t16 - t15;
+        let t60 = k(2.0) * t59;
+        let t61 = t52 + t51;
+        let t62 = k(2.0) * t61;
+        let t63 = T::fused(
+            coupler_wz,
+            T::fused(t55, t58, T::fused(t50, t60, t47 * t62)),
+            -t56,
+        );
+        let t64 = crank_wz - t63;
+        let t65 = crank_wz - t64;
+        let t66 = t65 * t65;
+        let t67 = crank_wz * crank_wz;
+        let t68 = rocker_wz * rocker_wz;
+        let t69 = T::fused(-t36, t66, T::fused(-t67, t42, t68 * t38));
+        let t70 = T::fused(t39, t66, T::fused(-t67, t41, t68 * t35));
+        let t71 = T::fused(t38, t69, t35 * t70);
+        let t72 = T::fused(t39, t42, t36 * t41);
+        let t73 = k(0.0588) * t72;
+        let t74 = T::fused(-t36, t69, t39 * t70);
+        let t75 = k(0.04) * T::fused(t0, t32, t24 * t31);
+        let t76 = T::fused(
+            t40,
+            T::fused(k(2.1582), t0, t66 * t75),
+            t72 * (k(1.962) * t37),
+        );
+        let t77 = T::fused(t43, T::fused(-k(1.962), t31, t67 * t75), t76);
+        let t78 = T::fused(k(0.04135), t40, t43 * t33);
+        let t79 = k(1.0) / T::fused(t43, t44, T::fused(t40, t78, t72 * t73));
+        let t80 = t79 * T::fused(t40, t77, T::fused(t71, t44, t74 * t73));
+        let t81 = k(0.1) * t80;
+        let t82 = k(0.1) * crank_wy;
+        let t83 = crank_wx * t82;
+        let t84 = t83 - t81;
+        let t85 = k(0.1) * crank_wz;
+        let t86 = T::fused(crank_wz, t85, crank_wy * t82);
+        let t87 = crank_wx * crank_wz;
+        let t88 = k(0.1) * t87;
+        let t89 = crank_wx * t85;
+        let t90 = t89 + t88;
+        let t91 = T::fused(t47, t90, T::fused(t14, t84, t25 * t86));
+        let t92 = T::fused(t50, t90, -T::fused(t6, t84, t26 * t86));
+        let t93 = T::fused(t55, t90, T::fused(-t22, t84, t29 * t86));
+        let t94 = crank_wy * crank_wz;
+        let t95 = t81 - t84;
+        let t96 = t23 * t86;
+        let t97 = k(0.25) * coupler_wz;
+        let t98 = k(0.25) * coupler_wy;
+        let t99 = T::fused(coupler_wz, t97, coupler_wy * t98) + T::fused(t30, t83, t96)
+            + T::fused(-t30, t95, t96);
+        let t100 = t30 * t86;
+        let t101 = T::fused(coupler_wx, t98, T::fused(t23, t83, -t100))
+            - T::fused(t23, t95, t100);
+        let t102 = T::fused(t42, t69, t41 * t70);
+        let t103 = T::fused(
+            t79,
+            T::fused(t43, t77, -T::fused(t73, t102, t71 * t78)),
+            t80,
+        );
+        let t104 = t80 - t103;
+        let t105 = T::fused(k(0.25), t104, -t101);
+        let t106 = T::fused(coupler_wx, t64, -T::fused(-t94, t30, t87 * t23));
+        let t107 = T::fused(
+            -k(0.25),
+            t106,
+            T::fused(coupler_wx, t97, t89) + (t88 + t90),
+        );
+        let t108 = T::fused(t62, t107, -T::fused(-t45, t99, t10 * t105));
+        let t109 = T::fused(t60, t107, T::fused(-t48, t99, t3 * t105));
+        let t110 = T::fused(t58, t107, T::fused(t53, t99, t18 * t105));
+        let t111 = T::fused(-coupler_wy, t64, T::fused(t87, t30, t94 * t23));
+        let t112 = t79 * T::fused(t72, t77, T::fused(-t74, t78, t44 * t102));
+        let t113 = k(0.2) * rocker_wy;
+        let t114 = T::fused(-k(0.2), t112, rocker_wx * t113);
+        let t115 = rocker_e0 * rocker_e3;
+        let t116 = rocker_e1 * rocker_e2;
+        let t117 = t116 - t115;
+        let t118 = k(0.2) * rocker_wz;
+        let t119 = T::fused(rocker_wz, t118, rocker_wy * t113);
+        let t120 = rocker_e0 * rocker_e0;
+        let t121 = T::fused(
+            k(2.0) * t117,
+            t114,
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t120)) * t119,
+        );
+        let t122 = rocker_wx * rocker_wz;
+        let t123 = T::fused(k(0.2), t122, rocker_wx * t118);
+        let t124 = rocker_e0 * rocker_e2;
+        let t125 = rocker_e1 * rocker_e3;
+        let t126 = t125 + t124;
+        let t127 = T::fused(k(2.0) * t126, t123, t121);
+        let t128 = k(0.5) - T::fused(rocker_e2, rocker_e2, t120);
+        let t129 = rocker_e0 * rocker_e1;
+        let t130 = rocker_e2 * rocker_e3;
+        let t131 = t130 - t129;
+        let t132 = T::fused(
+            k(2.0) * t131,
+            t123,
+            -T::fused(k(2.0) * t128, t114, k(2.0) * (t116 + t115) * t119),
+        );
+        let t133 = t130 + t129;
+        let t134 = k(0.5) - T::fused(rocker_e3, rocker_e3, t120);
+        let t135 = T::fused(
+            k(2.0) * t134,
+            t123,
+            T::fused(-(k(2.0) * t133), t114, k(2.0) * (t125 - t124) * t119),
+        );
+        let t136 = rocker_wy * rocker_wz;
+        let t137 = k(0.02095) * coupler_wx;
+        let t138 = k(9.81) + t109;
+        let t139 = T::fused(
+            -(k(0.5) * t17),
+            t110,
+            T::fused(-(k(0.5) * t2), t138, k(0.5) * t9 * t108),
+        );
+        let t140 = t139 - T::fused(-coupler_wy, t137, k(0.021) * t104);
+        let t141 = k(0.2) * t21;
+        let t142 = k(0.2) * t5;
+        let t143 = k(0.2) * t13;
+        let t144 = T::fused(-k(0.00135), t80, k(0.00133) * (crank_wx * crank_wy))
+            + (T::fused(-t141, t110, T::fused(-t142, t138, t143 * t108)) + t140);
+        let t145 = k(0.4) * t93;
+        let t146 = T::fused(k(0.4), t92, k(3.924));
+        let t147 = k(0.4) * t91;
+        let t148 = T::fused(
+            -t141,
+            t110 + t145,
+            T::fused(-t142, t138 + t146, t143 * (t108 + t147)),
+        );
+        let t149 = t148 + t144;
+        let t150 = t39 - t41;
+        let t151 = t36 + t42;
+        let t152 = T::fused(t38, t150, t35 * t151);
+        let t153 = T::fused(-t39, t151, t36 * t150);
+        let t154 = k(0.8) * t135;
+        let t155 = T::fused(k(0.8), t132, k(7.848));
+        let t156 = k(0.8) * t127;
+        let t157 = T::fused(
+            -(k(0.4) * t133),
+            t154,
+            T::fused(-(k(0.4) * t128), t155, k(0.4) * t117 * t156),
+        );
+        let t158 = t157
+            + T::fused(-k(0.0108), t112, k(0.01076) * (rocker_wx * rocker_wy));
+        let t159 = T::fused(
+            T::fused(t38, t152, t36 * t153),
+            t149,
+            T::fused(t36, t40, t151 * t152) * t158,
+        );
+        let t160 = k(1.0) / T::fused(t152, t152, T::fused(t40, t40, t153 * t153));
+        let t161 = t160 * T::fused(T::fused(-t151, t153, t38 * t40), t140, t159);
+        let t162 = t108 - t161;
+        let t163 = t147 + t162;
+        let t164 = T::fused(
+            -T::fused(-t39, t153, t35 * t152),
+            t149,
+            T::fused(t150, t152, t39 * t40) * t158,
+        );
+        let t165 = t160 * T::fused(T::fused(t35, t40, t150 * t153), t140, -t164);
+        let t166 = t138 - t165;
+        let t167 = t146 + t166;
+        let t168 = T::fused(-coupler_wz, t137, k(0.021) * t106);
+        let t169 = k(0.5) * t57;
+        let t170 = k(0.5) * t59;
+        let t171 = k(0.5) * t61;
+        let t172 = k(2.0)
+            * (T::fused(t169, t110, T::fused(t170, t138, t171 * t108)) - t168);
+        let t173 = t110 + t172;
+        let t174 = t145 + t173;
+        let t175 = T::fused(t169, t173, T::fused(t171, t162, t170 * t166))
+            + T::fused(t169, t172, -T::fused(t170, t165, T::fused(t171, t161, t168)));
+        let t176 = k(5e-5) * t111;
+        let t177 = T::fused(k(2e-5), t94, T::fused(-t30, t175, t23 * t176));
+        let t178 = k(0.2) * t46;
+        let t179 = k(0.2) * t49;
+        let t180 = k(0.2) * t54;
+        let t181 = T::fused(t180, t173, T::fused(t178, t162, t179 * t166))
+            + T::fused(t23, t175, t30 * t176);
+        let t182 = T::fused(t180, t174, T::fused(t178, t163, t179 * t167))
+            + T::fused(k(0.00268), t87, t181);
+        let t183 = t156 + t161;
+        let t184 = t155 + t165;
+        let t185 = t154 - t172;
+        let t186 = k(0.4) * t126;
+        let t187 = k(0.4) * t131;
+        let t188 = k(0.4) * t134;
+        let t189 = T::fused(
+            t188,
+            t172,
+            -T::fused(t187, t165, T::fused(t186, t161, k(0.02156) * t122)),
+        );
+        let t190 = T::fused(t188, t185, T::fused(t186, t183, t187 * t184)) - t189;
+        let t191 = k(4e-5) * t136;
+        *out = [
+            t91,
+            t92,
+            -t93,
+            t94,
+            -t87,
+            -t80,
+            t108,
+            t109,
+            -t110,
+            t111,
+            t106,
+            -t104,
+            t127,
+            t132,
+            -t135,
+            t136,
+            -t122,
+            -t112,
+            -t163,
+            -t167,
+            t174,
+            T::fused(-t24, t177, t0 * t182),
+            T::fused(t0, t177, t24 * t182),
+            -t183,
+            -t184,
+            t185,
+            T::fused(-t34, t191, t37 * t190),
+            T::fused(t34, t190, t37 * t191),
+            -t162,
+            -t166,
+            t173,
+            -t176,
+            t161,
+            t165,
+            t172,
+        ];
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 394 operations (151 ±, 242 ×, 1 ÷) and 6 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x2.sin();
+        let t1 = x0.cos();
+        let t2 = x2.cos();
+        let t3 = x0.sin();
+        let t4 = T::fused(t1, t0, t3 * t2);
+        let t5 = k(1.962) * t4;
+        let t6 = k(0.2) * t3;
+        let t7 = x1.cos();
+        let t8 = k(0.4) * t7;
+        let t9 = k(0.2) * t1;
+        let t10 = x1.sin();
+        let t11 = k(0.4) * t10;
+        let t12 = T::fused(-t8, t6, t11 * t9);
+        let t13 = T::fused(t11, t6, t8 * t9);
+        let t14 = T::fused(-t3, t0, t1 * t2);
+        let t15 = k(0.04) * T::fused(-t1, t4, t3 * t14);
+        let t16 = u0 * u0;
+        let t17 = T::fused(-k(1.962), t14, t16 * t15);
+        let t18 = t17 * t13;
+        let t19 = k(0.5) * t14;
+        let t20 = k(0.5) * t4;
+        let t21 = T::fused(-t19, t11, t20 * t8);
+        let t22 = T::fused(t8, t19, t20 * t11);
+        let t23 = u0 + u2;
+        let t24 = t23 * t23;
+        let t25 = T::fused(k(2.1582), t1, t24 * t15);
+        let t26 = t25 * t22;
+        let t27 = T::fused(-t21, k(2.1582) * t3, t26) + T::fused(-t12, t5, t18);
+        let t28 = k(1.962) * t7;
+        let t29 = T::fused(-t20, t9, t19 * t6);
+        let t30 = T::fused(t12, t17, T::fused(-t21, t25, t29 * t28));
+        let t31 = t30 * t22;
+        let t32 = t19 * t24;
+        let t33 = t16 * t9;
+        let t34 = t33 + t32;
+        let t35 = t20 * t24;
+        let t36 = t16 * t6;
+        let t37 = u1 * u1;
+        let t38 = t37 * t11;
+        let t39 = t38 - t36 - t35;
+        let t40 = t19 * t39;
+        let t41 = t36 + t35;
+        let t42 = t37 * t8;
+        let t43 = t42 - t33 - t32;
+        let t44 = t20 * t43;
+        let t45 = T::fused(-t19, t41, t44) - T::fused(-t20, t34, t40);
+        let t46 = k(0.0588) * t29;
+        let t47 = k(0.04) * T::fused(t1, t14, t3 * t4);
+        let t48 = t47 * t22;
+        let t49 = T::fused(-k(0.0585), t13, t48);
+        let t50 = T::fused(t8, t43, t11 * t39);
+        let t51 = t50 * t49;
+        let t52 = T::fused(-t11, t34, t8 * t41);
+        let t53 = T::fused(t21, t47, k(0.0585) * t12);
+        let t54 = T::fused(t46, t45, T::fused(t53, t52, t51)) - T::fused(-t21, t27, t31);
+        let t55 = T::fused(k(0.04135), t21, t12 * t47);
+        let t56 = k(1.0) / T::fused(t12, t53, T::fused(t21, t55, t29 * t46));
+        let t57 = t56 * t56;
+        let t58 = k(0.04135) * t22;
+        let t59 = T::fused(-t47, t13, t58);
+        let t60 = t55 * t22;
+        let t61 = (T::fused(t21, t59, t60) - T::fused(-t12, t49, t53 * t13)) * t57;
+        let t62 = T::fused(t19, t43, t20 * t39);
+        let t63 = T::fused(t21, t30, T::fused(-t50, t53, t62 * t46));
+        let t64 = t63 * t61;
+        let t65 = T::fused(t56, t54, t64);
+        let t66 = t18 + T::fused(-t29, k(1.962) * t10, t26);
+        let t67 = T::fused(-t20, t42, t19 * t38);
+        let t68 = T::fused(t8, t38, t11 * t43) - T::fused(t11, t42, t8 * t39);
+        let t69 = T::fused(-t46, t67, T::fused(t53, t68, t51))
+            - T::fused(-t21, t66, t31);
+        let t70 = T::fused(t56, t69, t64);
+        let t71 = T::fused(t20, t6, t19 * t9);
+        let t72 = T::fused(
+            -t12,
+            T::fused(-t16, t47, t5),
+            T::fused(t28, t71, T::fused(-t21, t24 * t47, t26)),
+        );
+        let t73 = k(0.0588) * t71;
+        let t74 = T::fused(-t19, t35, t44) - T::fused(-t20, t32, t40);
+        let t75 = T::fused(t21, t15, t48);
+        let t76 = T::fused(-t11, t32, t8 * t35);
+        let t77 = T::fused(t50, t75, t53 * t76) + T::fused(t62, t73, t46 * t74);
+        let t78 = T::fused(t12, t15, t58);
+        let t79 = T::fused(
+            t12,
+            t75,
+            T::fused(t21, t78, t60) - T::fused(t29, t73, t46 * t71),
+        );
+        let t80 = t57 * t79;
+        let t81 = T::fused(t56, t77 - T::fused(-t21, t72, t31), t63 * t80);
+        let t82 = k(2.0) * u0;
+        let t83 = k(2.0) * t23;
+        let t84 = t21 * (t15 * t83);
+        let t85 = T::fused(-t12, t15 * t82, t84);
+        let t86 = t20 * t83;
+        let t87 = T::fused(t6, t82, t86);
+        let t88 = t19 * t83;
+        let t89 = T::fused(t9, t82, t88);
+        let t90 = T::fused(t20, t87, t19 * t89);
+        let t91 = T::fused(t11, t87, t8 * t89);
+        let t92 = t56 * T::fused(-t21, t85, T::fused(-t46, t90, t53 * t91));
+        let t93 = k(2.0) * u1;
+        let t94 = t11 * t93;
+        let t95 = t8 * t93;
+        let t96 = T::fused(t20, t94, t19 * t95);
+        let t97 = T::fused(t11, t94, t8 * t95);
+        let t98 = t56 * T::fused(-t46, t96, t53 * t97);
+        let t99 = T::fused(t20, t86, t19 * t88);
+        let t100 = T::fused(t11, t86, t8 * t88);
+        let t101 = t56 * T::fused(-t21, t84, T::fused(-t46, t99, t53 * t100));
+        let t102 = T::fused(-t9, t41, t6 * t43) - T::fused(-t6, t34, t9 * t39);
+        let t103 = T::fused(t9, t43, t6 * t39);
+        let t104 = t103 * t49;
+        let t105 = t62 * t59;
+        let t106 = T::fused(
+            -t29,
+            t27,
+            T::fused(t55, t45, -t105) + T::fused(-t53, t102, t104),
+        );
+        let t107 = T::fused(t29, t30, T::fused(-t62, t55, t53 * t103));
+        let t108 = t107 * t61;
+        let t109 = T::fused(-t6, t42, t9 * t38);
+        let t110 = T::fused(
+            t29,
+            t66,
+            T::fused(t55, t67, t105) - T::fused(t53, t109, t104),
+        );
+        let t111 = T::fused(-t6, t32, t9 * t35);
+        let t112 = T::fused(-t62, t78, t55 * t74) + T::fused(t53, t111, t103 * t75);
+        let t113 = T::fused(-t56, t112 - T::fused(t29, t72, t30 * t71), t107 * t80);
+        let t114 = T::fused(t6, t87, t9 * t89);
+        let t115 = T::fused(t6, t94, t9 * t95);
+        let t116 = T::fused(t6, t86, t9 * t88);
+        let t117 = t30 * t13;
+        let t118 = t50 * t59;
+        let t119 = T::fused(t46, t102, T::fused(t55, t52, t118))
+            - T::fused(t12, t27, t117);
+        let t120 = T::fused(t12, t30, T::fused(-t46, t103, t50 * t55));
+        let t121 = t120 * t61;
+        let t122 = T::fused(t46, t109, -T::fused(t55, t68, t118))
+            + T::fused(t12, t66, t117);
+        let t123 = T::fused(-t46, t111, t103 * t73) + T::fused(t50, t78, t55 * t76);
+        let t124 = T::fused(
+            -t56,
+            T::fused(-t12, t85, T::fused(-t55, t91, t46 * t114)),
+            t92,
+        );
+        let t125 = T::fused(
+            -t56,
+            T::fused(-t12, t84, T::fused(-t55, t100, t46 * t116)),
+            t101,
+        );
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            -t65,
+            t70,
+            -t81,
+            t92,
+            -t98,
+            t101,
+            T::fused(-t56, t106, t108),
+            -T::fused(t56, t110, t108),
+            t113,
+            -(t56 * T::fused(-t29, t85, T::fused(-t53, t114, t55 * t90))),
+            t56 * T::fused(-t53, t115, t55 * t96),
+            -(t56 * T::fused(-t29, t84, T::fused(-t53, t116, t55 * t99))),
+            t65 - T::fused(-t56, t119, t121),
+            T::fused(t56, t122, t121) - t70,
+            t81 - T::fused(-t56, T::fused(-t12, t72, t123), t120 * t80),
+            -t124,
+            T::fused(-t56, T::fused(-t55, t97, t46 * t115), t98),
+            -t125,
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
+    /// Writes Φ of the joints that close loops: 17 operations (7 ±, 10 ×, 0 ÷) and 6 functions.
+    fn loop_closure(&self, _t: T, x: &Self::Joints, out: &mut Self::Closure) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.cos();
+        let t1 = x2.sin();
+        let t2 = x0.sin();
+        let t3 = x2.cos();
+        let t4 = T::fused(
+            k(0.5),
+            T::fused(-t2, t1, t0 * t3),
+            -T::fused(k(0.4), x1.cos(), T::fused(-k(0.2), t0, k(0.5))),
+        );
+        let t5 = T::fused(
+            k(0.5),
+            T::fused(t0, t1, t2 * t3),
+            -T::fused(-k(0.2), t2, k(0.4) * x1.sin()),
+        );
+        *out = [-t4, -t5];
+    }
+    /// One Newton step of the joint coordinates towards closed loops: 58 operations (23 ±, 34 ×, 1 ÷) and 6 functions.
+    fn close_positions(&self, _t: T, x: &mut Self::Joints) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x0.cos();
+        let t1 = k(0.2) * t0;
+        let t2 = k(0.4) * x1.cos();
+        let t3 = x2.sin();
+        let t4 = x0.sin();
+        let t5 = x2.cos();
+        let t6 = k(0.5) * T::fused(-t4, t3, t0 * t5);
+        let t7 = t6 - (t2 + (k(0.5) - t1));
+        let t8 = k(0.2) * t4;
+        let t9 = k(0.4) * x1.sin();
+        let t10 = k(0.5) * T::fused(t0, t3, t4 * t5);
+        let t11 = t10 - (t9 - t8);
+        let t12 = T::fused(t2, t7, t9 * t11);
+        let t13 = t10 + t8;
+        let t14 = t6 + t1;
+        let t15 = T::fused(-t2, t13, t9 * t14);
+        let t16 = T::fused(t6, t7, t10 * t11);
+        let t17 = T::fused(-t10, t14, t6 * t13);
+        let t18 = T::fused(-t6, t9, t10 * t2);
+        let t19 = k(1.0) / T::fused(t15, t15, T::fused(t18, t18, t17 * t17));
+        let t20 = T::fused(t14, t7, t13 * t11);
+        x[0] = T::fused(t19, T::fused(-t15, t12, t17 * t16), x0);
+        x[1] = T::fused(-t19, T::fused(-t18, t16, t15 * t20), x1);
+        x[2] = T::fused(t19, T::fused(-t17, t20, t18 * t12), x2);
+    }
+    /// Changes the rates such that loops stay closed: 67 operations (23 ±, 43 ×, 1 ÷) and 6 functions.
+    fn close_velocities(&self, _t: T, x: &mut Self::Joints) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.5) * (u0 + u2);
+        let t1 = x2.sin();
+        let t2 = x0.cos();
+        let t3 = x2.cos();
+        let t4 = x0.sin();
+        let t5 = T::fused(t2, t1, t4 * t3);
+        let t6 = k(0.2) * u0;
+        let t7 = k(0.4) * u1;
+        let t8 = x1.sin();
+        let t9 = T::fused(-t5, t0, T::fused(-t4, t6, t8 * t7));
+        let t10 = x1.cos();
+        let t11 = k(0.4) * t10;
+        let t12 = T::fused(-t4, t1, t2 * t3);
+        let t13 = T::fused(-t12, t0, T::fused(-t2, t6, t10 * t7));
+        let t14 = k(0.4) * t8;
+        let t15 = T::fused(-t11, t9, t14 * t13);
+        let t16 = k(0.5) * t5;
+        let t17 = T::fused(k(0.2), t4, t16);
+        let t18 = k(0.5) * t12;
+        let t19 = T::fused(k(0.2), t2, t18);
+        let t20 = T::fused(-t11, t17, t14 * t19);
+        let t21 = T::fused(-t18, t9, t16 * t13);
+        let t22 = T::fused(-t16, t19, t18 * t17);
+        let t23 = T::fused(-t18, t14, t16 * t11);
+        let t24 = k(1.0) / T::fused(t20, t20, T::fused(t23, t23, t22 * t22));
+        let t25 = T::fused(-t19, t9, t17 * t13);
+        x[3] = T::fused(-t24, T::fused(-t20, t15, t22 * t21), u0);
+        x[4] = T::fused(t24, T::fused(-t23, t21, t20 * t25), u1);
+        x[5] = T::fused(-t24, T::fused(-t22, t25, t23 * t15), u2);
     }
 }

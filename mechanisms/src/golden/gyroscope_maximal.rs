@@ -9,7 +9,7 @@
 //! * non-zeros: Φ_q 98 of 700, (Φ_r, Φ_π') 60 of 504
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * left out: outputs (the page asks for none)
+//! * left out: outputs (the model file asks for none)
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|

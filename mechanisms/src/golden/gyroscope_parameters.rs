@@ -9,11 +9,11 @@
 //! * non-zeros: Φ_q 77 of 378, (Φ_r, Φ_π') 41 of 270
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
-//! * left out: outputs (the page asks for none)
+//! * left out: outputs (the model file asks for none)
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|
-//! | set_up | what depends on parameters alone | 12 | 24 | 2 | 38 | 0 of 25 |
+//! | parameter_setup | what depends on parameters alone | 12 | 24 | 2 | 38 | 0 of 25 |
 //! | phi | Φ | 50 | 49 | 0 | 99 | 0 of 18 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 |
@@ -86,7 +86,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
     }
 }
 impl<T: gyro_sim::Real> Parameters<T> {
-    /// Whether the mechanism can have these parameters, as the model page's rules decide.
+    /// Whether the mechanism can have these parameters, as the model file's rules decide.
     pub fn check(
         &self,
     ) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
@@ -160,7 +160,7 @@ impl<T: gyro_sim::Scalar> GyroscopeParameters<T> {
     pub fn set_parameters(&mut self, parameters: Parameters<T>) {
         self.parameters = parameters;
         let mut derived = self.derived;
-        self.set_up(&mut derived);
+        self.parameter_setup(&mut derived);
         self.derived = derived;
     }
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
@@ -188,7 +188,7 @@ impl<T: gyro_sim::Scalar> GyroscopeParameters<T> {
         true
     }
     /// What depends on parameters alone: 38 operations (12 ±, 24 ×, 2 ÷).
-    fn set_up(&self, out: &mut [T; 25]) {
+    fn parameter_setup(&self, out: &mut [T; 25]) {
         let k = T::constant;
         let t0 = self.parameters.ring_axial_inertia
             - self.parameters.ring_diametral_inertia;

@@ -10,7 +10,7 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * left out: outputs (the page asks for none)
+//! * left out: outputs (the model file asks for none)
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|

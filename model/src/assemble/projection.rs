@@ -3,7 +3,7 @@
 //! Unknowns are changes (δr, δπ') of the bodies, made comparable: lengths are divided by the mechanism's size, and a
 //! body of greater weight counts its changes as greater. Rows of lengths are divided by the size, too.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::START_TOLERANCE;
 use crate::kinematics::{Equation, Kinematics, turned};
@@ -165,7 +165,9 @@ impl<'k> System<'k> {
         damping: &mut f64,
     ) -> Option<(Configuration, DVector<f64>)> {
         while *damping <= DAMPING[2] {
-            if let Some(change) = least_change(jacobian, residual, *damping) {
+            if let Some(change) =
+                LeastChanges::of(jacobian, *damping).and_then(|least| least.change(residual))
+            {
                 let next = self.moved(at, &-change);
                 let left = self.residual(&next);
                 if left.norm() < residual.norm() {
@@ -191,8 +193,9 @@ impl<'k> System<'k> {
     /// The part of a scaled change that the equations allow, to first order.
     pub(crate) fn tangent(&self, jacobian: &DMatrix<f64>, change: &DVector<f64>) -> DVector<f64> {
         let mut tangent = change.clone();
+        let Some(least) = LeastChanges::of(jacobian, DAMPING[1]) else { return tangent };
         for _ in 0..REFINEMENTS {
-            let Some(off) = least_change(jacobian, &(jacobian * &tangent), DAMPING[1]) else { break };
+            let Some(off) = least.change(&(jacobian * &tangent)) else { break };
             tangent -= off;
         }
         tangent
@@ -229,7 +232,9 @@ impl<'k> System<'k> {
         let mut at = from.clone();
         for _ in 0..MAX_CORRECTIONS {
             let left = self.residual(&at) - missed;
-            let Some(change) = least_change(&self.jacobian(&at), &left, DAMPING[1]) else { break };
+            let jacobian = self.jacobian(&at);
+            let least = LeastChanges::of(&jacobian, DAMPING[1]);
+            let Some(change) = least.and_then(|least| least.change(&left)) else { break };
             at = self.moved(&at, &-&change);
             if change.amax() < NEAREST {
                 break;
@@ -264,19 +269,32 @@ pub(crate) fn scale_rows_and_columns(matrix: &mut DMatrix<f64>, rows: &DVector<f
     }
 }
 
-/// The least change x with J x = b, damped: `Jᵀ (J Jᵀ + μ)⁻¹ b`. Dependent rows that agree do no harm.
-fn least_change(jacobian: &DMatrix<f64>, b: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
-    let mut normal = jacobian * jacobian.transpose();
-    let largest = normal.diagonal().amax();
-    if largest == 0.0 {
-        return Some(DVector::zeros(jacobian.ncols()));
+/// The least changes x with J x = b, damped: `Jᵀ (J Jᵀ + μ)⁻¹ b`. Dependent rows that agree do no harm.
+struct LeastChanges<'j> {
+    jacobian: &'j DMatrix<f64>,
+    /// None if J is zero.
+    factor: Option<Cholesky<f64, Dyn>>,
+}
+
+impl<'j> LeastChanges<'j> {
+    /// Factors `J Jᵀ + μ`, if that can be done.
+    fn of(jacobian: &'j DMatrix<f64>, damping: f64) -> Option<Self> {
+        let mut normal = jacobian * jacobian.transpose();
+        let largest = normal.diagonal().amax();
+        if largest == 0.0 {
+            return Some(Self { jacobian, factor: None });
+        }
+        for k in 0..normal.nrows() {
+            normal[(k, k)] += damping * largest;
+        }
+        Some(Self { jacobian, factor: Some(Cholesky::new(normal)?) })
     }
-    for k in 0..normal.nrows() {
-        normal[(k, k)] += damping * largest;
+
+    fn change(&self, b: &DVector<f64>) -> Option<DVector<f64>> {
+        let Some(factor) = &self.factor else { return Some(DVector::zeros(self.jacobian.ncols())) };
+        let change = self.jacobian.tr_mul(&factor.solve(b));
+        change.iter().all(|x| x.is_finite()).then_some(change)
     }
-    let factor = Cholesky::new(normal)?;
-    let change = jacobian.tr_mul(&factor.solve(b));
-    change.iter().all(|x| x.is_finite()).then_some(change)
 }
 
 /// The x nearest to another with J x = b, as nearly as that can be: refined until that gains no more digits.
@@ -287,8 +305,9 @@ pub(crate) fn nearest_solution(
 ) -> DVector<f64> {
     let mut x = from.clone();
     let mut left = b - jacobian * &x;
+    let Some(least) = LeastChanges::of(jacobian, DAMPING[1]) else { return x };
     for refinement in 0..MAX_STEPS {
-        let Some(change) = least_change(jacobian, &left, DAMPING[1]) else { break };
+        let Some(change) = least.change(&left) else { break };
         let next = &x + change;
         let after = b - jacobian * &next;
         if refinement >= REFINEMENTS && after.norm() > 0.99 * left.norm() {

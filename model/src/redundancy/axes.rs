@@ -6,7 +6,8 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use super::select::{INDEPENDENT, extend, outside, with_unit_rows};
+use super::select::{INDEPENDENT, extend, outside};
+use super::trees::{Motions, TreeRows};
 use crate::assemble::projection::Configuration;
 use crate::kinematics::{Kinematics, value_of};
 use crate::{Model, RowOwner};
@@ -26,7 +27,9 @@ pub(super) struct Poses<'a> {
     pub(super) at: Vec<&'a Configuration>,
     /// With point rows along global axes.
     pub(super) jacobians: Vec<DMatrix<f64>>,
-    /// The rows of each owner, in the order in which they are preferred.
+    pub(super) motions: Vec<Motions>,
+    pub(super) trees: &'a TreeRows,
+    /// The rows of each owner that is not of the trees, in the order in which they are preferred.
     pub(super) groups: &'a [Vec<usize>],
 }
 
@@ -44,21 +47,22 @@ impl Poses<'_> {
 
     /// The Jacobians with the point rows of these joints along the axes of their first bodies. At poses that satisfy
     /// the joints the derivative of `u·d` is `u·∂d`.
-    pub(super) fn turned(&self, joints: &[usize]) -> Vec<DMatrix<f64>> {
-        let turned = |(jacobian, &at): (&DMatrix<f64>, &&Configuration)| {
+    pub(super) fn turned(&self, joints: &[usize]) -> Vec<Motions> {
+        let turned = |((motions, jacobian), &at): ((&Motions, &DMatrix<f64>), &&Configuration)| {
             let mut turned = jacobian.clone();
             for &joint in joints {
                 let (row, axes) = (self.first_row(joint), self.first_frame(joint, at));
                 turned.rows_mut(row, 3).copy_from(&(axes.transpose() * jacobian.rows(row, 3)));
             }
-            turned
+            motions.with(&turned)
         };
-        self.jacobians.iter().zip(&self.at).map(turned).collect()
+        self.motions.iter().zip(&self.jacobians).zip(&self.at).map(turned).collect()
     }
 
     fn turns(&self, joint: usize) -> bool {
+        let poses = self.motions.iter().zip(&self.jacobians);
         let in_space: Vec<Matrix3<f64>> =
-            self.jacobians.iter().map(|jacobian| self.redundant_directions(joint, jacobian)).collect();
+            poses.map(|(motions, jacobian)| self.redundant_directions(joint, motions, jacobian)).collect();
         let on_first = in_space.iter().zip(&self.at).map(|(directions, at)| {
             let axes = self.first_frame(joint, at);
             axes.transpose() * directions * axes
@@ -71,14 +75,19 @@ impl Poses<'_> {
 
     /// What points contribute to the combinations of the joint's rows that are nothing by what is preferred to it: the
     /// sum of c cᵀ over an orthonormal basis of these combinations, of whose coefficients c is the points' part.
-    fn redundant_directions(&self, joint: usize, jacobian: &DMatrix<f64>) -> Matrix3<f64> {
-        let (mut basis, unit) = (Vec::new(), with_unit_rows(jacobian));
+    fn redundant_directions(&self, joint: usize, motions: &Motions, jacobian: &DMatrix<f64>) -> Matrix3<f64> {
+        let mut basis = Vec::new();
         let own = self.groups.iter().position(|group| group.contains(&self.first_row(joint)));
         let (before, own) = self.groups.split_at(own.expect("each row is in a group"));
-        before.iter().flatten().for_each(|&row| extend(&mut basis, unit.row(row).transpose()));
-        let left: Vec<_> = own[0].iter().map(|&row| outside(jacobian.row(row).transpose(), &basis)).collect();
-        let size = own[0].iter().map(|&row| jacobian.row(row).norm()).fold(0.0, f64::max);
-        let svd = DMatrix::from_columns(&left).svd(false, true);
+        before.iter().flatten().for_each(|&row| extend(&mut basis, motions.row(row)));
+        let length = |row: usize| jacobian.row(row).norm();
+        let left: Vec<_> =
+            own[0].iter().map(|&row| outside(motions.row(row), &basis) * length(row)).collect();
+        let size = own[0].iter().map(|&row| length(row)).fold(0.0, f64::max);
+        // As many values as rows, however few motions there are.
+        let (left, count) = (DMatrix::from_columns(&left), own[0].len());
+        let left = left.resize_vertically(count.max(motions.count()), 0.0);
+        let svd = left.svd(false, true);
         let combinations = svd.v_t.expect("asked for");
         let values = svd.singular_values.iter().enumerate();
         values.filter(|(_, value)| **value <= INDEPENDENT * size).fold(Matrix3::zeros(), |sum, (k, _)| {

@@ -3,6 +3,7 @@
 mod axes;
 mod sample;
 mod select;
+mod trees;
 
 use crate::assemble::projection::{Configuration, Scales, System};
 use crate::kinematics::{Equation, Kinematics};
@@ -10,6 +11,7 @@ use crate::{AssemblyError, Model, PointAxes, RedundantRow, Row, RowOwner, Start,
 use axes::Poses;
 use sample::{Samples, samples};
 use select::{Selection, dependencies, generic, select};
+use trees::TreeRows;
 
 /// What the rank of the constraint rows says about a mechanism.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,17 +67,18 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     }
     let all = System::new(&kinematics, driven, &scales);
     let (poses, groups) = (around.with(start.clone()), groups(&kinematics, &tree));
-    let jacobians: Vec<_> = poses.iter().map(|at| all.jacobian(at)).collect();
-    let generic = generic(&jacobians, &groups);
-    let poses = Poses {
-        model,
-        kinematics: &kinematics,
-        at: generic.iter().map(|&pose| &poses[pose]).collect(),
-        jacobians: generic.iter().map(|&pose| jacobians[pose].clone()).collect(),
-        groups: &groups,
-    };
-    let (selection, turning) = selected(&poses);
-    let redundant = redundant(&selection, kinematics.rows(), &turning);
+    let trees = TreeRows::of(model, &tree, kinematics.rows());
+    let mut jacobians: Vec<_> = poses.iter().map(|at| all.jacobian(at)).collect();
+    let mut motions: Vec<_> = jacobians.iter().map(|jacobian| trees.motions(jacobian)).collect();
+    let generic = generic(&motions, &groups);
+    let mut pose = 0..;
+    motions.retain(|_| generic.contains(&pose.next().expect("endless")));
+    let mut pose = 0..;
+    jacobians.retain(|_| generic.contains(&pose.next().expect("endless")));
+    let at = generic.iter().map(|&pose| &poses[pose]).collect();
+    let poses =
+        Poses { model, kinematics: &kinematics, at, jacobians, motions, trees: &trees, groups: &groups };
+    let (redundant, selection) = selected(poses);
     check_drivers(model, &redundant)?;
     check_later(
         &Model { redundant: redundant.clone(), ..model.clone() },
@@ -92,23 +95,24 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     Ok(Analysis { redundant, rank, degrees_of_freedom, singular_start })
 }
 
-/// Rows by rank, point rows along global axes or, of the joints that come with them, along those of the first body.
-fn selected(poses: &Poses<'_>) -> (Selection, Vec<usize>) {
-    let selection = select(&poses.jacobians, poses.groups);
+/// Rows by rank, point rows along global axes or, of the joints of which this is said, along those of the first body.
+fn selected(mut poses: Poses<'_>) -> (Vec<RedundantRow>, Selection) {
+    let mut selection = select(&poses.motions, poses.trees, poses.groups);
     let turning = poses.joints_that_turn(&selection.dropped);
-    if turning.is_empty() {
-        return (selection, turning);
+    if !turning.is_empty() {
+        poses.motions = poses.turned(&turning);
+        selection = select(&poses.motions, poses.trees, poses.groups);
     }
-    (select(&poses.turned(&turning), poses.groups), turning)
-}
-
-fn redundant(selection: &Selection, rows: &[Row], turning: &[usize]) -> Vec<RedundantRow> {
+    let rows = poses.kinematics.rows();
     let axes = |row: Row| match row.owner {
         RowOwner::Joint(joint) if turning.contains(&joint) => PointAxes::FirstBody,
         _ => PointAxes::Global,
     };
-    let dropped = selection.dropped.iter().map(|&row| rows[row]).zip(dependencies(selection, rows));
-    dropped.map(|(row, shared_with)| RedundantRow { row, axes: axes(row), shared_with }).collect()
+    let shared = dependencies(&selection, (&poses.motions, poses.trees), rows);
+    let dropped = selection.dropped.iter().map(|&row| rows[row]).zip(shared);
+    let redundant =
+        dropped.map(|(row, shared_with)| RedundantRow { row, axes: axes(row), shared_with }).collect();
+    (redundant, selection)
 }
 
 fn configuration(kinematics: &Kinematics, start: &Start) -> Configuration {
@@ -123,19 +127,20 @@ fn undriven(kinematics: &Kinematics) -> Vec<Equation> {
     kinematics.equations().into_iter().filter(|equation| !is_driver(equation)).collect()
 }
 
-/// The rows of each owner, in the order in which they are preferred.
+/// The rows of each owner that is not of the trees, in the order in which they are preferred.
 fn groups(kinematics: &Kinematics, tree: &Tree) -> Vec<Vec<usize>> {
     let rank = |owner: RowOwner| match owner {
-        RowOwner::Body(_) => 0,
-        RowOwner::Joint(joint) if !tree.loop_joints.contains(&joint) => 1,
-        RowOwner::Coupler(_) => 2,
-        RowOwner::Joint(_) => 3,
-        RowOwner::Driver(_) => 4,
+        RowOwner::Body(_) => None,
+        RowOwner::Joint(joint) if !tree.loop_joints.contains(&joint) => None,
+        RowOwner::Coupler(_) => Some(1),
+        RowOwner::Joint(_) => Some(2),
+        RowOwner::Driver(_) => Some(3),
     };
     let rows: Vec<(usize, &Row)> = kinematics.rows().iter().enumerate().collect();
     let groups = rows.chunk_by(|a, b| a.1.owner == b.1.owner);
+    let groups = groups.filter_map(|group| Some((rank(group[0].1.owner)?, group)));
     let mut groups: Vec<(usize, Vec<usize>)> =
-        groups.map(|group| (rank(group[0].1.owner), group.iter().map(|(row, _)| *row).collect())).collect();
+        groups.map(|(rank, group)| (rank, group.iter().map(|(row, _)| *row).collect())).collect();
     groups.sort_by_key(|(rank, _)| *rank);
     groups.into_iter().map(|(_, group)| group).collect()
 }

@@ -1,8 +1,10 @@
-//! Which rows are independent: Gram–Schmidt in a fixed order, at several poses at once.
+//! Which rows are independent: Gram–Schmidt in a fixed order, at several poses at once, among the motions of the trees.
 
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{DMatrix, DVector};
 
+use super::trees::{Motions, TreeRows};
 use crate::{Row, RowOwner};
+use std::slice;
 
 /// Part of a row that is not in the span of the others, below which it depends on them. Poses satisfy their equations
 /// to about 1e-13; a row that is independent only by a slip of a model file's last digits is not taken for a dependent
@@ -21,27 +23,25 @@ const TAKES_PART: f64 = 1e-6;
 pub(super) struct Selection {
     pub(super) kept: Vec<usize>,
     pub(super) dropped: Vec<usize>,
-    /// The Jacobians, rows of length one.
-    jacobians: Vec<DMatrix<f64>>,
 }
 
-/// The poses of largest rank, by their Jacobians.
-pub(super) fn generic(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Vec<usize> {
-    let rank = |jacobian: &DMatrix<f64>| kept(&[with_unit_rows(jacobian)], groups).len();
-    let ranks: Vec<usize> = jacobians.iter().map(rank).collect();
+/// The poses of largest rank.
+pub(super) fn generic(poses: &[Motions], groups: &[Vec<usize>]) -> Vec<usize> {
+    let ranks: Vec<usize> = poses.iter().map(|pose| kept(slice::from_ref(pose), groups).len()).collect();
     let largest = ranks.iter().copied().max();
     (0..ranks.len()).filter(|&pose| Some(ranks[pose]) == largest).collect()
 }
 
-/// Selects rows at poses of one rank. Groups of rows, one for each owner, come in the order of preference.
-pub(super) fn select(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Selection {
-    let jacobians: Vec<DMatrix<f64>> = jacobians.iter().map(with_unit_rows).collect();
-    let mut kept = kept(&jacobians, groups);
-    kept.sort_unstable();
+/// Selects rows at poses of one rank, all of the trees among them. Groups of the other rows, one for each owner, come in
+/// the order of preference.
+pub(super) fn select(poses: &[Motions], trees: &TreeRows, groups: &[Vec<usize>]) -> Selection {
+    let mut kept = kept(poses, groups);
     let mut dropped: Vec<usize> =
         groups.iter().flatten().copied().filter(|row| !kept.contains(row)).collect();
+    kept.extend(trees.rows());
+    kept.sort_unstable();
     dropped.sort_unstable();
-    Selection { kept, dropped, jacobians }
+    Selection { kept, dropped }
 }
 
 /// Rows on zero length stay as they are: nothing that has coordinates is in them.
@@ -56,20 +56,17 @@ pub(super) fn with_unit_rows(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
     unit
 }
 
-/// The independent rows, as they are found.
-fn kept(jacobians: &[DMatrix<f64>], groups: &[Vec<usize>]) -> Vec<usize> {
+/// The independent rows of the groups, as they are found.
+fn kept(poses: &[Motions], groups: &[Vec<usize>]) -> Vec<usize> {
     let mut kept = Vec::new();
-    let mut bases: Vec<Vec<DVector<f64>>> = vec![Vec::new(); jacobians.len()];
+    let mut bases: Vec<Vec<DVector<f64>>> = vec![Vec::new(); poses.len()];
     for group in groups {
         let mut left = group.clone();
+        let part = |row: usize, bases: &[Vec<DVector<f64>>]| -> Vec<DVector<f64>> {
+            poses.iter().zip(bases).map(|(pose, basis)| outside(pose.row(row), basis)).collect()
+        };
         loop {
-            let parts: Vec<Vec<DVector<f64>>> = left
-                .iter()
-                .map(|&row| {
-                    let each = jacobians.iter().zip(&bases);
-                    each.map(|(jacobian, basis)| outside(jacobian.row(row).transpose(), basis)).collect()
-                })
-                .collect();
+            let parts: Vec<_> = left.iter().map(|&row| part(row, &bases)).collect();
             let measure = |k: usize| parts[k].iter().map(DVector::norm_squared).sum::<f64>().sqrt();
             let largest = (0..left.len()).map(measure).fold(0.0, f64::max);
             if largest <= INDEPENDENT {
@@ -105,30 +102,47 @@ pub(super) fn outside(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVect
 }
 
 /// For each dropped row the owners of the kept rows that it is a combination of.
-pub(super) fn dependencies(selection: &Selection, rows: &[Row]) -> Vec<Vec<RowOwner>> {
-    let of = |&dropped: &usize| {
-        let mut owners: Vec<RowOwner> = Vec::new();
-        for jacobian in &selection.jacobians {
-            let coefficients = combination(jacobian, &selection.kept, &jacobian.row(dropped).into_owned());
-            let part = selection.kept.iter().zip(coefficients.iter()).filter(|(_, c)| c.abs() > TAKES_PART);
-            owners.extend(part.map(|(&row, _)| rows[row].owner));
-        }
-        rows.iter().map(|row| row.owner).fold(Vec::new(), |mut shared, owner| {
-            if owners.contains(&owner) && !shared.contains(&owner) {
-                shared.push(owner);
+pub(super) fn dependencies(
+    selection: &Selection,
+    (poses, trees): (&[Motions], &TreeRows),
+    rows: &[Row],
+) -> Vec<Vec<RowOwner>> {
+    let mut owners = vec![vec![false; rows.len()]; selection.dropped.len()];
+    let of_trees: Vec<usize> = trees.rows().collect();
+    let others: Vec<usize> = selection.kept.iter().copied().filter(|row| !of_trees.contains(row)).collect();
+    for pose in poses {
+        let by_others = combinations(pose, &others, &selection.dropped);
+        let left =
+            pose.jacobian.select_rows(&selection.dropped) - &by_others * pose.jacobian.select_rows(&others);
+        let by_trees = trees.combinations(pose, left);
+        for (coefficients, kept) in [(by_others, &others), (by_trees, &of_trees)] {
+            for (owners, coefficients) in owners.iter_mut().zip(coefficients.row_iter()) {
+                let parts = kept.iter().zip(coefficients.iter()).filter(|(_, c)| c.abs() > TAKES_PART);
+                parts.for_each(|(&row, _)| owners[row] = true);
             }
-            shared
-        })
+        }
+    }
+    let of = |takes_part: Vec<bool>| {
+        let mut shared: Vec<RowOwner> = Vec::new();
+        for (row, _) in rows.iter().zip(takes_part).filter(|(_, takes_part)| *takes_part) {
+            if !shared.contains(&row.owner) {
+                shared.push(row.owner);
+            }
+        }
+        shared
     };
-    selection.dropped.iter().map(of).collect()
+    owners.into_iter().map(of).collect()
 }
 
-/// The coefficients c of `Σ c_k row_k` that come nearest to a row.
-fn combination(jacobian: &DMatrix<f64>, kept: &[usize], row: &RowDVector<f64>) -> DVector<f64> {
-    if kept.is_empty() {
-        return DVector::zeros(0);
+/// The coefficients by which kept rows come nearest to each of the others among the motions of the trees.
+fn combinations(pose: &Motions, kept: &[usize], rows: &[usize]) -> DMatrix<f64> {
+    let [kept_rows, rows] =
+        [kept, rows].map(|rows| rows.iter().map(|&row| pose.row(row)).collect::<Vec<_>>());
+    if kept.is_empty() || rows.is_empty() {
+        return DMatrix::zeros(rows.len(), kept.len());
     }
-    let qr = jacobian.select_rows(kept).transpose().qr();
-    let right = qr.q().tr_mul(&row.transpose());
-    qr.r().solve_upper_triangular(&right).unwrap_or_else(|| DVector::zeros(kept.len()))
+    let qr = DMatrix::from_columns(&kept_rows).qr();
+    let right = qr.q().tr_mul(&DMatrix::from_columns(&rows));
+    let solved = qr.r().solve_upper_triangular(&right);
+    solved.map_or_else(|| DMatrix::zeros(rows.len(), kept.len()), |found| found.transpose())
 }
