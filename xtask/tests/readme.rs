@@ -143,7 +143,7 @@ fn every_command_works_as_it_is_typed() {
     assert!(number > 10, "{number} commands");
 }
 
-/// The page of the README is the one that is shipped, and its bar lies where its hinge makes it lie.
+/// The model file of the README is the one that is shipped, and its bar lies where its hinge makes it lie.
 #[test]
 fn the_pendulum_is_the_one_that_is_shipped() {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
