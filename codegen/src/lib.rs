@@ -95,7 +95,7 @@ impl Module {
 #[derive(Clone)]
 pub enum Error {
     /// Mistakes in the model file.
-    Page(Diagnostics),
+    ModelFile(Diagnostics),
     /// No consistent start exists.
     Start(AssemblyError),
 }
@@ -103,7 +103,7 @@ pub enum Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Page(diagnostics) => diagnostics.fmt(f),
+            Self::ModelFile(diagnostics) => diagnostics.fmt(f),
             Self::Start(error) => error.fmt(f),
         }
     }
@@ -123,7 +123,7 @@ impl std::error::Error for Error {}
 /// # Errors
 /// All mistakes in the model file at once, or why no consistent start exists.
 pub fn generate(file_name: &str, text: &str) -> Result<Module, Error> {
-    let model = gyro_model::read(file_name, text).map_err(Error::Page)?;
+    let model = gyro_model::read(file_name, text).map_err(Error::ModelFile)?;
     generate_model(file_name, &model)
 }
 
@@ -137,7 +137,7 @@ pub fn generate_with(
     text: &str,
     load: &mut dyn FnMut(&str) -> Result<String, String>,
 ) -> Result<Module, Error> {
-    let model = gyro_model::read_with(file_name, text, load).map_err(Error::Page)?;
+    let model = gyro_model::read_with(file_name, text, load).map_err(Error::ModelFile)?;
     generate_model(file_name, &model)
 }
 

@@ -10,7 +10,7 @@ use gyro_sim_suite::{
 };
 use std::f64::consts::TAU;
 
-/// Angles (rad) and rates (rad/s) over half a second at the page's steps.
+/// Angles (rad) and rates (rad/s) over half a second at the model file's steps.
 const MOTION: f64 = 1e-8;
 
 /// The carrier's turns in the long run.

@@ -143,7 +143,7 @@ fn every_command_works_as_it_is_typed() {
     assert!(number > 10, "{number} commands");
 }
 
-/// The page of the README is the one that is shipped, and its bar lies where its hinge makes it lie.
+/// The model file of the README is the one that is shipped, and its bar lies where its hinge makes it lie.
 #[test]
 fn the_pendulum_is_the_one_that_is_shipped() {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
@@ -166,6 +166,19 @@ fn the_cart_and_pendulum_are_those_that_are_shipped() {
     let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
     let shipped = fs::read_to_string(root().join("examples/cart-pendulum/cart-pendulum.toml")).unwrap();
     assert_eq!(blocks(&tutorial, "toml")[0], shipped);
+}
+
+/// The example of loops in the guide of the library is the one that is compiled.
+#[test]
+fn the_example_of_loops_is_a_compiled_one() {
+    let source = fs::read_to_string(root().join("gyro-sim/src/correct/close_loops.rs")).unwrap();
+    let documentation = source.lines().filter_map(|line| line.strip_prefix("///"));
+    let shown = documentation
+        .map(|line| line.strip_prefix(' ').unwrap_or(line))
+        .filter(|line| !line.starts_with("# "));
+    let shown: String = shown.map(|line| format!("{line}\n")).collect();
+    let guide = fs::read_to_string(root().join("docs/library.md")).unwrap();
+    assert!(shown.contains(&blocks(&guide, "rust")[0]), "{shown}");
 }
 
 /// From the mass centre to the hinge.

@@ -109,7 +109,7 @@ fn an_input_is_what_the_caller_sets() {
     let [before, none, one, two] = [0.02, 0.0, 1.0, 2.0].map(|torque| rates(&mut mechanism, torque));
     let mut untouched = y.clone();
     dense(&model).derivative(0.0, &y, &mut untouched);
-    assert_eq!(before, untouched, "the page's value holds until another is set");
+    assert_eq!(before, untouched, "the model file's value holds until another is set");
     assert_ne!(none, one);
     let [first, second] = [(&none, &one), (&one, &two)]
         .map(|(from, to)| to.iter().zip(from).map(|(to, from)| to - from).collect::<Vec<f64>>());

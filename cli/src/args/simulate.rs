@@ -52,8 +52,8 @@ pub struct SimulateArgs {
     /// only)
     #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
     pub(crate) coordinates: Coordinates,
-    /// How constraints are enforced: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the
-    /// model file's]
+    /// How constraints are enforced: partition, closed-form (generated code with joint coordinates), mass-weighted,
+    /// baumgarte=RATE, none [default: the model file's]
     #[arg(long, value_name = "NAME", value_parser = correction)]
     pub(crate) correction: Option<Correction>,
     /// When constraints are corrected: steps=K or violation=SIZE [default: --correct-every; every step with

@@ -85,7 +85,7 @@ fn judge(missed: &[Goal], is_quick: bool) -> Result<(), Failure> {
     }
 }
 
-/// The pages to report on: those given; of all shipped ones; in quick mode the paper's scene.
+/// The model files to report on: those given; of all shipped ones; in quick mode the paper's scene.
 fn pages(args: &ReportArgs) -> Result<Vec<PathBuf>, Failure> {
     let models = files::root().join("models");
     match (args.models.is_empty(), args.quick) {

@@ -1,4 +1,4 @@
-//! A tree in joint coordinates: what is derived before anything is solved.
+//! Joint coordinates: what is derived before anything is solved.
 
 use super::closure::{self, Closure};
 use super::determined::{self, Determined, Relation};

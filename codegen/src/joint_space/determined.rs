@@ -25,8 +25,8 @@ pub enum Relation {
     Forward(usize),
     /// Its first coordinate by its second.
     Backward(usize),
-    /// A row of a joint that closes a loop, by its place among all rows: the coordinate is zero, as the angle out of its
-    /// plane of a linkage is.
+    /// A row of a joint that closes a loop, by its place among all rows: the coordinate is zero, as the angle out of
+    /// its plane of a linkage is.
     Held(usize),
 }
 

@@ -1,10 +1,13 @@
-//! Trees in joint coordinates: the state-space form, and the short way to the maximal accelerations of a state that
-//! satisfies the constraints.
+//! Joint coordinates: the state-space form, and the short way to the maximal accelerations of a state that satisfies
+//! the constraints.
 //!
-//! `layout` orders the coordinates, `link_kinematics` says how a body moves on its carrier and `maps` leads to maximal
-//! coordinates and back: `coordinates` has all that is derived of them. `dynamics` solves for the rates' rates in
-//! several ways, which are the `candidates`, and `choose` takes the cheapest of those that are accurate, with what
-//! follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of the joint form.
+//! `layout` orders the coordinates of a spanning tree, but for those that are `determined` by couplers, drivers and
+//! loops; `link_kinematics` says how a body moves on its carrier, `whole_angles` where it is, and `maps` leads to
+//! maximal coordinates and back. `closure` has the rows of joints that close loops, `loops` how rates keep these
+//! closed, and `embedding` how all rates of the tree follow fewer unknowns. `coordinates` has all that is derived of
+//! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for those
+//! of planar mechanisms; these are the `candidates`, and `choose` takes the cheapest of those that are accurate, with
+//! what follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of the joint form.
 
 mod candidates;
 mod choose;

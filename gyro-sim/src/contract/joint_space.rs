@@ -20,10 +20,10 @@ use super::{Equations, Storage};
 /// joint coordinates satisfy all rows by construction.
 ///
 /// # The Jacobian
-/// Generated trees of up to eight rates have the derivatives of the joint form `ẋ = f(t, x)`, unless a third derivative
-/// of a table would be needed; for the others both Jacobians are `()`. They are the derivatives of the emitted
-/// functions as they stand, in directions too in which the state cannot change (of Euler parameters, across their unit
-/// sphere).
+/// Generated mechanisms of up to eight rates have the derivatives of the joint form `ẋ = f(t, x)`, unless a third
+/// derivative of a table would be needed; for the others both Jacobians are `()`. They are the derivatives of the
+/// emitted functions as they stand, in directions too in which the state cannot change (of Euler parameters, across
+/// their unit sphere).
 pub trait JointSpace: Equations {
     /// `(x, u [, work])`.
     type Joints: Storage<Self::Scalar>;

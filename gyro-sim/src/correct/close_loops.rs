@@ -14,6 +14,37 @@ use crate::{
 /// in units of the mechanism's size, times the largest angle, of which no more digits are known. A change by more than
 /// half a radian or half the mechanism's size in one iteration may lead to another way to assemble the mechanism and is
 /// refused.
+///
+/// # Example
+/// ```
+/// # fn main() -> Result<(), gyro_sim::Error> {
+/// use gyro_mechanisms::four_bar::FourBar;
+/// use gyro_sim::{CloseLoops, Dop853, Joint, JointSpace, Mechanism, Solver};
+///
+/// let linkage = FourBar::<f64>::default();
+/// // Three angles and their rates: crank, rocker and elbow. The joint at the knee is cut; two of its rows close the loop.
+/// assert_eq!(linkage.joint_layout().places.len(), 3);
+/// assert_eq!(linkage.joint_layout().closure_rows.len(), 2);
+///
+/// // Another start: the crank is turned, and closing the loop changes all angles a little.
+/// let mut x = linkage.joint_start();
+/// x[0] += 0.1;
+/// let mut loops = CloseLoops::new(&linkage);
+/// loops.correct(&linkage, 0.0, &mut x)?;
+///
+/// // Ten seconds; after each step the loop is closed.
+/// let mut solver = Solver::with_correction(Joint, Dop853::new(&x), loops, 0.0, &x);
+/// solver.advance_to(&linkage, 10.0)?;
+/// let mut closure = linkage.joint_buffers().closure;
+/// linkage.loop_closure(10.0, solver.state(), &mut closure);
+/// assert!(closure.iter().all(|row| row.abs() < 1e-12));
+///
+/// // Where the bodies are.
+/// let mut y = linkage.start();
+/// linkage.to_maximal(10.0, solver.state(), &mut y);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct CloseLoops<M: JointSpace> {
     closure: M::Closure,

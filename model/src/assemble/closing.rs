@@ -69,7 +69,8 @@ fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, Ass
     Ok(Start { q: at.q, v, joints, moved })
 }
 
-/// Whether the model file gives every coordinate that places a body on another: a pose that nobody wrote chooses nothing.
+/// Whether the model file gives every coordinate that places a body on another: a pose that nobody wrote chooses
+/// nothing.
 fn chooses_branch(tree: &Tree, guesses: &[Guess]) -> bool {
     tree.links.iter().all(|link| match link.attachment {
         crate::Attachment::Joint { joint, .. } => guesses[joint].told() == Told::All,

@@ -7,7 +7,8 @@ use crate::{Row, RowOwner};
 use std::slice;
 
 /// Part of a row that is not in the span of the others, below which it depends on them. Poses satisfy their equations
-/// to about 1e-13; a row that is independent only by a slip of a model file's last digits is not taken for a dependent one.
+/// to about 1e-13; a row that is independent only by a slip of a model file's last digits is not taken for a dependent
+/// one.
 pub(super) const INDEPENDENT: f64 = 1e-7;
 
 /// Of the rows of one owner the first whose independent part is at least this part of the largest is taken next: so

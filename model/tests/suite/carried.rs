@@ -22,7 +22,7 @@ enum Carrier {
     Fixed,
 }
 
-/// Orthonormal axes of the loop's plane in the carrier, and as a page writes axis and zero direction.
+/// Orthonormal axes of the loop's plane in the carrier, and as a model file writes axis and zero direction.
 struct Plane {
     axes: [Vector; 3],
     text: String,

@@ -43,7 +43,7 @@ struct Loop {
 /// Four bars whose axes are all parallel.
 fn four_bar() -> Loop {
     let page = page("four-bar-revolute");
-    let text = std::fs::read_to_string("../models/four-bar-revolute.toml").expect("a page");
+    let text = std::fs::read_to_string("../models/four-bar-revolute.toml").expect("a model file");
     let (tree, _) = text.rsplit_once("[[joint]]").expect("a joint");
     const RATES: &[Rate] = &[&[(true, 5)], &[(true, 17)], &[(true, 11), (false, 5)]];
     Loop { page, tree: generate_text("tree.toml", tree), rates: RATES }

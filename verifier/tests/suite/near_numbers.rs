@@ -54,7 +54,7 @@ fn numbers_that_round_to_one_literal_are_proved() {
         assert!(report.is_proved(), "{what}: {report}");
         assert!(
             !shared(&page).is_empty(),
-            "{what}: no literal stands for two numbers, the page shows nothing"
+            "{what}: no literal stands for two numbers, the model file shows nothing"
         );
     }
 }

@@ -29,7 +29,7 @@ struct Substituted {
 }
 
 fn gear() -> Substituted {
-    let text = std::fs::read_to_string("../tests/models/gear.toml").expect("a page");
+    let text = std::fs::read_to_string("../tests/models/gear.toml").expect("a model file");
     let (head, rest) = text.split_once("[[coupler]]").expect("a coupler");
     let (_, forces) = rest.split_once("[[force]]").expect("forces");
     let tree = generate_text("tree.toml", &format!("{head}[[force]]{forces}"));
@@ -43,7 +43,7 @@ fn gear() -> Substituted {
 }
 
 fn driven_shaft() -> Substituted {
-    let text = std::fs::read_to_string("../tests/models/driven-shaft.toml").expect("a page");
+    let text = std::fs::read_to_string("../tests/models/driven-shaft.toml").expect("a model file");
     let (head, _) = text.split_once("[[driver]]").expect("a driver");
     let tree = generate_text("tree.toml", head);
     // θ₁ = from + 31.4 t

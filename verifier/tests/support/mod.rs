@@ -26,7 +26,7 @@ pub fn pages() -> Vec<PathBuf> {
 /// The model file of a model by its file's name without extension.
 pub fn page(name: &str) -> Page {
     let path = pages().into_iter().find(|path| path.file_stem().is_some_and(|stem| stem == name));
-    generate(&path.unwrap_or_else(|| panic!("no page {name}")))
+    generate(&path.unwrap_or_else(|| panic!("no model file {name}")))
 }
 
 /// Reads a model file and generates its module.
