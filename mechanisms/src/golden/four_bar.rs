@@ -38,6 +38,7 @@
 //! | corrected_solution | both | 204 | 326 | 2 | 532 | 0 of 35 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 151 | 242 | 1 | 394 | 21 of 42 |
 //! | loop_closure | Φ of the joints that close loops, in joint coordinates | 7 | 10 | 0 | 17 | 0 of 2 |
+//! | closure_distances | squares of distances between the rows of the loops' Jacobian | 11 | 22 | 1 | 34 | 0 of 2 |
 //! | close_positions | one Newton step of joint coordinates that closes loops | 23 | 34 | 1 | 58 | 0 of 3 |
 //! | close_velocities | rates that keep loops closed | 23 | 43 | 1 | 67 | 0 of 3 |
 //!
@@ -49,7 +50,7 @@
 //! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
-//! * loop_closure, close_positions, close_velocities: Newton's step for closed loops
+//! * loop_closure, closure_distances, close_positions, close_velocities: Newton's step for closed loops
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
 //! * joint_accelerations: eq. (17) on the constraints
 //! * joint_derivative: eqs. (14) and (16) on the constraints
@@ -4744,6 +4745,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
             -T::fused(-k(0.2), t2, k(0.4) * x1.sin()),
         );
         *out = [-t4, -t5];
+    }
+    /// Writes squares of distances between the rows of the loops' Jacobian: 34 operations (11 ±, 22 ×, 1 ÷) and 6 functions.
+    fn closure_distances(&self, _t: T, x: &Self::Joints, out: &mut Self::Closure) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let t0 = x2.sin();
+        let t1 = x0.cos();
+        let t2 = x2.cos();
+        let t3 = x0.sin();
+        let t4 = k(0.5) * T::fused(t1, t0, t3 * t2);
+        let t5 = k(0.4) * x1.sin();
+        let t6 = T::fused(k(0.2), t3, t4);
+        let t7 = T::fused(t4, t4, T::fused(t5, t5, t6 * t6));
+        let t8 = k(0.5) * T::fused(-t3, t0, t1 * t2);
+        let t9 = k(0.4) * x1.cos();
+        let t10 = T::fused(-t8, t5, t4 * t9);
+        let t11 = T::fused(k(0.2), t1, t8);
+        let t12 = T::fused(-t4, t11, t8 * t6);
+        let t13 = T::fused(-t9, t6, t5 * t11);
+        let t14 = T::fused(t13, t13, T::fused(t10, t10, t12 * t12)) / t7;
+        *out = [t7, t14];
     }
     /// One Newton step of the joint coordinates towards closed loops: 58 operations (23 ±, 34 ×, 1 ÷) and 6 functions.
     fn close_positions(&self, _t: T, x: &mut Self::Joints) {
