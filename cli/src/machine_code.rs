@@ -89,6 +89,9 @@ fn call(kernel: Kernel) -> Option<Call> {
         Kernel::LoopClosure => {
             ["loop_closure", "x: &Joints, out: &mut <Module as JointSpace>::Closure", "x, out", ""]
         }
+        Kernel::ClosureDistances => {
+            ["closure_distances", "x: &Joints, out: &mut <Module as JointSpace>::Closure", "x, out", ""]
+        }
         Kernel::ClosePositions => ["close_positions", "x: &mut Joints", "x", ""],
         Kernel::CloseVelocities => ["close_velocities", "x: &mut Joints", "x", ""],
     };

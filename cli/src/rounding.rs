@@ -259,6 +259,7 @@ where
         | Kernel::ToJoints
         | Kernel::CorrectedSolution
         | Kernel::LoopClosure
+        | Kernel::ClosureDistances
         | Kernel::ClosePositions
         | Kernel::CloseVelocities
         | Kernel::JointJacobian

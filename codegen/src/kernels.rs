@@ -43,6 +43,7 @@ pub enum Kernel {
     JointJacobian,
     JointInputJacobian,
     LoopClosure,
+    ClosureDistances,
     ClosePositions,
     CloseVelocities,
 }
@@ -107,6 +108,7 @@ const TABLE: &[Row] = &[
     row(Kernel::JointJacobian, "joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", Source::Jacobian(|j| j.by_state_and_time.clone())),
     row(Kernel::JointInputJacobian, "joint_input_jacobian", "∂f/∂(inputs)", Source::Jacobian(|j| j.by_inputs.clone())),
     row(Kernel::LoopClosure, "loop_closure", "Φ of the joints that close loops, in joint coordinates", Source::JointSpace(|s| s.closure.clone().into())),
+    row(Kernel::ClosureDistances, "closure_distances", "squares of distances between the rows of the loops' Jacobian", Source::JointSpace(|s| s.distances.clone().into())),
     row(Kernel::ClosePositions, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
     row(Kernel::CloseVelocities, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
 ];

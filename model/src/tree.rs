@@ -53,8 +53,13 @@ impl Tree {
     }
 
     /// The trees whose joint coordinates describe the mechanism: of the joints of a loop one is cut that has many
-    /// coordinates, so that few rows are left, and on whose coordinates nothing acts.
+    /// coordinates, so that few rows are left, and on whose coordinates nothing acts. Where no joint is cut it is the
+    /// same tree in the same order.
     pub fn of_coordinates(model: &Model) -> Self {
+        let tree = Self::of(model);
+        if tree.loop_joints.is_empty() {
+            return tree;
+        }
         let free = |joint: usize| u8::try_from(model.joints[joint].kind.n_free()).unwrap_or(u8::MAX);
         let is_acted_on: Vec<_> =
             (0..model.joints.len()).map(|joint| model.acts_on_coordinates(joint)).collect();

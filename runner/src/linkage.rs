@@ -173,6 +173,14 @@ impl<T: Scalar> JointSpace for Linkage<T> {
         let ([c1, c2, c3], [s1, s2, s3]) = (planar.cos, planar.sin);
         *out = [a * c1 + b * c2 - self.ground - c * c3, a * s1 + b * s2 - c * s3];
     }
+    fn closure_distances(&self, _: T, x: &[T; 6], out: &mut [T; 2]) {
+        // By the angles of bars, which the rates of crank, rocker and elbow turn.
+        let by_rates = |[crank, coupler, rocker]: [T; 3]| [crank + coupler, rocker, coupler];
+        let [first, second] = Planar::of(x).jacobian().map(by_rates);
+        let along = dot(&first, &second);
+        let square = dot(&first, &first);
+        *out = [square, dot(&second, &second) - along * along / square];
+    }
     fn close_positions(&self, t: T, x: &mut [T; 6]) {
         let mut closure = [T::constant(0.0); 2];
         self.loop_closure(t, x, &mut closure);

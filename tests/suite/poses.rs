@@ -188,6 +188,44 @@ fn generated_code_passes_by_every_integrator() {
     }
 }
 
+/// In joint coordinates the clearance is that of the loops' Jacobian.
+#[test]
+fn joint_coordinates_pass_at_every_tolerance() {
+    let in_line = Pendulum {
+        mass: 1.4,
+        inertia: 0.0507 - 1.4 * 0.2 * 0.2,
+        distance: 0.2,
+        gravity: 9.81,
+        start: FRAC_PI_2 - PI / 3.0,
+        rate: 12.0,
+    };
+    let of_gravity: fn(f64) -> f64 = |from_gravity| from_gravity - FRAC_PI_2;
+    for (page, t_end, n_bars, pendulum, angle) in [
+        ("four-bar-in-line", 2.0, 2, in_line, of_gravity),
+        ("two-four-bars", 20.0, 3, as_pendulum(2, 1.0), pivot_angle),
+    ] {
+        let model = model(page);
+        let engine = generated(page);
+        let builder = engine.clone().builder(duals(page));
+        for (integrator, tolerance) in [
+            (Integrator::Dop853, 1e-6),
+            (Integrator::Dop853, 1e-9),
+            (Integrator::Dop853, 1e-12),
+            (Integrator::Tsit5, 1e-6),
+            (Integrator::Tsit5, 1e-9),
+        ] {
+            let coordinates = Coordinates::Joint;
+            let approach = Approach { coordinates, ..approach(integrator, tolerance, Correction::Partition) };
+            let (samples, outcome) = run(&engine, &*builder, (&model, t_end), &approach);
+            let summary = outcome.unwrap_or_else(|failure| panic!("{page}, {approach}: {failure}"));
+            let error = off_by(&samples, n_bars, &pendulum, angle);
+            println!("{page}, {approach}: off by {error:.1e}, {:?}", summary.statistics);
+            assert!(error < ADDED_UP * tolerance + ROUNDING, "{page}, {approach}: {error:e}");
+            assert!(summary.statistics.leaps > 0, "{summary:?}");
+        }
+    }
+}
+
 #[test]
 fn without_a_correction_the_pose_is_named() {
     let model = cells(2, 1.0, 0.0);

@@ -321,6 +321,9 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     fn loop_closure(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
         self.tree().loop_closure(t, x, out);
     }
+    fn closure_distances(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        self.tree().closure_distances(t, x, out);
+    }
     fn close_positions(&self, t: T, x: &mut Vec<T>) {
         self.tree().close_positions(t, x);
     }

@@ -64,6 +64,7 @@ const WORDS: &[Words] = &[
     says("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
     writes("joint_input_jacobian", "∂f/∂(inputs)"),
     says("loop_closure", "Φ of the joints that close loops, in joint coordinates", "Writes Φ of the joints that close loops"),
+    says("closure_distances", "squares of distances between the rows of the loops' Jacobian", "Writes squares of distances between the rows of the loops' Jacobian"),
     says("close_positions", "one Newton step of joint coordinates that closes loops", "One Newton step of the joint coordinates towards closed loops"),
     says("close_velocities", "rates that keep loops closed", "Changes the rates such that loops stay closed"),
 ];

@@ -27,8 +27,14 @@ const REGULAR: f64 = 1e-9;
 const VANISHING: f64 = 1e-12;
 
 /// Functions of a joint state that solve for what the rows of loops demand.
-const IN_JOINTS: [&str; 5] =
-    ["joint_accelerations", "close_positions", "close_velocities", "joint_jacobian", "joint_input_jacobian"];
+const IN_JOINTS: [&str; 6] = [
+    "joint_accelerations",
+    "closure_distances",
+    "close_positions",
+    "close_velocities",
+    "joint_jacobian",
+    "joint_input_jacobian",
+];
 
 /// All that is not finite and should be.
 pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
@@ -227,22 +233,25 @@ fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
             row.iter_mut().zip(&scales).for_each(|(x, also_by)| *x *= by * also_by);
         }
     }
+    // Few rows have anything in a column: only these change, and only among them the largest is looked for anew.
+    let mut left = vec![true; n];
+    let largest = |row: &[f64], left: &[bool]| -> (f64, usize) {
+        let sizes = row.iter().zip(left).enumerate().filter(|(_, (_, left))| **left);
+        sizes.fold((0.0, 0), |most, (k, (x, _))| if x.abs() >= most.0 { (x.abs(), k) } else { most })
+    };
+    let mut rows: Vec<_> = matrix.into_iter().map(|row| (largest(&row, &left), row)).collect();
     let mut smallest = f64::INFINITY;
-    for step in 0..n {
-        let places = (step..n).flat_map(|i| (step..n).map(move |k| (i, k)));
-        let size = |&(i, k): &(usize, usize)| matrix[i][k].abs();
-        let Some((i, k)) = places.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
-        smallest = smallest.min(matrix[i][k].abs());
+    while let Some(at) = (0..rows.len()).max_by(|&a, &b| rows[a].0.0.total_cmp(&rows[b].0.0)) {
+        let ((size, column), pivot) = rows.swap_remove(at);
+        smallest = smallest.min(size);
         if smallest <= REGULAR {
             return smallest;
         }
-        matrix.swap(step, i);
-        matrix.iter_mut().for_each(|row| row.swap(step, k));
-        let (done, rest) = matrix.split_at_mut(step + 1);
-        let pivot = &done[step];
-        for row in rest {
-            let factor = row[step] / pivot[step];
-            row[step..].iter_mut().zip(&pivot[step..]).for_each(|(x, p)| *x -= factor * p);
+        left[column] = false;
+        for (most, row) in rows.iter_mut().filter(|(_, row)| row[column] != 0.0) {
+            let factor = row[column] / pivot[column];
+            row.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= factor * p);
+            *most = largest(row, &left);
         }
     }
     smallest

@@ -60,7 +60,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 32] = [
+const FUNCTIONS: [(&str, Form); 33] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -89,6 +89,7 @@ const FUNCTIONS: [(&str, Form); 32] = [
     ("corrected_multipliers", Form::Filling),
     ("corrected_solution", Form::Filling),
     ("loop_closure", Form::Filling),
+    ("closure_distances", Form::Filling),
     ("close_positions", Form::JointStores),
     ("close_velocities", Form::JointStores),
     ("joint_jacobian", Form::Jacobian),
@@ -308,6 +309,7 @@ impl Module {
             ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
             ("corrected_solution", if self.joints.is_some() { 6 * n + rows } else { 0 }),
             ("loop_closure", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
+            ("closure_distances", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
         ];

@@ -43,6 +43,8 @@ pub struct JointSpace {
     pub closure_rows: Vec<usize>,
     /// Φ of these rows, in terms of joint coordinates.
     pub closure: Vec<ExprId>,
+    /// The square of the distance of each row of their Jacobian from the span of those before it.
+    pub distances: Vec<ExprId>,
     /// x, one Newton step nearer to closed loops.
     pub closer_coordinates: Vec<ExprId>,
     /// u that keep loops closed.
@@ -107,11 +109,12 @@ impl JointSpace {
             passes,
         };
         let jacobian = Jacobian::derive(system, &form);
-        let [closure, closer_coordinates, closing_rates] = coordinates.closing(system);
+        let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
             closure_rows: coordinates.closure.rows.clone(),
             closure,
+            distances,
             closer_coordinates,
             closing_rates,
             accelerations,

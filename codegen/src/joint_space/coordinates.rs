@@ -113,7 +113,7 @@ impl Coordinates {
     }
 
     /// Φ of the joints that close loops; x, one Newton step nearer to closed loops; u that keep loops closed.
-    pub fn closing(&self, system: &mut System) -> [Vec<ExprId>; 3] {
+    pub fn closing(&self, system: &mut System) -> [Vec<ExprId>; 4] {
         let Self { layout, closure, loops, .. } = self;
         if closure.rows.is_empty() {
             return Default::default();
@@ -123,6 +123,7 @@ impl Coordinates {
             rows.iter().map(|&row| graph.neg(row)).collect()
         };
         let missing = opposite(graph, &closure.phi);
+        let distances = loops.distances(graph, closure);
         let shifts = loops.changes(graph, closure, &missing, layout.n_rates);
         let missing = opposite(graph, &closure.residual);
         let changes = loops.changes(graph, closure, &missing, layout.n_rates);
@@ -136,7 +137,7 @@ impl Coordinates {
             shifts.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Coordinate(k), by)).collect();
         let u: Vec<_> =
             changes.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Rate(k), by)).collect();
-        [&closure.phi, &x, &u].map(|roots| system.expanded(&self.in_joints, roots))
+        [&closure.phi, &distances, &x, &u].map(|roots| system.expanded(&self.in_joints, roots))
     }
 
     /// The rows that the unknowns must meet besides, with what they must come to.

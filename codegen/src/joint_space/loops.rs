@@ -90,7 +90,7 @@ impl Loops {
                 .for_each(|(&rate, change)| changes[rate] = change);
         }
         let rhs = self.others.iter().map(|&row| rhs[row]).collect();
-        let weights = self.solve_square(graph, closure, rhs);
+        let weights = self.square(graph, closure, rhs).solve_in_order(graph);
         for (&row, weight) in self.others.iter().zip(weights) {
             for (change, &entry) in changes.iter_mut().zip(&closure.jacobian[row]) {
                 let part = graph.mul(entry, weight);
@@ -109,13 +109,26 @@ impl Loops {
             single.rows.iter().zip(found).for_each(|(&row, multiplier)| multipliers[row] = multiplier);
         }
         let rhs = self.others.iter().map(|&row| graph.dot_slices(&closure.jacobian[row], forces)).collect();
-        let found = self.solve_square(graph, closure, rhs);
+        let found = self.square(graph, closure, rhs).solve_in_order(graph);
         self.others.iter().zip(found).for_each(|(&row, multiplier)| multipliers[row] = multiplier);
         multipliers
     }
 
+    /// The squares of the distances of the rows of J, each from the span of those before it.
+    pub fn distances(&self, graph: &mut Graph, closure: &Closure) -> Vec<ExprId> {
+        let mut distances = vec![Graph::ZERO; closure.rows.len()];
+        for single in &self.single {
+            let found = single.distances(graph);
+            single.rows.iter().zip(found).for_each(|(&row, distance)| distances[row] = distance);
+        }
+        let none = vec![Graph::ZERO; self.others.len()];
+        let found = self.square(graph, closure, none).pivots_in_order(graph);
+        self.others.iter().zip(found).for_each(|(&row, distance)| distances[row] = distance);
+        distances
+    }
+
     /// `J Jᵀ w = b` for the rows of the other loops.
-    fn solve_square(&self, graph: &mut Graph, closure: &Closure, rhs: Vec<ExprId>) -> Vec<ExprId> {
+    fn square(&self, graph: &mut Graph, closure: &Closure, rhs: Vec<ExprId>) -> Elimination {
         let mut square = BTreeMap::new();
         for (k, &row) in self.others.iter().enumerate() {
             for (l, &other) in self.others[..=k].iter().enumerate() {
@@ -123,11 +136,22 @@ impl Loops {
             }
         }
         square.retain(|_, entry| *entry != Graph::ZERO);
-        Elimination::new(square, rhs).solve_in_order(graph)
+        Elimination::new(square, rhs)
     }
 }
 
 impl Single {
+    /// The squares of the distances of the rows, each from the span of those before it.
+    fn distances(&self, graph: &mut Graph) -> Vec<ExprId> {
+        match &self.solve {
+            Solve::Pair { row, .. } => vec![graph.dot_slices(row, row)],
+            Solve::Triple { rows: [first, _], motion, .. } => {
+                let [first, area] = [first, motion].map(|vector| graph.dot(vector, vector));
+                vec![first, graph.div(area, first)]
+            }
+        }
+    }
+
     /// `None` if the loop has not a single motion, or one for which there is no short formula.
     fn of(graph: &mut Graph, closure: &Closure, rows: &[usize], rates: &BTreeSet<usize>) -> Option<Self> {
         let rates: Vec<_> = rates.iter().copied().collect();

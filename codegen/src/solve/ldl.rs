@@ -37,6 +37,17 @@ impl Elimination {
         self.substitute_back(graph)
     }
 
+    /// D of L D Lᵀ, unknowns eliminated in their order.
+    pub fn pivots_in_order(mut self, graph: &mut Graph) -> Vec<ExprId> {
+        let count = self.rhs[0].len();
+        let pivot = |unknown| {
+            let diagonal = self.diagonal(unknown);
+            self.pivot(graph, unknown);
+            diagonal
+        };
+        (0..count).map(pivot).collect()
+    }
+
     /// Rewrites all that is yet to be eliminated; of each expression `rewritten` is told whether it is on the diagonal.
     pub fn rewrite(&mut self, rewritten: impl FnOnce(&[ExprId], &[bool]) -> Vec<ExprId>) {
         let old: Vec<_> = self.entries.values().chain(self.rhs.iter().flatten()).copied().collect();

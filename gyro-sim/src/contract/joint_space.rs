@@ -79,8 +79,11 @@ pub trait JointSpace: Equations {
     }
     /// Writes ∂f/∂(inputs), row by row. Implemented where [`JointSpace::InputJacobian`] is not `()`.
     fn joint_input_jacobian(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::InputJacobian) {}
-    /// Writes Φ_c. Like the two functions below, it does nothing for trees.
+    /// Writes Φ_c. Like the functions below, it does nothing for trees.
     fn loop_closure(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::Closure) {}
+    /// Writes for each row of J the square of its distance from the span of the rows before it: the diagonal of D in
+    /// `J Jᵀ = L D Lᵀ`. Where a mechanism has more freedoms than elsewhere one of them is zero.
+    fn closure_distances(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::Closure) {}
     /// One Newton step of the positions towards `Φ_c = 0`: x changes by a δ with `J δ = −Φ_c` (Euler parameters, which
     /// this does not normalise, by `½ Gᵀ δ`). u is left as it is.
     fn close_positions(&self, _t: Self::Scalar, _x: &mut Self::Joints) {}
@@ -161,7 +164,7 @@ pub struct JointBuffers<M: JointSpace + ?Sized> {
     pub rates: M::Rates,
     /// For [`JointSpace::corrected_solution`].
     pub solution: M::Solution,
-    /// For [`JointSpace::loop_closure`].
+    /// For [`JointSpace::loop_closure`] and [`JointSpace::closure_distances`].
     pub closure: M::Closure,
     /// For [`JointSpace::joint_jacobian`].
     pub jacobian: M::Jacobian,

@@ -3,8 +3,8 @@
 use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
 use crate::violation::{Violation, closure_violation};
 use crate::{
-    ByDuals, Coordinate, Error, Joint, JointLayout, JointPlace, JointSpace, Mechanism, Ode, Owner, Real,
-    Scalar,
+    ByDuals, Clearance, Coordinate, Error, Joint, JointLayout, JointPlace, JointSpace, Mechanism, Ode, Owner,
+    Real, Scalar,
 };
 
 /// Closes the loops of a mechanism in joint coordinates: positions by Newton's iteration
@@ -99,6 +99,31 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
         closure_violation(mechanism, mechanism.joint_layout().closure_rows, self.closure.as_ref())
     }
 
+    /// How near the rows of J are to depending on each other: the least distance of one of them from the span of those
+    /// before it, lengths in units of the mechanism's size, as smooth as J where several are as near (`1/√Σd⁻²`). None
+    /// for trees.
+    pub fn clearance(&self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Option<Clearance<M::Scalar>> {
+        let rows = mechanism.joint_layout().closure_rows;
+        let mut squares = self.closure.clone();
+        mechanism.closure_distances(t, x, &mut squares);
+        let (zero, one, size) = (M::Scalar::constant(0.0), M::Scalar::constant(1.0), mechanism.size());
+        let (mut sum, mut nearest) = (zero, None);
+        for (&row, &square) in rows.iter().zip(squares.as_ref()) {
+            let row = mechanism.description().rows.get(usize::from(row));
+            let owner = row.map(|row| row.owner);
+            let square = if row.is_some_and(|row| row.is_length) { square / (size * size) } else { square };
+            let inverse = one / square;
+            if !(square > zero && inverse.is_finite()) {
+                return Some(Clearance { pivot: zero, owner });
+            }
+            sum = sum + inverse;
+            if nearest.is_none_or(|(largest, _)| inverse > largest) {
+                nearest = Some((inverse, owner));
+            }
+        }
+        nearest.map(|(_, owner)| Clearance { pivot: one / sum.sqrt(), owner })
+    }
+
     /// How large the numbers are that a row subtracts, at least one: mass centres in units of the mechanism's size,
     /// times angles.
     fn magnitude(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
@@ -151,6 +176,9 @@ impl<M: JointSpace<Scalar: Real>> Correction<Joint, M> for CloseLoops<M> {
     fn violation(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
         self.worst(mechanism, t, x).value
     }
+    fn clearance(&self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Option<Clearance<M::Scalar>> {
+        self.clearance(mechanism, t, x)
+    }
 }
 
 /// The same equations with a Jacobian.
@@ -164,6 +192,9 @@ where
     }
     fn violation(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
         Correction::<Joint, M>::violation(self, mechanism, t, x)
+    }
+    fn clearance(&self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Option<Clearance<M::Scalar>> {
+        self.clearance(mechanism, t, x)
     }
 }
 

@@ -71,6 +71,17 @@ fn bodies_on_rods_float_and_carry_others() {
     assert!(tree.unreached.is_empty() && !tree.is_open());
 }
 
+/// Charts are counted along the tree, by all who read it: friction changes which joint of a loop is cut, and nothing
+/// where none is.
+#[test]
+fn an_open_tree_is_the_same_whatever_acts_on_its_joints() {
+    let mut model = page(3, &[("revolute", [0, 1]), ("revolute", [0, 2]), ("revolute", [3, 1])]);
+    model.joints[2].friction = model.bodies[1].mass.clone();
+    assert!(model.acts_on_coordinates(2));
+    assert_eq!(order(&Tree::of_coordinates(&model)), order(&Tree::of(&model)));
+    assert_eq!(order(&Tree::of(&model)), [(1, Some(0)), (2, Some(1)), (3, Some(2))]);
+}
+
 /// Each coordinate of each kind, driven alone in an open tree: it starts where its driver is and moves as it does.
 #[test]
 fn driven_coordinates_of_trees_start_with_their_drivers() {

@@ -199,7 +199,7 @@ impl Page {
     }
 
     /// Mass and inertia: a box, as tables, people and programs give them.
-    fn solid(&mut self) -> String {
+    pub fn solid(&mut self) -> String {
         let mass = self.dice.number();
         let [x, y, z] = [(); 3].map(|()| self.dice.pick(&[0.1, 0.3, 1.0, 0.02, 0.5]));
         let square = value(&mass) / 12.0;

@@ -74,6 +74,11 @@ impl Closing {
         Some(Self::new(kind, length, [(a, first, first_frame), (b, point, frame)]))
     }
 
+    /// A revolute or prismatic joint between bodies that move in one plane, where its other rows hold already.
+    pub fn in_plane(kind: Kind, [a, b]: [usize; 2], points: [Vector; 2], frames: [[Vector; 2]; 2]) -> Self {
+        Self::new(kind, 0.0, [(a, points[0], Some(frames[0])), (b, points[1], Some(frames[1]))])
+    }
+
     fn new(kind: Kind, length: f64, ends: [(usize, Vector, Option<[Vector; 2]>); 2]) -> Self {
         Self { kind, length, ends: ends.map(|(body, point, frame)| End { body, point, frame }) }
     }
@@ -92,7 +97,7 @@ impl Closing {
         Joint { kind: self.kind, root, text, starts: Vec::new(), taken: Vec::new(), following: Vec::new() }
     }
 
-    /// What the joint holds at zero, or at its length.
+    /// What the joint holds at zero, or at its length; of joints in a plane what they hold there.
     fn rows(&self, places: &[Place]) -> Vec<f64> {
         let [a, b] = self.ends;
         let (first, second) = (places[a.body], places[b.body]);
@@ -108,7 +113,8 @@ impl Closing {
         let own_across = across(a, first).unwrap_or_default();
         match (self.kind.name, axis(a, first), axis(b, second)) {
             ("rod", ..) => vec![dot(apart, apart).sqrt()],
-            ("point_on_line", ..) => own_across.map(|v| dot(v, apart)).to_vec(),
+            ("point_on_line" | "revolute", ..) => own_across.map(|v| dot(v, apart)).to_vec(),
+            ("prismatic", _, Some(other)) => vec![dot(own_across[0], apart), dot(own_across[0], other)],
             ("universal", Some(h), Some(other)) => [&apart[..], &[dot(h, other)]].concat(),
             ("planar", Some(h), Some(other)) => {
                 let tilts = own_across.map(|v| dot(v, other));

@@ -2,9 +2,9 @@
 //! them.
 //!
 //! Trees of one to four bodies with joints of all kinds, roots that are fixed, driven, free or held by rows of their
-//! own, loops, couplers, drivers, forces and outputs; numbers that a program printed, that somebody shortened, that
-//! differ by less than a float can tell. A start is planted: joints that close loops are put where the bodies already
-//! are. So no model file should be refused by anybody.
+//! own, planar linkages and other loops, couplers, drivers, forces and outputs; numbers that a program printed, that
+//! somebody shortened, that differ by less than a float can tell. A start is planted: joints that close loops are put
+//! where the bodies already are. So no model file should be refused by anybody.
 //!
 //! ```
 //! let text = gyro_pages::page(7);
@@ -17,6 +17,7 @@ mod bodies;
 mod closing;
 mod dice;
 mod elements;
+mod linkages;
 mod loops;
 mod page;
 mod vector;
@@ -27,12 +28,19 @@ use page::Page;
 pub fn page(seed: u64) -> String {
     let mut page = Page::new(seed);
     page.tree();
+    let chain = (page.is_closed && page.dice.once_in(2)).then(|| page.chain());
     page.drivers();
     if page.is_closed {
-        if page.dice.once_in(2) {
+        for _ in 0..page.dice.pick(&[0, 0, 1, 2, 3]) {
             page.coupler();
         }
-        page.close();
+        match chain {
+            Some(chain) => page.close_chain(&chain),
+            None => page.close(),
+        }
+        if page.dice.once_in(8) {
+            page.close();
+        }
     }
     let places = loops::places(&page.read());
     page.forces(&places);

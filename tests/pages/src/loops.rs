@@ -23,14 +23,16 @@ impl Page {
         }
     }
 
-    /// A gear, a belt, a rack and pinion.
+    /// A gear, a belt, a rack and pinion, one after the other: `own` is free, `other` may follow a driver or another
+    /// coupler.
     pub fn coupler(&mut self) {
-        let Some(first) = self.free_coordinate() else { return };
-        let Some(second) = (0..TRIES).find_map(|_| self.free_coordinate().filter(|other| *other != first))
-        else {
-            return;
-        };
+        let Some(own) = self.free_coordinate() else { return };
+        let coordinates = self.coordinates();
+        let pick = |page: &mut Self| coordinates[page.dice.below(coordinates.len())];
+        let is_other = |other: &(usize, &str)| *other != own;
+        let Some(other) = (0..TRIES).find_map(|_| Some(pick(self)).filter(is_other)) else { return };
         let ratio = self.dice.pick(&["-1.7", "2", "-0.3333333333333333", "0.5", "-3"]).to_owned();
+        let [first, second] = if self.dice.once_in(3) { [own, other] } else { [other, own] };
         // What the coordinates are at the start; somebody may have shortened it.
         let start = self.read().assemble().unwrap_or_else(|error| panic!("{}: {error}", self.name));
         let at = |(joint, coordinate): (usize, &str)| {
@@ -40,13 +42,15 @@ impl Page {
         };
         let offset = at(second) - value(&ratio) * at(first);
         let offset = if self.dice.once_in(2) { format!("{offset:.3}") } else { format!("{offset:?}") };
-        self.take(second.0, second.1);
-        self.joints[first.0].taken.push(first.1);
+        self.take(own.0, own.1);
+        self.joints[other.0].taken.push(other.1);
         let ratio = self.tunable(ratio);
         let [first, second] = [first, second]
             .map(|(joint, coordinate)| format!("{{ joint = \"j{joint}\", coordinate = {coordinate:?} }}"));
+        let name = self.n_couplers;
+        self.n_couplers += 1;
         self.elements += &format!(
-            "\n[[coupler]]\nname = \"coupler\"\nfirst = {first}\nsecond = {second}\nratio = {ratio}\noffset = {offset}\n"
+            "\n[[coupler]]\nname = \"c{name}\"\nfirst = {first}\nsecond = {second}\nratio = {ratio}\noffset = {offset}\n"
         );
     }
 
@@ -166,7 +170,7 @@ fn unit(p: [f64; 4]) -> [f64; 4] {
 const FREE: f64 = 1e-6;
 
 /// The motions that the rows so far leave free, velocities of mass centres and w' of its bodies with coordinates.
-fn free_motions(model: &Model) -> Vec<Vec<f64>> {
+pub fn free_motions(model: &Model) -> Vec<Vec<f64>> {
     let start = model.assemble().unwrap_or_else(|error| panic!("{}: {error}", model.name));
     let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
     let jacobian = Kinematics::at(model, 0.0).jacobian(&start.q, &near);

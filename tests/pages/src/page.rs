@@ -82,6 +82,7 @@ pub struct Page {
     /// Whether something will close loops or couple coordinates: then starts are guesses.
     pub is_closed: bool,
     pub n_drivers: usize,
+    pub n_couplers: usize,
     /// Frames with long numbers.
     pub n_rough: usize,
 }
@@ -105,6 +106,7 @@ impl Page {
             freedoms: BTreeMap::new(),
             is_closed,
             n_drivers: 0,
+            n_couplers: 0,
             n_rough: 0,
         }
     }

@@ -75,6 +75,7 @@ pub(super) trait ErasedTree<T> {
     fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]);
     fn closure_buffer(&self) -> Vec<T>;
     fn loop_closure(&self, t: T, x: &[T], out: &mut [T]);
+    fn closure_distances(&self, t: T, x: &[T], out: &mut [T]);
     fn close_positions(&self, t: T, x: &mut [T]);
     fn close_velocities(&self, t: T, x: &mut [T]);
     fn to_maximal(&self, t: T, x: &[T], y: &mut [T]);
@@ -274,6 +275,10 @@ where
     fn loop_closure(&self, t: T, x: &[T], out: &mut [T]) {
         let x = &filled(JointSpace::joint_start(self), x);
         through(self.joint_buffers().closure, out, |out| JointSpace::loop_closure(self, t, x, out));
+    }
+    fn closure_distances(&self, t: T, x: &[T], out: &mut [T]) {
+        let x = &filled(JointSpace::joint_start(self), x);
+        through(self.joint_buffers().closure, out, |out| JointSpace::closure_distances(self, t, x, out));
     }
     fn close_positions(&self, t: T, x: &mut [T]) {
         through(filled(JointSpace::joint_start(self), x), x, |x| JointSpace::close_positions(self, t, x));

@@ -187,5 +187,8 @@ fn layout(joints: &JointLayout) -> String {
 const CLOSURE: &str = "fn loop_closure(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Closure) {
         HOLE_loop_closure
     }
+    fn closure_distances(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Closure) {
+        HOLE_closure_distances
+    }
     fn close_positions(&self, ANY_t: T, x: &mut Self::Joints) { HOLE_close_positions }
     fn close_velocities(&self, ANY_t: T, x: &mut Self::Joints) { HOLE_close_velocities }";

@@ -68,6 +68,8 @@ pub enum Claim {
     CorrectedSolution,
     /// `loop_closure` gives the rows that the joint coordinates do not satisfy by themselves.
     LoopClosure,
+    /// `closure_distances` gives the squares of the distances of their derivatives by the rates from each other.
+    ClosureDistances,
     /// `close_positions` is one Newton step for these.
     ClosePositions,
     /// `close_velocities` changes the rates such that these stay as they are.
@@ -102,7 +104,7 @@ impl Claim {
         }
         if let Some(joints) = &module.joints {
             if !joints.closure_rows.is_empty() {
-                claims.extend([LoopClosure, ClosePositions, CloseVelocities]);
+                claims.extend([LoopClosure, ClosureDistances, ClosePositions, CloseVelocities]);
             }
             claims.extend([
                 ToMaximal,
@@ -152,6 +154,7 @@ impl Claim {
             Self::CorrectedMultipliers => &["corrected_multipliers"],
             Self::CorrectedSolution => &["corrected_solution"],
             Self::LoopClosure => &["loop_closure"],
+            Self::ClosureDistances => &["closure_distances"],
             Self::ClosePositions => &["close_positions"],
             Self::CloseVelocities => &["close_velocities"],
             Self::JointJacobian => &["joint_jacobian"],
@@ -188,6 +191,7 @@ impl Claim {
             Self::CorrectedMultipliers => "M v̇ + Φ_π'ᵀ λ = f at the state of (x, u)",
             Self::CorrectedSolution => "the proved v̇ there, M v̇ + Φ_π'ᵀ λ = f",
             Self::LoopClosure => "Φ of what closes loops at the state of (x, u)",
+            Self::ClosureDistances => "D of J Jᵀ = L D Lᵀ, J by dual numbers",
             Self::ClosePositions => "J δ = −Φ of what closes loops, x changes by T δ",
             Self::CloseVelocities => "loops stay closed; rates at which they do are kept",
             Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
@@ -213,7 +217,7 @@ impl Claim {
             | Self::CorrectedAccelerations
             | Self::CorrectedMultipliers
             | Self::CorrectedSolution => "eq. (17) on the constraints",
-            Self::LoopClosure | Self::ClosePositions | Self::CloseVelocities => {
+            Self::LoopClosure | Self::ClosureDistances | Self::ClosePositions | Self::CloseVelocities => {
                 "Newton's step for closed loops"
             }
             Self::JointJacobian | Self::JointInputJacobian => {
@@ -276,6 +280,7 @@ impl Claim {
             Self::CorrectedMultipliers => joints::corrected_multipliers(case),
             Self::CorrectedSolution => joints::corrected_solution(case),
             Self::LoopClosure => closure::loop_closure(case),
+            Self::ClosureDistances => closure::closure_distances(case),
             Self::ClosePositions => closure::close_positions(case),
             Self::CloseVelocities => closure::close_velocities(case),
             Self::JointJacobian => joints::jacobian(case),

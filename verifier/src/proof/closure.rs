@@ -27,6 +27,22 @@ pub fn loop_closure<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(differences(&case.run("loop_closure", &case.point), &of_closure(layout, &phi)))
 }
 
+/// By Gram–Schmidt: what is left of a row of J is perpendicular to the rows before it.
+pub fn closure_distances<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let mut left: Vec<(Vec<Term<'a>>, Term<'a>)> = Vec::new();
+    for mut row in jacobian(case, layout)? {
+        for (other, square) in &left {
+            let along = dot(&row, other).div(square)?;
+            row.iter_mut().zip(other).for_each(|(x, other)| *x = x.sub(&along.mul(other)));
+        }
+        let square = dot(&row, &row);
+        left.push((row, square));
+    }
+    let squares: Vec<_> = left.into_iter().map(|(_, square)| square).collect();
+    Some(differences(&case.run("closure_distances", &case.point), &squares))
+}
+
 /// x changes by a `T δ` for which `J δ = −Φ_c`; nothing else does. Along p the change of Euler parameters is none, and
 /// then it is `½ Gᵀ δ` for some δ.
 pub fn close_positions<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {

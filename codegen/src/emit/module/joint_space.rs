@@ -144,12 +144,19 @@ impl ModuleWriter<'_> {
             &quote! { out: &mut Self::Closure },
             |values| quote! { *out = [#(#values),*]; },
         );
+        let distances = self.of_joints(
+            Kernel::ClosureDistances,
+            "Writes squares of distances between the rows of the loops' Jacobian",
+            &quote! { out: &mut Self::Closure },
+            |values| quote! { *out = [#(#values),*]; },
+        );
         let what = "One Newton step of the joint coordinates towards closed loops";
         let positions = self.closing(Kernel::ClosePositions, what, 0);
         let what = "Changes the rates such that loops stay closed";
         let velocities = self.closing(Kernel::CloseVelocities, what, space.layout.n_coordinates);
         Some(quote! {
             #rows
+            #distances
             #positions
             #velocities
         })
