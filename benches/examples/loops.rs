@@ -1,5 +1,5 @@
-//! Loops in joint coordinates beside floors derived by hand: what an evaluation takes, a correction, and DOP853 for given
-//! errors. One process, in turns, medians.
+//! Loops in joint coordinates beside floors derived by hand: what an evaluation takes, a correction, and DOP853 for
+//! given errors. One process, in turns, medians.
 #![allow(clippy::print_stdout, reason = "that is what it is for")]
 
 use gyro_mechanisms::{four_bar, slider_crank};

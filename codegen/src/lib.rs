@@ -34,8 +34,8 @@
 //!
 //! The stages, a folder each, none of which knows of a later one: `expr` has the graph of expressions, `simplify`
 //! passes that shorten any of them, `derive` the textbook from the model to Φ, its derivatives, masses and forces,
-//! `solve` the solves of eq. (17) and of the coordinate partition, `joint_space` the same for trees in joint
-//! coordinates; `equations` brings them together, `kernels` names what a module computes, `emit` writes it.
+//! `solve` the solves of eq. (17) and of the coordinate partition, `joint_space` the same in joint coordinates;
+//! `equations` brings them together, `kernels` names what a module computes, `emit` writes it.
 #![deny(missing_docs)]
 
 mod derive;

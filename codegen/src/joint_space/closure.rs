@@ -133,8 +133,7 @@ impl Closure {
         let all = normal_form(graph, unit, &all);
         let (entries, gamma) = all.split_at(rows.len() * layout.n_rates);
         let jacobian = entries.chunks(layout.n_rates.max(1)).map(<[_]>::to_vec).collect();
-        let closure = Self { rows, phi, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() };
-        closure
+        Self { rows, phi, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() }
     }
 
     /// The rates that change some rows.

@@ -155,7 +155,7 @@ fn beside_joints(
     let held = (0..layout.determined.len()).filter(is_held);
     for ((place, by), &row) in held.zip(&closure.by_determined[n_closing..]).zip(&closure.holding) {
         lambda[row] = system.graph.div(left[layout.n_rates + place], by[place]);
-        take(&mut system.graph, &mut left[layout.n_rates..], &[by.clone()], &[lambda[row]]);
+        take(&mut system.graph, &mut left[layout.n_rates..], std::slice::from_ref(by), &[lambda[row]]);
     }
     // What a coordinate determines comes after it.
     for known in layout.determined.iter().rev() {

@@ -1,5 +1,5 @@
-//! The equations of motion of planar mechanisms, as planar mechanics writes them: in the angles of the bodies, not of the
-//! joints, and in the positions of points of mass.
+//! The equations of motion of planar mechanisms, as planar mechanics writes them: in the angles of the bodies, not of
+//! the joints, and in the positions of points of mass.
 //!
 //! A bar between two pins moves like two masses at the pins and a moment of inertia (dynamically equivalent masses:
 //! Wittenbauer, *Graphische Dynamik* (1923)). The mass at a pin belongs to either of the bodies that meet there: where
@@ -47,8 +47,8 @@ struct Planar<'a> {
     moments: Vec<ExprId>,
 }
 
-/// The accelerations of the rates, if all bodies turn about one direction only and no forces but gravity and those along
-/// joint coordinates act.
+/// The accelerations of the rates, if all bodies turn about one direction only and no forces but gravity and those
+/// along joint coordinates act.
 pub fn accelerations(
     system: &mut System,
     textbook: &Textbook,
@@ -124,8 +124,8 @@ impl<'a> Planar<'a> {
         Some(())
     }
 
-    /// The body as masses at two pins and a moment of inertia, if its mass centre is on the line between them; as a mass
-    /// at the mass centre otherwise.
+    /// The body as masses at two pins and a moment of inertia, if its mass centre is on the line between them; as a
+    /// mass at the mass centre otherwise.
     fn add_body(&mut self, system: &mut System, moving_body: usize) {
         let (mass, inertia) = (system.mass(moving_body), system.inertia(moving_body));
         let body = &self.coordinates.angles.bodies[moving_body];

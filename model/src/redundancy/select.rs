@@ -32,8 +32,8 @@ pub(super) fn generic(poses: &[Motions], groups: &[Vec<usize>]) -> Vec<usize> {
     (0..ranks.len()).filter(|&pose| Some(ranks[pose]) == largest).collect()
 }
 
-/// Selects rows at poses of one rank, all of the trees among them. Groups of the other rows, one for each owner, come in
-/// the order of preference.
+/// Selects rows at poses of one rank, all of the trees among them. Groups of the other rows, one for each owner, come
+/// in the order of preference.
 pub(super) fn select(poses: &[Motions], trees: &TreeRows, groups: &[Vec<usize>]) -> Selection {
     let mut kept = kept(poses, groups);
     let mut dropped: Vec<usize> =

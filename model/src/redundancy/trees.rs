@@ -1,5 +1,6 @@
-//! What the joints of the trees leave free. Their rows are independent by construction, each link's six velocities being
-//! new to them, so that the rank of the other rows among these motions decides: a few columns, however many bodies.
+//! What the joints of the trees leave free. Their rows are independent by construction, each link's six velocities
+//! being new to them, so that the rank of the other rows among these motions decides: a few columns, however many
+//! bodies.
 
 use nalgebra::{DMatrix, DVector, Matrix6, SVD};
 
