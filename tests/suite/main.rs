@@ -7,6 +7,7 @@ mod branches;
 mod build_script;
 mod carried_loops;
 mod closed_forms;
+mod closed_joint_space;
 mod convergence;
 mod estimate;
 mod extreme;

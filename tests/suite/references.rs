@@ -2,9 +2,11 @@
 //! order.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_reference::{JointRow, scene};
-use gyro_runner::{JointSample, Sample, Settings};
-use gyro_sim_suite::{fixture_folders, generated, model, rotation, simulate, times};
+use gyro_mechanisms as shipped;
+use gyro_model::Model;
+use gyro_reference::{JointRow, SceneReference, scene};
+use gyro_runner::{Approach, Coordinates, JointSample, Sample, Settings};
+use gyro_sim_suite::{Duals, Engine, fixture_folders, generated, model, moved, rotation, simulate, start_of};
 
 /// Steps of the model file's own length.
 const STEPS: f64 = 20.0;
@@ -36,20 +38,27 @@ fn expected(row: &JointRow) -> Vec<f64> {
     row.positions.iter().chain(&row.rates).copied().chain(orientations).collect()
 }
 
+fn settings(model: &Model) -> Settings {
+    let step = model.simulation.step;
+    Settings { t_end: STEPS * step, step, correct_every: Some(5.0 * step), sample_every: 5.0 * step }
+}
+
 /// The worst error of a model file in its first steps; `None` if it has no reference.
 fn error(page: &str, reference: &str) -> Option<f64> {
     let (scene, model) = (scene(reference)?, model(page));
-    let step = model.simulation.step;
-    let settings =
-        Settings { t_end: STEPS * step, step, correct_every: Some(5.0 * step), sample_every: 5.0 * step };
-    let run = simulate(&generated(page), &model, &settings);
-    let rows = scene.solve(&times(&run));
-    let errors = run.samples.iter().zip(&rows).flat_map(|(sample, row)| {
+    let run = simulate(&generated(page), &model, &settings(&model));
+    Some(worst(page, &run.samples, &scene))
+}
+
+fn worst(page: &str, samples: &[Sample], scene: &SceneReference) -> f64 {
+    let times: Vec<f64> = samples.iter().map(|sample| sample.t).collect();
+    let rows = scene.solve(&times);
+    let errors = samples.iter().zip(&rows).flat_map(|(sample, row)| {
         let (found, expected) = (found(sample), expected(row));
         assert_eq!(found.len(), expected.len(), "{page}: {found:?} {expected:?}");
         found.into_iter().zip(expected).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).collect::<Vec<_>>()
     });
-    Some(errors.fold(0.0, |worst: f64, x| if x.is_nan() { x } else { worst.max(x) }))
+    errors.fold(0.0, |worst: f64, x| if x.is_nan() { x } else { worst.max(x) })
 }
 
 #[test]
@@ -68,6 +77,28 @@ fn every_shipped_page_with_joints_moves_as_its_reference() {
         failed.extend((!agrees).then_some(page));
     }
     assert!(failed.is_empty(), "these move otherwise: {failed:?}");
+}
+
+#[test]
+fn loops_and_driven_joints_move_as_their_references_in_joint_coordinates() {
+    let engines: [(&str, Engine); 5] = [
+        ("double-wishbone", Engine::of_tree(shipped::double_wishbone::DoubleWishbone::default())),
+        ("four-bar-in-line", Engine::of_tree(shipped::four_bar_in_line::FourBarInLine::default())),
+        ("four-bar-revolute", Engine::of_tree(shipped::four_bar_revolute::FourBarRevolute::default())),
+        ("gyroscope-four-bar", Engine::of_tree(shipped::gyroscope_four_bar::GyroscopeFourBar::default())),
+        ("slider-crank", Engine::of_tree(shipped::slider_crank::SliderCrank::default())),
+    ];
+    for (page, engine) in engines {
+        let (scene, model) = (scene(page).expect("it has a reference"), model(page));
+        let approach = Approach { coordinates: Coordinates::Joint, ..Approach::default() };
+        let by = (&settings(&model), &approach);
+        let (samples, outcome) = moved(&engine, &*engine.builder(Duals::none()), by, &start_of(&model));
+        let summary = outcome.unwrap_or_else(|failure| panic!("{page}: {failure}"));
+        assert_eq!(samples.len(), 5, "{page}: {summary:?}");
+        let error = worst(page, &samples, &scene);
+        println!("{page} in joint coordinates: off by {error:.1e}");
+        assert!(error <= AGREEMENT, "{page}: {error:e}");
+    }
 }
 
 #[test]
