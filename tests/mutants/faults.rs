@@ -116,6 +116,7 @@ const FAULTS: &[Fault] = &[
     fault("solve/ldl.rs", "four-bar", "let factor = «graph.mul(value, inverse)»;", "value"),
     fault("solve/ldl.rs", "four-bar", "let moved = graph.mul(factor, rhs[pivot]);\n                rhs[i] = «graph.sub(rhs[i], moved)»;", "graph.add(rhs[i], moved)"),
     fault("solve/ldl.rs", "four-bar", "x = «graph.sub(x, product)»;", "graph.add(x, product)"),
+    fault("joint_space/loops.rs", "four-bar", "vec![first, «graph.div(area, first)»]", "area"),
     // The projection in the metric of the masses.
     fault("solve/forward_dynamics.rs", "four-bar", "loop_closure::close(graph, kinematics, tree, (&self.loop_rows, «&changes»), free)", "&kinematics.gamma"),
     fault("solve/forward_dynamics.rs", "pair", "let free = «tree.respond(graph, &excitation).motions»;", "excitation.forced.clone()"),

@@ -1,9 +1,9 @@
 //! The joints that close loops, in joint coordinates: their rows, what the rates change them by, and how fast that
 //! itself changes.
 
-use super::determined::Relation;
 use super::embedding::Embedding;
 use super::layout::{Layout, Place};
+use super::relation::Relation;
 use super::whole_angles::WholeAngles;
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion, Values};

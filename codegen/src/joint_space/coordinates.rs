@@ -1,11 +1,12 @@
 //! Joint coordinates: what is derived before anything is solved.
 
 use super::closure::{self, Closure};
-use super::determined::{self, Determined, Relation};
+use super::determined;
 use super::embedding::Embedding;
 use super::layout::Layout;
 use super::link_kinematics::{self, LinkKinematics};
 use super::loops::Loops;
+use super::relation::{Determined, Relation};
 use super::whole_angles::WholeAngles;
 use super::{forces, maps};
 use crate::derive::Textbook;

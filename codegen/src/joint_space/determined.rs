@@ -2,53 +2,13 @@
 //! nor a multiplier of them is left.
 
 use super::layout::{Layout, Place};
+use super::relation::{Determined, Relation};
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Values};
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use gyro_model::{JointCoordinate, Model, RowOwner};
-
-/// A coordinate that others or time determine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Determined {
-    pub coordinate: JointCoordinate,
-    pub by: Relation,
-}
-
-/// A row between coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Relation {
-    /// Index into the model's drivers.
-    Driver(usize),
-    /// Index into the model's couplers: its second coordinate by its first.
-    Forward(usize),
-    /// Its first coordinate by its second.
-    Backward(usize),
-    /// A row of a joint that closes a loop, by its place among all rows: the coordinate is zero, as the angle out of
-    /// its plane of a linkage is.
-    Held(usize),
-}
-
-impl Relation {
-    /// The owner of its row, if it is a row beside the joints.
-    pub fn owner(self) -> Option<RowOwner> {
-        match self {
-            Self::Driver(driver) => Some(RowOwner::Driver(driver)),
-            Self::Forward(coupler) | Self::Backward(coupler) => Some(RowOwner::Coupler(coupler)),
-            Self::Held(_) => None,
-        }
-    }
-
-    /// The coordinate that the determined one is a multiple of, but for an offset.
-    pub fn source(self, model: &Model) -> Option<JointCoordinate> {
-        match self {
-            Self::Driver(_) | Self::Held(_) => None,
-            Self::Forward(coupler) => Some(model.couplers[coupler].first),
-            Self::Backward(coupler) => Some(model.couplers[coupler].second),
-        }
-    }
-}
 
 /// What couplers and drivers determine, sources before what follows from them; and the owners of the rows that no
 /// coordinate can be put in for.

@@ -4,8 +4,9 @@
 //! A rate of an open tree is an unknown of its own. One that a coupler or a driver determines follows others or time;
 //! those of a loop follow a null space of its rows.
 
-use super::determined::{Relation, place_of};
+use super::determined::place_of;
 use super::layout::Layout;
+use super::relation::Relation;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};

@@ -1,6 +1,6 @@
 //! Where each joint's coordinates and rates stand.
 
-use super::determined::{Determined, Relation};
+use super::relation::{Determined, Relation};
 use crate::derive::system::System;
 use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
 

@@ -25,6 +25,7 @@ mod maps;
 mod motions;
 mod multipliers;
 mod planar;
+mod relation;
 mod whole_angles;
 
 pub use candidates::Candidates;

@@ -3,9 +3,10 @@
 //! divisions vanish.
 
 use super::coordinates::Coordinates;
-use super::determined::{Relation, place_of};
+use super::determined::place_of;
 use super::layout::LinkCoordinates;
 use super::link_kinematics::LinkKinematics;
+use super::relation::Relation;
 use crate::derive::Textbook;
 use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;

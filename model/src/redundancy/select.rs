@@ -44,18 +44,6 @@ pub(super) fn select(poses: &[Motions], trees: &TreeRows, groups: &[Vec<usize>])
     Selection { kept, dropped }
 }
 
-/// Rows on zero length stay as they are: nothing that has coordinates is in them.
-pub(super) fn with_unit_rows(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut unit = jacobian.clone();
-    for mut row in unit.row_iter_mut() {
-        let norm = row.norm();
-        if norm > 0.0 {
-            row /= norm;
-        }
-    }
-    unit
-}
-
 /// The independent rows of the groups, as they are found.
 fn kept(poses: &[Motions], groups: &[Vec<usize>]) -> Vec<usize> {
     let mut kept = Vec::new();

@@ -4,7 +4,6 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, SVD};
 
-use super::select::with_unit_rows;
 use crate::{Attachment, Model, Row, RowOwner, Tree};
 
 /// The rows of the trees' joints and of constrained bodies, link by link, root first.
@@ -125,4 +124,16 @@ fn inverse_and_rest(rows: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
         inverse += v_t.row(k).transpose() * u.view((0, k), (count, 1)).transpose() / singular_values[k];
     }
     (inverse, DMatrix::from_fn(6, 6 - count, |row, column| v_t[(count + column, row)]))
+}
+
+/// Rows on zero length stay as they are: nothing that has coordinates is in them.
+fn with_unit_rows(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut unit = jacobian.clone();
+    for mut row in unit.row_iter_mut() {
+        let norm = row.norm();
+        if norm > 0.0 {
+            row /= norm;
+        }
+    }
+    unit
 }

@@ -308,3 +308,48 @@ fn the_outcome_is_the_same_every_time() {
     assert_eq!(analyse(&model), analyse(&model.clone()));
     assert_eq!(model.assemble(), model.clone().assemble());
 }
+
+/// A row of parallelograms: bars that stand on the ground, couplers between their tips.
+fn cells(n: usize) -> String {
+    let bar = |name: &str| format!("[[body]]\nname = \"{name}\"\nmass = 1\ninertia = [1e-3, 0.083, 0.083]\n");
+    let hinge = |name: &str, first: (&str, f64), second: (&str, f64), angle: f64| {
+        let [first, second] =
+            [first, second].map(|(body, x)| format!("{{ body = \"{body}\", point = [{x:?}, 0, 0] }}"));
+        format!(
+            "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\n\
+             first = {first}\nsecond = {second}\nangle_deg = {angle:?}\nrough = true\n"
+        )
+    };
+    let mut page = "format = 1\nname = \"cells\"\n[[body]]\nname = \"ground\"\nfixed = true\n".to_owned();
+    for k in 0..=n {
+        page += &bar(&format!("bar{k}"));
+        page += &hinge(&format!("pivot{k}"), ("ground", k as f64), (&format!("bar{k}"), -0.5), 90.0);
+    }
+    for k in 0..n {
+        let coupler = format!("coupler{k}");
+        page += &bar(&coupler);
+        for (bar, end) in [(k, -0.5), (k + 1, 0.5)] {
+            page += &hinge(&format!("joint{k}_{bar}"), (&format!("bar{bar}"), 0.5), (&coupler, end), -90.0);
+        }
+    }
+    page
+}
+
+/// Each cell loses three rows, on account of its own joints alone, however many there are: benchmark A02 of the IFToMM
+/// technical committee for multibody dynamics has 40.
+#[test]
+fn a_row_of_parallelograms_has_one_freedom() {
+    for n in [1, 2, 5, 20] {
+        let model = read("cells", &cells(n)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let found = analyse(&model).expect("it is assembled when it is read");
+        assert_eq!(
+            (found.redundant.len(), found.degrees_of_freedom, found.singular_start),
+            (3 * n, 1, false)
+        );
+        assert!(
+            found.redundant.iter().all(|dropped| dropped.shared_with.len() == 3),
+            "{:?}",
+            found.redundant
+        );
+    }
+}
