@@ -1,5 +1,5 @@
-//! Planar linkages: chains of revolute and prismatic joints in one plane of a body, which is at rest or moves, closed by
-//! another such joint. Three of the five rows of that joint are redundant.
+//! Planar linkages: chains of revolute and prismatic joints in one plane of a body, which is at rest or moves, closed
+//! by another such joint. Three of the five rows of that joint are redundant.
 
 use crate::closing::Closing;
 use crate::loops::{free_motions, places};
