@@ -194,8 +194,8 @@ where
         largest_condition = largest_condition.max(condition);
     }
     println!(
-        "{page}: {n_states} states, {} turns back, condition up to {largest_condition:.1e}; u̇, (s̈, ẇ'), λ, both: {} of \
-         what is allowed",
+        "{page}: {n_states} states, {} turns back, condition up to {largest_condition:.1e}; u̇, (s̈, ẇ'), λ, both: \
+         {} of what is allowed",
         walk.n_turned_back,
         worst.map(|worst| format!("{worst:.1e}")).join(", ")
     );

@@ -4,14 +4,15 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::estimate::{Deviation, deviations, estimate, expected};
+use gyro_mechanisms as shipped;
 use gyro_reference::JointRow;
-use gyro_runner::motion::MotionBuilder;
+use gyro_runner::motion::{Linear, Motion, MotionBuilder};
 use gyro_runner::{
-    Approach, Coordinates, Correction, Difference, Failure, Integrator, Sample, Settings, Start, Summary,
-    differences, time_by,
+    Approach, Coordinates, Correction, Difference, Failure, Integrator, Offers, Sample, Settings, Start,
+    Summary, differences, time_by,
 };
-use gyro_sim::Real;
-use gyro_sim_suite::{Engine, duals, extreme, model, moved, start_of};
+use gyro_sim::{JointLayout, Real};
+use gyro_sim_suite::{Duals, Engine, duals, extreme, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
@@ -26,7 +27,7 @@ struct Scene {
 }
 
 /// A few periods of the fastest motion; 500 to 4000 steps.
-const SCENES: [Scene; 13] = [
+const SCENES: [Scene; 14] = [
     Scene { page: "gyroscope", t_end: 0.1, step: 5e-5 },
     Scene { page: "gyroscope-fast", t_end: 2e-4, step: 1e-7 },
     Scene { page: "gyroscope-at-rest", t_end: 1.0, step: 5e-4 },
@@ -40,7 +41,24 @@ const SCENES: [Scene; 13] = [
     Scene { page: "gyroscope-long", t_end: 0.1, step: 5e-5 },
     Scene { page: "four-bar", t_end: 0.1, step: 1e-4 },
     Scene { page: "four-bar-in-line", t_end: 0.5, step: 1e-3 },
+    Scene { page: "slider-crank", t_end: 0.2, step: 2e-4 },
 ];
+
+/// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates. These do not count passages of
+/// poses from which a linkage may go on in two ways: single precision, which passes such a pose in either way, is left
+/// out where there is one.
+fn engines<T: Real + 'static>(page: &str) -> (Engine<T>, Duals<T>) {
+    match page {
+        "four-bar-in-line" if T::EPSILON.to_f64() < 1e-10 => {
+            (Engine::of_tree(shipped::four_bar_in_line::FourBarInLine::default()), duals(page))
+        }
+        "slider-crank" => (
+            Engine::of_tree(shipped::slider_crank::SliderCrank::default()),
+            Duals::new(shipped::slider_crank::SliderCrank::default()),
+        ),
+        _ => (extreme(page), duals(page)),
+    }
+}
 
 /// How far off a result may be in units of the tolerance.
 const TIMES: f64 = 10.0;
@@ -98,13 +116,43 @@ struct Stand<T> {
 
 impl<T: Real + 'static> Stand<T> {
     fn new(page: &str, start: &Start) -> Self {
-        let engine = extreme::<T>(page);
-        let builder = engine.builder(duals(page));
+        let (engine, duals) = engines::<T>(page);
+        let builder = Box::new(LoopsNotLinearised(engine.builder(duals)));
         Self { engine, builder, start: start.clone() }
     }
 
     fn run(&self, settings: &Settings, approach: &Approach) -> (Vec<Sample>, Result<Summary, Failure>) {
         moved(&self.engine, &*self.builder, (settings, approach), &self.start)
+    }
+}
+
+/// What begins a motion, but says nothing of how fast the fastest part of a loop is: engines do not linearise loops.
+struct LoopsNotLinearised<T: 'static>(Box<dyn MotionBuilder<Engine<T>>>);
+
+impl<T: Real + 'static> MotionBuilder<Engine<T>> for LoopsNotLinearised<T> {
+    fn begin(
+        &self,
+        mechanism: &Engine<T>,
+        approach: &Approach,
+        y: &Vec<T>,
+    ) -> Result<Box<dyn Motion<Engine<T>>>, String> {
+        self.0.begin(mechanism, approach, y)
+    }
+    fn offers(&self) -> Offers {
+        self.0.offers()
+    }
+    fn work_scale(&self, mechanism: &Engine<T>, t: f64, y: &Vec<T>) -> f64 {
+        self.0.work_scale(mechanism, t, y)
+    }
+    fn smallest_pivot(&self, mechanism: &Engine<T>, t: f64, y: &Vec<T>) -> Option<f64> {
+        self.0.smallest_pivot(mechanism, t, y)
+    }
+    fn joint_layout<'a>(&self, mechanism: &'a Engine<T>) -> Option<&'a JointLayout<'a>> {
+        self.0.joint_layout(mechanism)
+    }
+    fn linearise(&self, mechanism: &Engine<T>, t: f64, y: &Vec<T>, nearest: &[f64]) -> Option<Linear> {
+        let has_loops = self.joint_layout(mechanism).is_some_and(|layout| !layout.closure_rows.is_empty());
+        (!has_loops).then(|| self.0.linearise(mechanism, t, y, nearest)).flatten()
     }
 }
 
