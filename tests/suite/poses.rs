@@ -2,6 +2,7 @@
 //! at coarse and fine tolerances alike, or named.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_mechanisms::four_bar_in_line::FourBarInLine;
 use gyro_model::Model;
 use gyro_reference::Pendulum;
 use gyro_runner::motion::{MotionBuilder, Projecting, WithDuals};
@@ -200,13 +201,12 @@ fn joint_coordinates_pass_at_every_tolerance() {
         rate: 12.0,
     };
     let of_gravity: fn(f64) -> f64 = |from_gravity| from_gravity - FRAC_PI_2;
-    for (page, t_end, n_bars, pendulum, angle) in [
-        ("four-bar-in-line", 2.0, 2, in_line, of_gravity),
-        ("two-four-bars", 20.0, 3, as_pendulum(2, 1.0), pivot_angle),
+    let two_cells = Engine::of_tree(TwoFourBars::default());
+    for (page, engine, t_end, n_bars, pendulum, angle) in [
+        ("four-bar-in-line", Engine::of_tree(FourBarInLine::default()), 2.0, 2, in_line, of_gravity),
+        ("two-four-bars", two_cells, 20.0, 3, as_pendulum(2, 1.0), pivot_angle),
     ] {
-        let model = model(page);
-        let engine = generated(page);
-        let builder = engine.clone().builder(duals(page));
+        let (model, builder) = (model(page), engine.builder(Duals::none()));
         for (integrator, tolerance) in [
             (Integrator::Dop853, 1e-6),
             (Integrator::Dop853, 1e-9),

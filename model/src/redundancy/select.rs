@@ -1,4 +1,4 @@
-//! Which rows are independent: Gram–Schmidt in a fixed order, at several poses at once, among the motions of the trees.
+//! Which rows are independent: Gram–Schmidt in a fixed order, at several poses at once, among motions of the trees.
 
 use nalgebra::{DMatrix, DVector};
 
