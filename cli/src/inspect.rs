@@ -10,7 +10,7 @@ use crate::{files, json, machine_code, nested, remarks, scene};
 use gyro_codegen::{
     DataSheet, Elimination, Form, Function, Kernel, Module, Operations, generate_by, generate_model, large,
 };
-use gyro_model::Model;
+use gyro_model::{Model, Row, RowOwner, Tree};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -42,7 +42,9 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
     let failure = |e: gyro_codegen::Error| Failure::Usage(format!("{}: {e}", args.model.display()));
     let module = generate_model(&page, &model).map_err(failure)?;
     verify_quickly(&model, &module)?;
-    let saddle = module.data_sheet.function(Kernel::JointAccelerations).is_some();
+    // A factorisation of all of eq. (17) is for trees that have no rows beside their joints' own.
+    let is_beside = |row: &Row| matches!(row.owner, RowOwner::Coupler(_) | RowOwner::Driver(_));
+    let saddle = Tree::of(&model).is_open() && !model.rows().iter().any(is_beside);
     let saddle =
         saddle.then(|| generate_by(Elimination::Saddle, &page, &model)).transpose().map_err(failure)?;
     let elements = variants(&model).into_par_iter().map(|variant| Element::of(&page, variant)).collect();

@@ -44,9 +44,8 @@ const SCENES: [Scene; 14] = [
     Scene { page: "slider-crank", t_end: 0.2, step: 2e-4 },
 ];
 
-/// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates. These do not count passages of
-/// poses from which a linkage may go on in two ways: single precision, which passes such a pose in either way, is left
-/// out where there is one.
+/// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates. Single precision, which
+/// passes a pose from which a linkage may go on in two ways in either of them, is left out where there is one.
 fn engines<T: Real + 'static>(page: &str) -> (Engine<T>, Duals<T>) {
     match page {
         "four-bar-in-line" if T::EPSILON.to_f64() < 1e-10 => {

@@ -185,7 +185,7 @@ impl AssemblyError {
                 "reverse the zero direction of one end, or start the joints near the intended pose".to_owned()
             }
             Self::Jump { .. } | Self::OtherBranch { .. } => {
-                "start the joints near the pose that is meant; with rough = true they are guesses".to_owned()
+                "start the joints near the intended pose; rough = true makes their values initial guesses".to_owned()
             }
             Self::Rate { is_given: true, .. } => "correct the rate, or leave it out".to_owned(),
             Self::Rate { .. } => "choose another start: from this pose no velocities are possible".to_owned(),
