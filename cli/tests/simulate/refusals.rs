@@ -240,10 +240,10 @@ fn what_has_no_joint_coordinates_is_said_and_a_tree_is_called_a_tree() {
     check("compound-pendulum.toml", "assembled", "leave out --engine");
     check("four-bar.toml", "assembled", "leave out --engine");
     // Friction in every joint: one of them closes the loop.
-    let linkage = std::fs::read_to_string(model("four-bar-revolute.toml")).unwrap();
+    let linkage = fs::read_to_string(model("four-bar-revolute.toml")).unwrap();
     let linkage = linkage.replace("kind = \"revolute\"", "kind = \"revolute\"\nfriction = 1e-3");
     let path = folder.0.join("rubbing.toml");
-    std::fs::write(&path, linkage).unwrap();
+    fs::write(&path, linkage).unwrap();
     let output = simulate(&folder, &[path.to_str().unwrap(), "--coordinates", "joint"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(!output.status.success() && said.contains("has forces on joint `"), "{said}");
