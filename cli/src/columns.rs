@@ -74,6 +74,18 @@ pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static st
     }
 }
 
+/// Name and unit of each number of all outputs, in their order.
+pub(crate) fn outputs(model: &Model) -> Vec<(String, &'static str)> {
+    let named = model.outputs.iter().flat_map(|output| {
+        let parts = output_columns(model, output).into_iter();
+        parts.map(|(suffix, unit)| {
+            let is_single = suffix.is_empty();
+            (if is_single { output.name.clone() } else { format!("{}.{suffix}", output.name) }, unit)
+        })
+    });
+    named.collect()
+}
+
 /// The value of each input at a time: as it was set, or else the model file's.
 pub(crate) fn inputs_at(model: &Model, set: &[Input], t: f64) -> Vec<f64> {
     let value = |(index, input): (usize, &Parameter)| {
@@ -186,14 +198,8 @@ impl Table<'_> {
     }
 
     fn add_outputs(&mut self, model: &Model) {
-        let mut index = 0;
-        for output in &model.outputs {
-            for (suffix, unit) in output_columns(model, output) {
-                let name =
-                    if suffix.is_empty() { output.name.clone() } else { format!("{}.{suffix}", output.name) };
-                self.add(&name, if unit.is_empty() { "1" } else { unit }, |s| s.outputs[index]);
-                index += 1;
-            }
+        for (index, (name, unit)) in outputs(model).into_iter().enumerate() {
+            self.add(&name, if unit.is_empty() { "1" } else { unit }, |s| s.outputs[index]);
         }
     }
 

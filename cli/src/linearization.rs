@@ -8,6 +8,7 @@ use gyro_runner::motion::{Element, Linear};
 use gyro_sim::JointPlace;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
+use std::iter;
 
 /// Names of the state's elements.
 fn names(model: &Model, linear: &Linear) -> Vec<String> {
@@ -38,6 +39,10 @@ fn name(model: &Model, element: &Element) -> String {
     }
 }
 
+fn outputs(model: &Model) -> Vec<String> {
+    columns::outputs(model).into_iter().map(|(name, _)| name).collect()
+}
+
 /// The object of `--json`.
 pub(crate) fn object(model: &Model, linear: &Linear) -> Value {
     let (n, m) = (linear.state.len(), model.inputs.len());
@@ -52,36 +57,49 @@ pub(crate) fn object(model: &Model, linear: &Linear) -> Value {
         "derivative": linear.slope,
         "A": rows(&linear.by_state, n),
         "B": rows(&linear.by_inputs, m),
+        "outputs": outputs(model),
+        "output": linear.outputs,
+        "C": rows(&linear.outputs_by_state, n),
+        "D": rows(&linear.outputs_by_inputs, m),
         "eigenvalues": eigenvalues(linear),
     })
 }
 
 /// The tables of the summary.
 pub(crate) fn text(model: &Model, linear: &Linear) -> String {
-    let (names, n, m) = (names(model, linear), linear.state.len(), model.inputs.len());
+    let states = names(model, linear);
     let inputs: Vec<String> = model.inputs.iter().map(|input| input.name.clone()).collect();
+    let outputs = outputs(model);
     let mut text = format!("\nlinearised about t = {} s: d/dt x = f + A (x - x0) + B (u - u0)\n", linear.t);
-    let head = |title: &str, columns: &[String]| {
-        let mut row = vec![title.to_owned()];
-        row.extend(columns.iter().cloned());
-        row
-    };
-    let mut rows = vec![head("A", &names)];
-    for (name, values) in names.iter().zip(linear.by_state.chunks(n)) {
-        rows.push(head(name, &values.iter().map(|v| number(*v, DIGITS)).collect::<Vec<_>>()));
+    if !outputs.is_empty() {
+        text += "outputs: z = h + C (x - x0) + D (u - u0)\n";
     }
-    text += &table(&rows);
-    if m > 0 {
-        let mut rows = vec![head("B", &inputs)];
-        for (name, values) in names.iter().zip(linear.by_inputs.chunks(m)) {
-            rows.push(head(name, &values.iter().map(|v| number(*v, DIGITS)).collect::<Vec<_>>()));
-        }
-        text += &format!("\n{}", table(&rows));
+    let tables = [
+        matrix("A", &states, (&states, &linear.by_state)),
+        matrix("B", &inputs, (&states, &linear.by_inputs)),
+        matrix("C", &states, (&outputs, &linear.outputs_by_state)),
+        matrix("D", &inputs, (&outputs, &linear.outputs_by_inputs)),
+    ];
+    text += &tables.into_iter().flatten().collect::<Vec<_>>().join("\n");
+    text + &format!("\n{}", spectrum(linear))
+}
+
+/// A matrix with names of its columns and rows; `None` for one without numbers.
+fn matrix(title: &str, columns: &[String], (names, values): (&[String], &[f64])) -> Option<String> {
+    if values.is_empty() {
+        return None;
     }
-    let mut rows = vec![head(
-        "eigenvalue",
-        &["real, 1/s", "imaginary, rad/s", "frequency, Hz", "damping ratio"].map(str::to_owned),
-    )];
+    let head = iter::once(title.to_owned()).chain(columns.iter().cloned()).collect();
+    let rows = names.iter().zip(values.chunks(columns.len())).map(|(name, values)| {
+        iter::once(name.clone()).chain(values.iter().map(|value| number(*value, DIGITS))).collect()
+    });
+    Some(table(&iter::once(head).chain(rows).collect::<Vec<_>>()))
+}
+
+/// Eigenvalues, frequencies and damping ratios.
+fn spectrum(linear: &Linear) -> String {
+    let titles = ["eigenvalue", "real, 1/s", "imaginary, rad/s", "frequency, Hz", "damping ratio"];
+    let mut rows = vec![titles.map(str::to_owned).to_vec()];
     for (index, [re, im]) in eigenvalues(linear).into_iter().enumerate() {
         let size = re.hypot(im);
         let damping = if size > 0.0 { number(-re / size, 4) } else { String::new() };
@@ -89,7 +107,7 @@ pub(crate) fn text(model: &Model, linear: &Linear) -> String {
         let frequency = if im == 0.0 { String::new() } else { number(size / TAU, DIGITS) };
         rows.push(vec![(index + 1).to_string(), number(re, DIGITS), number(im, DIGITS), frequency, damping]);
     }
-    text + &format!("\n{}", table(&rows))
+    table(&rows)
 }
 
 const DIGITS: usize = 6;

@@ -28,6 +28,17 @@ pub struct DoubleWishbone {
     pub angle: f64,
 }
 
+/// What a [`DoubleWishbone`] does at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WishboneInstant {
+    /// Position, rate and acceleration of chassis, lower arm and upper arm.
+    pub joints: [[f64; 3]; 3],
+    /// The upright's mass centre, m.
+    pub wheel: [f64; 3],
+    /// Kinetic energy and potential of gravity, spring and tyre, J.
+    pub energy: f64,
+}
+
 const LOWER_AXIS: [f64; 3] = [20.0, 0.0, 1.0];
 const UPPER_AXIS: [f64; 3] = [20.0, 0.0, -1.0];
 
@@ -76,6 +87,21 @@ impl DoubleWishbone {
         let start = [decimal(self.height), decimal(self.angle), DoubleDouble::ZERO, DoubleDouble::ZERO];
         let motion = smooth_trajectory(|t, state| derivative::<2, 2, 4>(self, t, state), start, times);
         motion.iter().map(|(t, state)| moving::<2, 2, 4>(self, *t, state).row(*t)).collect()
+    }
+
+    /// The mechanism at a height, an angle and their rates, as it moves on from there.
+    #[must_use]
+    pub fn instant(&self, state: [f64; 4]) -> WishboneInstant {
+        let scene = moving::<2, 2, 4>(self, DoubleDouble::ZERO, &state.map(decimal));
+        let joint = |k: usize| {
+            let Jet { value, rate, second } = scene.joints[k];
+            [value, rate, second].map(DoubleDouble::to_f64)
+        };
+        WishboneInstant {
+            joints: [joint(0), joint(1), joint(2)],
+            wheel: scene.bodies[3].centre.map(|x| x.value.to_f64()),
+            energy: scene.energy(Mechanism::<2, 2>::gravity(self)).to_f64(),
+        }
     }
 
     /// Kinetic energy and potential of gravity, spring and tyre along the same motion, J.

@@ -97,7 +97,7 @@ pub use chain::{Chain, ChainSample, InertialReading, Wrench};
 pub use closed_forms::{Derivatives, FallingScrew, FallingSpindle, GearedDiscs, PlanarBlock, Slider};
 pub use decimal::ParseDecimalError;
 pub use double_double::DoubleDouble;
-pub use double_wishbone::DoubleWishbone;
+pub use double_wishbone::{DoubleWishbone, WishboneInstant};
 pub use extrapolation::{NotConverged, Scheme};
 pub use four_bar::{Bar, Branch, FourBar, FourBarSample};
 pub use gyroscope::{Gyroscope, Start};

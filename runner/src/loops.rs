@@ -1,7 +1,7 @@
 //! Tests of loops in joint coordinates: they are closed, run, named and linearised.
 
 use crate::linkage::Linkage;
-use crate::motion::{COLUMNS, Element, Linear, MotionBuilder, Tree};
+use crate::motion::{COLUMNS, Element, Linear, MotionBuilder, OperatingPoint, Tree};
 use crate::{
     Approach, Coordinates, Correction, Event, Failure, Integrator, Sample, Settings, Start, describe_in,
     run_by,
@@ -193,7 +193,9 @@ fn linear(x: &[f64; 6]) -> Linear {
     let mut y = linkage.start();
     linkage.to_maximal(0.0, x, &mut y);
     let builder = Tree(Linkage::<Dual<f64, COLUMNS>>::default());
-    builder.linearise(&linkage, 0.0, &y, &[x[0], x[1], x[2], 0.0, 0.0]).expect("a joint form")
+    let angles = [x[0], x[1], x[2], 0.0, 0.0];
+    let at = OperatingPoint { t: 0.0, y: &y, angles: &angles, inputs: &[] };
+    builder.linearise(&linkage, &at).expect("a joint form")
 }
 
 /// ẋ by central differences of fourth order along crank's angle and rate, of what is linearised too.

@@ -161,6 +161,8 @@ mod tests {
                 slope: AWKWARD[2..4].to_vec(),
                 by_state: AWKWARD[1..5].to_vec(),
                 by_inputs: vec![AWKWARD[6]; 2],
+                outputs: vec![AWKWARD[3]],
+                ..Linear::default()
             }),
             Reply::Stopped(AWKWARD[0], AWKWARD[1..4].to_vec()),
             Reply::Progress(0.25),

@@ -4,7 +4,7 @@ use crate::advice::Plan;
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
-use crate::motion::{self, Linear, Motion, MotionBuilder};
+use crate::motion::{self, Linear, Motion, MotionBuilder, OperatingPoint};
 use crate::offers::Offers;
 use crate::sample::Observer;
 use crate::spectrum::fastest_rate;
@@ -100,7 +100,7 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
     set(mechanism, &start.inputs, 0.0);
     let mut told = Told { tell, last: Instant::now() };
     foretell(mechanism, builder, (&settings, approach), &y, &mut told)?;
-    let motion = builder.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
+    let motion = begin(builder, mechanism, approach, (&y, &start.inputs))?;
     let mut run = Run::new(mechanism, motion, y, start, approach);
     let outcome = run.follow(builder, (&settings, approach), &mut told);
     run.finish();
@@ -116,12 +116,25 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
             let plan = Plan { settings: &settings, approach, offers: &offers };
             // The steps' length is asked about only where stability may limit it.
             let asks = matches!(error, Error::Stiff { .. } | Error::TooManySteps { .. });
-            let linear =
-                asks.then(|| builder.linearise(run.mechanism, run.read_at, &run.y, &run.angles())).flatten();
+            let linear = asks.then(|| run.linearised(builder, run.read_at)).flatten();
             let fastest = linear.as_ref().map(fastest_rate);
             Err(Failure::Run { words, advice: plan.after(&error, &run.summary.statistics, fastest) })
         }
     }
+}
+
+/// A motion from a maximal state at time zero, with the inputs as they are then.
+pub(crate) fn begin<M: Partition<Scalar: Real>>(
+    builder: &dyn MotionBuilder<M>,
+    mechanism: &M,
+    approach: &Approach,
+    (y, inputs): (&M::State, &[Input]),
+) -> Result<Box<dyn Motion<M>>, Failure> {
+    let mut motion = builder.begin(mechanism, approach, y).map_err(Failure::Refused)?;
+    for input in inputs {
+        motion.set_input(input.index, input.at(0.0));
+    }
+    Ok(motion)
 }
 
 /// Where the numbers of the integrated state stand, if it is a joint state.
@@ -241,12 +254,11 @@ struct Run<'a, M: Partition<Scalar: Real>> {
 impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
     fn new(
         mechanism: &'a mut M,
-        mut motion: Box<dyn Motion<M>>,
+        motion: Box<dyn Motion<M>>,
         y: M::State,
         start: &'a Start,
         approach: &Approach,
     ) -> Self {
-        start.inputs.iter().for_each(|input| motion.set_input(input.index, input.at(0.0)));
         let angles: Vec<M::Scalar> = start.angles.iter().map(|&a| Scalar::constant(a)).collect();
         Self {
             motion,
@@ -281,10 +293,7 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             }
             told.progress(segment.to)?;
         }
-        let linear = approach
-            .examine
-            .then(|| builder.linearise(self.mechanism, settings.t_end, &self.y, &self.angles()));
-        if let Some(linear) = linear.flatten() {
+        if let Some(linear) = approach.examine.then(|| self.linearised(builder, settings.t_end)).flatten() {
             (told.tell)(Event::Linear(&linear))?;
         }
         tracker.finish(&mut self.summary);
@@ -361,6 +370,12 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             told.progress(self.motion.time())?;
         }
         Ok(())
+    }
+
+    /// The joint form at the last state.
+    fn linearised(&self, builder: &dyn MotionBuilder<M>, t: f64) -> Option<Linear> {
+        let (angles, inputs) = (self.angles(), self.inputs);
+        builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs })
     }
 
     fn set_inputs(&mut self) {

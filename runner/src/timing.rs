@@ -1,7 +1,7 @@
 //! What a run costs without being looked at.
 
 use crate::motion::MotionBuilder;
-use crate::run::{layout, scheduled, state};
+use crate::run::{begin, layout, scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
 use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
 use gyro_yardstick::{Measured, beside};
@@ -32,7 +32,7 @@ pub fn time_by<M: Partition<Scalar: Real> + 'static>(
     let segments: Vec<_> = Schedule::new(&settings).collect();
     let mut statistics = Statistics::default();
     let once = || -> Result<(), Failure> {
-        let mut motion = builder.begin(mechanism, approach, &y).map_err(Failure::Refused)?;
+        let mut motion = begin(builder, mechanism, approach, (&y, &start.inputs))?;
         let layout = layout(mechanism, builder, approach);
         let in_words = |error: Error| Failure::run(describe_in(mechanism, layout, &error));
         if approach.tolerance.is_some() {

@@ -22,6 +22,7 @@ mod joint_kinds;
 mod joint_readings;
 mod joint_space;
 mod lanes;
+mod linearization;
 mod linkages;
 mod long_run;
 mod moving_base;

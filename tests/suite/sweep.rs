@@ -6,7 +6,7 @@
 use crate::estimate::{Deviation, deviations, estimate, expected};
 use gyro_mechanisms as shipped;
 use gyro_reference::JointRow;
-use gyro_runner::motion::{Linear, Motion, MotionBuilder};
+use gyro_runner::motion::{Linear, Motion, MotionBuilder, OperatingPoint};
 use gyro_runner::{
     Approach, Coordinates, Correction, Difference, Failure, Integrator, Offers, Sample, Settings, Start,
     Summary, differences, time_by,
@@ -149,9 +149,9 @@ impl<T: Real + 'static> MotionBuilder<Engine<T>> for LoopsNotLinearised<T> {
     fn joint_layout<'a>(&self, mechanism: &'a Engine<T>) -> Option<&'a JointLayout<'a>> {
         self.0.joint_layout(mechanism)
     }
-    fn linearise(&self, mechanism: &Engine<T>, t: f64, y: &Vec<T>, nearest: &[f64]) -> Option<Linear> {
+    fn linearise(&self, mechanism: &Engine<T>, at: &OperatingPoint<'_, Vec<T>>) -> Option<Linear> {
         let has_loops = self.joint_layout(mechanism).is_some_and(|layout| !layout.closure_rows.is_empty());
-        (!has_loops).then(|| self.0.linearise(mechanism, t, y, nearest)).flatten()
+        (!has_loops).then(|| self.0.linearise(mechanism, at)).flatten()
     }
 }
 

@@ -140,6 +140,9 @@ impl<T: Real + 'static> Closing for Duals<T> {
     fn close(&self, _: Self::Scalar, _: &mut [Self::Scalar]) {
         unreachable!("{NOT_FORWARDED}")
     }
+    fn outputs_of(&self, _: Self::Scalar, _: &[Self::Scalar]) -> Vec<Self::Scalar> {
+        unreachable!("{NOT_FORWARDED}")
+    }
 }
 
 const NO_DUALS: &str = "this model file has no dual numbers here: add it to `duals`";

@@ -1,9 +1,10 @@
 //! What can be begun with which mechanism: the more it implements, the more there is.
 
-use super::contract::{COLUMNS, Element, Linear, Motion, MotionBuilder, in_f64};
+use super::contract::{COLUMNS, Linear, Motion, MotionBuilder, OperatingPoint, in_f64};
 use super::correction::{Boxed, keeping, partitioning};
-use super::independent::{Closing, reduced};
-use super::lens::{Slopes, input_column, joint_duals, joints, joints_near};
+use super::independent::Closing;
+use super::lens::{Slopes, joint_duals, joints};
+use super::linearise::{by_inputs_of, linearised};
 use super::moving::{adaptive, explicit};
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator, When};
 use crate::failure::describe_in;
@@ -134,20 +135,19 @@ where
         Some(mechanism.joint_layout())
     }
 
-    fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
-        let (x, time) = (closed_near(mechanism, t, y, nearest)?, Scalar::constant(t));
-        let zero = M::Scalar::constant(0.0);
-        let (mut by_state, mut by_time) = (vec![zero; square(x.as_ref())], x.clone());
-        joint_duals(&self.0).jacobian(mechanism, time, &x, &mut by_state, &mut by_time);
-        let n_inputs = mechanism.description().inputs.len();
-        let mut by_inputs = vec![zero; n_inputs * x.as_ref().len()];
-        for input in 0..n_inputs {
-            let column = input_column(&self.0, input, time, x.as_ref());
-            for (row, slope) in by_inputs.chunks_exact_mut(n_inputs).zip(column) {
-                row[input] = slope;
-            }
-        }
-        Some(linear(mechanism, &self.0, t, &x, [&by_state, &by_inputs]))
+    fn linearise(&self, mechanism: &M, at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
+        linearised(mechanism, &self.0, at, |duals, t, x| {
+            let zero = M::Scalar::constant(0.0);
+            let (mut by_state, mut by_time) = (vec![zero; square(x.as_ref())], x.clone());
+            joint_duals(duals).jacobian(mechanism, t, x, &mut by_state, &mut by_time);
+            let by_inputs = by_inputs_of(duals, mechanism.description().inputs.len(), |duals| {
+                let (mut arguments, mut out) = (duals.joint_start(), duals.joint_start());
+                arguments.as_mut().iter_mut().zip(x.as_ref()).for_each(|(to, &from)| *to = Dual::new(from));
+                duals.joint_derivative(Dual::new(t), &arguments, &mut out);
+                out.as_ref().to_vec()
+            });
+            [in_f64(&by_state), by_inputs]
+        })
     }
 }
 
@@ -188,13 +188,14 @@ where
         Some(mechanism.joint_layout())
     }
 
-    fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
-        let (x, time) = (closed_near(mechanism, t, y, nearest)?, Scalar::constant(t));
-        let (mut by_time, buffers) = (x.clone(), mechanism.joint_buffers());
-        let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
-        mechanism.joint_jacobian(time, &x, &mut by_state, &mut by_time);
-        mechanism.joint_input_jacobian(time, &x, &mut by_inputs);
-        Some(linear(mechanism, &self.0, t, &x, [by_state.as_ref(), by_inputs.as_ref()]))
+    fn linearise(&self, mechanism: &M, at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
+        linearised(mechanism, &self.0, at, |_, t, x| {
+            let (mut by_time, buffers) = (x.clone(), mechanism.joint_buffers());
+            let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
+            mechanism.joint_jacobian(t, x, &mut by_state, &mut by_time);
+            mechanism.joint_input_jacobian(t, x, &mut by_inputs);
+            [in_f64(by_state.as_ref()), in_f64(by_inputs.as_ref())]
+        })
     }
 }
 
@@ -213,47 +214,6 @@ fn in_joints<M: JointSpace<Scalar: Real>>(
         if has_loops && approach.correction != Keeping::None { Keeping::Partition } else { Keeping::None };
     let when = approach.when.or(Some(When::Steps(1)));
     Ok((x, closing, Approach { correction, when, ..*approach }))
-}
-
-/// The joint state of a maximal one near given angles, its loops closed; `None` where that fails.
-fn closed_near<M: JointSpace<Scalar: Real>>(
-    mechanism: &M,
-    t: f64,
-    y: &M::State,
-    nearest: &[f64],
-) -> Option<M::Joints> {
-    let mut x = joints_near(mechanism, t, y, nearest);
-    CloseLoops::new(mechanism).correct(mechanism, Scalar::constant(t), &mut x).ok()?;
-    Some(x)
-}
-
-/// The linearisation of all joint coordinates, or with loops that of independent ones.
-fn linear<M, D>(
-    mechanism: &M,
-    duals: &D,
-    t: f64,
-    x: &M::Joints,
-    [by_state, by_inputs]: [&[M::Scalar]; 2],
-) -> Linear
-where
-    M: JointSpace<Scalar: Real>,
-    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>>,
-{
-    let mut slope = x.clone();
-    mechanism.joint_derivative(Scalar::constant(t), x, &mut slope);
-    let all = Linear {
-        t,
-        elements: Element::all(mechanism.joint_layout()),
-        state: in_f64(x.as_ref()),
-        slope: in_f64(slope.as_ref()),
-        by_state: in_f64(by_state),
-        by_inputs: in_f64(by_inputs),
-    };
-    let all = if mechanism.description().has_work { all.without_last() } else { all };
-    if mechanism.joint_layout().closure_rows.is_empty() {
-        return all;
-    }
-    reduced(mechanism, duals, x.as_ref(), &all)
 }
 
 fn only_maximal(approach: &Approach) -> Result<(), String> {

@@ -1,6 +1,7 @@
 //! What a motion is, and what there is to begin one with.
 
 use crate::approach::Approach;
+use crate::input::Input;
 use crate::offers::Offers;
 use gyro_sim::{Error, JointLayout, JointPlace, Mechanism, Partition, Real, Statistics};
 use std::fmt::Debug;
@@ -62,17 +63,28 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     fn joint_layout<'a>(&self, _mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
         None
     }
-    /// The linearisation of the joint form about a maximal state; `None` for what has no joint form, and where its
-    /// loops cannot be closed.
-    ///
-    /// `nearest` has for each coordinate, joint after joint, the continuous angle, which the state alone does not tell.
-    fn linearise(&self, _mechanism: &M, _t: f64, _y: &M::State, _nearest: &[f64]) -> Option<Linear> {
+    /// The linearisation of the joint form; `None` for what has no joint form, and where its loops cannot be closed.
+    fn linearise(&self, _mechanism: &M, _at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
         None
     }
 }
 
-/// The joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates, u the inputs. Of a
-/// mechanism with loops x has the independent ones alone. The work, on which nothing depends, is left out.
+/// Where and when a mechanism is linearised.
+#[derive(Clone, Copy, Debug)]
+pub struct OperatingPoint<'a, S> {
+    /// Time, s.
+    pub t: f64,
+    /// The maximal state.
+    pub y: &'a S,
+    /// For each coordinate, joint after joint, the continuous angle, which the state alone does not tell.
+    pub angles: &'a [f64],
+    /// What the inputs are, as the mechanism has them; those that are not here have their defaults.
+    pub inputs: &'a [Input],
+}
+
+/// The joint form near a state: `ẋ ≈ f + A δx + B δu` and outputs `z ≈ h + C δx + D δu`, with x the joint coordinates
+/// and rates, u the inputs. Of a mechanism with loops x has the independent ones alone. The work, on which nothing
+/// depends, is left out.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Linear {
     /// Time, s.
@@ -87,6 +99,12 @@ pub struct Linear {
     pub by_state: Vec<f64>,
     /// B = ∂f/∂u, row by row.
     pub by_inputs: Vec<f64>,
+    /// The outputs.
+    pub outputs: Vec<f64>,
+    /// C = ∂h/∂x, row by row.
+    pub outputs_by_state: Vec<f64>,
+    /// D = ∂h/∂u, row by row.
+    pub outputs_by_inputs: Vec<f64>,
 }
 
 /// An element of a joint state.
@@ -121,9 +139,10 @@ impl Linear {
         let n = self.state.len();
         let n_inputs = self.by_inputs.len().checked_div(n).unwrap_or(0);
         let Some(kept) = n.checked_sub(1) else { return self };
-        let rows = self.by_state.chunks_exact(n).take(kept);
+        let shortened = |rows: &[f64]| rows.chunks_exact(n).flat_map(|row| &row[..kept]).copied().collect();
         Self {
-            by_state: rows.flat_map(|row| &row[..kept]).copied().collect(),
+            by_state: shortened(&self.by_state[..kept * n]),
+            outputs_by_state: shortened(&self.outputs_by_state),
             by_inputs: self.by_inputs[..kept * n_inputs].to_vec(),
             state: self.state[..kept].to_vec(),
             slope: self.slope[..kept].to_vec(),
@@ -147,6 +166,12 @@ impl Element {
 
 pub(super) fn in_f64<T: Real>(numbers: &[T]) -> Vec<f64> {
     numbers.iter().map(|x| x.to_f64()).collect()
+}
+
+/// Row by row what is given column by column.
+pub(super) fn rows(columns: &[Vec<f64>]) -> Vec<f64> {
+    let n_rows = columns.first().map_or(0, Vec::len);
+    (0..n_rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
 }
 
 /// Columns of a Jacobian that are computed at a time.

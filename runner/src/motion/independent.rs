@@ -1,15 +1,25 @@
 //! Linearisation of loops in independent coordinates.
 
-use super::contract::{COLUMNS, Element, Linear};
+use super::contract::{COLUMNS, Element, Linear, rows};
 use gyro_sim::{Coordinate, Description, Dual, JointPlace, JointSpace, Mechanism, Real, Scalar};
 
-/// A mechanism in dual numbers of which the loops can be closed.
+/// What is asked of a mechanism in dual numbers beside its Jacobian.
 pub trait Closing: Mechanism {
     /// Closes positions and velocities of a joint state, by one step each.
     fn close(&self, t: Self::Scalar, x: &mut [Self::Scalar]);
+    /// The outputs at a joint state.
+    fn outputs_of(&self, t: Self::Scalar, x: &[Self::Scalar]) -> Vec<Self::Scalar>;
 }
 
 impl<D: JointSpace> Closing for D {
+    fn outputs_of(&self, t: D::Scalar, x: &[D::Scalar]) -> Vec<D::Scalar> {
+        let (mut joints, mut y, mut outputs) = (self.joint_start(), self.start(), self.buffers().outputs);
+        joints.as_mut().copy_from_slice(x);
+        self.to_maximal(t, &joints, &mut y);
+        self.outputs(t, &y, &mut outputs);
+        outputs.as_ref().to_vec()
+    }
+
     fn close(&self, t: D::Scalar, x: &mut [D::Scalar]) {
         let mut joints = self.joint_start();
         joints.as_mut().copy_from_slice(x);
@@ -37,6 +47,9 @@ where
         let change: Vec<_> = linear.by_inputs.iter().skip(input).step_by(n_inputs).copied().collect();
         tangent.kept(&change)
     });
+    let outputs_by_state = tangent.directions().into_iter().map(|direction| {
+        linear.outputs_by_state.chunks(n).map(|row| dot(row, &direction)).collect::<Vec<_>>()
+    });
     let places = || tangent.independent.iter().map(|&k| &tangent.rates[k]);
     let positions = places().map(|rate| rate.position_at.map_or(0.0, |at| linear.state[at]));
     let rates = tangent.independent.iter().map(|&k| linear.state[tangent.n_coordinates + k]);
@@ -47,6 +60,9 @@ where
         slope: tangent.kept(&linear.slope),
         by_state: rows(&by_state.collect::<Vec<_>>()),
         by_inputs: rows(&by_inputs.collect::<Vec<_>>()),
+        outputs: linear.outputs.clone(),
+        outputs_by_state: rows(&outputs_by_state.collect::<Vec<_>>()),
+        outputs_by_inputs: linear.outputs_by_inputs.clone(),
     }
 }
 
@@ -242,12 +258,6 @@ fn subtract(from: &mut [f64], share: f64, what: &[f64]) {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Row by row what is given column by column.
-fn rows(columns: &[Vec<f64>]) -> Vec<f64> {
-    let n_rows = columns.first().map_or(0, Vec::len);
-    (0..n_rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
 }
 
 #[cfg(test)]

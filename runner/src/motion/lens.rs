@@ -1,24 +1,7 @@
 //! The equations that are integrated, and the maximal state as seen through each of them.
 
 use super::contract::COLUMNS;
-use gyro_sim::{ByDuals, Dual, Exact, Joint, JointPlace, JointSpace, Mechanism, Ode, Real, Scalar};
-
-/// ∂f/∂u of one input. What the input is set to does not matter: it enters linearly.
-pub(super) fn input_column<T: Real, D>(duals: &D, input: usize, t: T, x: &[T]) -> Vec<T>
-where
-    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Clone,
-{
-    let mut duals = duals.clone();
-    let (mut arguments, zero, one) = (duals.joint_start(), T::constant(0.0), T::constant(1.0));
-    let slopes = core::array::from_fn(|k| if k == 0 { one } else { zero });
-    duals.set_input(input, Dual { value: zero, slopes });
-    for (argument, value) in arguments.as_mut().iter_mut().zip(x) {
-        *argument = Dual::new(*value);
-    }
-    let mut out = arguments.clone();
-    duals.joint_derivative(Dual::new(t), &arguments, &mut out);
-    out.as_ref().iter().map(|number| number.slopes[0]).collect()
-}
+use gyro_sim::{ByDuals, Dual, Exact, Joint, JointPlace, JointSpace, Mechanism, Ode, Scalar};
 
 /// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
 /// joint.

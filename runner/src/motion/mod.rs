@@ -5,8 +5,9 @@ mod contract;
 mod correction;
 mod independent;
 mod lens;
+mod linearise;
 mod moving;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
-pub use contract::{COLUMNS, Element, Linear, Motion, MotionBuilder};
+pub use contract::{COLUMNS, Element, Linear, Motion, MotionBuilder, OperatingPoint};
 pub use independent::Closing;
