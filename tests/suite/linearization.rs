@@ -45,17 +45,16 @@ fn element(layout: &JointLayout<'_>, x0: &[f64], of: Element, x: &[f64]) -> f64 
 }
 
 /// How far A, B, C and D are off differences of the motion from states nearby: of the largest of each.
-fn check<M>(page: &str, mechanism: &M, builder: &dyn MotionBuilder<M>)
+fn check<M>(page: &str, shipped: &M, builder: &dyn MotionBuilder<M>)
 where
     M: Partition<Scalar = f64> + JointSpace + Clone,
 {
     let (model, mut random) = (model(page), Random::new(11));
-    let n_inputs = mechanism.description().inputs.len();
+    let (layout, n_inputs) = (shipped.joint_layout(), shipped.description().inputs.len());
     let mut worst = [0.0_f64; 2];
     for case in 0..4 {
-        let mut mechanism = mechanism.clone();
+        let mut mechanism = shipped.clone();
         let (t, mut x) = (random.signed(), random_state(&model, &mechanism, &mut random));
-        let layout = *mechanism.joint_layout();
         let has_loops = !layout.closure_rows.is_empty();
         if has_loops {
             // A closed state of any rates.
@@ -82,7 +81,7 @@ where
             mechanism.to_maximal(t, x, &mut y);
             mechanism.outputs(t, &y, &mut outputs);
             let [z, dz] = [x, &dx].map(|x| {
-                let element = |e: &Element| element(&layout, x0.as_ref(), *e, x.as_ref());
+                let element = |e: &Element| element(layout, x0.as_ref(), *e, x.as_ref());
                 linear.elements.iter().take(linear.state.len()).map(element).collect::<Vec<_>>()
             });
             [z, dz, outputs.as_ref().to_vec()].concat()
@@ -213,7 +212,7 @@ fn the_wishbone_s_linearisation_is_that_of_its_reference() {
         let times = |matrix: &[f64], row: usize| -> f64 {
             matrix[4 * row..][..4].iter().zip(z).map(|(a, b)| a * b).sum()
         };
-        let mut compare = |what: &str, found: f64, expected: f64| {
+        let compare = |what: &str, found: f64, expected: f64| {
             let error = (found - expected).abs() / expected.abs().max(1.0);
             println!("along {along}, {what}: {found} for {expected}");
             assert!(error < 1e-8, "along {along}, {what}: {found} for {expected}");
