@@ -44,11 +44,10 @@ const SCENES: [Scene; 14] = [
     Scene { page: "slider-crank", t_end: 0.2, step: 2e-4 },
 ];
 
-/// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates. Single precision, which
-/// passes a pose from which a linkage may go on in two ways in either of them, is left out where there is one.
+/// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates.
 fn engines<T: Real + 'static>(page: &str) -> (Engine<T>, Duals<T>) {
     match page {
-        "four-bar-in-line" if T::EPSILON.to_f64() < 1e-10 => {
+        "four-bar-in-line" => {
             (Engine::of_tree(shipped::four_bar_in_line::FourBarInLine::default()), duals(page))
         }
         "slider-crank" => (

@@ -10,10 +10,10 @@ use crate::{
 /// Closes the loops of a mechanism in joint coordinates: positions by Newton's iteration
 /// ([`JointSpace::close_positions`]), then velocities. Trees, which have no loops, are left as they are.
 ///
-/// Positions are corrected until no row exceeds a few roundings: of one, or of the largest coordinate of a mass centre
-/// in units of the mechanism's size, times the largest angle, of which no more digits are known. A change by more than
-/// half a radian or half the mechanism's size in one iteration may lead to another way to assemble the mechanism and is
-/// refused.
+/// Positions are corrected at least once, as near a singular pose even a rounding of a row changes them, and until no
+/// row exceeds a few roundings: of one, or of the largest coordinate of a mass centre in units of the mechanism's size,
+/// times the largest angle, of which no more digits are known. A change by more than half a radian or half the
+/// mechanism's size in one iteration may lead to another way to assemble the mechanism and is refused.
 ///
 /// # Example
 /// ```
@@ -76,19 +76,18 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
     }
 
     fn close_positions(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
-        let mut worst = Violation { value: M::Scalar::constant(0.0), owner: None };
-        for iteration in 0..=MAX_ITERATIONS {
-            normalise_orientations(mechanism.joint_layout(), x.as_mut());
-            check_finite(t, x.as_ref())?;
-            worst = self.worst(mechanism, t, x);
-            let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
-            let is_small = worst.value <= tolerance;
-            if is_small || iteration > 0 && worst.value <= tolerance * self.magnitude(mechanism, t, x) {
-                return Ok(());
-            }
+        let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+        let mut worst = self.worst(mechanism, t, x);
+        for _ in 0..MAX_ITERATIONS {
             self.before.as_mut().copy_from_slice(x.as_ref());
             mechanism.close_positions(t, x);
             self.refuse_jump(mechanism, t, (x, worst.owner))?;
+            normalise_orientations(mechanism.joint_layout(), x.as_mut());
+            check_finite(t, x.as_ref())?;
+            worst = self.worst(mechanism, t, x);
+            if worst.value <= tolerance || worst.value <= tolerance * self.magnitude(mechanism, t, x) {
+                return Ok(());
+            }
         }
         let owner = worst.owner.unwrap_or(Owner::Body(0));
         Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })

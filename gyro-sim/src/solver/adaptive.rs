@@ -92,6 +92,13 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
                 let after = if is_last { (t_end, T::constant(0.0)) } else { self.after(h) };
                 self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
                 match self.settle(system, after.0) {
+                    Ok(settled) if let Some(shorter) = self.before_pose(system, h, settled.1) => {
+                        self.statistics.rejected += 1;
+                        let shortest = h * T::constant(SHRINKAGE);
+                        self.next_step = if shorter < shortest { shortest } else { shorter };
+                        has_failed = true;
+                        continue;
+                    }
                     Ok(settled) => {
                         self.keep::<M>(after, h, settled);
                         self.grow::<M>(h, error, has_failed, is_last);

@@ -74,9 +74,10 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
             self.each_term(i, t, &mut term);
             n += 1.0;
         }
-        let sizes = sums.iter().take(self.len).enumerate().skip(FEWEST - 1);
-        let smallest = sizes.min_by(|a, b| a.1.total_cmp(b.1))?;
-        Some((smallest.0, libm::sqrt(*smallest.1 / n)))
+        let largest = |terms: &[f64]| terms.iter().copied().fold(0.0, f64::max);
+        let sizes = (2..).zip(sums[..self.len].windows(3).map(largest)).skip(FEWEST - 3);
+        let (degree, size) = sizes.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((degree, libm::sqrt(size / n)))
     }
 
     /// Writes the polynomial of this degree, through the newest states, at a time.

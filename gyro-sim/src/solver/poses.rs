@@ -7,8 +7,9 @@
 
 use super::Solver;
 use crate::contract::Storage;
+use crate::integrate::Method;
 use crate::scalar::largest_magnitude;
-use crate::{Clearance, Correction, Error, Ode, Owner, Real};
+use crate::{Clearance, Correction, Error, Ode, Owner, Real, System};
 
 /// The way to a singular pose.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,10 @@ const APPROACH: f64 = 0.35;
 const LONGEST_APPROACH: u32 = 300;
 /// With a pivot below this whatever fails does so because of the pose.
 const IN_POSE: f64 = 1e-3;
+/// A step is looked into at so many places.
+const LOOKS: u32 = 8;
+/// It is not where the clearance after it is off what is expected by less than this part of it.
+const EXPECTED: f64 = 0.25;
 /// A leap ends as clear of the pose as it began, to within this factor: where a pivot vanishes linearly, on the other
 /// side.
 const BEYOND: f64 = 0.25;
@@ -52,7 +57,9 @@ const AGREEMENT: f64 = 10.0;
 /// an allowance.
 const ROUNDINGS: f64 = 64.0;
 /// And in states that are extrapolated.
-const NOISE: f64 = 4.0;
+const NOISE: f64 = 8.0;
+/// Where that is more than so many times what is tolerated, a pose is not passed.
+const MOST_NOISE: f64 = 2e5;
 /// The square of the pivot is at least so many times what the constraints are off: by as much as that the ways through
 /// a pose are apart.
 pub(super) const FLOOR: f64 = 100.0;
@@ -137,6 +144,44 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         Ok((is_corrected, Some(pivot)))
     }
 
+    /// How far a step that is to end with this clearance may go, where the motion within it passes a singular pose or
+    /// comes close to one.
+    ///
+    /// Stages near a pose see accelerations of any size, and error estimates need not. So a step whose end is not as
+    /// clear as the last two states make expect is looked into: near a pose the clearance falls by half from one look
+    /// to the next.
+    pub(super) fn before_pose<M>(&mut self, system: &M, h: T, pivot: Option<T>) -> Option<T>
+    where
+        D: Ode<M, Scalar = T, State = S>,
+        A: Method<D, M>,
+        C: Correction<D, M>,
+    {
+        if self.is_expected(h, pivot?) {
+            return None;
+        }
+        let Self { method, dynamics, correction, statistics, y, raw, .. } = self;
+        method.prepare(System { dynamics, model: system }, self.t, h, y, &mut statistics.work);
+        let mut last = correction.clearance(system, self.t, y)?.pivot;
+        for look in 1..=LOOKS {
+            let theta = T::constant(f64::from(look) / f64::from(LOOKS));
+            method.between(theta, raw);
+            let now = correction.clearance(system, self.t + theta * h, raw)?.pivot;
+            if now + now < last {
+                return Some(T::constant(f64::from(look - 1) / f64::from(LOOKS)) * h);
+            }
+            last = now;
+        }
+        None
+    }
+
+    /// Whether the clearance after a step is about what those of the last two states lead to.
+    fn is_expected(&self, h: T, pivot: T) -> bool {
+        let Some([now, before]) = self.past.last_two() else { return false };
+        let expected = now.pivot + (now.pivot - before.pivot) / (now.t - before.t) * h;
+        let less = if pivot < now.pivot { pivot } else { now.pivot };
+        (pivot - expected).abs() < less * T::constant(EXPECTED)
+    }
+
     /// What rounding makes of a state as clear of singular poses as this: positions are known to a rounding over the
     /// pivot, and so velocities, along what the pivot belongs to, to one over its square.
     fn rounding(&self, pivot: T) -> T {
@@ -172,7 +217,9 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         }
         let Some(approach) = &mut self.approach else { return Ok(false) };
         approach.attempts += 1;
-        if approach.attempts > LONGEST_APPROACH {
+        let is_too_long = approach.attempts > LONGEST_APPROACH;
+        self.weigh_state();
+        if is_too_long || self.in_tolerances(self.rounding(pivot) * T::constant(NOISE)) > MOST_NOISE {
             let owner =
                 self.correction.clearance(system, self.t, &self.y).and_then(|clearance| clearance.owner);
             return Err(Error::Singular { t: self.t.to_f64(), pivot: pivot.to_f64(), owner });
@@ -226,6 +273,24 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         self.statistics.leaps += 1;
         self.next_step = length;
         true
+    }
+
+    /// What is tolerated of each element by its size: an attempt that came too near the pose may have ended anywhere.
+    fn weigh_state(&mut self) {
+        let [relative, absolute] = [self.control.relative, self.control.absolute].map(T::constant);
+        for (weight, y) in self.weights.as_mut().iter_mut().zip(self.y.as_ref()) {
+            *weight = T::fused(relative, y.abs(), absolute);
+        }
+    }
+
+    /// The same change of all elements: the root mean square in units of the weights.
+    fn in_tolerances(&self, change: T) -> f64 {
+        let (mut sum, mut n) = (0.0, 0.0);
+        for weight in self.weights.as_ref() {
+            let part = (change / *weight).to_f64();
+            (sum, n) = (sum + part * part, n + 1.0);
+        }
+        libm::sqrt(sum / n)
     }
 
     /// The length of a step to behind the pose ahead, if there is one, and how clear of it the state is.
