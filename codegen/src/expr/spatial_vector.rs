@@ -15,6 +15,15 @@ pub struct SpatialVector {
 impl SpatialVector {
     pub const ZERO: Self = Self { t: ZERO3, rho: ZERO3 };
 
+    /// Three of the displacement or force, then three of the rotation or torque.
+    pub fn component(&self, component: usize) -> ExprId {
+        if component < 3 { self.t[component] } else { self.rho[component - 3] }
+    }
+
+    pub fn component_mut(&mut self, component: usize) -> &mut ExprId {
+        if component < 3 { &mut self.t[component] } else { &mut self.rho[component - 3] }
+    }
+
     pub fn dot(&self, graph: &mut Graph, wrench: &Self) -> ExprId {
         let (force, torque) = (graph.dot(&self.t, &wrench.t), graph.dot(&self.rho, &wrench.rho));
         graph.add(force, torque)

@@ -96,14 +96,14 @@ impl JointSpace {
         // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
         // which is emitted.
         let differentiated = if coordinates.have_orientations() {
-            &accelerations.roots
+            vec![accelerations.roots.as_slice()]
         } else {
-            &candidates.shortest[..n_rates]
+            candidates.shortest.iter().map(|form| &form[..n_rates]).collect()
         };
         let form = JointForm {
             coordinates: &coordinates,
             rates: &rates,
-            accelerations: differentiated,
+            accelerations: &differentiated,
             power: power.at(system, &coordinates, &rates_of_rates),
             balance: &candidates.balance,
             passes,

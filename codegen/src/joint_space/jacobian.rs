@@ -38,8 +38,8 @@ pub struct JointForm<'a> {
     pub coordinates: &'a Coordinates,
     /// ẋ.
     pub rates: &'a [ExprId],
-    /// u̇ as it is emitted.
-    pub accelerations: &'a [ExprId],
+    /// u̇, in one way or several.
+    pub accelerations: &'a [&'a [ExprId]],
     /// In terms of [`Symbol::RateOfRate`].
     pub power: Option<ExprId>,
     /// What u̇ is the solution of.
@@ -106,10 +106,13 @@ impl JointForm<'_> {
     /// ∂u̇ by each variable, in several ways.
     fn candidates(&self, system: &mut System, variables: &[Symbol]) -> Vec<(String, Columns)> {
         let graph = &mut system.graph;
-        let solved =
-            [forward(graph, self.accelerations, variables), backward(graph, self.accelerations, variables)];
-        let names = ["derivatives of u̇, from its leaves", "derivatives of u̇, from its roots"];
-        let mut candidates: Vec<_> = names.map(str::to_owned).into_iter().zip(solved).collect();
+        let mut candidates = Vec::new();
+        for (form, of) in self.accelerations.iter().zip(["u̇", "u̇ in the bodies' frames"]) {
+            candidates
+                .push((format!("derivatives of {of}, from its leaves"), forward(graph, form, variables)));
+            candidates
+                .push((format!("derivatives of {of}, from its roots"), backward(graph, form, variables)));
+        }
         // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
         // which is emitted. In loops the rates are no unknowns of the balance.
         let is_open = self.coordinates.closure.rows.is_empty();
@@ -155,7 +158,7 @@ impl JointForm<'_> {
     fn at_accelerations(&self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
         let by_rate = |(rate, &value): (usize, &ExprId)| (Symbol::RateOfRate(rate), value);
         let (definitions, values) =
-            (Definitions::default(), self.accelerations.iter().enumerate().map(by_rate).collect());
+            (Definitions::default(), self.accelerations[0].iter().enumerate().map(by_rate).collect());
         Expansion::with_values(&definitions, values).all(graph, roots)
     }
 

@@ -9,12 +9,16 @@
 //! of planar mechanisms; these are the `candidates`, and `choose` takes the cheapest of those that are accurate, with
 //! what follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of the joint form.
 
+mod articulated_inertia;
+mod axis_dynamics;
+mod axis_frames;
 mod candidates;
 mod choose;
 mod closure;
 mod coordinates;
 mod determined;
 mod dynamics;
+mod elementary_joints;
 mod embedding;
 mod forces;
 mod jacobian;
@@ -22,10 +26,12 @@ mod layout;
 mod link_kinematics;
 mod loops;
 mod maps;
+mod mass_moments;
 mod motions;
 mod multipliers;
 mod planar;
 mod relation;
+mod screw_moves;
 mod whole_angles;
 
 pub use candidates::Candidates;

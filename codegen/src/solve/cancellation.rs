@@ -52,8 +52,14 @@ pub struct Trials {
 }
 
 impl Trials {
-    /// For the symbols of these expressions; `angles` are the joint coordinates that are angles.
-    pub fn draw(system: &System, roots: &[ExprId], angles: &BTreeSet<usize>) -> Self {
+    /// For the symbols of these expressions; `angles` are the joint coordinates that are angles, and `orientations`
+    /// those that are Euler parameters.
+    pub fn draw(
+        system: &System,
+        roots: &[ExprId],
+        angles: &BTreeSet<usize>,
+        orientations: &[[Symbol; 4]],
+    ) -> Self {
         let graph = &system.graph;
         let symbols: BTreeSet<_> = (graph.reachable(roots).into_iter())
             .filter_map(|id| if let Node::Symbol(symbol) = graph.node(id) { Some(*symbol) } else { None })
@@ -81,23 +87,44 @@ impl Trials {
                     _ => {}
                 }
             }
-            (0..system.moving_bodies.len()).for_each(|moving_body| to_length_one(&mut values, moving_body));
+            let bodies = 0..system.moving_bodies.len();
+            let of_bodies = bodies.map(|moving_body| [0, 1, 2, 3].map(|k| Symbol::Euler { moving_body, k }));
+            of_bodies.chain(orientations.iter().copied()).for_each(|p| to_length_one(&mut values, &p));
             values.values_mut().for_each(|value| *value = f64::from(shortened(*value)));
             values
         };
         Self { states: (0..STATES).map(state).collect() }
     }
 
-    /// Whether a form of some expressions is as accurate as another that is known to cancel nothing.
+    /// Whether a form of some expressions is as accurate as another that is known to cancel nothing: at each state.
     pub fn is_accurate(&self, graph: &Graph, way: &[ExprId], keeping: &[ExprId]) -> bool {
         self.states.iter().all(|state| {
-            let [error, least] = [way, keeping].map(|roots| {
-                let exact = evaluate(graph, roots, |symbol| state[&symbol]);
-                error(&exact, &evaluate(graph, roots, |symbol| shortened(state[&symbol])))
-            });
+            let [error, least] = [way, keeping].map(|roots| error_at(graph, state, roots));
             error <= LIKE * least.max(f64::from(f32::EPSILON))
         })
     }
+
+    /// The largest error of a form at any of the states.
+    fn worst(&self, graph: &Graph, roots: &[ExprId]) -> f64 {
+        self.states.iter().map(|state| error_at(graph, state, roots)).fold(0.0, f64::max)
+    }
+
+    /// The forms that are as accurate as another, which may cancel digits too: in terms of their largest errors.
+    pub fn are_alike<'w>(
+        &self,
+        graph: &Graph,
+        ways: impl Iterator<Item = &'w [ExprId]>,
+        known: &[ExprId],
+    ) -> Vec<bool> {
+        let allowed = LIKE * self.worst(graph, known).max(f64::from(f32::EPSILON));
+        ways.map(|way| self.worst(graph, way) <= allowed).collect()
+    }
+}
+
+/// The largest error of a form at a state.
+fn error_at(graph: &Graph, state: &HashMap<Symbol, f64>, roots: &[ExprId]) -> f64 {
+    let exact = evaluate(graph, roots, |symbol| state[&symbol]);
+    error(&exact, &evaluate(graph, roots, |symbol| shortened(state[&symbol])))
 }
 
 /// The largest error in terms of the largest number.
@@ -123,12 +150,11 @@ fn inertial_parameters(system: &System) -> BTreeSet<usize> {
     numbers.filter_map(index).collect()
 }
 
-/// Makes the Euler parameters of a moving body a unit vector.
-fn to_length_one(values: &mut HashMap<Symbol, f64>, moving_body: usize) {
-    let p = [0, 1, 2, 3].map(|k| Symbol::Euler { moving_body, k });
+/// Makes Euler parameters a unit vector.
+fn to_length_one(values: &mut HashMap<Symbol, f64>, p: &[Symbol; 4]) {
     let square: f64 = p.iter().filter_map(|symbol| values.get(symbol)).map(|x| x * x).sum();
     for symbol in p {
-        if let Some(x) = values.get_mut(&symbol) {
+        if let Some(x) = values.get_mut(symbol) {
             *x = if square > 0.0 { *x / square.sqrt() } else { 0.5 };
         }
     }
@@ -170,7 +196,7 @@ mod tests {
         let difference = graph.sub(sum, sine);
         let square = graph.mul(moment, moment);
         let product = graph.div(square, moment);
-        let trials = Trials::draw(&system, &[difference, product, moment], &BTreeSet::new());
+        let trials = Trials::draw(&system, &[difference, product, moment], &BTreeSet::new(), &[]);
         assert!(!trials.is_accurate(&system.graph, &[difference], &[moment]));
         assert!(trials.is_accurate(&system.graph, &[product], &[moment]));
     }

@@ -1,0 +1,439 @@
+//! The accelerations of the joint coordinates of an open tree in frames that suit its joints, from base inertial
+//! parameters: by articulated bodies, or through the mass matrix of composite bodies.
+//!
+//! What all rates being constant would take is found first, as inverse dynamics (J. Luh, M. Walker and R. Paul (1980)),
+//! and left out of the loads; gravity is an acceleration of the ground, and a body that nothing holds falls.
+
+use super::articulated_inertia::ArticulatedInertia;
+use super::axis_frames::{Frame, frames};
+use super::coordinates::Coordinates;
+use super::elementary_joints::{Freedom, Station, stations};
+use super::mass_moments::{MassMoments, Motion};
+use crate::derive::joint_coordinate::Load;
+use crate::derive::outputs::time_derivative;
+use crate::derive::system::System;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::schedule::Operations;
+use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::symbol::Symbol;
+use crate::expr::vector::{UNIT3, Vec3, ZERO3};
+use crate::solve::ldl::Elimination;
+use std::collections::BTreeMap;
+
+/// A tree with frames, ready to be solved.
+#[derive(Debug)]
+pub struct AxisTree {
+    /// Root first.
+    segments: Vec<Segment>,
+    n_rates: usize,
+}
+
+#[derive(Debug)]
+struct Segment {
+    station: Station,
+    frame: Frame,
+    /// The components of its twist that are free, three displacements before three turns, and their rates.
+    free: Vec<(usize, usize)>,
+    /// Base inertial parameters.
+    moments: MassMoments,
+    /// At constant rates.
+    motion: Motion,
+    /// What acts on it besides gravity, less what constant rates take.
+    load: SpatialVector,
+    /// The acceleration that constant rates force upon it, its carrier turning at a constant rate.
+    forced: SpatialVector,
+    /// The same load, less what it takes to turn at a constant rate.
+    load_at_rest: SpatialVector,
+    /// The force along each free component.
+    along: Vec<ExprId>,
+}
+
+/// Where the accelerations that are found start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// From those at constant rates: the fewest operations.
+    ConstantRates,
+    /// From nothing: what gravity and the rates force upon a body is not found by a difference.
+    Rest,
+}
+
+impl AxisTree {
+    /// `None` for a tree with joints whose rates follow others, or that are not made of turns and displacements.
+    pub fn new(system: &mut System, coordinates: &Coordinates, loads: &[Load]) -> Option<Self> {
+        let n_rates = coordinates.layout.n_rates;
+        let is_open = coordinates.closure.rows.is_empty() && coordinates.layout.determined.is_empty();
+        let links = coordinates.layout.links.as_slice();
+        let turned = |x: usize| !coordinates.invariant.contains(&x);
+        let stations = is_open.then(|| stations(system, links, &turned)).flatten()?;
+        let frames = frames(system, &stations);
+        let moments = base_parameters(system, &stations, &frames);
+        let mut segments: Vec<Segment> = Vec::new();
+        for ((station, frame), moments) in stations.into_iter().zip(frames).zip(moments) {
+            let from = match station.parent {
+                Some(parent) => segments[parent].motion,
+                None => of_ground(system, station.ground),
+            };
+            let load = load(system, &station, &frame, loads);
+            let free = free(&station.freedom);
+            let along = along(system, &station, &free, &coordinates.along);
+            let graph = &mut system.graph;
+            let motion = moving(graph, &station, &frame, from);
+            let turning = Motion::new(graph, ZERO3, from.rho, ZERO3);
+            let forced = moving(graph, &station, &frame, turning);
+            let turning = Motion::new(graph, ZERO3, motion.rho, ZERO3);
+            let [load, load_at_rest] = [motion, turning].map(|motion| {
+                let taken = moments.wrench(graph, &motion).negated(graph);
+                load.plus(graph, &taken)
+            });
+            let forced = SpatialVector { t: forced.t, rho: forced.rho_dot };
+            segments.push(Segment {
+                station,
+                frame,
+                free,
+                moments,
+                motion,
+                load,
+                forced,
+                load_at_rest,
+                along,
+            });
+        }
+        Some(Self { segments, n_rates })
+    }
+
+    /// By elimination from the leaves to the roots.
+    fn recursion(&self, system: &mut System, start: Start) -> Vec<ExprId> {
+        let grounds: Vec<_> =
+            self.segments.iter().map(|segment| of_carrier(system, segment, start)).collect();
+        let graph = &mut system.graph;
+        let mut inertias: Vec<_> =
+            self.segments.iter().map(|segment| ArticulatedInertia::rigid(graph, &segment.moments)).collect();
+        let (mut loads, forced): (Vec<_>, Vec<_>) = (self.segments.iter())
+            .map(|segment| match start {
+                Start::ConstantRates => (segment.load, SpatialVector::ZERO),
+                Start::Rest => (segment.load_at_rest, segment.forced),
+            })
+            .unzip();
+        let mut eliminated = Vec::new();
+        for (index, segment) in self.segments.iter().enumerate().rev() {
+            let (mut inertia, mut load) = (inertias[index], loads[index]);
+            let mut steps = Vec::new();
+            for (&(component, _), &along) in segment.free.iter().zip(&segment.along) {
+                let (rest, step) = inertia.without(graph, component);
+                steps.push((step, step.yield_to(graph, &mut load, along)));
+                inertia = rest;
+            }
+            eliminated.push(steps);
+            let Some(parent) = segment.station.parent else { continue };
+            let taken = inertia.times(graph, &forced[index]).negated(graph);
+            load = load.plus(graph, &taken);
+            for by in &segment.frame.moves {
+                inertia = inertia.moved(graph, by);
+                load = by.wrench(graph, &load);
+            }
+            inertias[parent] = inertias[parent].plus(graph, &inertia);
+            loads[parent] = loads[parent].plus(graph, &load);
+        }
+        let mut found = vec![Graph::ZERO; self.n_rates];
+        let mut motions: Vec<SpatialVector> = Vec::new();
+        for (index, (segment, steps)) in self.segments.iter().zip(eliminated.iter().rev()).enumerate() {
+            let mut motion = segment.station.parent.map_or(grounds[index], |parent| motions[parent]);
+            for by in segment.frame.moves.iter().rev() {
+                motion = by.twist(graph, &motion);
+            }
+            motion = motion.plus(graph, &forced[index]);
+            for ((step, share), &(_, rate)) in steps.iter().zip(&segment.free).rev() {
+                found[rate] = step.release(graph, &mut motion, *share);
+            }
+            motions.push(motion);
+        }
+        self.of_state(system, found)
+    }
+
+    /// Through the mass matrix of composite bodies.
+    fn by_mass_matrix(&self, system: &mut System) -> Vec<ExprId> {
+        let forces = self.forces(&mut system.graph);
+        let matrix = self.mass_matrix(&mut system.graph);
+        let mut elimination = Elimination::new(matrix, forces);
+        let graph = &mut system.graph;
+        let places = self.places();
+        places.iter().flatten().rev().for_each(|&unknown| elimination.pivot(graph, unknown));
+        let solution = elimination.substitute_back(graph);
+        let mut found = vec![Graph::ZERO; self.n_rates];
+        for (&(_, rate), value) in self.segments.iter().flat_map(|segment| &segment.free).zip(solution) {
+            found[rate] = value;
+        }
+        self.of_state(system, found)
+    }
+
+    /// The forms of u̇ that are compared.
+    pub fn forms(&self, system: &mut System) -> Vec<(&'static str, Vec<ExprId>)> {
+        let recursion = self.recursion(system, Start::ConstantRates);
+        let from_rest = self.recursion(system, Start::Rest);
+        let by_matrix = self.by_mass_matrix(system);
+        let either = self.shorter(&system.graph, [&recursion, &by_matrix]);
+        let is_new = either != recursion && either != by_matrix;
+        let forms = [
+            ("recursion in joint frames", from_rest),
+            ("recursion in joint frames from constant rates", recursion),
+            ("mass matrix in joint frames", by_matrix),
+            ("recursion or mass matrix for each limb", either),
+        ];
+        forms.into_iter().take(if is_new { 4 } else { 3 }).collect()
+    }
+
+    /// The shorter of two solutions for each tree that stands on the ground by itself.
+    fn shorter(&self, graph: &Graph, ways: [&[ExprId]; 2]) -> Vec<ExprId> {
+        let mut rates: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut roots: Vec<usize> = Vec::new();
+        for (index, segment) in self.segments.iter().enumerate() {
+            roots.push(segment.station.parent.map_or(index, |parent| roots[parent]));
+            rates.entry(roots[index]).or_default().extend(segment.free.iter().map(|&(_, rate)| rate));
+        }
+        let mut taken = ways[0].to_vec();
+        for rates in rates.values() {
+            let cost = |way: &[ExprId]| {
+                let roots: Vec<_> = rates.iter().map(|&rate| way[rate]).collect();
+                Operations::recurring(graph, &roots).total()
+            };
+            if cost(ways[1]) < cost(ways[0]) {
+                rates.iter().for_each(|&rate| taken[rate] = ways[1][rate]);
+            }
+        }
+        taken
+    }
+
+    /// Unknowns, root first.
+    fn places(&self) -> Vec<Vec<usize>> {
+        let mut next = 0..;
+        self.segments.iter().map(|segment| next.by_ref().take(segment.free.len()).collect()).collect()
+    }
+
+    /// What is left along each unknown for the rates to change.
+    fn forces(&self, graph: &mut Graph) -> Vec<ExprId> {
+        let mut loads: Vec<_> = self.segments.iter().map(|segment| segment.load).collect();
+        let mut forces = Vec::new();
+        for (index, segment) in self.segments.iter().enumerate().rev() {
+            for (&(component, _), &along) in segment.free.iter().zip(&segment.along).rev() {
+                let load = loads[index].component(component);
+                forces.push(graph.add(load, along));
+            }
+            let Some(parent) = segment.station.parent else { continue };
+            let load = carried(graph, &segment.frame, loads[index]);
+            loads[parent] = loads[parent].plus(graph, &load);
+        }
+        forces.reverse();
+        forces
+    }
+
+    fn mass_matrix(&self, graph: &mut Graph) -> BTreeMap<(usize, usize), ExprId> {
+        let places = self.places();
+        let mut composite: Vec<_> = self.segments.iter().map(|segment| segment.moments).collect();
+        let mut matrix = BTreeMap::new();
+        for (index, segment) in self.segments.iter().enumerate().rev() {
+            for (k, &(component, _)) in segment.free.iter().enumerate() {
+                let unknown = places[index][k];
+                let mut wrench = composite[index].wrench_of(graph, component);
+                for (&(other, _), &place) in segment.free[..=k].iter().zip(&places[index]) {
+                    matrix.insert((unknown, place), wrench.component(other));
+                }
+                let mut at = index;
+                while let Some(parent) = self.segments[at].station.parent {
+                    wrench = carried(graph, &self.segments[at].frame, wrench);
+                    for (&(other, _), &place) in self.segments[parent].free.iter().zip(&places[parent]) {
+                        matrix.insert((unknown, place), wrench.component(other));
+                    }
+                    at = parent;
+                }
+            }
+            let Some(parent) = segment.station.parent else { continue };
+            let mut moments = composite[index];
+            for by in &segment.frame.moves {
+                moments = moments.moved(graph, by);
+            }
+            composite[parent] = composite[parent].plus(graph, &moments);
+        }
+        matrix.retain(|_, entry| *entry != Graph::ZERO);
+        matrix
+    }
+
+    /// A body that nothing holds: its acceleration in the global frame, with that of gravity.
+    fn of_state(&self, system: &mut System, mut found: Vec<ExprId>) -> Vec<ExprId> {
+        let gravity = system.numbers(&system.model.gravity);
+        for segment in &self.segments {
+            if let Freedom::Whole { position, orientation } = segment.station.freedom {
+                let graph = &mut system.graph;
+                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(orientation.x + k)));
+                let rotation = graph.rotation(&p);
+                let local = [0, 1, 2].map(|k| found[position.u + k]);
+                let global = graph.mat_vec(&rotation, &local);
+                let global = graph.add_vec(&global, &gravity);
+                found[position.u..position.u + 3].copy_from_slice(&global);
+            }
+        }
+        found
+    }
+}
+
+/// Base inertial parameters of each station, in its frame: from the leaves to the roots, what a joint cannot tell from
+/// mass of its carrier is moved there. A body that nothing holds stays as it is.
+fn base_parameters(system: &mut System, stations: &[Station], frames: &[Frame]) -> Vec<MassMoments> {
+    let mut all: Vec<_> =
+        stations.iter().zip(frames).map(|(station, frame)| own_moments(system, station, frame)).collect();
+    let graph = &mut system.graph;
+    for (index, (station, frame)) in stations.iter().zip(frames).enumerate().rev() {
+        let is_whole = |parent: usize| matches!(stations[parent].freedom, Freedom::Whole { .. });
+        if station.parent.is_some_and(is_whole) && !matches!(station.freedom, Freedom::Rigid) {
+            continue;
+        }
+        let (kept, mut given) = split(&station.freedom, &all[index]);
+        all[index] = kept;
+        let Some(parent) = station.parent else { continue };
+        for (place, by) in frame.moves.iter().enumerate() {
+            // What is given is the same however the joint stands.
+            let is_joint = place == frame.joint && !matches!(station.freedom, Freedom::Rigid);
+            if !is_joint {
+                given = given.moved(graph, by);
+            }
+        }
+        all[parent] = all[parent].plus(graph, &given);
+    }
+    all
+}
+
+/// What a joint tells, and what it does not.
+fn split(freedom: &Freedom, moments: &MassMoments) -> (MassMoments, MassMoments) {
+    let (mut kept, mut given) = (*moments, MassMoments::NONE);
+    match freedom {
+        Freedom::Rigid => std::mem::swap(&mut kept, &mut given),
+        Freedom::Turn { .. } => {
+            std::mem::swap(&mut kept.mass, &mut given.mass);
+            std::mem::swap(&mut kept.first[2], &mut given.first[2]);
+            std::mem::swap(&mut kept.second[2][2], &mut given.second[2][2]);
+        }
+        Freedom::Slide(_) => std::mem::swap(&mut kept.second, &mut given.second),
+        Freedom::Ball(_) => std::mem::swap(&mut kept.mass, &mut given.mass),
+        Freedom::Whole { .. } => {}
+    }
+    (kept, given)
+}
+
+/// Of the body alone, in its frame.
+fn own_moments(system: &mut System, station: &Station, frame: &Frame) -> MassMoments {
+    let Some(moving_body) = station.moving_body else { return MassMoments::NONE };
+    let (mass, inertia) = (system.mass(moving_body), system.inertia(moving_body));
+    let graph = &mut system.graph;
+    let moments = MassMoments::of_body(graph, mass, &inertia);
+    let from_origin = graph.neg_vec(&frame.origin);
+    let moments = moments.moved(graph, &super::screw_moves::Move::Shift(from_origin));
+    moments.moved(graph, &super::screw_moves::Move::Rotation(frame.axes))
+}
+
+/// What acts on a body besides gravity, as a wrench in its frame.
+fn load(system: &mut System, station: &Station, frame: &Frame, loads: &[Load]) -> SpatialVector {
+    let Some(moving_body) = station.moving_body else { return SpatialVector::ZERO };
+    let body = system.moving_bodies[moving_body];
+    let (load, a) = (&loads[body], system.poses[body].a);
+    let graph = &mut system.graph;
+    let force = graph.transposed_vec(&a, &load.force);
+    let from_origin = graph.neg_vec(&frame.origin);
+    let moment = graph.cross(&from_origin, &force);
+    let torque = graph.add_vec(&load.torque, &moment);
+    SpatialVector { t: graph.mat_vec(&frame.axes, &force), rho: graph.mat_vec(&frame.axes, &torque) }
+}
+
+fn free(freedom: &Freedom) -> Vec<(usize, usize)> {
+    match *freedom {
+        Freedom::Rigid => Vec::new(),
+        Freedom::Turn { place, .. } => vec![(5, place.u)],
+        Freedom::Slide(place) => vec![(2, place.u)],
+        Freedom::Ball(place) => (0..3).map(|k| (3 + k, place.u + k)).collect(),
+        Freedom::Whole { position, orientation } => {
+            let translations = (0..3).map(|k| (k, position.u + k));
+            translations.chain((0..3).map(|k| (3 + k, orientation.u + k))).collect()
+        }
+    }
+}
+
+/// The force along each free component.
+fn along(system: &mut System, station: &Station, free: &[(usize, usize)], along: &[ExprId]) -> Vec<ExprId> {
+    let mut own: Vec<_> = free.iter().map(|&(_, rate)| along[rate]).collect();
+    if let Freedom::Whole { orientation, .. } = station.freedom {
+        let graph = &mut system.graph;
+        let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(orientation.x + k)));
+        let rotation = graph.rotation(&p);
+        let local = graph.transposed_vec(&rotation, &[own[0], own[1], own[2]]);
+        own[..3].copy_from_slice(&local);
+    }
+    own
+}
+
+/// Of a carrier without coordinates, in its frame.
+fn of_ground(system: &mut System, body: Option<usize>) -> Motion {
+    let Some(body) = body else { return Motion::new(&mut system.graph, ZERO3, ZERO3, ZERO3) };
+    let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[body]);
+    let (linear, angular) = (time_derivative(system, &pose.s), time_derivative(system, &pose.w));
+    let graph = &mut system.graph;
+    let felt = graph.sub_vec(&linear, &gravity);
+    let felt = graph.transposed_vec(&pose.a, &felt);
+    Motion::new(graph, felt, pose.w, angular)
+}
+
+/// The acceleration of a carrier without coordinates, beyond that at the start.
+fn of_carrier(system: &mut System, segment: &Segment, start: Start) -> SpatialVector {
+    if start == Start::ConstantRates || segment.station.parent.is_some() {
+        return SpatialVector::ZERO;
+    }
+    let ground = of_ground(system, segment.station.ground);
+    SpatialVector { t: ground.t, rho: ground.rho_dot }
+}
+
+/// How a station moves at constant rates, from how its carrier moves.
+fn moving(graph: &mut Graph, station: &Station, frame: &Frame, from: Motion) -> Motion {
+    let mut motion = from;
+    for by in frame.moves[frame.joint..].iter().rev() {
+        motion = motion.back(graph, by);
+    }
+    motion = with_rates(graph, &station.freedom, motion);
+    for by in frame.moves[..frame.joint].iter().rev() {
+        motion = motion.back(graph, by);
+    }
+    motion
+}
+
+fn with_rates(graph: &mut Graph, freedom: &Freedom, motion: Motion) -> Motion {
+    let rate = |graph: &mut Graph, u: usize| graph.symbol(Symbol::Rate(u));
+    let spin = match *freedom {
+        Freedom::Rigid => return motion,
+        Freedom::Slide(place) => {
+            let speed = [Graph::ZERO, Graph::ZERO, rate(graph, place.u)];
+            let (turned, two) = (graph.cross(&motion.rho, &speed), graph.integer(2));
+            let coriolis = graph.scale_vec(two, &turned);
+            return Motion { t: graph.add_vec(&motion.t, &coriolis), ..motion };
+        }
+        Freedom::Turn { place, .. } => [Graph::ZERO, Graph::ZERO, rate(graph, place.u)],
+        Freedom::Ball(place) => [0, 1, 2].map(|k| rate(graph, place.u + k)),
+        Freedom::Whole { orientation, .. } => [0, 1, 2].map(|k| rate(graph, orientation.u + k)),
+    };
+    let turning = graph.cross(&motion.rho, &spin);
+    let (rho, rho_dot) = (graph.add_vec(&motion.rho, &spin), graph.add_vec(&motion.rho_dot, &turning));
+    Motion::new(graph, motion.t, rho, rho_dot)
+}
+
+/// A wrench on a station as one on its carrier.
+fn carried(graph: &mut Graph, frame: &Frame, wrench: SpatialVector) -> SpatialVector {
+    frame.moves.iter().fold(wrench, |wrench, by| by.wrench(graph, &wrench))
+}
+
+impl MassMoments {
+    /// What a unit acceleration takes.
+    fn wrench_of(&self, graph: &mut Graph, component: usize) -> SpatialVector {
+        let unit: Vec3 = UNIT3[component % 3];
+        if component < 3 {
+            let (force, torque) = (graph.scale_vec(self.mass, &unit), graph.cross(&self.first, &unit));
+            return SpatialVector { t: force, rho: torque };
+        }
+        let inertia = self.inertia(graph);
+        SpatialVector { t: graph.cross(&unit, &self.first), rho: inertia[component - 3] }
+    }
+}
