@@ -118,13 +118,14 @@ pub struct InspectArgs {
 
 /// Write the model file of a URDF robot
 ///
-/// Reports what in the robot has no counterpart in a model file. Link frames become body frames at the mass centres;
-/// links without mass are merged with what they are fixed to.
+/// Reports what in the robot has no counterpart in a model file. Links that are fixed to one another become one body,
+/// whose frame is at the mass centre with the axes of the link on the body's joint.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   {program} import arm.urdf                    writes arm.toml beside it
   {program} import arm.urdf --out models/arm.toml
-  {program} import quadruped.urdf --floating   its trunk floats")]
+  {program} import quadruped.urdf --floating   its trunk floats
+  {program} import arm.urdf --motors --limits  with a motor for each joint, and its stops")]
 pub struct ImportArgs {
     /// Robot in the Unified Robot Description Format
     #[arg(value_name = "FILE.urdf")]
@@ -135,6 +136,12 @@ pub struct ImportArgs {
     /// Let the root link float instead of fixing it to the ground
     #[arg(long)]
     pub(crate) floating: bool,
+    /// Give each joint a motor whose torque or force is an input, JOINT_motor
+    #[arg(long)]
+    pub(crate) motors: bool,
+    /// Make stops of the joints' limits
+    #[arg(long)]
+    pub(crate) limits: bool,
     /// Overwrite a model file that an earlier import has written
     #[arg(long)]
     pub(crate) force: bool,

@@ -4,7 +4,9 @@
 //! arm.urdf ─robot─▶ links and joints ─merge─▶ bodies ─page─▶ arm.toml
 //! ```
 
+mod angle;
 mod element;
+mod inertia;
 mod merge;
 mod names;
 mod page;
@@ -24,6 +26,16 @@ use std::path::Path;
 /// How an imported model file begins.
 const MARK: &str = "# Written by cargo xtask import";
 
+/// What is made of a robot.
+#[derive(Clone, Copy, Debug)]
+struct Wishes {
+    root: Root,
+    /// A motor with an input for each joint.
+    motors: bool,
+    /// Stops for joints with limits.
+    limits: bool,
+}
+
 /// Writes the model file and says what has no counterpart on it.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let out = args.out.clone().unwrap_or_else(|| args.file.with_extension("toml"));
@@ -39,7 +51,8 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     write::check(&out, Known::Mark(MARK))?;
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let (page, mut remarks) = convert(&file, &shown, &text, root).map_err(Failure::Usage)?;
+    let wishes = Wishes { root, motors: args.motors, limits: args.limits };
+    let (page, mut remarks) = convert(&file, &shown, &text, wishes).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::ModelFile)?;
     write::write(&out, &page, Known::Mark(MARK))?;
     remarks.extend(model.nearly_exact.iter().cloned());
@@ -49,13 +62,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
 }
 
 /// The model file of a robot and what is not on it; or every mistake of the file, a line for each.
-fn convert(file: &str, shown: &str, text: &str, root: Root) -> Result<(String, Vec<String>), String> {
+fn convert(file: &str, shown: &str, text: &str, wishes: Wishes) -> Result<(String, Vec<String>), String> {
     let joined = |problems: Vec<String>| capped(&problems);
     let robot = robot::read(file, text).map_err(joined)?;
-    let merged = merge::merge(file, &robot, root).map_err(joined)?;
+    let merged = merge::merge(file, &robot, wishes.root).map_err(joined)?;
     let mut remarks = robot.remarks.clone();
     remarks.extend(merged.remarks.iter().cloned());
-    let page = page::write(shown, &robot, (&merged, root), &mut remarks);
+    let page = page::write(shown, &robot, (&merged, wishes), &mut remarks);
     Ok((page, remarks))
 }
 

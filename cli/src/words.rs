@@ -49,13 +49,18 @@ pub(crate) fn instead(written: &str, known: &[&str]) -> String {
         let length = written.chars().count().max(name.chars().count());
         distance(name) <= length.div_ceil(3)
     });
-    let names: Vec<String> = known.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
-    let more = known.len().saturating_sub(LISTED);
-    let list = if more == 0 { names.join(", ") } else { format!("{} and {more} more", names.join(", ")) };
+    let list = listed(&known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>());
     match nearest {
         Some(nearest) => format!("write `{nearest}`; there are {list}"),
         None => format!("write one of {list}"),
     }
+}
+
+/// Names one after the other, as many as are written out.
+pub(crate) fn listed(names: &[String]) -> String {
+    let more = names.len().saturating_sub(LISTED);
+    let list = names[..names.len() - more].join(", ");
+    if more == 0 { list } else { format!("{list} and {more} more") }
 }
 
 /// Lines of a list that are shown, and characters of each.

@@ -32,12 +32,12 @@ pub use elements::{
 pub use kinematics::Kinematics;
 pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
-pub use parse::{read, read_with};
+pub use parse::{is_keyword, read, read_with};
 pub use redundancy::{Analysis, analyse};
 pub use spatial::{Quaternion, Vector, unit_vector};
 pub use spline::Spline;
 pub use tree::{Attachment, Link, Tree};
-pub use validate::ParameterRule;
+pub use validate::{ParameterRule, is_inertia};
 
 /// A mechanism as its model file describes it, checked: indices are in range, axes are not zero, inertias are physical
 /// and every body that moves is connected to a fixed, a driven or a free one.

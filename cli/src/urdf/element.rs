@@ -1,7 +1,9 @@
 //! Attributes of XML elements, with mistakes told by file, line and element.
 
-use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
+use super::angle::{Angles, at};
+use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3};
 use roxmltree::{Document, Node};
+use std::collections::BTreeMap;
 
 /// What is wrong with a file and what of it has no counterpart.
 #[derive(Debug)]
@@ -10,7 +12,13 @@ pub(super) struct Findings<'d> {
     pub(super) document: &'d Document<'d>,
     pub(super) problems: Vec<String>,
     pub(super) remarks: Vec<String>,
+    pub(super) angles: Angles,
+    /// Lines of the elements that have no counterpart, by their tags.
+    pub(super) unused: BTreeMap<String, Vec<u32>>,
 }
+
+/// Lengths and components of directions below this are what a computation left of a zero.
+const ZERO: f64 = 1e-12;
 
 impl Findings<'_> {
     /// A mistake at an element.
@@ -28,6 +36,21 @@ impl Findings<'_> {
     pub(super) fn remark(&mut self, node: Node<'_, '_>, words: &str) {
         let line = format!("line {}: {}: {words}", self.line(node), title(node));
         self.remarks.push(line);
+    }
+
+    /// An element that the model file does not have.
+    pub(super) fn unused(&mut self, node: Node<'_, '_>) {
+        let line = self.line(node);
+        self.unused.entry(node.tag_name().name().to_owned()).or_default().push(line);
+    }
+
+    /// All remarks, those on many elements as one.
+    pub(super) fn all_remarks(&self) -> Vec<String> {
+        let unused = |(tag, lines): (&String, &Vec<u32>)| {
+            format!("{} <{tag}> without counterpart: {}", lines.len(), at(lines))
+        };
+        let remarks = self.remarks.iter().cloned();
+        remarks.chain(self.angles.remarks()).chain(self.unused.iter().map(unused)).collect()
     }
 
     /// The line on which an element starts.
@@ -78,9 +101,30 @@ impl Findings<'_> {
         let Some(origin) = child(node, "origin") else { return Some(IsometryMatrix3::identity()) };
         let xyz = self.vector_or(origin, "xyz", [0.0; 3]);
         let rpy = self.vector_or(origin, "rpy", [0.0; 3]);
-        let (xyz, rpy) = (xyz?, rpy?);
+        let (xyz, mut rpy) = (xyz?, rpy?);
+        let line = self.line(origin);
+        let words = origin.attribute("rpy").unwrap_or_default().split_whitespace();
+        for (angle, written) in rpy.iter_mut().zip(words) {
+            *angle = self.angles.meant(written, *angle, line);
+        }
+        let xyz = xyz.map(|x| if x.abs() < ZERO { 0.0 } else { x });
         let rotation = Rotation3::from_euler_angles(rpy.x, rpy.y, rpy.z);
-        Some(IsometryMatrix3::from_parts(Translation3::from(xyz), rotation))
+        Some(settled(&IsometryMatrix3::from_parts(Translation3::from(xyz), rotation)))
+    }
+
+    /// An axis of length 1; `None` if it has no direction.
+    pub(super) fn direction(&mut self, node: Node<'_, '_>, xyz: &Vector3<f64>) -> Option<Vector3<f64>> {
+        const MEANT: f64 = 1e-6;
+        let largest = xyz.amax();
+        let left_out =
+            xyz.iter().filter(|x| x.abs() < MEANT * largest).fold(0.0, |most: f64, x| most.max(x.abs()));
+        if left_out > ZERO * largest {
+            self.remark(
+                node,
+                &format!("a component of {:.1e} of the largest is taken for 0", left_out / largest),
+            );
+        }
+        xyz.map(|x| if x.abs() < MEANT * largest { 0.0 } else { x }).try_normalize(0.0)
     }
 
     fn parsed(&mut self, node: Node<'_, '_>, name: &str, text: &str) -> Option<f64> {
@@ -92,6 +136,17 @@ impl Findings<'_> {
             }
         }
     }
+}
+
+/// A pose without what rounding has left of right angles: rotations by them are exact, also one after the other.
+pub(super) fn settled(pose: &IsometryMatrix3<f64>) -> IsometryMatrix3<f64> {
+    const ROUNDING: f64 = 1e-15;
+    let exact = |x: f64| {
+        let halves = (2.0 * x).round() / 2.0;
+        if (x - halves).abs() < ROUNDING { halves } else { x }
+    };
+    let rotation: Matrix3<f64> = pose.rotation.matrix().map(exact);
+    IsometryMatrix3::from_parts(pose.translation, Rotation3::from_matrix_unchecked(rotation))
 }
 
 /// The first child element of a name.

@@ -1,9 +1,11 @@
-//! Links become bodies: those without mass are merged with what they are fixed to, and what is fixed to a root that
-//! does not float is ground. Where a link's inertia is not a rigid body's (a point's, a rod's) all links that are fixed
-//! to one another there become one body.
+//! Links become bodies: all links that are fixed to one another are one, and what is fixed to a root that does not
+//! float is ground.
 
-use super::robot::{Inertial, Joint, Kind, Link, Robot, unphysical};
-use nalgebra::{IsometryMatrix3, Matrix3, Translation3, Vector3};
+use super::element::settled;
+use super::inertia::{Elements, Inertial, rounded};
+use super::robot::{Kind, Link, Robot};
+use crate::words;
+use nalgebra::{IsometryMatrix3, Translation3, Vector3};
 
 /// What the root link is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,17 +23,29 @@ pub(super) struct Merged {
     pub(super) bodies: Vec<Body>,
     /// For each link its place.
     pub(super) places: Vec<Place>,
-    /// Which links are no bodies of their own.
+    /// What had to be decided.
     pub(super) remarks: Vec<String>,
 }
 
 /// What links became.
 #[derive(Debug)]
 pub(super) struct Body {
-    /// The link that it is named after.
+    /// The link that it is named after: the ground's is the root, of others it is the first with mass.
     pub(super) link: usize,
-    /// Mass and inertia; `origin` is the body's frame in that of the link. `None` for the ground.
-    pub(super) inertial: Option<Inertial>,
+    /// The joint that carries it; none for the root's.
+    pub(super) carrier: Option<usize>,
+    /// `None` for the ground.
+    pub(super) inertial: Option<Settled>,
+    /// The body's frame in the global frame, with all joints at zero.
+    pub(super) zero: IsometryMatrix3<f64>,
+}
+
+/// Mass and inertia as they are written; the body's frame is at the mass centre.
+#[derive(Clone, Debug)]
+pub(super) struct Settled {
+    pub(super) mass: f64,
+    /// About the mass centre, in the body's frame.
+    pub(super) inertia: Elements,
 }
 
 /// Where a link's frame is.
@@ -41,55 +55,83 @@ pub(super) struct Place {
     pub(super) body: usize,
     /// The link's frame in the body's frame.
     pub(super) pose: IsometryMatrix3<f64>,
-    /// The link's frame in the global frame, with all joints at zero.
-    pub(super) zero: IsometryMatrix3<f64>,
 }
+
+/// Links that are fixed to one another.
+struct Group {
+    /// The link that it is named after.
+    named: usize,
+    carrier: Option<usize>,
+    /// The frame of the first link in the global frame, with all joints at zero.
+    zero: IsometryMatrix3<f64>,
+    /// Each link with its frame in that of the first.
+    links: Vec<(usize, IsometryMatrix3<f64>)>,
+    /// In the first link's frame; `None` without mass.
+    inertial: Option<Inertial>,
+}
+
+/// A link that moves without mass takes this part of the mass and the inertia of what it carries.
+const BORROWED: f64 = 1e-6;
 
 /// Merges the links of a robot.
 ///
 /// # Errors
-/// Links that do not make a tree, and links that move without mass.
+/// Links that do not make a tree, links that move without mass, and inertias that no body has.
 pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec<String>> {
-    let order = order(file, robot)?;
-    let at_origin = Place { body: 0, pose: IsometryMatrix3::identity(), zero: IsometryMatrix3::identity() };
-    let mut merging = Merging {
-        robot,
-        root,
-        is_one_body: vec![false; robot.links.len()],
-        places: vec![None; robot.links.len()],
-        bodies: Vec::new(),
-        remarks: Vec::new(),
-        problems: Vec::new(),
-    };
-    merging.place_root(order[0].1, at_origin, file);
-    for (joint, link) in order.iter().skip(1) {
-        merging.place(&robot.joints[*joint], *link, file);
-    }
-    let Merging { places, mut bodies, remarks, mut problems, .. } = merging;
-    if problems.is_empty() && root == Root::Fixed && bodies.len() == 1 {
-        let name = &robot.links[order[0].1].name;
+    let mut groups = grouped(robot, &order(file, robot)?, root);
+    let mut problems = Vec::new();
+    let mut remarks: Vec<String> = groups.iter().filter_map(|group| remark_on_links(robot, group)).collect();
+    if root == Root::Fixed && groups.len() == 1 {
+        let name = &robot.links[groups[0].links[0].0].name;
         problems
             .push(format!("{file}: all links are fixed to the root link `{name}`: --floating lets it move"));
     }
-    if !problems.is_empty() {
-        return Err(problems);
+    let ground = usize::from(root == Root::Fixed);
+    lend(file, robot, &mut groups[ground..], &mut remarks, &mut problems);
+    let mut merged = Merged { bodies: Vec::new(), places: Vec::new(), remarks };
+    let mut places = vec![None; robot.links.len()];
+    // The root's first, then in the order of the file.
+    groups[1..].sort_by_key(|group| group.named);
+    for (body, group) in groups.iter().enumerate() {
+        let link = group.named;
+        let inertial = group.inertial.as_ref().filter(|_| body >= ground);
+        let centre = inertial.map_or_else(Vector3::zeros, |inertial| inertial.centre.map(on_grid));
+        let centre = Translation3::from(centre);
+        let settled = inertial.map(|inertial| match inertial.elements() {
+            Ok((inertia, remark)) => {
+                let name = &robot.links[link].name;
+                merged.remarks.extend(remark.map(|remark| format!("the body of link `{name}` {remark}")));
+                Settled { mass: rounded(inertial.mass), inertia }
+            }
+            Err(flaw) => {
+                problems.push(at(file, &robot.links[link], &format!("with what is fixed to it, {flaw}")));
+                Settled { mass: inertial.mass, inertia: [0.0; 6] }
+            }
+        });
+        for (link, pose) in &group.links {
+            places[*link] = Some(Place { body, pose: centre.inverse() * pose });
+        }
+        merged.bodies.push(Body {
+            link,
+            carrier: group.carrier,
+            inertial: settled,
+            zero: group.zero * centre,
+        });
     }
-    let links: Vec<usize> = bodies.iter().map(|body| body.link).collect();
-    if let Some(others) = bodies.get_mut(1..) {
-        others.sort_unstable_by_key(|body| body.link);
-    }
-    let renumbered = |place: Place| {
-        let link = links[place.body];
-        Place { body: bodies.iter().position(|body| body.link == link).unwrap_or(0), ..place }
-    };
-    let places = places.into_iter().flatten().map(renumbered).collect();
-    Ok(Merged { bodies, places, remarks })
+    merged.places = places.into_iter().flatten().collect();
+    if problems.is_empty() { Ok(merged) } else { Err(problems) }
+}
+
+/// A length, or a component of a direction, to 15 decimals: what was typed comes back from sums and differences, and
+/// what rotations leave of a zero is zero.
+pub(super) fn on_grid(length: f64) -> f64 {
+    rounded(format!("{length:.15}").parse().unwrap_or(length))
 }
 
 /// Links from the root to the leaves, each with the joint that carries it (any number for the root).
 fn order(file: &str, robot: &Robot) -> Result<Vec<(usize, usize)>, Vec<String>> {
     let carriers = |link: usize| robot.joints.iter().filter(move |joint| joint.child == link);
-    let problem = |link: &Link, words: String| format!("{file}:{}: link `{}` {words}", link.line, link.name);
+    let problem = |link: &Link, words: String| at(file, link, &words);
     let mut problems = Vec::new();
     for (index, link) in robot.links.iter().enumerate() {
         let names: Vec<String> = carriers(index).map(|joint| format!("`{}`", joint.name)).collect();
@@ -130,157 +172,114 @@ fn order(file: &str, robot: &Robot) -> Result<Vec<(usize, usize)>, Vec<String>> 
     if problems.is_empty() { Ok(order) } else { Err(problems) }
 }
 
-struct Merging<'r> {
-    robot: &'r Robot,
-    root: Root,
-    /// For each link whether it is part of a body with all that is fixed to it.
-    is_one_body: Vec<bool>,
-    places: Vec<Option<Place>>,
-    bodies: Vec<Body>,
-    remarks: Vec<String>,
-    problems: Vec<String>,
+/// Links that are fixed to one another, from the root outwards.
+fn grouped(robot: &Robot, order: &[(usize, usize)], root: Root) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    // For each link its group, and its frame in that of the group's first link.
+    let mut places = vec![(0, IsometryMatrix3::identity()); robot.links.len()];
+    for &(carrier, link) in order {
+        let joint = robot.joints.get(carrier);
+        let at_zero = joint.map(|joint| {
+            let (group, pose) = places[joint.parent];
+            (group, settled(&(pose * joint.origin)))
+        });
+        let place = match (joint, at_zero) {
+            (Some(joint), Some(place)) if joint.kind == Kind::Fixed => place,
+            (_, at_zero) => {
+                let in_global = |(group, pose): (usize, _)| settled(&(groups[group].zero * pose));
+                let zero = at_zero.map_or_else(IsometryMatrix3::identity, in_global);
+                let carrier = joint.map(|_| carrier);
+                groups.push(Group { named: link, carrier, zero, links: Vec::new(), inertial: None });
+                (groups.len() - 1, IsometryMatrix3::identity())
+            }
+        };
+        places[link] = place;
+        groups[place.0].links.push((link, place.1));
+    }
+    let ground = usize::from(root == Root::Fixed);
+    for (index, group) in groups.iter_mut().enumerate() {
+        let inertial = |link: usize| robot.links[link].inertial.as_ref();
+        let part = |(link, pose): &(usize, _)| Some(inertial(*link)?.seen(pose));
+        group.inertial = Inertial::sum(&group.links.iter().filter_map(part).collect::<Vec<_>>());
+        let has_mass = |link: &usize| inertial(*link).is_some_and(|part| part.mass > 0.0);
+        let massive = group.links.iter().map(|(link, _)| *link).find(has_mass);
+        group.named = massive.filter(|_| index >= ground).unwrap_or(group.named);
+    }
+    groups
 }
 
-impl Merging<'_> {
-    /// Places the root: the ground, or a body with its own mass or that of what is fixed to it, its link's frame at the
-    /// origin.
-    fn place_root(&mut self, link: usize, at_origin: Place, file: &str) {
-        self.places[link] = match self.root {
-            Root::Fixed => {
-                self.bodies.push(Body { link, inertial: None });
-                Some(at_origin)
-            }
-            Root::Floating => {
-                self.first_of_body(link, file).map(|(body, pose)| Place { body, pose, ..at_origin })
-            }
-        };
-    }
+fn remark_on_links(robot: &Robot, group: &Group) -> Option<String> {
+    let name = |link: usize| format!("`{}`", robot.links[link].name);
+    let others = group.links.iter().map(|(link, _)| *link).filter(|link| *link != group.named);
+    let others: Vec<String> = others.map(name).collect();
+    let (number, list) = (others.len() as u64, words::listed(&others));
+    let (number, named) = (others.first().map(|_| words::count(number, "link"))?, name(group.named));
+    Some(format!("{number} fixed to {named}, one body with it: {list}"))
+}
 
-    /// Places a link whose parent has been placed.
-    fn place(&mut self, joint: &Joint, link: usize, file: &str) {
-        let Some(parent) = self.places[joint.parent] else { return };
-        let zero = parent.zero * joint.origin;
-        let (is_fixed, has_mass) = (joint.kind == Kind::Fixed, self.robot.links[link].inertial.is_some());
-        let name = &self.robot.links[link].name;
-        let merged = Place { body: parent.body, pose: parent.pose * joint.origin, zero };
-        let is_named_after = |body: &Body| body.link == link;
-        self.places[link] = if is_fixed && self.bodies.iter().any(is_named_after) {
-            // A link without mass before it has taken it for its body.
-            Some(merged)
-        } else if is_fixed && (self.is_ground(parent) || !has_mass || self.is_one_body[link]) {
-            let carrier = &self.robot.links[self.bodies[parent.body].link].name;
-            let mass = if has_mass { ", its mass with it" } else { "" };
-            self.remarks.push(format!("link `{name}` is fixed to `{carrier}` and became a part of it{mass}"));
-            Some(merged)
-        } else {
-            self.first_of_body(link, file).map(|(body, pose)| Place { body, pose, zero })
+/// Gives links that move without mass a small part of what they carry.
+fn lend(
+    file: &str,
+    robot: &Robot,
+    groups: &mut [Group],
+    remarks: &mut Vec<String>,
+    problems: &mut Vec<String>,
+) {
+    let mut loans = Vec::new();
+    for (index, group) in groups.iter().enumerate().filter(|(_, group)| group.inertial.is_none()) {
+        let link = &robot.links[group.links[0].0];
+        let Some(carrier) = group.carrier.map(|joint| &robot.joints[joint]) else {
+            let words = "moves and has no mass, nor has anything that is fixed to it: give it an <inertial>, or import the \
+                         robot without --floating";
+            problems.push(at(file, link, words));
+            continue;
         };
-    }
-
-    fn is_ground(&self, place: Place) -> bool {
-        place.body == 0 && self.root == Root::Fixed
-    }
-
-    /// A new body for a link and what is fixed to it; the body's frame is at the mass centre.
-    fn first_of_body(&mut self, link: usize, file: &str) -> Option<(usize, IsometryMatrix3<f64>)> {
-        let described = &self.robot.links[link];
-        let Some((massive, pose)) = self.nearest_mass(link) else {
-            self.problems.push(format!(
-                "{file}:{}: link `{}` moves and has no mass, nor has anything that is fixed to it: give it an <inertial>",
-                described.line, described.name
-            ));
-            return None;
-        };
-        if massive != link {
-            let name = &self.robot.links[massive].name;
+        let Some(lender) = carried_mass(robot, groups, index) else {
             let words = format!(
-                "link `{}` has no mass and became a part of `{name}`, which is fixed to it",
-                described.name
+                "moves and has no mass, nor has anything that it carries: give it an <inertial>, or make joint `{}` (line \
+                 {}) a fixed one",
+                carrier.name, carrier.line
             );
-            self.remarks.push(words);
-        }
-        let inertial = self.inertial(link, (massive, pose))?;
-        let centre = inertial.origin;
-        self.bodies.push(Body { link: massive, inertial: Some(inertial) });
-        Some((self.bodies.len() - 1, (pose * centre).inverse()))
+            problems.push(at(file, link, &words));
+            continue;
+        };
+        remarks.push(format!(
+            "link `{}` moves and has no mass: it takes a millionth of that of `{}`, which it carries",
+            link.name, robot.links[groups[lender].named].name
+        ));
+        loans.push((index, lender));
     }
-
-    /// Mass and inertia of a body whose first link is `link`, in the frame of the link that it is named after: that
-    /// link's alone, or, where one of the links that are fixed to one another has an inertia that is none, those of all
-    /// of them.
-    fn inertial(&mut self, link: usize, (massive, pose): (usize, IsometryMatrix3<f64>)) -> Option<Inertial> {
-        let robot = self.robot;
-        let mut parts = Vec::new();
-        self.add_parts(link, IsometryMatrix3::identity(), &mut parts);
-        let is_part =
-            |part: &(usize, IsometryMatrix3<f64>)| Some((robot.links[part.0].inertial.as_ref()?, part.1));
-        let massive_parts: Vec<_> = parts.iter().filter_map(is_part).collect();
-        let flaws: Vec<_> = massive_parts.iter().filter_map(|(inertial, _)| inertial.flaw.clone()).collect();
-        let own = robot.links[massive].inertial.as_ref()?;
-        if flaws.is_empty() {
-            return Some(own.clone());
+    let whole: Vec<Option<Inertial>> = groups.iter().map(|group| group.inertial.clone()).collect();
+    for (borrower, lender) in loans {
+        let Some(inertial) = &whole[lender] else { continue };
+        let pose = groups[borrower].zero.inverse() * groups[lender].zero;
+        groups[borrower].inertial = Some(inertial.part(BORROWED).seen(&pose));
+        let left = groups[lender].inertial.as_mut();
+        if let Some(left) = left {
+            left.mass -= inertial.mass * BORROWED;
+            left.tensor -= inertial.tensor * BORROWED;
         }
-        parts.iter().for_each(|(part, _)| self.is_one_body[*part] = true);
-        let to_massive = pose.inverse();
-        let frames = massive_parts.iter().map(|(part, pose)| (*part, to_massive * pose * part.origin));
-        let whole = sum(own, &frames.collect::<Vec<_>>());
-        if unphysical(whole.inertia).is_some() {
-            self.problems.extend(flaws);
-            return None;
-        }
-        Some(whole)
-    }
-
-    /// A link and all that is fixed to it, with their frames in the first link's.
-    fn add_parts(
-        &self,
-        link: usize,
-        pose: IsometryMatrix3<f64>,
-        parts: &mut Vec<(usize, IsometryMatrix3<f64>)>,
-    ) {
-        parts.push((link, pose));
-        for joint in self.robot.joints.iter().filter(|j| j.parent == link && j.kind == Kind::Fixed) {
-            self.add_parts(joint.child, pose * joint.origin, parts);
-        }
-    }
-
-    /// The first link with mass among a link and what is fixed to it by way of links without mass, and its frame in the
-    /// link's.
-    fn nearest_mass(&self, link: usize) -> Option<(usize, IsometryMatrix3<f64>)> {
-        if self.robot.links[link].inertial.is_some() {
-            return Some((link, IsometryMatrix3::identity()));
-        }
-        let fixed = self.robot.joints.iter().filter(|j| j.parent == link && j.kind == Kind::Fixed);
-        fixed.into_iter().find_map(|joint| {
-            let (massive, pose) = self.nearest_mass(joint.child)?;
-            Some((massive, joint.origin * pose))
-        })
     }
 }
 
-/// Mass and inertia of parts together, each with its frame at its mass centre; in the axes of the first one.
-fn sum(first: &Inertial, parts: &[(&Inertial, IsometryMatrix3<f64>)]) -> Inertial {
-    let mass: f64 = parts.iter().map(|(part, _)| part.mass).sum();
-    let moment: Vector3<f64> = parts.iter().map(|(part, at)| at.translation.vector * part.mass).sum();
-    let centre = moment / mass;
-    let axes = first.origin.rotation;
-    let about_centre = |(part, at): &(&Inertial, IsometryMatrix3<f64>)| {
-        let turned = (axes.inverse() * at.rotation).into_inner();
-        let from = axes.inverse() * (at.translation.vector - centre);
-        // Steiner's theorem.
-        turned * tensor(part.inertia) * turned.transpose()
-            + (Matrix3::identity() * from.norm_squared() - from * from.transpose()) * part.mass
-    };
-    let i: Matrix3<f64> = parts.iter().map(about_centre).sum();
-    let inertia = [i.m11, i.m22, i.m33, i.m12, i.m13, i.m23];
-    Inertial {
-        origin: IsometryMatrix3::from_parts(Translation3::from(centre), axes),
-        mass,
-        inertia,
-        flaw: None,
+/// The nearest group with mass that a group carries.
+fn carried_mass(robot: &Robot, groups: &[Group], group: usize) -> Option<usize> {
+    let mut reached = vec![group];
+    let mut next = 0;
+    while let Some(&carrier) = reached.get(next) {
+        if groups[carrier].inertial.is_some() {
+            return Some(carrier);
+        }
+        let is_on = |group: &Group| {
+            let parent = group.carrier.map(|joint| robot.joints[joint].parent);
+            groups[carrier].links.iter().any(|(link, _)| Some(*link) == parent)
+        };
+        reached.extend((0..groups.len()).filter(|&other| is_on(&groups[other])));
+        next += 1;
     }
+    None
 }
 
-fn tensor([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
-    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+fn at(file: &str, link: &Link, words: &str) -> String {
+    format!("{file}:{}: link `{}` {words}", link.line, link.name)
 }

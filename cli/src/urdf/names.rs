@@ -8,6 +8,9 @@ pub(super) struct Names {
     pub(super) changed: Vec<(String, String)>,
 }
 
+/// Characters that are kept of a name: what is made of it, as `_upper_stop`, has room in the hundred of a model file.
+const LONGEST: usize = 80;
+
 impl Names {
     /// The name in the model file of something with this name in the file.
     pub(super) fn name(&mut self, written: &str) -> String {
@@ -40,6 +43,7 @@ pub(super) fn snake_case(written: &str) -> String {
         }
         before = c;
     }
+    name.truncate(LONGEST);
     let name = name.trim_end_matches('_');
     if name.starts_with(|c: char| c.is_ascii_lowercase()) { name.to_owned() } else { format!("a{name}") }
 }
@@ -60,9 +64,11 @@ mod tests {
             ("2nd", "a2nd"),
             ("", "a"),
             ("__x__", "x"),
+            ("\u{fc}ber-\u{394}/x", "ber_x"),
+            (&"x".repeat(200), &"x".repeat(80)),
         ] {
             assert_eq!(names.name(written), expected, "{written}");
         }
-        assert_eq!(names.changed.len(), 7);
+        assert_eq!(names.changed.len(), 9);
     }
 }

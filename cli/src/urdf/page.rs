@@ -1,43 +1,60 @@
 //! The model file of a robot as text.
 
-use super::MARK;
-use super::merge::{Body, Merged, Place, Root};
+use super::element::settled;
+use super::inertia::rounded;
+use super::merge::{Body, Merged, Place, Root, Settled, on_grid};
 use super::names::{Names, snake_case};
-use super::robot::{Inertial, Joint, Kind, Link, Robot};
+use super::robot::{Joint, Kind, Limit, Link, Robot};
+use super::{MARK, Wishes};
+use crate::words;
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
 
 /// Rate at which Coulomb friction reaches tanh(1) of its level: URDF does not say. rad/s or m/s.
 const COULOMB_RATE: f64 = 0.01;
 
-/// What rotations leave of a zero.
-const ROUNDING: f64 = 1e-15;
+/// How far the greatest torque or force of its drive pushes a joint into its stop, rad and m.
+const GIVES_WAY: [f64; 2] = [0.01, 1e-3];
+
+/// Lever, m, at which the weight of what a joint carries stands for the torque of a drive that is not known.
+const LEVER: f64 = 1.0;
+
+/// Damping over stiffness of a stop, s.
+const STOP_TIME: f64 = 0.01;
+
+/// Width over which a stop sets in, as a part of how far it gives way.
+const SOFTNESS: f64 = 0.1;
+
+const GRAVITY: f64 = 9.81;
 
 /// Writes the model file; adds what is worth knowing about it to the remarks.
 pub(super) fn write(
     file: &str,
     robot: &Robot,
-    (merged, root): (&Merged, Root),
+    (merged, wishes): (&Merged, Wishes),
     remarks: &mut Vec<String>,
 ) -> String {
     let (mut body_names, mut joint_names) = (Names::default(), Names::default());
     let bodies: Vec<String> =
         merged.bodies.iter().map(|body| body_names.name(&robot.links[body.link].name)).collect();
-    let joints: Vec<String> = robot.joints.iter().map(|joint| joint_names.name(&joint.name)).collect();
-    for (was, is) in body_names.changed.iter().chain(&joint_names.changed) {
-        remarks.push(format!("`{was}` is called `{is}`"));
+    let mut named = |joint: &Joint| {
+        let is_written = merged.places[joint.parent].body != merged.places[joint.child].body;
+        if is_written { joint_names.name(&joint.name) } else { String::new() }
+    };
+    let joints: Vec<String> = robot.joints.iter().map(&mut named).collect();
+    let mimics = joints.iter().map(|joint| joint_names.name(&format!("{joint}_mimic"))).collect();
+    let changed = body_names.changed.iter().chain(&joint_names.changed);
+    let changed: Vec<String> = changed.map(|(was, is)| format!("`{was}` is `{is}`")).collect();
+    if !changed.is_empty() {
+        remarks.push(format!("names: {}", words::listed(&changed)));
     }
-    let page = Page { robot, merged, bodies, joints };
-    remarks.push(of_root(&robot.links[merged.bodies[0].link], root));
-    remarks.push("gravity is taken to be 9.81 m/s2 along -z: URDF does not say".to_owned());
-    if robot.joints.iter().any(|joint| joint.friction > 0.0) {
-        remarks.push(format!("Coulomb friction sets in at {COULOMB_RATE} rad/s or m/s: URDF does not say"));
-    }
+    let page = Page { robot, merged, bodies, joints, mimics, wishes };
+    remarks.extend(page.remarks());
     let mut text = page.head(file, remarks);
     (0..merged.bodies.len()).for_each(|body| page.body(&mut text, body));
-    (0..robot.joints.len()).for_each(|joint| page.joint(&mut text, joint));
-    (0..robot.joints.len()).for_each(|joint| page.coupler(&mut text, joint));
-    (0..robot.joints.len()).for_each(|joint| page.friction(&mut text, joint));
+    for write in [Page::joint, Page::coupler, Page::friction, Page::motor, Page::stops] {
+        page.moving_joints().for_each(|joint| write(&page, &mut text, joint));
+    }
     text
 }
 
@@ -60,49 +77,102 @@ struct Page<'a> {
     /// Names in the model file.
     bodies: Vec<String>,
     joints: Vec<String>,
+    /// Names of couplers, should the joints have them.
+    mimics: Vec<String>,
+    wishes: Wishes,
 }
 
 impl Page<'_> {
+    /// Joints between two bodies.
+    fn moving_joints(&self) -> impl Iterator<Item = usize> {
+        let is_moving = |joint: &Joint| joint.kind != Kind::Fixed;
+        (0..self.robot.joints.len()).filter(move |index| is_moving(&self.robot.joints[*index]))
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let root = &self.robot.links[self.merged.bodies[0].link];
+        let mut remarks = vec![
+            of_root(root, self.wishes.root),
+            format!("gravity is taken to be {GRAVITY} m/s2 along -z: URDF does not say"),
+        ];
+        let joints = &self.robot.joints;
+        if joints.iter().any(|joint| joint.friction > 0.0) {
+            remarks
+                .push(format!("Coulomb friction sets in at {COULOMB_RATE} rad/s or m/s: URDF does not say"));
+        }
+        let limited = joints.iter().filter(|joint| joint.limit.is_some()).count() as u64;
+        let limited = words::count(limited, "<limit>");
+        if self.wishes.limits {
+            let [angle, length] = GIVES_WAY;
+            remarks.push(format!(
+                "{limited}: a stop gives way by {angle} rad or {length} m under the effort of the limit, or, where that is 0, \
+                 under the weight of what the joint carries (of a revolute one, at {LEVER} m); its damping is {STOP_TIME} s \
+                 of its stiffness. No limit is set to efforts and velocities"
+            ));
+        } else if joints.iter().any(|joint| joint.limit.is_some()) {
+            remarks.push(format!("{limited} left out: --limits makes stops of them"));
+        }
+        let starts = self.moving_joints().filter(|joint| self.wishes.limits && self.start(*joint) != 0.0);
+        let starts: Vec<String> = starts.map(|joint| format!("`{}`", self.joints[joint])).collect();
+        if !starts.is_empty() {
+            remarks.push(format!("joints that do not start at 0: {}", words::listed(&starts)));
+        }
+        for joint in self.moving_joints().filter(|joint| self.wishes.limits && self.limit(*joint).is_none()) {
+            if let Some(Limit { lower, upper, .. }) = joints[joint].limit {
+                let name = &self.joints[joint];
+                remarks.push(format!(
+                    "joint `{name}` has no stops: its limits {lower:?} and {upper:?} leave it nothing"
+                ));
+            }
+        }
+        remarks
+    }
+
     fn head(&self, file: &str, remarks: &[String]) -> String {
         let mut text = format!(
-            "{MARK} from {file}. A body's frame is at its mass centre, with the axes of its link's\n\
-             # <inertial>. What differs from the robot:\n"
+            "{MARK} from {file}. A body is all links that are fixed to one another; its frame is at their\n\
+             # mass centre, with the axes of the link on the body's joint. Links' frames: place and Euler parameters.\n\
+             # What differs from the robot:\n"
         );
         for remark in remarks {
             let _ = writeln!(text, "# - {remark}");
         }
         let name = snake_case(&self.robot.name);
-        let _ = write!(text, "format = 1\nname = \"{name}\"\ngravity = [0, 0, -9.81]\n\n");
+        let name = if gyro_model::is_keyword(&name) { format!("{name}_robot") } else { name };
+        let _ = write!(text, "format = 1\nname = \"{name}\"\ngravity = [0, 0, -{GRAVITY}]\n\n");
         text.push_str("[simulation]\nt_end = 1\nstep = 1e-3\n");
+        if self.motors().next().is_some() {
+            text.push_str("\n[inputs]\n");
+        }
+        for joint in self.motors() {
+            let unit = if self.robot.joints[joint].kind == Kind::Revolute { "N.m" } else { "N" };
+            let _ = writeln!(text, "{}_motor = 0  # {unit}", self.joints[joint]);
+        }
         text
     }
 
-    fn body(&self, text: &mut String, body: usize) {
-        let Body { link, inertial } = &self.merged.bodies[body];
-        let _ = write!(text, "\n[[body]]\nname = \"{}\"\n", self.bodies[body]);
-        match inertial {
-            Some(inertial) => self.moving(text, *link, inertial),
+    fn body(&self, text: &mut String, index: usize) {
+        let body = &self.merged.bodies[index];
+        let _ = write!(text, "\n[[body]]\nname = \"{}\"\n", self.bodies[index]);
+        match &body.inertial {
+            Some(inertial) => self.moving(text, body, inertial),
             None => text.push_str("fixed = true\n"),
         }
-        for (index, place) in self.merged.places.iter().enumerate() {
-            if place.body == body && index != *link {
-                let name = &self.robot.links[index].name;
+        for (place, link) in self.merged.places.iter().zip(&self.robot.links) {
+            if place.body == index {
                 let (xyz, p) = (vector(&place.pose.translation.vector), euler_parameters(&place.pose));
-                let _ = writeln!(
-                    text,
-                    "# Link {name}: its frame is at {xyz} in the body's, turned by Euler parameters {p}."
-                );
+                let name = link.name.escape_debug();
+                let _ = writeln!(text, "# Link {name}: its frame is at {xyz} in the body's, turned by {p}.");
             }
         }
     }
 
-    fn moving(&self, text: &mut String, link: usize, inertial: &Inertial) {
-        let carrier = self.robot.joints.iter().find(|j| self.is_carried_by(link, j));
+    fn moving(&self, text: &mut String, body: &Body, inertial: &Settled) {
+        let carrier = body.carrier.map(|joint| self.robot.joints[joint].kind);
         // The root's body is carried by none, and it is written only where it moves.
-        if carrier.is_none_or(|joint| joint.kind == Kind::Floating) {
-            let pose = self.merged.places[link].zero * inertial.origin;
-            let _ = writeln!(text, "free = true\nposition = {}", vector(&pose.translation.vector));
-            let _ = writeln!(text, "orientation = {}", euler_parameters(&pose));
+        if carrier.is_none_or(|kind| kind == Kind::Floating) {
+            let _ = writeln!(text, "free = true\nposition = {}", vector(&body.zero.translation.vector));
+            let _ = writeln!(text, "orientation = {}", euler_parameters(&body.zero));
         }
         let [xx, yy, zz, xy, xz, yz] = inertial.inertia;
         let _ = writeln!(text, "mass = {:?}", inertial.mass);
@@ -116,28 +186,18 @@ impl Page<'_> {
         };
     }
 
-    /// Whether a joint carries the body that a link gave its mass to.
-    fn is_carried_by(&self, link: usize, joint: &Joint) -> bool {
-        let body = self.merged.places[link].body;
-        self.merged.places[joint.child].body == body && self.merged.places[joint.parent].body != body
-    }
-
     fn joint(&self, text: &mut String, index: usize) {
         let joint = &self.robot.joints[index];
         let kind = match joint.kind {
             Kind::Revolute => "revolute",
             Kind::Prismatic => "prismatic",
             Kind::Planar => "planar",
-            Kind::Fixed => "fixed",
-            Kind::Floating => return,
+            Kind::Fixed | Kind::Floating => return,
         };
         let (first, second) = (self.merged.places[joint.parent], self.merged.places[joint.child]);
-        if first.body == second.body {
-            return;
-        }
         let _ = write!(text, "\n[[joint]]\nname = \"{}\"\nkind = \"{kind}\"\n", self.joints[index]);
         for (key, place, frame) in
-            [("first", first, first.pose * joint.origin), ("second", second, second.pose)]
+            [("first", first, settled(&(first.pose * joint.origin))), ("second", second, second.pose)]
         {
             let _ = writeln!(text, "{key} = {}", self.end(place, &frame, joint));
         }
@@ -153,7 +213,7 @@ impl Page<'_> {
 
     /// An end of a joint: the joint's frame in the body's.
     fn end(&self, place: Place, frame: &IsometryMatrix3<f64>, joint: &Joint) -> String {
-        let axis = if joint.kind == Kind::Fixed { Vector3::z() } else { joint.axis };
+        let axis = joint.axis;
         // Any direction does that is far from the axis; both ends have the same.
         let mut zero = Vector3::zeros();
         zero[axis.iamin()] = 1.0;
@@ -166,10 +226,67 @@ impl Page<'_> {
         )
     }
 
-    /// The coordinate at the start: zero, or what the joint follows.
+    /// The coordinate at the start: zero, or, if stops are wanted, where they allow it, or what the joint follows.
     fn start(&self, index: usize) -> f64 {
-        let mimic = self.robot.joints[index].mimic.as_ref();
-        mimic.map_or(0.0, |mimic| mimic.multiplier * self.start(mimic.joint) + mimic.offset)
+        let joint = &self.robot.joints[index];
+        match (&joint.mimic, self.limit(index).filter(|_| self.wishes.limits)) {
+            (Some(mimic), _) => rounded(mimic.multiplier * self.start(mimic.joint) + mimic.offset),
+            (None, Some(limit)) => 0.0_f64.clamp(limit.lower, limit.upper),
+            (None, None) => 0.0,
+        }
+    }
+
+    /// The limits of a joint, if there is something between them.
+    fn limit(&self, index: usize) -> Option<Limit> {
+        self.robot.joints[index].limit.filter(|limit| limit.lower < limit.upper)
+    }
+
+    /// Joints that are given a motor: all but those that follow others.
+    fn motors(&self) -> impl Iterator<Item = usize> {
+        let joint = |index: usize| &self.robot.joints[index];
+        let is_driven = move |index: &usize| joint(*index).kind.is_single() && joint(*index).mimic.is_none();
+        self.moving_joints().filter(is_driven).filter(|_| self.wishes.motors)
+    }
+
+    fn motor(&self, text: &mut String, index: usize) {
+        if self.motors().any(|joint| joint == index) {
+            let name = &self.joints[index];
+            let _ = write!(
+                text,
+                "\n[[force]]\nname = \"{name}_motor\"\nkind = \"motor\"\njoint = \"{name}\"\nvalue = \"{name}_motor\"\n"
+            );
+        }
+    }
+
+    fn stops(&self, text: &mut String, index: usize) {
+        let Some(limit) = self.limit(index).filter(|_| self.wishes.limits) else { return };
+        let joint = &self.robot.joints[index];
+        let [way, lever] =
+            if joint.kind == Kind::Revolute { [GIVES_WAY[0], LEVER] } else { [GIVES_WAY[1], 1.0] };
+        let carried = self.mass_on(self.merged.places[joint.child].body);
+        let effort = if limit.effort > 0.0 { limit.effort } else { carried * GRAVITY * lever };
+        let name = &self.joints[index];
+        let stiffness = rounded(effort / way);
+        let (damping, softness) = (rounded(stiffness * STOP_TIME), rounded(way * SOFTNESS));
+        for (side, at) in [("lower", limit.lower), ("upper", limit.upper)] {
+            let _ = write!(
+                text,
+                "\n[[force]]\nname = \"{name}_{side}_stop\"\nkind = \"stop\"\njoint = \"{name}\"\nside = \"{side}\"\n\
+                 limit = {at:?}\nstiffness = {stiffness:?}\ndamping = {damping:?}\nsoftness = {softness:?}\n"
+            );
+        }
+    }
+
+    /// The mass of a body and of all that it carries.
+    fn mass_on(&self, body: usize) -> f64 {
+        let own = self.merged.bodies[body].inertial.as_ref().map_or(0.0, |inertial| inertial.mass);
+        let is_carried = |other: &Body| {
+            other
+                .carrier
+                .is_some_and(|joint| self.merged.places[self.robot.joints[joint].parent].body == body)
+        };
+        let carried = (0..self.merged.bodies.len()).filter(|&other| is_carried(&self.merged.bodies[other]));
+        own + carried.map(|other| self.mass_on(other)).sum::<f64>()
     }
 
     fn coupler(&self, text: &mut String, index: usize) {
@@ -177,9 +294,9 @@ impl Page<'_> {
         let (name, other) = (&self.joints[index], &self.joints[mimic.joint]);
         let _ = write!(
             text,
-            "\n[[coupler]]\nname = \"{name}_mimic\"\nfirst = {{ joint = \"{other}\" }}\nsecond = {{ joint = \"{name}\" }}\n\
+            "\n[[coupler]]\nname = \"{}\"\nfirst = {{ joint = \"{other}\" }}\nsecond = {{ joint = \"{name}\" }}\n\
              ratio = {:?}\noffset = {:?}\n",
-            mimic.multiplier, mimic.offset
+            self.mimics[index], mimic.multiplier, mimic.offset
         );
     }
 
@@ -206,7 +323,6 @@ fn euler_parameters(pose: &IsometryMatrix3<f64>) -> String {
 }
 
 fn list(values: &[f64]) -> String {
-    let clean = |x: &f64| if x.abs() < ROUNDING { 0.0 } else { *x };
-    let texts: Vec<String> = values.iter().map(|x| format!("{:?}", clean(x))).collect();
+    let texts: Vec<String> = values.iter().map(|x| format!("{:?}", on_grid(*x) + 0.0)).collect();
     format!("[{}]", texts.join(", "))
 }

@@ -1,9 +1,12 @@
 //! The robot as its file describes it: a tree of links and joints.
 
+use super::angle::Angles;
 use super::element::{Findings, child};
+use super::inertia::Inertial;
 use crate::words;
 use nalgebra::{IsometryMatrix3, Matrix3, Vector3};
 use roxmltree::{Document, Node};
+use std::collections::BTreeMap;
 
 /// A robot whose joints make a tree.
 #[derive(Debug)]
@@ -19,24 +22,14 @@ pub(super) struct Robot {
 pub(super) struct Link {
     pub(super) name: String,
     pub(super) line: u32,
-    /// `None` for a link without mass: a frame.
+    /// In the link's axes; `None` for a link without mass and inertia: a frame.
     pub(super) inertial: Option<Inertial>,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Inertial {
-    /// Of the mass centre, in the link's frame.
-    pub(super) origin: IsometryMatrix3<f64>,
-    pub(super) mass: f64,
-    /// Tensor elements xx, yy, zz, xy, xz, yz about the mass centre, in the frame of `origin`.
-    pub(super) inertia: [f64; 6],
-    /// Why it is not a rigid body's, if so: where it is written, and a cure.
-    pub(super) flaw: Option<String>,
 }
 
 #[derive(Debug)]
 pub(super) struct Joint {
     pub(super) name: String,
+    pub(super) line: u32,
     pub(super) kind: Kind,
     /// Indices of links.
     pub(super) parent: usize,
@@ -50,6 +43,16 @@ pub(super) struct Joint {
     /// Coulomb friction.
     pub(super) friction: f64,
     pub(super) mimic: Option<Mimic>,
+    /// Of revolute and prismatic joints.
+    pub(super) limit: Option<Limit>,
+}
+
+/// Where a joint's coordinate ends, and the greatest torque or force of its drive, 0 if it is not known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limit {
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+    pub(super) effort: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,14 +87,21 @@ impl Kind {
 pub(super) fn read(file: &str, text: &str) -> Result<Robot, Vec<String>> {
     let document = Document::parse(text).map_err(|e| vec![format!("{file}: not a whole XML file: {e}")])?;
     let root = document.root_element();
-    let mut findings = Findings { file, document: &document, problems: Vec::new(), remarks: Vec::new() };
+    let mut findings = Findings {
+        file,
+        document: &document,
+        problems: Vec::new(),
+        remarks: Vec::new(),
+        angles: Angles::default(),
+        unused: BTreeMap::new(),
+    };
     if !root.has_tag_name("robot") {
         findings.problem(root, "a URDF file has one <robot>");
         return Err(findings.problems);
     }
     let robot = robot(&mut findings, root);
     if findings.problems.is_empty() {
-        Ok(Robot { remarks: findings.remarks, ..robot })
+        Ok(Robot { remarks: findings.all_remarks(), ..robot })
     } else {
         Err(findings.problems)
     }
@@ -112,7 +122,7 @@ fn robot(findings: &mut Findings<'_>, root: Node<'_, '_>) -> Robot {
         if node.tag_name().namespace().is_some_and(|n| n.contains("xacro")) {
             findings.problem(node, "this is xacro: expand the file with `xacro` first");
         } else if !node.has_tag_name("link") && !node.has_tag_name("joint") {
-            findings.remark(node, "has no counterpart");
+            findings.unused(node);
         }
     }
     shapes(findings, root);
@@ -143,14 +153,14 @@ fn link(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Link> {
     let name = findings.text(node, "name")?.to_owned();
     for other in node.children().filter(Node::is_element) {
         if !["inertial", "visual", "collision"].contains(&other.tag_name().name()) {
-            findings.remark(other, "has no counterpart");
+            findings.unused(other);
         }
     }
     let inertial = child(node, "inertial").and_then(|inertial| read_inertial(findings, inertial));
     Some(Link { name, line: findings.line(node), inertial })
 }
 
-/// Mass, mass centre and inertia; `None` also for a mass of zero.
+/// Mass, mass centre and inertia; `None` where both are zero.
 fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Inertial> {
     let origin = findings.origin(node);
     let Some(mass_node) = child(node, "mass") else {
@@ -158,44 +168,22 @@ fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Iner
         return None;
     };
     let mass = findings.number(mass_node, "value")?;
-    if mass == 0.0 {
-        return None;
-    }
     if mass < 0.0 {
         findings.problem(mass_node, &format!("the mass {mass:?} is negative"));
         return None;
     }
     let Some(tensor) = child(node, "inertia") else {
-        findings.problem(node, "<inertia ixx=\"...\" .../> is missing");
+        if mass > 0.0 {
+            findings.problem(node, "<inertia ixx=\"...\" .../> is missing");
+        }
         return None;
     };
     let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| findings.number(tensor, name));
     let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|name| findings.number_or(tensor, name, 0.0));
-    let inertia = [xx?, yy?, zz?, xy?, xz?, yz?];
-    let flaw = unphysical(inertia).map(|words| findings.at(tensor, &words));
-    Some(Inertial { origin: origin?, mass, inertia, flaw })
-}
-
-/// Principal moments that equal the sum of the others to this part are a lamina's, rounded.
-const LAMINA: f64 = 1e-9;
-
-/// Why a tensor is not an inertia, if so, and what to do.
-pub(super) fn unphysical([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Option<String> {
+    let (xx, yy, zz, xy, xz, yz) = (xx?, yy?, zz?, xy?, xz?, yz?);
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let mut moments: Vec<f64> = tensor.symmetric_eigenvalues().iter().copied().collect();
-    moments.sort_by(f64::total_cmp);
-    if moments[0] <= 0.0 {
-        return Some(format!(
-            "the principal moments {moments:?} are not all positive: no body has these; write those of the real part (a thin \
-             rod has a small one about itself too)"
-        ));
-    }
-    (moments[2] > (moments[0] + moments[1]) * (1.0 + LAMINA)).then(|| {
-        format!(
-            "of the principal moments {moments:?} the largest exceeds the sum of the others: no body has these; write \
-             those about the mass centre, in the axes of the <inertial>"
-        )
-    })
+    let is_nothing = mass == 0.0 && tensor == Matrix3::zeros();
+    (!is_nothing).then_some(Inertial { mass, centre: Vector3::zeros(), tensor }.seen(&origin?))
 }
 
 fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names: &[&str]) -> Option<Joint> {
@@ -218,12 +206,14 @@ fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names:
         Some(mimic) => Some(read_mimic(findings, mimic, names)?),
         None => None,
     };
+    let limit = limit(findings, node);
     without_counterpart(findings, node);
     if kind.is_some_and(|kind| !kind.is_single()) && (damping > 0.0 || friction > 0.0) {
         findings.remark(node, "damping and friction are for revolute and prismatic joints only");
     }
     Some(Joint {
         name,
+        line: findings.line(node),
         kind: kind?,
         parent: parent?,
         child: child_link?,
@@ -232,6 +222,7 @@ fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names:
         damping,
         friction,
         mimic,
+        limit,
     })
 }
 
@@ -269,7 +260,7 @@ fn end(findings: &mut Findings<'_>, node: Node<'_, '_>, tag: &str, links: &[Link
 fn axis(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Vector3<f64>> {
     let Some(axis) = child(node, "axis") else { return Some(Vector3::x()) };
     let xyz = findings.vector_or(axis, "xyz", [1.0, 0.0, 0.0])?;
-    let unit = xyz.try_normalize(0.0);
+    let unit = findings.direction(axis, &xyz);
     if unit.is_none() {
         findings.problem(axis, "the axis has no direction");
     }
@@ -289,6 +280,15 @@ fn dynamics(findings: &mut Findings<'_>, node: Node<'_, '_>) -> (f64, f64) {
     (damping, friction)
 }
 
+/// Where a revolute or prismatic joint ends; a continuous one does not.
+fn limit(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Limit> {
+    let limit =
+        child(node, "limit").filter(|_| matches!(node.attribute("type"), Some("revolute" | "prismatic")))?;
+    let [lower, upper, effort] =
+        ["lower", "upper", "effort"].map(|name| findings.number_or(limit, name, 0.0));
+    Some(Limit { lower: lower?, upper: upper?, effort: effort?.max(0.0) })
+}
+
 fn read_mimic(findings: &mut Findings<'_>, node: Node<'_, '_>, names: &[&str]) -> Option<Mimic> {
     let name = findings.text(node, "joint")?;
     let joint = names.iter().position(|other| *other == name);
@@ -304,6 +304,10 @@ fn read_mimic(findings: &mut Findings<'_>, node: Node<'_, '_>, names: &[&str]) -
 fn refuse_bad_mimics(findings: &mut Findings<'_>, nodes: &[Node<'_, '_>], joints: &[Joint]) {
     for (index, joint) in joints.iter().enumerate() {
         let Some(mimic) = &joint.mimic else { continue };
+        if mimic.multiplier == 0.0 {
+            let words = "a multiplier of 0 lets the joint follow nothing: make it a fixed joint";
+            findings.problem(nodes[index], words);
+        }
         if !joint.kind.is_single() || !joints[mimic.joint].kind.is_single() {
             findings.problem(
                 nodes[index],
@@ -318,17 +322,12 @@ fn refuse_bad_mimics(findings: &mut Findings<'_>, nodes: &[Node<'_, '_>], joints
     }
 }
 
-/// Remarks on the rest of a joint.
+/// What else a joint has.
 fn without_counterpart(findings: &mut Findings<'_>, node: Node<'_, '_>) {
-    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
+    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
     for other in node.children().filter(Node::is_element) {
-        if other.has_tag_name("limit") {
-            let values: Vec<String> =
-                other.attributes().map(|a| format!("{} = {}", a.name(), a.value())).collect();
-            let help = "a stop is a [[force]] of kind \"stop\"";
-            findings.remark(other, &format!("{}: no limit is set; {help}", values.join(", ")));
-        } else if !known.contains(&other.tag_name().name()) {
-            findings.remark(other, "has no counterpart");
+        if !known.contains(&other.tag_name().name()) {
+            findings.unused(other);
         }
     }
 }

@@ -2,6 +2,9 @@
 
 use super::*;
 
+const PLAIN: Wishes = Wishes { root: Root::Fixed, motors: false, limits: false };
+const FLOATING: Wishes = Wishes { root: Root::Floating, ..PLAIN };
+
 const LINKS: &str = r#"<robot name="r">
 <link name="base"/>
 <link name="arm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
@@ -70,10 +73,10 @@ fn mistakes_are_told_by_line_and_element() {
             "r.urdf:4: <inertial> of link `b`: <inertia ixx=\"...\" .../> is missing",
         ),
     ] {
-        let found = convert("r.urdf", "r.urdf", &robot(rest), Root::Fixed).unwrap_err();
+        let found = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap_err();
         assert!(found.contains(message), "{rest}\n{found}");
     }
-    let found = convert("r.urdf", "r.urdf", "<arm/>", Root::Fixed).unwrap_err();
+    let found = convert("r.urdf", "r.urdf", "<arm/>", PLAIN).unwrap_err();
     assert_eq!(found, "r.urdf:1: <arm>: a URDF file has one <robot>");
 }
 
@@ -87,48 +90,61 @@ fn link(name: &str, (mass, moments): (f64, [f64; 3]), kind: &str, parent: &str) 
     )
 }
 
+/// Inertias are looked at when links that are fixed to one another have become one body.
 #[test]
-fn an_inertia_that_no_body_has_is_refused_with_a_cure() {
-    for (moments, message) in [
-        (
-            [1.0, 1.0, 0.0],
-            "the principal moments [0.0, 1.0, 1.0] are not all positive: no body has these; write",
-        ),
-        ([1.0, 1.0, 3.0], "the largest exceeds the sum of the others: no body has these; write"),
+fn an_inertia_that_no_body_has_is_refused_with_a_cure_or_mended() {
+    for moments in [[1.0, 1.0, 3.0], [1.0, 1.0, -1.0]] {
+        let rest = link("b", (1.0, moments), "revolute", "arm").replace("0 0 0", "0 0 1");
+        let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), PLAIN).unwrap_err();
+        let words =
+            "are no body's, as none may exceed the sum of the others; write those about the mass centre";
+        assert!(
+            found.starts_with("r.urdf:4: link `b` with what is fixed to it") && found.contains(words),
+            "{found}"
+        );
+    }
+    for (moments, inertia, words) in [
+        ([1.0, 1.0, 2.1], "[1.0500000000", "is mended by 0.05 kg.m2, 2.4 % of the largest"),
+        ([0.0, 1.0, 1.0], "[1.99999999", "taken to be a millimetre thick"),
     ] {
         let rest = link("b", (1.0, moments), "revolute", "arm").replace("0 0 0", "0 0 1");
-        let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), Root::Fixed).unwrap_err();
-        assert!(found.starts_with("r.urdf:4: <inertia> of link `b`: ") && found.contains(message), "{found}");
+        let (page, remarks) = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), PLAIN).unwrap();
+        assert!(
+            remarks.iter().any(|r| r.starts_with("the body of link `b` has") && r.contains(words)),
+            "{remarks:#?}"
+        );
+        assert!(page.contains(&format!("inertia = {inertia}")), "{page}");
     }
 }
 
 /// A point of mass on an arm, and one more on it: together they are a body. What is fixed to the ground may have any
 /// inertia, and the axis of a fixed joint is nobody's.
 #[test]
-fn links_that_are_no_bodies_alone_become_one_with_what_they_are_fixed_to() {
+fn links_that_are_fixed_to_one_another_become_one_body() {
     let parts = link("tip", (2.0, [0.0; 3]), "fixed", "arm")
         + &link("end", (1.0, [0.0; 3]), "fixed", "tip")
         + &link("foot", (1.0, [0.0, -1.0, 9.0]), "fixed", "base");
-    let (page, remarks) =
-        convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{parts}")), Root::Fixed).unwrap();
+    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{parts}")), PLAIN).unwrap();
     // Mass 1, 2 and 1 at 0, 2 and 4: the centre is at 2, and Steiner's terms are 4 + 0 + 4.
     assert!(page.contains("mass = 4.0\ninertia = [9.0, 9.0, 1.0]\n"), "{page}");
     assert!(page.contains("body = \"arm\", point = [0.0, 0.0, -2.0]"), "{page}");
     assert!(page.contains("# Link end: its frame is at [0.0, 0.0, 2.0] in the body's"), "{page}");
     assert_eq!(page.matches("[[body]]").count(), 2, "{page}");
-    for link in ["`tip` is fixed to `arm`", "`end` is fixed to `arm`", "`foot` is fixed to `base`"] {
-        let words = format!("link {link} and became a part of it, its mass with it");
-        assert!(remarks.contains(&words), "{words} is missing in {remarks:#?}");
+    for words in [
+        "1 link fixed to `base`, one body with it: `foot`",
+        "2 links fixed to `arm`, one body with it: `tip`, `end`",
+    ] {
+        assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
     }
 }
 
 #[test]
 fn a_robot_in_which_nothing_moves_is_told_to_float() {
     let fixed = JOINT.replace("revolute", "fixed");
-    let found = convert("r.urdf", "r.urdf", &robot(&fixed), Root::Fixed).unwrap_err();
+    let found = convert("r.urdf", "r.urdf", &robot(&fixed), PLAIN).unwrap_err();
     assert_eq!(found, "r.urdf: all links are fixed to the root link `base`: --floating lets it move");
-    assert!(convert("r.urdf", "r.urdf", &robot(&fixed), Root::Floating).is_ok());
-    let found = convert("r.urdf", "r.urdf", "<robot/>", Root::Fixed).unwrap_err();
+    assert!(convert("r.urdf", "r.urdf", &robot(&fixed), FLOATING).is_ok());
+    let found = convert("r.urdf", "r.urdf", "<robot/>", PLAIN).unwrap_err();
     assert_eq!(found, "r.urdf: the robot has no links");
 }
 
@@ -137,25 +153,98 @@ fn a_moving_link_without_mass_is_refused_and_all_mistakes_come_at_once() {
     let rest = r#"<link name="a"/><link name="b"/>
 <joint name="ja" type="revolute"><parent link="arm"/><child link="a"/></joint>
 <joint name="jb" type="revolute"><parent link="arm"/><child link="b"/></joint>"#;
-    let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), Root::Fixed).unwrap_err();
+    let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), PLAIN).unwrap_err();
     let lines: Vec<&str> = found.lines().collect();
     assert_eq!(lines.len(), 2, "{found}");
     assert!(lines[0].starts_with("r.urdf:4: link `a` moves and has no mass"), "{found}");
+    assert!(lines[0].ends_with("give it an <inertial>, or make joint `ja` (line 5) a fixed one"), "{found}");
+}
+
+/// What a joint without mass carries has mass: of that a millionth is taken, and nothing is added.
+#[test]
+fn a_link_without_mass_between_moving_joints_takes_a_little_of_what_it_carries() {
+    let rest = r#"<link name="cross"/><joint name="j" type="revolute"><parent link="base"/><child link="cross"/><axis xyz="0 0 1"/></joint>
+<joint name="k" type="revolute"><origin xyz="0.5 0 0"/><parent link="cross"/><child link="arm"/></joint>"#;
+    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap();
+    let words = "link `cross` moves and has no mass: it takes a millionth of that of `arm`, which it carries";
+    assert!(remarks.iter().any(|remark| remark == words), "{remarks:#?}");
+    assert!(page.contains("mass = 1e-6\ninertia = [1e-6, 1e-6, 1e-6]"), "{page}");
+    assert!(page.contains("mass = 0.999999\n"), "{page}");
+    assert!(page.contains("{ body = \"cross\", point = [-0.5, 0.0, 0.0]"), "{page}");
+}
+
+#[test]
+fn right_angles_are_made_exact() {
+    let rest = r#"<joint name="j" type="revolute"><origin rpy="1.5708 0 -3.14159" xyz="0 0 1e-17"/><parent link="base"/><child link="arm"/><axis xyz="1e-9 0 1"/></joint>"#;
+    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap();
+    assert!(
+        page.contains("point = [0.0, 0.0, 0.0], axis = [0.0, 1.0, 0.0], zero = [-1.0, 0.0, 0.0]"),
+        "{page}"
+    );
+    for words in [
+        "1.5708 rad is taken for 1 pi/2, a change of 3.7e-6 rad: line 4",
+        "-3.14159 rad is taken for -2 pi/2, a change of 2.7e-6 rad: line 4",
+        "line 4: <axis> of joint `j`: a component of 1.0e-9 of the largest is taken for 0",
+    ] {
+        assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
+    }
+}
+
+/// A motor for each joint that follows none, and stops where there is something between the limits; the start is there
+/// too.
+#[test]
+fn motors_and_stops_are_made_on_request() {
+    let rest = r#"<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><limit lower="0.2" upper="1" effort="3"/></joint>
+<link name="b"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<joint name="k" type="prismatic"><parent link="arm"/><child link="b"/><mimic joint="j" multiplier="2"/><limit lower="-1" upper="1"/></joint>
+<link name="c"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<joint name="l" type="continuous"><parent link="arm"/><child link="c"/><limit effort="1"/></joint>
+<link name="d"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<joint name="m" type="revolute"><parent link="arm"/><child link="d"/><limit lower="0" upper="0"/></joint>"#;
+    let convert = |wishes| convert("r.urdf", "r.urdf", &robot(rest), wishes).unwrap();
+    let (page, remarks) = convert(Wishes { motors: true, limits: true, ..PLAIN });
+    assert!(
+        page.contains("[inputs]\nj_motor = 0  # N.m\nl_motor = 0  # N.m\nm_motor = 0  # N.m\n\n"),
+        "{page}"
+    );
+    assert_eq!(page.matches("kind = \"motor\"").count(), 3, "{page}");
+    let stop = "name = \"j_upper_stop\"\nkind = \"stop\"\njoint = \"j\"\nside = \"upper\"\nlimit = 1.0\nstiffness = 300.0\n\
+                damping = 3.0\nsoftness = 0.001\n";
+    assert!(page.contains(stop), "{page}");
+    // The weight of 2 kg on a millimetre.
+    assert!(
+        page.contains("limit = -1.0\nstiffness = 19620.0\ndamping = 196.2\nsoftness = 0.0001\n"),
+        "{page}"
+    );
+    assert_eq!(page.matches("kind = \"stop\"").count(), 4, "{page}");
+    assert!(page.contains("angle = 0.2\n") && page.contains("displacement = 0.4\n"), "{page}");
+    for words in [
+        "joint `m` has no stops: its limits 0.0 and 0.0 leave it nothing",
+        "joints that do not start at 0: `j`, `k`",
+    ] {
+        assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
+    }
+    gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let (page, remarks) = convert(PLAIN);
+    assert!(!page.contains("[[force]]") && !page.contains("[inputs]"), "{page}");
+    assert!(
+        remarks.contains(&"3 <limit>s left out: --limits makes stops of them".to_owned()),
+        "{remarks:#?}"
+    );
 }
 
 #[test]
 fn what_has_no_counterpart_is_listed() {
     let rest = r#"<material name="m"/><link name="frame"><visual/><visual/><sensor/></link>
 <joint name="f" type="fixed"><parent link="arm"/><child link="frame"/><calibration rising="0"/><mimic joint="j"/></joint>"#;
-    let (page, remarks) =
-        convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), Root::Fixed).unwrap();
+    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{rest}")), PLAIN).unwrap();
     for words in [
-        "line 4: <material name=\"m\">: has no counterpart",
-        "line 4: <sensor> of link `frame`: has no counterpart",
-        "line 5: <calibration> of joint `f`: has no counterpart",
+        "1 <material> without counterpart: line 4",
+        "1 <sensor> without counterpart: line 4",
+        "1 <calibration> without counterpart: line 5",
         "line 5: <mimic> of joint `f`: a fixed joint follows nothing",
         "2 <visual> and 0 <collision>: shapes have no counterpart",
-        "link `frame` is fixed to `arm` and became a part of it",
+        "1 link fixed to `arm`, one body with it: `frame`",
         "the root link `base` is fixed",
     ] {
         assert!(remarks.iter().any(|remark| remark.contains(words)), "{words} is missing in {remarks:#?}");
@@ -168,9 +257,9 @@ fn what_has_no_counterpart_is_listed() {
 /// its link's frame.
 #[test]
 fn a_root_without_mass_cannot_float_and_a_fixed_one_is_not_called_free() {
-    let found = convert("r.urdf", "r.urdf", &robot(JOINT), Root::Floating).unwrap_err();
+    let found = convert("r.urdf", "r.urdf", &robot(JOINT), FLOATING).unwrap_err();
     assert!(found.contains("r.urdf:2: link `base` moves and has no mass"), "{found}");
-    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(JOINT), Root::Fixed).unwrap();
+    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(JOINT), PLAIN).unwrap();
     let said = format!("{page}{}", remarks.join("\n"));
     assert!(said.contains("--floating lets it move") && !said.contains("free = true"), "{said}");
 }

@@ -24,6 +24,8 @@ mod tables;
 mod tensor;
 mod units;
 
+pub use names::is_keyword;
+
 use toml::de::DeTable;
 
 use crate::Model;

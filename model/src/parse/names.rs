@@ -21,7 +21,8 @@ pub(super) fn is_snake_case(name: &str) -> bool {
         && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 
-pub(super) fn is_keyword(name: &str) -> bool {
+/// Whether a name is a word of Rust, which a mechanism or an input cannot be called.
+pub fn is_keyword(name: &str) -> bool {
     KEYWORDS.contains(&name)
 }
 

@@ -25,6 +25,13 @@ pub(super) fn mass(model: &Model, index: usize, body: &Body) -> Option<Problem> 
     })
 }
 
+/// Whether exact tensor elements xx, yy, zz, xy, xz, yz are those of a rigid body: positive definite, and no principal
+/// moment above the sum of the others.
+pub fn is_inertia(elements: [Rational; 6]) -> bool {
+    let tensor = Tensor(elements);
+    tensor.is_positive() && tensor.of_mass().is_semidefinite()
+}
+
 /// The inertia tensor of a body.
 pub(super) fn inertia(model: &Model, index: usize, body: &Body) -> Option<Problem> {
     if is_left_out(body, &body.inertia) {

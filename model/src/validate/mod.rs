@@ -10,6 +10,7 @@ mod rules;
 mod topology;
 
 pub(crate) use coordinates::problems as coordinate_problems;
+pub use inertia::is_inertia;
 pub(crate) use numbers::problems as number_problems;
 pub use rules::ParameterRule;
 pub(crate) use topology::problems as topology_problems;
