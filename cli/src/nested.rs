@@ -13,7 +13,7 @@ use crate::{files, machine_code, remarks};
 use gyro_codegen::{Kernel, Module};
 use gyro_model::Model;
 use gyro_runner::protocol::{self, Reply, Request};
-use gyro_runner::{Event, Summary, Timing};
+use gyro_runner::{Approach, Coordinates, Correction, Event, Integrator, Summary, Timing};
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File, TryLockError};
 use std::hash::{Hash, Hasher};
@@ -27,7 +27,7 @@ pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Sum
     let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
-    let program = program(&scene.page, &module, scene.precision)?;
+    let program = program(&scene.page, &module, scene.precision, Runs::of(scene))?;
     let request = Request {
         settings: scene.settings,
         approach: scene.approach,
@@ -38,9 +38,37 @@ pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Sum
     Ok(Session::open(&program, &[])?.ask(&request, tell)?.0)
 }
 
+/// What a program can do: the less, the sooner it is compiled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Runs {
+    /// Any run.
+    All,
+    /// Runs by explicit methods in these coordinates and with this correction, that are not linearised.
+    Only(Coordinates, Correction),
+}
+
+impl Runs {
+    /// What a scene asks for. Runs under error control and with a budget may fail for reasons that a linearisation
+    /// explains, and a run that is judged is compared with others.
+    fn of(scene: &Scene) -> Self {
+        let Approach { integrator, coordinates, correction, tolerance, budget, examine, .. } = scene.approach;
+        let has_others = examine || scene.has_companions;
+        let may_be_linearised = scene.offers.joint_space && (tolerance.is_some() || budget.is_some());
+        if integrator == Integrator::Rodas4 || has_others || may_be_linearised {
+            return Self::All;
+        }
+        Self::Only(coordinates, correction)
+    }
+}
+
 /// Compiles a module into a program that answers requests; returns where it is.
-pub(crate) fn program(page: &Model, module: &Module, precision: Precision) -> Result<PathBuf, Failure> {
-    let package = Package::program(module, precision);
+pub(crate) fn program(
+    page: &Model,
+    module: &Module,
+    precision: Precision,
+    runs: Runs,
+) -> Result<PathBuf, Failure> {
+    let package = Package::program(module, precision, runs);
     if !package.is_there() {
         verify_quickly(page, module)?;
     }
@@ -77,8 +105,8 @@ struct Package {
 }
 
 impl Package {
-    fn program(module: &Module, precision: Precision) -> Self {
-        Self::new(module, ("main.rs", main(module, precision)), &[])
+    fn program(module: &Module, precision: Precision, runs: Runs) -> Self {
+        Self::new(module, ("main.rs", main(module, precision, runs)), &[])
     }
 
     fn new(module: &Module, root: (&'static str, String), options: &'static [&'static str]) -> Self {
@@ -115,16 +143,26 @@ impl Package {
     }
 }
 
-/// The program's own lines. What the module implements decides with what motions can be begun. Nothing is imported: a
-/// mechanism may have the name of anything.
-fn main(module: &Module, precision: Precision) -> String {
+/// The program's own lines: with what motions are begun is decided by what runs are to be made, and by what the module
+/// implements. Nothing is imported: a mechanism may have the name of anything.
+fn main(module: &Module, precision: Precision, runs: Runs) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let has = |text: String| module.code.contains(&text);
-    let is_tree = has(format!("gyro_sim::JointSpace for {type_name}"));
-    let builder = match (is_tree, has("fn joint_jacobian(".to_owned())) {
-        (true, true) => "TreeWithJacobian",
-        (true, false) => "Tree",
-        (false, _) => "WithDuals",
+    let joint_space = has(format!("gyro_sim::JointSpace for {type_name}"));
+    let only = |kind: &str| {
+        let of = "::gyro_runner::motion";
+        format!("{of}::Only {{ kind: {of}::{kind}, joint_space: {joint_space} }}")
+    };
+    let builder = match (runs, joint_space) {
+        (Runs::Only(Coordinates::Joint, _), _) => only("InJoints"),
+        (Runs::Only(_, Correction::Partition), _) => only("Partitioned"),
+        (Runs::Only(_, Correction::ClosedForm), _) => only("InClosedForm"),
+        (Runs::Only(_, Correction::MassWeighted), _) => only("Projected"),
+        (Runs::Only(_, Correction::Baumgarte(_)), _) => only("Stabilised"),
+        (Runs::Only(_, Correction::None), _) => only("Direct"),
+        (Runs::All, true) if has("fn joint_jacobian(".to_owned()) => in_duals("TreeWithJacobian", precision),
+        (Runs::All, true) => in_duals("Tree", precision),
+        (Runs::All, false) => in_duals("WithDuals", precision),
     };
     format!(
         "#[allow(warnings, clippy::all)]
@@ -138,15 +176,17 @@ fn build<T: ::gyro_sim::Scalar>(parameters: &[f64]) -> mechanism::{type_name}<T>
     built
 }}
 
-type Dual = ::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>;
-
 fn main() -> ::std::process::ExitCode {{
-    ::gyro_runner::child::main(|parameters| {{
-        (build::<{precision}>(parameters), ::gyro_runner::motion::{builder}(build::<Dual>(parameters)))
-    }})
+    ::gyro_runner::child::main(|parameters| (build::<{precision}>(parameters), {builder}))
 }}
 "
     )
+}
+
+/// A builder with the mechanism in dual numbers.
+fn in_duals(builder: &str, precision: &str) -> String {
+    let dual = format!("::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>");
+    format!("::gyro_runner::motion::{builder}(build::<{dual}>(parameters))")
 }
 
 /// The program of the runtime-assembled model.
@@ -413,13 +453,16 @@ mod tests {
             constants: String::new(),
             data_sheet: DataSheet::default(),
         };
-        let name = |code, precision| Package::program(&module(code), precision).name;
+        let package = |code, precision, runs| Package::program(&module(code), precision, runs).name;
+        let name = |code, precision| package(code, precision, Runs::All);
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("b", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("a", Precision::F32));
         assert!(name("a", Precision::F64).starts_with("top-"));
+        let runs = Runs::Only(Coordinates::Maximal, Correction::None);
+        assert_ne!(name("a", Precision::F64), package("a", Precision::F64, runs));
         // A mechanism may have the name of whatever could be imported.
-        let text = main(&module("a"), Precision::F64);
+        let text = main(&module("a"), Precision::F64, Runs::All);
         assert!(text.lines().all(|line| !line.starts_with("use ")), "{text}");
     }
 }

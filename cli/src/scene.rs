@@ -28,6 +28,8 @@ pub(crate) struct Scene {
     pub(crate) moved: Vec<Move>,
     pub(crate) engine: Engine,
     pub(crate) precision: Precision,
+    /// Whether the run is compared with other ones of the same mechanism.
+    pub(crate) has_companions: bool,
 }
 
 impl Scene {
@@ -60,6 +62,7 @@ impl Scene {
             moved,
             engine: args.engine,
             precision: args.precision,
+            has_companions: args.verify,
         })
     }
 

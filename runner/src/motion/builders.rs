@@ -199,7 +199,7 @@ where
 }
 
 /// The joint state of a maximal one, its loops closed, what closes them and when.
-fn in_joints<M: JointSpace<Scalar: Real>>(
+pub(super) fn in_joints<M: JointSpace<Scalar: Real>>(
     mechanism: &M,
     approach: &Approach,
     y: &M::State,

@@ -6,7 +6,9 @@ mod correction;
 mod independent;
 mod lens;
 mod moving;
+mod single;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
 pub use contract::{COLUMNS, Element, Linear, Motion, MotionBuilder};
 pub use independent::Closing;
+pub use single::{Direct, InClosedForm, InJoints, Kind, Only, Partitioned, Projected, Stabilised};

@@ -1,0 +1,153 @@
+//! Builders for runs of one kind. A program that makes no others is compiled in a fraction of the time: it holds no
+//! other equations, no other correction and no dual numbers.
+
+use super::builders::{in_joints, work_scale};
+use super::contract::{Motion, MotionBuilder};
+use super::correction::{Boxed, keeping, partitioning};
+use super::lens::Slopes;
+use super::moving::explicit;
+use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::offers::Offers;
+use gyro_sim::{
+    Baumgarte, ClosedForm, Corrected, Equations, Exact, Joint, JointLayout, JointSpace, Partition, Real,
+    Scalar, Watched,
+};
+
+/// For runs of one kind.
+#[derive(Clone, Copy, Debug)]
+pub struct Only<K> {
+    /// The kind.
+    pub kind: K,
+    /// Whether the mechanism has joint coordinates, in which other runs can be made.
+    pub joint_space: bool,
+}
+
+/// A kind of run: by explicit methods, and not linearised.
+pub trait Kind<M: Partition<Scalar: Real>> {
+    /// Whether an approach is of this kind.
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool;
+    /// A motion from a maximal state at time zero, or the reason why there is none.
+    ///
+    /// # Errors
+    /// What the mechanism lacks for this approach.
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+    /// As [`MotionBuilder::joint_layout`].
+    fn joint_layout<'a>(&self, _mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        None
+    }
+}
+
+impl<K: Kind<M>, M: Partition<Scalar: Real> + Equations> MotionBuilder<M> for Only<K> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let is_explicit = approach.integrator != Integrator::Rodas4;
+        if !is_explicit || !self.kind.makes(approach.coordinates, approach.correction) {
+            return Err(format!("this program was compiled for other runs than {approach}"));
+        }
+        self.kind.begin(mechanism, approach, y)
+    }
+
+    /// What a program for all runs offers: advice may lead there.
+    fn offers(&self) -> Offers {
+        Offers { joint_space: self.joint_space, ..Offers::ALL }
+    }
+
+    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
+        work_scale(mechanism, t, y)
+    }
+
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        self.kind.joint_layout(mechanism)
+    }
+}
+
+/// Maximal coordinates, corrected by the coordinate partition.
+#[derive(Clone, Copy, Debug)]
+pub struct Partitioned;
+
+impl<M: Partition<Scalar: Real> + 'static> Kind<M> for Partitioned {
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        coordinates == Coordinates::Maximal && correction == Keeping::Partition
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        Ok(explicit(Slopes::of(Corrected), partitioning(mechanism, y), approach, y))
+    }
+}
+
+/// Maximal coordinates, not corrected.
+#[derive(Clone, Copy, Debug)]
+pub struct Direct;
+
+impl<M: Partition<Scalar: Real> + 'static> Kind<M> for Direct {
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        coordinates == Coordinates::Maximal && correction == Keeping::None
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        Ok(explicit(Slopes::of(Exact), Boxed(Box::new(Watched::new(mechanism))), approach, y))
+    }
+}
+
+/// Maximal coordinates, corrected by way of joint coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct InClosedForm;
+
+impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InClosedForm {
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        coordinates == Coordinates::Maximal && correction == Keeping::ClosedForm
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let correction = Boxed(Box::new(ClosedForm::new(mechanism)));
+        Ok(explicit(Slopes::of(Corrected), correction, approach, y))
+    }
+}
+
+/// Maximal coordinates, kept by the projection that the masses weigh.
+#[derive(Clone, Copy, Debug)]
+pub struct Projected;
+
+impl<M: Partition<Scalar: Real> + Equations + 'static> Kind<M> for Projected {
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        coordinates == Coordinates::Maximal && correction == Keeping::MassWeighted
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        Ok(explicit(Slopes::of(Exact), keeping(mechanism, approach, y)?, approach, y))
+    }
+}
+
+/// Maximal coordinates, with Baumgarte's stabilisation.
+#[derive(Clone, Copy, Debug)]
+pub struct Stabilised;
+
+impl<M: Partition<Scalar: Real> + Equations + 'static> Kind<M> for Stabilised {
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        coordinates == Coordinates::Maximal && matches!(correction, Keeping::Baumgarte(_))
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let Keeping::Baumgarte(rate) = approach.correction else { unreachable!("it is of this kind") };
+        let slopes = Slopes::of(Baumgarte { rate: M::Scalar::constant(rate) });
+        Ok(explicit(slopes, Boxed(Box::new(Watched::new(mechanism))), approach, y))
+    }
+}
+
+/// Joint coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct InJoints;
+
+impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InJoints {
+    fn makes(&self, coordinates: Coordinates, _: Keeping) -> bool {
+        coordinates == Coordinates::Joint
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        Ok(explicit(Joint, closing, &approach, &x))
+    }
+
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        Some(mechanism.joint_layout())
+    }
+}
