@@ -65,6 +65,16 @@ fn mistakes_are_told_by_line_and_element() {
         ),
         (r#"<link name="base"/>"#, "r.urdf:4: <link name=\"base\">: an earlier one has this name"),
         (
+            r#"<joint name="j" type="revolute"><origin xyz="0 0 ${l}"/><parent link="base"/><child link="arm"/></joint>"#,
+            "r.urdf:4: <origin> of joint `j`: xyz=\"${l}\": a finite number was expected; this is xacro: expand",
+        ),
+        (r#"<xacro:leg side="left"/>"#, "this is xacro: expand the file with `xacro` first"),
+        (
+            r#"<joint name="k" type="revolute"><parent link="base"/><child link="arm"/></joint>
+<joint name="j" type="revolute"><mimic joint="k" multiplier="0"/><parent link="base"/><child link="arm"/></joint>"#,
+            "r.urdf:5: <joint name=\"j\">: a multiplier of 0 lets the joint follow nothing: make it a fixed joint",
+        ),
+        (
             r#"<link name="b"><inertial><mass value="-1"/></inertial></link>"#,
             "r.urdf:4: <mass> of link `b`: the mass -1.0 is negative",
         ),
