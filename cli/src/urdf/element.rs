@@ -50,7 +50,7 @@ impl Findings<'_> {
     /// All remarks, those on many elements as one.
     pub(super) fn all_remarks(&self) -> Vec<String> {
         let unused = |(tag, lines): (&String, &Vec<u32>)| {
-            format!("{} <{tag}> without counterpart: {}", lines.len(), at(lines))
+            format!("{} <{tag}> without counterpart: {}", lines.len(), at(lines.iter()))
         };
         let remarks = self.remarks.iter().cloned();
         remarks.chain(self.angles.remarks()).chain(self.unused.iter().map(unused)).collect()

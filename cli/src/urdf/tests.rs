@@ -192,8 +192,8 @@ fn right_angles_are_made_exact() {
         "{page}"
     );
     for words in [
-        "1.5708 rad is taken for 1 pi/2, a change of 3.7e-6 rad: line 4",
-        "-3.14159 rad is taken for -2 pi/2, a change of 2.7e-6 rad: line 4",
+        "1.5708 rad is taken for 90 degrees, a change of 3.7e-6 rad: line 4",
+        "-3.14159 rad is taken for -180 degrees, a change of 2.7e-6 rad: line 4",
         "line 4: <axis> of joint `j`: a component of 1.0e-9 of the largest is taken for 0",
     ] {
         assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");

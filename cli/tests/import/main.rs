@@ -175,7 +175,7 @@ fn frames_without_mass() {
     for words in [
         "4 links fixed to `head`, one body with it: `yaw_frame`, `camera_mount`, `camera`, `optical_frame`",
         "1 link fixed to `floor`, one body with it: `pedestal`",
-        "-1.5708 rad is taken for -1 pi/2",
+        "-1.5708 rad is taken for -90 degrees",
         "<joint name=\"slide\">: damping and friction are for revolute and prismatic joints only",
     ] {
         assert!(said.contains(words), "{words} is missing in\n{said}");

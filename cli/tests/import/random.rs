@@ -120,7 +120,10 @@ fn link(rng: &mut ChaCha8Rng, index: usize) -> Link {
 
 fn joint(rng: &mut ChaCha8Rng, earlier: &[Joint], links: &[Link], child: usize) -> Joint {
     let kinds = ["fixed", "fixed", "fixed", "revolute", "revolute", "continuous", "prismatic", "planar"];
-    let kind = if rng.random_bool(0.03) { "floating" } else { kinds[rng.random_range(0..kinds.len())] };
+    // The model file tells free bodies apart by name alone: one is enough.
+    let is_first = earlier.iter().all(|joint| joint.kind != "floating");
+    let kind =
+        if is_first && rng.random_bool(0.05) { "floating" } else { kinds[rng.random_range(0..kinds.len())] };
     let parent = rng.random_range(0..child);
     let name = format!("{}{child}", NAMES.choose(rng).unwrap());
     let (pose, origin) = origin(rng);
