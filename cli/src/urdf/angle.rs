@@ -1,10 +1,9 @@
 //! Angles that somebody rounded: 1.5708 is a right one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
-use std::fmt::Write as _;
 
-/// An angle as near as this to a multiple of [`UNITS`], rad, is the multiple.
+/// An angle as near as this to a multiple of [`UNITS`], in rad, is the multiple.
 const MEANT: f64 = 1e-6;
 
 /// One with so many decimals at least is it as well if they are the multiple's, rounded or cut off: 1.5708 is off by
@@ -17,77 +16,67 @@ const NEAR: f64 = 1e-3;
 /// What rounding to an `f64` leaves.
 const ROUNDING: f64 = 1e-14;
 
-/// Parts of pi whose multiples are meant, with their names: 45, 30 and 90 degrees.
-const UNITS: [(f64, &str); 2] = [(PI / 4.0, "pi/4"), (PI / 6.0, "pi/6")];
+/// Degrees whose multiples are meant.
+const UNITS: [f64; 2] = [45.0, 30.0];
 
 /// Angles that were made exact and those that could have been, by how they are written.
 #[derive(Debug, Default)]
 pub(super) struct Angles {
-    exact: BTreeMap<String, (String, f64, Vec<u32>)>,
-    near: BTreeMap<String, (f64, Vec<u32>)>,
+    exact: BTreeMap<String, (f64, f64, BTreeSet<u32>)>,
+    near: BTreeMap<String, (f64, BTreeSet<u32>)>,
 }
 
 impl Angles {
     /// The angle that was meant by a number of radians written on a line.
     pub(super) fn meant(&mut self, written: &str, value: f64, line: u32) -> f64 {
-        let Some((multiple, name)) = nearest(value) else { return value };
+        let Some(degrees) = nearest(value) else { return value };
+        let multiple = degrees / 180.0 * PI;
         let off = (value - multiple).abs();
         if off < ROUNDING {
             return multiple;
         }
         let decimals = decimals(written);
         let cut = 10.0_f64.powi(-i32::try_from(decimals).unwrap_or(i32::MAX));
+        let written = written.trim().to_owned();
         if off <= MEANT || (decimals >= DECIMALS && off < cut) {
-            self.exact.entry(written.trim().to_owned()).or_insert((name, off, Vec::new())).2.push(line);
+            self.exact.entry(written).or_insert((degrees, off, BTreeSet::new())).2.insert(line);
             return multiple;
         }
-        if off < NEAR && (multiple / (PI / 2.0)).fract() == 0.0 {
-            self.near.entry(written.trim().to_owned()).or_insert((off, Vec::new())).1.push(line);
+        if off < NEAR && degrees % 90.0 == 0.0 {
+            self.near.entry(written).or_insert((off, BTreeSet::new())).1.insert(line);
         }
         value
     }
 
     /// A remark for each way of writing an angle.
     pub(super) fn remarks(&self) -> Vec<String> {
-        let exact = self.exact.iter().map(|(written, (name, off, lines))| {
-            format!("{written} rad is taken for {name}, a change of {off:.1e} rad: {}", at(lines))
+        let exact = self.exact.iter().map(|(written, (degrees, off, lines))| {
+            let at = at(lines.iter());
+            format!("{written} rad is taken for {degrees} degrees, a change of {off:.1e} rad: {at}")
         });
         let near = self.near.iter().map(|(written, (off, lines))| {
-            format!(
-                "{written} rad stays {off:.1e} rad off a right angle; write more digits if that is meant: {}",
-                at(lines)
-            )
+            let at = at(lines.iter());
+            format!("{written} rad stays {off:.1e} rad off a right angle; write more digits if that is meant: {at}")
         });
         exact.chain(near).collect()
     }
 }
 
 /// Lines that a remark is about, the first few of them.
-pub(super) fn at(lines: &[u32]) -> String {
+pub(super) fn at<'l>(lines: impl ExactSizeIterator<Item = &'l u32>) -> String {
     const SHOWN: usize = 3;
-    let shown: Vec<String> = lines.iter().take(SHOWN).map(u32::to_string).collect();
-    let mut text = format!("line{} {}", if lines.len() == 1 { "" } else { "s" }, shown.join(", "));
-    if lines.len() > SHOWN {
-        let _ = write!(text, " and {} more", lines.len() - SHOWN);
-    }
-    text
+    let number = lines.len();
+    let shown: Vec<String> = lines.take(SHOWN).map(u32::to_string).collect();
+    let more = if number > SHOWN { format!(" and {} more", number - SHOWN) } else { String::new() };
+    format!("line{} {}{more}", if number == 1 { "" } else { "s" }, shown.join(", "))
 }
 
-/// The nearest multiple, other than none, of a unit, with its name.
-fn nearest(value: f64) -> Option<(f64, String)> {
-    let of = |(unit, name): (f64, &str)| {
-        let number = (value / unit).round();
-        // Of the larger unit first: two of pi/4 are also three of pi/6.
-        let right = (number * unit / (PI / 2.0)).round();
-        let is_right = (number * unit - right * (PI / 2.0)).abs() < ROUNDING;
-        let (multiple, name) = if is_right {
-            (right * (PI / 2.0), format!("{right} pi/2"))
-        } else {
-            (number * unit, format!("{number} {name}"))
-        };
-        (number != 0.0 && number.abs() < 100.0).then_some((multiple, name))
-    };
-    UNITS.into_iter().filter_map(of).min_by(|a, b| (value - a.0).abs().total_cmp(&(value - b.0).abs()))
+/// The nearest multiple, other than none, of a unit, in degrees.
+fn nearest(angle: f64) -> Option<f64> {
+    let degrees = angle / PI * 180.0;
+    let multiples = UNITS.map(|unit| (degrees / unit).round() * unit);
+    let nearest = multiples.into_iter().min_by(|a, b| (degrees - a).abs().total_cmp(&(degrees - b).abs()));
+    nearest.filter(|multiple| *multiple != 0.0 && multiple.abs() < 1e4)
 }
 
 /// Digits behind the point of a decimal number; none of one with an exponent, which no person has rounded.
@@ -130,7 +119,7 @@ mod tests {
         }
         let remarks = angles.remarks().join("\n");
         assert!(
-            remarks.contains("1.5708 rad is taken for 1 pi/2, a change of 3.7e-6 rad: line 7"),
+            remarks.contains("1.5708 rad is taken for 90 degrees, a change of 3.7e-6 rad: line 7"),
             "{remarks}"
         );
         assert!(remarks.contains("1.57 rad stays 8.0e-4 rad off a right angle"), "{remarks}");

@@ -17,6 +17,9 @@ pub(super) struct Findings<'d> {
     pub(super) unused: BTreeMap<String, Vec<u32>>,
 }
 
+/// What to do about a file with macros.
+pub(super) const XACRO: &str = "this is xacro: expand the file with `xacro` first";
+
 /// Lengths and components of directions below this are what a computation left of a zero.
 const ZERO: f64 = 1e-12;
 
@@ -47,7 +50,7 @@ impl Findings<'_> {
     /// All remarks, those on many elements as one.
     pub(super) fn all_remarks(&self) -> Vec<String> {
         let unused = |(tag, lines): (&String, &Vec<u32>)| {
-            format!("{} <{tag}> without counterpart: {}", lines.len(), at(lines))
+            format!("{} <{tag}> without counterpart: {}", lines.len(), at(lines.iter()))
         };
         let remarks = self.remarks.iter().cloned();
         remarks.chain(self.angles.remarks()).chain(self.unused.iter().map(unused)).collect()
@@ -131,7 +134,8 @@ impl Findings<'_> {
         match text.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Some(value),
             _ => {
-                self.problem(node, &format!("{name}=\"{text}\": a finite number was expected"));
+                let cure = if text.contains("${") { format!("; {XACRO}") } else { String::new() };
+                self.problem(node, &format!("{name}=\"{text}\": a finite number was expected{cure}"));
                 None
             }
         }

@@ -228,10 +228,14 @@ fn lend(
     let mut loans = Vec::new();
     for (index, group) in groups.iter().enumerate().filter(|(_, group)| group.inertial.is_none()) {
         let link = &robot.links[group.links[0].0];
-        let Some(carrier) = group.carrier.map(|joint| &robot.joints[joint]) else {
-            let words = "moves and has no mass, nor has anything that is fixed to it: give it an <inertial>, or import the \
-                         robot without --floating";
-            problems.push(at(file, link, words));
+        let carrier = group.carrier.map(|joint| &robot.joints[joint]);
+        let Some(carrier) = carrier.filter(|joint| joint.kind != Kind::Floating) else {
+            // What it carries does not hold it.
+            let cure = if carrier.is_none() { ", or import the robot without --floating" } else { "" };
+            let words = format!(
+                "moves and has no mass, nor has anything that is fixed to it: give it an <inertial>{cure}"
+            );
+            problems.push(at(file, link, &words));
             continue;
         };
         let Some(lender) = carried_mass(robot, groups, index) else {

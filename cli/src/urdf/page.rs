@@ -42,7 +42,10 @@ pub(super) fn write(
         if is_written { joint_names.name(&joint.name) } else { String::new() }
     };
     let joints: Vec<String> = robot.joints.iter().map(&mut named).collect();
-    let mimics = joints.iter().map(|joint| joint_names.name(&format!("{joint}_mimic"))).collect();
+    let mut coupled = |(joint, name): (&Joint, &String)| {
+        joint.mimic.as_ref().map_or_else(String::new, |_| joint_names.name(&format!("{name}_mimic")))
+    };
+    let mimics = robot.joints.iter().zip(&joints).map(&mut coupled).collect();
     let changed = body_names.changed.iter().chain(&joint_names.changed);
     let changed: Vec<String> = changed.map(|(was, is)| format!("`{was}` is `{is}`")).collect();
     if !changed.is_empty() {

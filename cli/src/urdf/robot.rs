@@ -1,7 +1,7 @@
 //! The robot as its file describes it: a tree of links and joints.
 
 use super::angle::Angles;
-use super::element::{Findings, child};
+use super::element::{Findings, XACRO, child};
 use super::inertia::Inertial;
 use crate::words;
 use nalgebra::{IsometryMatrix3, Matrix3, Vector3};
@@ -85,7 +85,10 @@ impl Kind {
 /// # Errors
 /// Every mistake of the file, each with its line and element.
 pub(super) fn read(file: &str, text: &str) -> Result<Robot, Vec<String>> {
-    let document = Document::parse(text).map_err(|e| vec![format!("{file}: not a whole XML file: {e}")])?;
+    let document = Document::parse(text).map_err(|e| {
+        let cure = if text.contains("xacro:") { format!("; {XACRO}") } else { String::new() };
+        vec![format!("{file}: not a whole XML file: {e}{cure}")]
+    })?;
     let root = document.root_element();
     let mut findings = Findings {
         file,
@@ -120,7 +123,7 @@ fn robot(findings: &mut Findings<'_>, root: Node<'_, '_>) -> Robot {
     }
     for node in root.children().filter(Node::is_element) {
         if node.tag_name().namespace().is_some_and(|n| n.contains("xacro")) {
-            findings.problem(node, "this is xacro: expand the file with `xacro` first");
+            findings.problem(node, XACRO);
         } else if !node.has_tag_name("link") && !node.has_tag_name("joint") {
             findings.unused(node);
         }

@@ -65,6 +65,16 @@ fn mistakes_are_told_by_line_and_element() {
         ),
         (r#"<link name="base"/>"#, "r.urdf:4: <link name=\"base\">: an earlier one has this name"),
         (
+            r#"<joint name="j" type="revolute"><origin xyz="0 0 ${l}"/><parent link="base"/><child link="arm"/></joint>"#,
+            "r.urdf:4: <origin> of joint `j`: xyz=\"${l}\": a finite number was expected; this is xacro: expand",
+        ),
+        (r#"<xacro:leg side="left"/>"#, "this is xacro: expand the file with `xacro` first"),
+        (
+            r#"<joint name="k" type="revolute"><parent link="base"/><child link="arm"/></joint>
+<joint name="j" type="revolute"><mimic joint="k" multiplier="0"/><parent link="base"/><child link="arm"/></joint>"#,
+            "r.urdf:5: <joint name=\"j\">: a multiplier of 0 lets the joint follow nothing: make it a fixed joint",
+        ),
+        (
             r#"<link name="b"><inertial><mass value="-1"/></inertial></link>"#,
             "r.urdf:4: <mass> of link `b`: the mass -1.0 is negative",
         ),
@@ -182,8 +192,8 @@ fn right_angles_are_made_exact() {
         "{page}"
     );
     for words in [
-        "1.5708 rad is taken for 1 pi/2, a change of 3.7e-6 rad: line 4",
-        "-3.14159 rad is taken for -2 pi/2, a change of 2.7e-6 rad: line 4",
+        "1.5708 rad is taken for 90 degrees, a change of 3.7e-6 rad: line 4",
+        "-3.14159 rad is taken for -180 degrees, a change of 2.7e-6 rad: line 4",
         "line 4: <axis> of joint `j`: a component of 1.0e-9 of the largest is taken for 0",
     ] {
         assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");

@@ -1,62 +1,15 @@
 //! `cargo xtask import`: model files of robots stand where an independent forward kinematics puts them, and simulate.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod pose;
+mod random;
+
 use gyro_model::{Model, Number, Rational, Start};
+use pose::Pose;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-
-/// Rotation and translation, typed here: the importer has its own from a library.
-#[derive(Clone, Copy)]
-struct Pose {
-    rotation: [[f64; 3]; 3],
-    translation: [f64; 3],
-}
-
-impl Pose {
-    /// An `<origin>`: about the fixed axes x, y, z in this order.
-    fn origin(xyz: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Self {
-        let about = |axis, angle| Pose { rotation: rodrigues(axis, angle), translation: [0.0; 3] };
-        let turned =
-            about([0.0, 0.0, 1.0], yaw) * about([0.0, 1.0, 0.0], pitch) * about([1.0, 0.0, 0.0], roll);
-        Pose { translation: xyz, ..turned }
-    }
-
-    fn turn(axis: [f64; 3], angle: f64) -> Self {
-        Pose { rotation: rodrigues(axis, angle), translation: [0.0; 3] }
-    }
-
-    fn shift(xyz: [f64; 3]) -> Self {
-        Pose::origin(xyz, [0.0; 3])
-    }
-}
-
-impl std::ops::Mul for Pose {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let row = |i: usize, column: &dyn Fn(usize) -> f64| {
-            (0..3).map(|k| self.rotation[i][k] * column(k)).sum::<f64>()
-        };
-        Pose {
-            rotation: std::array::from_fn(|i| std::array::from_fn(|j| row(i, &|k| other.rotation[k][j]))),
-            translation: std::array::from_fn(|i| self.translation[i] + row(i, &|k| other.translation[k])),
-        }
-    }
-}
-
-/// `cos 1 + (1 − cos) a aᵀ + sin ã`.
-fn rodrigues(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
-    let norm = axis.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let [x, y, z] = axis.map(|a| a / norm);
-    let (sin, cos) = angle.sin_cos();
-    let v = 1.0 - cos;
-    [
-        [cos + v * x * x, v * x * y - sin * z, v * x * z + sin * y],
-        [v * y * x + sin * z, cos + v * y * y, v * y * z - sin * x],
-        [v * z * x - sin * y, v * z * y + sin * x, cos + v * z * z],
-    ]
-}
 
 /// Rounding of a few rotations, and of the model file's decimals.
 const AGREES: f64 = 1e-13;
@@ -68,15 +21,10 @@ fn stands(model: &Model, start: &Start, body: &str, expected: Pose) {
     let [x, y, z, e0, e1, e2, e3] = start.q[7 * moving_body..7 * moving_body + 7] else {
         panic!("seven coordinates")
     };
-    // Paper, eq. (3).
-    let rotation = [
-        [e0 * e0 + e1 * e1 - 0.5, e1 * e2 - e0 * e3, e1 * e3 + e0 * e2],
-        [e1 * e2 + e0 * e3, e0 * e0 + e2 * e2 - 0.5, e2 * e3 - e0 * e1],
-        [e1 * e3 - e0 * e2, e2 * e3 + e0 * e1, e0 * e0 + e3 * e3 - 0.5],
-    ];
+    let rotation = pose::rotation([e0, e1, e2, e3]);
     let positions = [x, y, z].into_iter().zip(expected.translation);
-    let doubled = rotation.as_flattened().iter().map(|a| 2.0 * a);
-    let rotations = doubled.zip(expected.rotation.as_flattened().iter().copied());
+    let rotations =
+        rotation.as_flattened().iter().copied().zip(expected.rotation.as_flattened().iter().copied());
     for (k, (found, expected)) in positions.chain(rotations).enumerate() {
         assert!((found - expected).abs() < AGREES, "{body}, element {k}: {found} for {expected}");
     }
@@ -227,7 +175,7 @@ fn frames_without_mass() {
     for words in [
         "4 links fixed to `head`, one body with it: `yaw_frame`, `camera_mount`, `camera`, `optical_frame`",
         "1 link fixed to `floor`, one body with it: `pedestal`",
-        "-1.5708 rad is taken for -1 pi/2",
+        "-1.5708 rad is taken for -90 degrees",
         "<joint name=\"slide\">: damping and friction are for revolute and prismatic joints only",
     ] {
         assert!(said.contains(words), "{words} is missing in\n{said}");
