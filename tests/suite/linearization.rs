@@ -3,14 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use crate::joint_space::random_state;
 use gyro_mechanisms as shipped;
 use gyro_reference::DoubleWishbone;
 use gyro_runner::Input;
 use gyro_runner::motion::{COLUMNS, Element, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
 use gyro_sim::{CloseLoops, Dual, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
 use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Random, model};
+use gyro_sim_suite::Random;
 
 /// Central differences of fourth order.
 fn slope(step: f64, f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
@@ -49,19 +48,14 @@ fn check<M>(page: &str, shipped: &M, builder: &dyn MotionBuilder<M>)
 where
     M: Partition<Scalar = f64> + JointSpace + Clone,
 {
-    let (model, mut random) = (model(page), Random::new(11));
+    let mut random = Random::new(11);
     let (layout, n_inputs) = (shipped.joint_layout(), shipped.description().inputs.len());
     let mut worst = [0.0_f64; 2];
     for case in 0..4 {
         let mut mechanism = shipped.clone();
-        let (t, mut x) = (random.signed(), random_state(&model, &mechanism, &mut random));
-        let has_loops = !layout.closure_rows.is_empty();
-        if has_loops {
-            // A closed state of any rates.
-            let start = mechanism.joint_start();
-            x.as_mut()[..layout.n_coordinates()].copy_from_slice(&start.as_ref()[..layout.n_coordinates()]);
-        }
-        let t = if has_loops { 0.0 } else { t };
+        let mut x = random_state(&mechanism, &mut random);
+        // Assembled at its start, closed by a driver only then.
+        let t = if layout.closure_rows.is_empty() { random.signed() } else { 0.0 };
         CloseLoops::new(&mechanism).correct(&mechanism, t, &mut x).unwrap();
         let inputs: Vec<Input> =
             (0..n_inputs).map(|index| Input { index, rows: vec![[0.0, random.signed()]] }).collect();
@@ -124,6 +118,26 @@ where
     println!("{page}: A and B off by {:.1e}, C and D by {:.1e}", worst[0], worst[1]);
 }
 
+/// Of any rates; of an open mechanism in any pose, of a closed one in that of its start.
+fn random_state<M: JointSpace<Scalar = f64>>(mechanism: &M, random: &mut Random) -> M::Joints {
+    let (layout, mut state) = (mechanism.joint_layout(), mechanism.joint_start());
+    let (x, u) = state.as_mut().split_at_mut(layout.n_coordinates());
+    u[..layout.n_rates()].iter_mut().for_each(|u| *u = 3.0 * random.signed());
+    if layout.closure_rows.is_empty() {
+        let mut rest = x;
+        for place in layout.places {
+            let (own, others) = rest.split_at_mut(place.n_coordinates());
+            let n_lengths = own.len() % 4;
+            own[..n_lengths].iter_mut().for_each(|x| *x = random.signed());
+            if own.len() > n_lengths {
+                own[n_lengths..].copy_from_slice(&random.unit());
+            }
+            rest = others;
+        }
+    }
+    state
+}
+
 /// The angle of each coordinate, joint after joint, as far as it stands in the state.
 fn angles<M: JointSpace<Scalar = f64>>(mechanism: &M, x: &M::Joints) -> Vec<f64> {
     let joints = mechanism.description().joints;
@@ -184,7 +198,7 @@ fn the_wishbone_s_linearisation_is_that_of_its_reference() {
     let (y, reference) = (mechanism.start(), DoubleWishbone::default());
     let start = [reference.height, reference.angle, 0.0, 0.0];
     let outputs = mechanism.description().outputs;
-    let shown = ["wheel.x", "wheel.y", "wheel.z"].map(|name| {
+    let shown = ["wheel.rx", "wheel.ry", "wheel.rz"].map(|name| {
         let is_named = |o: &gyro_sim::OutputInfo<'_>| format!("{}.{}", o.name, o.suffix) == name;
         outputs.iter().position(is_named).unwrap()
     });
