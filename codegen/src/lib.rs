@@ -192,7 +192,7 @@ fn equations<'m>(model: &'m Model, elimination: Elimination, start: &Start) -> E
     let solved = rotations.cheapest(&mut system.graph, &solution.solved);
     let joint_space = obstacle(model).is_none().then(|| {
         let coordinates = Coordinates::derive(&mut system, &textbook);
-        let candidates = Candidates::solve(&mut system, &textbook, &coordinates);
+        let candidates = Candidates::solve(&mut system, &coordinates);
         JointSpace::choose(&mut system, (&textbook, &observed), coordinates, candidates, &solved.roots, start)
     });
     let projection = forward_dynamics.projection(&mut system.graph, &textbook.kinematics);

@@ -26,8 +26,8 @@ mod validate;
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    CoordinateKind, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output, OutputKind,
-    StopSide,
+    CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,
+    OutputKind, StopSide,
 };
 pub use kinematics::Kinematics;
 pub use motion::{BodyMotion, Motion, Prescribed};

@@ -84,8 +84,8 @@ impl JointSpace {
         let solution = corrected.roots.iter().copied().chain(solved).collect();
         let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
         let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
-        let along = forces::power(system, &coordinates.layout);
-        let along = system.expanded(&coordinates.determined, &[along])[0];
+        let along = forces::power(system, &coordinates.layout, &coordinates.angles);
+        let along = system.expanded(&coordinates.in_joints, &[along])[0];
         let power = Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
@@ -124,7 +124,7 @@ impl JointSpace {
             accelerations_at,
             corrected,
             jacobian,
-            maximal: maps::state(system, &coordinates.layout, &coordinates.maximal, &coordinates.determined),
+            maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),
             reduced,
             layout: coordinates.layout,
