@@ -10,6 +10,7 @@ use crate::derive::{Observed, Textbook};
 use crate::expr::definitions::{Expansion, Values};
 use crate::expr::graph::ExprId;
 use crate::expr::symbol::Symbol;
+use crate::groups::{Functions, Group};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use gyro_model::Start;
 
@@ -59,7 +60,7 @@ impl JointSpace {
         coordinates: Coordinates,
         mut candidates: Candidates,
         exact: &[ExprId],
-        start: &Start,
+        (functions, start): (&Functions, &Start),
     ) -> Self {
         let passes = FinalPasses::of(false);
         let in_joints = &coordinates.in_joints;
@@ -108,7 +109,7 @@ impl JointSpace {
             balance: &candidates.balance,
             passes,
         };
-        let jacobian = Jacobian::derive(system, &form);
+        let jacobian = functions.has(Group::Jacobian).then(|| Jacobian::derive(system, &form)).flatten();
         let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
