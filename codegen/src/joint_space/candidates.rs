@@ -227,15 +227,16 @@ mod tests {
         }
     }
 
-    /// Joints that follow others, and loops, stay with the recursion in the bodies' frames.
+    /// Loops stay with the recursion in the bodies' frames; where joints follow others there is the mass matrix.
     #[test]
-    fn what_is_no_open_tree_has_no_form_in_the_frames_of_joints() {
-        for page in [
-            include_str!("../../../tests/models/gear.toml"),
-            include_str!("../../../models/four-bar.toml"),
-            include_str!("../../../tests/models/driven-shaft.toml"),
+    fn couplers_and_drivers_are_put_into_the_mass_matrix_and_loops_stay_as_they_are() {
+        for (page, n_forms) in [
+            (include_str!("../../../tests/models/gear.toml"), 1),
+            (include_str!("../../../tests/models/differential.toml"), 1),
+            (include_str!("../../../tests/models/driven-shaft.toml"), 3),
+            (include_str!("../../../models/four-bar.toml"), 0),
         ] {
-            assert_eq!(check(page), 0, "{page}");
+            assert_eq!(check(page), n_forms, "{page}");
         }
     }
 
