@@ -47,7 +47,8 @@ pub enum Command {
   {program} generate                          the committed files of all models of this project
   {program} generate models/torsion.toml --out out/torsion.rs
   {program} generate --check                  fail if a generated file is out of date
-  {program} generate ~/gimbal.toml --out src/gimbal.rs")]
+  {program} generate ~/gimbal.toml --out src/gimbal.rs
+  {program} generate ~/gimbal.toml --functions joint    without its Jacobian")]
 pub struct GenerateArgs {
     /// Model files [default: all of this project]
     #[arg(value_name = "MODEL")]
@@ -58,9 +59,22 @@ pub struct GenerateArgs {
     /// Where to write the module of a single model
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Functions of the module, by their names or by groups, separated by commas; a function comes with its group, and
+    /// a group with what it needs [default: the model file's, or all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "models", long_help = functions_help())]
+    pub(crate) functions: Option<Vec<String>>,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,
+}
+
+/// What `--functions` is, with the groups and their functions.
+fn functions_help() -> String {
+    format!(
+        "Functions of the module, by their names or by groups, separated by commas; a function comes with its group, and a \
+         group with what it needs [default: the model file's, or all]\n\n{}",
+        gyro_codegen::Functions::help()
+    )
 }
 
 /// Prove generated modules against the textbook

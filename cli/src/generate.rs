@@ -50,7 +50,7 @@ fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
     let mut outputs = Outputs::default();
     let mut names = Vec::new();
     let mut sources: Vec<(PathBuf, &PathBuf)> = Vec::new();
-    for (page, made) in pages.iter().zip(modules(&pages, args.strict)) {
+    for (page, made) in pages.iter().zip(modules(&pages, args.functions.as_ref(), args.strict)) {
         let module = made?;
         let place = place_of(places, page).filter(|_| args.out.is_none());
         let path = args.out.clone().or_else(|| module_path(places, page, &module.name));
@@ -106,9 +106,15 @@ fn data_sheet(module: &Module) -> String {
 }
 
 /// The modules of model files, each proved and with the proof on its data sheet.
-pub fn modules(pages: &[PathBuf], strict: bool) -> Vec<Result<Module, Failure>> {
+/// With functions that are given here, or else those that a model file asks for.
+pub fn modules(
+    pages: &[PathBuf],
+    functions: Option<&Vec<String>>,
+    strict: bool,
+) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
-        let model = scene::read(page)?;
+        let mut model = scene::read(page)?;
+        model.functions = functions.cloned().or(model.functions);
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
         let spinner = progress::deriving(&model);
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
@@ -191,7 +197,8 @@ fn check(outputs: &Outputs, mend: &str) -> Result<(), Failure> {
 fn mend(args: &GenerateArgs) -> String {
     let models = args.models.iter().map(|m| format!(" {}", m.display()));
     let out = args.out.iter().map(|o| format!(" --out {}", o.display()));
-    format!("{} generate{}", program(), models.chain(out).collect::<String>())
+    let functions = args.functions.iter().map(|names| format!(" --functions {}", names.join(",")));
+    format!("{} generate{}", program(), models.chain(out).chain(functions).collect::<String>())
 }
 
 /// Lines of a difference that are shown.
@@ -278,7 +285,7 @@ inertia = [1e-4, 1e-4, 2e-4]
     }
 
     fn args(models: &[PathBuf], out: Option<PathBuf>) -> GenerateArgs {
-        GenerateArgs { models: models.to_vec(), check: false, out, strict: false }
+        GenerateArgs { models: models.to_vec(), check: false, out, functions: None, strict: false }
     }
 
     fn words(outcome: Result<(), Failure>) -> String {

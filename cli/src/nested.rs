@@ -10,7 +10,7 @@ use crate::progress::{self, Spinner};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
 use crate::{files, machine_code, remarks};
-use gyro_codegen::{Kernel, Module};
+use gyro_codegen::{Functions, Group, Kernel, Module};
 use gyro_model::Model;
 use gyro_runner::protocol::{self, Reply, Request};
 use gyro_runner::{Approach, Coordinates, Correction, Event, Integrator, Summary, Timing};
@@ -24,10 +24,11 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 /// Generates, compiles and runs; `tell` hears of samples and progress.
 pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let spinner = progress::deriving(&scene.page);
-    let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
+    let runs = Runs::of(scene);
+    let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &runs.functions())
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
-    let program = program(&scene.page, &module, scene.precision, Runs::of(scene))?;
+    let program = program(&scene.page, &module, scene.precision, runs)?;
     let request = Request {
         settings: scene.settings,
         approach: scene.approach,
@@ -58,6 +59,14 @@ impl Runs {
             return Self::All;
         }
         Self::Only(coordinates, correction)
+    }
+
+    /// The functions that they call.
+    fn functions(self) -> Functions {
+        match self {
+            Self::All => Functions::all(),
+            Self::Only(..) => Functions::all().without(Group::Jacobian),
+        }
     }
 }
 

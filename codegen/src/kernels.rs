@@ -5,6 +5,7 @@
 use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
+use crate::groups::Group;
 use crate::joint_space::{Jacobian, JointSpace};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::parameter_setup;
@@ -137,6 +138,15 @@ impl Kernel {
         self.row().computes
     }
 
+    /// The group that it belongs to.
+    pub fn group(self) -> Group {
+        match self.row().source {
+            Source::Parameters | Source::Equations(_) | Source::Charts(_) => Group::Maximal,
+            Source::JointSpace(_) => Group::Joint,
+            Source::Jacobian(_) => Group::Jacobian,
+        }
+    }
+
     fn row(self) -> &'static Row {
         &TABLE[self as usize]
     }
@@ -199,12 +209,13 @@ mod tests {
     use super::{Kernel, Kernels};
     use crate::Elimination;
     use crate::expr::schedule::Operations;
+    use crate::groups::Functions;
 
     /// Operations of some kernels together.
     fn cost(page: &str, elimination: Elimination, wanted: &[Kernel]) -> usize {
         let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let start = model.assemble().expect("a start");
-        let mut equations = crate::equations(&model, elimination, &start);
+        let mut equations = crate::equations(&model, (elimination, &Functions::all()), &start);
         let mut kernels = Kernels::of(&equations);
         kernels.finish(&mut equations.graph, equations.passes);
         let of = |&kernel: &Kernel| Operations::count(&equations.graph, kernels.roots(kernel)).total();

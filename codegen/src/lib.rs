@@ -42,14 +42,18 @@ mod derive;
 mod emit;
 mod equations;
 mod expr;
+mod groups;
 mod joint_space;
 mod kernels;
+mod selection;
 mod simplify;
 mod solve;
 
 pub use emit::data_sheet::{DataSheet, Function, large};
 pub use expr::schedule::{Operations, Passes};
+pub use groups::{Functions, Group};
 pub use kernels::Kernel;
+pub use selection::UnknownFunction;
 pub use simplify::cheapest::Form;
 pub use simplify::normal_form::Reduction;
 
@@ -98,6 +102,8 @@ pub enum Error {
     ModelFile(Diagnostics),
     /// No consistent start exists.
     Start(AssemblyError),
+    /// The model file asks for a function that there is not.
+    Functions(UnknownFunction),
 }
 
 impl fmt::Display for Error {
@@ -105,6 +111,7 @@ impl fmt::Display for Error {
         match self {
             Self::ModelFile(diagnostics) => diagnostics.fmt(f),
             Self::Start(error) => error.fmt(f),
+            Self::Functions(unknown) => unknown.fmt(f),
         }
     }
 }
@@ -156,10 +163,11 @@ pub enum Elimination {
     Saddle,
 }
 
-/// Writes the module of a model that was read already.
+/// Writes the module of a model that was read already, with the functions that the model file asks for, or with all of
+/// them.
 ///
 /// # Errors
-/// Why no consistent start exists.
+/// Why no consistent start exists, or which function is not known.
 pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
     generate_by(Elimination::NullSpace, file_name, model)
 }
@@ -167,10 +175,30 @@ pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
 /// The same with a given way of solving eq. (17).
 ///
 /// # Errors
-/// Why no consistent start exists.
+/// As [`generate_model`].
 pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> Result<Module, Error> {
+    let functions = match &model.functions {
+        Some(names) => Functions::named(names.iter().map(String::as_str)).map_err(Error::Functions)?,
+        None => Functions::all(),
+    };
+    write(file_name, model, (elimination, &functions))
+}
+
+/// The same with given functions, whatever the model file asks for.
+///
+/// # Errors
+/// Why no consistent start exists.
+pub fn generate_functions(file_name: &str, model: &Model, functions: &Functions) -> Result<Module, Error> {
+    write(file_name, model, (Elimination::NullSpace, functions))
+}
+
+fn write(
+    file_name: &str,
+    model: &Model,
+    (elimination, functions): (Elimination, &Functions),
+) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = equations(model, elimination, &start);
+    let mut equations = equations(model, (elimination, functions), &start);
     let mut kernels = Kernels::of(&equations);
     kernels.finish(&mut equations.graph, equations.passes);
     let type_name = module::type_name(&model.name);
@@ -180,7 +208,11 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
 }
 
 /// From the model to what its module computes: derives, solves and chooses.
-fn equations<'m>(model: &'m Model, elimination: Elimination, start: &Start) -> Equations<'m> {
+fn equations<'m>(
+    model: &'m Model,
+    (elimination, functions): (Elimination, &Functions),
+    start: &Start,
+) -> Equations<'m> {
     let mut system = System::new(model);
     let textbook = Textbook::derive(&mut system);
     let forward_dynamics = ForwardDynamics::of(&mut system, &textbook.kinematics);
@@ -190,12 +222,14 @@ fn equations<'m>(model: &'m Model, elimination: Elimination, start: &Start) -> E
     let definitions = system.definitions.clone();
     let mut rotations = Rotations::of(&mut system, &definitions);
     let solved = rotations.cheapest(&mut system.graph, &solution.solved);
-    let joint_space = obstacle(model).is_none().then(|| {
+    let has_joint_space = functions.has(Group::Joint) && obstacle(model).is_none();
+    let joint_space = has_joint_space.then(|| {
         let coordinates = Coordinates::derive(&mut system, &textbook);
-        let candidates = Candidates::solve(&mut system, &textbook, &coordinates);
-        JointSpace::choose(&mut system, (&textbook, &observed), coordinates, candidates, &solved.roots, start)
+        let candidates = Candidates::solve(&mut system, &coordinates);
+        let (derived, asked) = ((&textbook, &observed), (functions, start));
+        JointSpace::choose(&mut system, derived, coordinates, candidates, &solved.roots, asked)
     });
     let projection = forward_dynamics.projection(&mut system.graph, &textbook.kinematics);
     let parts = Parts { textbook, solution, observed, projection, partition };
-    Equations::choose(system, rotations, &parts, solved, joint_space)
+    Equations::choose(system, rotations, &parts, solved, (functions, joint_space))
 }

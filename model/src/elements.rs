@@ -11,6 +11,20 @@ pub struct JointCoordinate {
     pub coordinate: usize,
 }
 
+/// What is asked of a joint's coordinates, from little to much.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum CoordinateUse {
+    /// Nothing.
+    #[default]
+    None,
+    /// Their rates, by friction and dampers, or that forces act along them.
+    Rate,
+    /// Where they are, by springs and stops.
+    Value,
+    /// That they are what a coupler or a driver says.
+    Prescribed,
+}
+
 /// What a scalar coordinate of a joint is. With (f, g, h) the joint frames and d from the first joint point to the
 /// second: every angle is continuous over turns where something acts on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

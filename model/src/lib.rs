@@ -26,8 +26,8 @@ mod validate;
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    CoordinateKind, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output, OutputKind,
-    StopSide,
+    CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,
+    OutputKind, StopSide,
 };
 pub use kinematics::Kinematics;
 pub use motion::{BodyMotion, Motion, Prescribed};
@@ -67,6 +67,8 @@ pub struct Model {
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].
     pub counts_work: bool,
+    /// The functions that the generated module is to have, by their names; `None` where the model file does not say.
+    pub functions: Option<Vec<String>>,
     /// What the model file writes nearly, but not exactly, as a coordinate direction or a right angle, and what to
     /// write if that is meant: a sentence for each. Formulas are shorter where it is.
     pub nearly_exact: Vec<String>,

@@ -1,8 +1,8 @@
 //! What can be asked of a model: units, rows, sizes, and the model with other parameters.
 
 use crate::{
-    CoordinateKind, Force, ForceKind, Joint, JointCoordinate, JointKind, Model, Number, PointAxes, Rational,
-    RedundantRow, Row, RowOwner, RowUnit, Support, analyse, to_f64,
+    CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Model, Number, PointAxes,
+    Rational, RedundantRow, Row, RowOwner, RowUnit, Support, analyse, to_f64,
 };
 use std::ops::Range;
 
@@ -174,22 +174,21 @@ impl Model {
         self.joints[coordinate.joint].kind.coordinates()[coordinate.coordinate]
     }
 
-    /// Whether forces, couplers, drivers or an advance along the axis act on a joint's coordinates.
-    pub fn acts_on_coordinates(&self, joint: usize) -> bool {
+    /// What forces, couplers and drivers ask of a joint's coordinates.
+    pub fn use_of_coordinates(&self, joint: usize) -> CoordinateUse {
         let forces = self.forces.iter().filter_map(|force| match force.kind {
-            ForceKind::Spring { on, .. }
-            | ForceKind::Damper { on, .. }
-            | ForceKind::Coulomb { on, .. }
-            | ForceKind::Stop { on, .. }
-            | ForceKind::Motor { on, .. } => Some(on),
+            ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } => Some((on, CoordinateUse::Value)),
+            ForceKind::Damper { on, .. } | ForceKind::Coulomb { on, .. } | ForceKind::Motor { on, .. } => {
+                Some((on, CoordinateUse::Rate))
+            }
             ForceKind::Link { .. } | ForceKind::Load { .. } => None,
         });
         let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
-        let drivers = self.drivers.iter().map(|driver| driver.coordinate);
-        let Joint { kind, friction, .. } = &self.joints[joint];
-        *kind == JointKind::Screw
-            || !friction.is_zero()
-            || forces.chain(couplers).chain(drivers).any(|on| on.joint == joint)
+        let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
+        let uses = forces.chain(prescribed.map(|on| (on, CoordinateUse::Prescribed)));
+        let of_joint = uses.filter(|(on, _)| on.joint == joint).map(|(_, of)| of);
+        let has_friction = !self.joints[joint].friction.is_zero();
+        of_joint.chain(has_friction.then_some(CoordinateUse::Rate)).max().unwrap_or_default()
     }
 
     fn coordinate_unit(&self, coordinate: JointCoordinate) -> RowUnit {

@@ -1,6 +1,6 @@
 //! The trees that the joints make of the bodies, rooted in fixed, driven and free bodies.
 
-use crate::{JointKind, Model, Support};
+use crate::{CoordinateUse, JointKind, Model, Support};
 
 /// A body that has coordinates, with what holds it. Links come root first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,26 +52,66 @@ impl Tree {
         Self::along(model, |joint| u8::from(!model.joints[joint].kind.turns()))
     }
 
-    /// The trees whose joint coordinates describe the mechanism: of the joints of a loop one is cut that has many
-    /// coordinates, so that few rows are left, and on whose coordinates nothing acts. Where no joint is cut it is the
-    /// same tree in the same order.
+    /// The trees whose joint coordinates describe the mechanism: of the joints of a loop one is cut of whose
+    /// coordinates as little as possible is asked ([`Model::use_of_coordinates`]), and of those one that has many, so
+    /// that few rows are left. A screw is cut like other joints where one angle says how far it has turned. Where no
+    /// joint is cut it is the same tree in the same order.
     pub fn of_coordinates(model: &Model) -> Self {
         let tree = Self::of(model);
         if tree.loop_joints.is_empty() {
             return tree;
         }
-        let free = |joint: usize| u8::try_from(model.joints[joint].kind.n_free()).unwrap_or(u8::MAX);
-        let is_acted_on: Vec<_> =
-            (0..model.joints.len()).map(|joint| model.acts_on_coordinates(joint)).collect();
-        if is_acted_on.contains(&true) {
-            Self::along(model, |joint| if is_acted_on[joint] { 0 } else { free(joint).max(1) })
-        } else {
-            Self::along(model, |joint| if free(joint) <= 1 { 0 } else { free(joint) })
+        let tree = Self::by_use(model, |joint| model.use_of_coordinates(joint));
+        let mut screws =
+            tree.loop_joints.iter().filter(|&&joint| model.joints[joint].kind == JointKind::Screw);
+        if screws.all(|&screw| tree.n_angles_past(model, screw) == 1) {
+            return tree;
         }
+        Self::by_use(model, |joint| match model.joints[joint].kind {
+            JointKind::Screw => model.use_of_coordinates(joint).max(CoordinateUse::Value),
+            _ => model.use_of_coordinates(joint),
+        })
+    }
+
+    fn by_use(model: &Model, of: impl Fn(usize) -> CoordinateUse) -> Self {
+        let free = |joint: usize| u8::try_from(model.joints[joint].kind.n_free()).unwrap_or(u8::MAX);
+        if (0..model.joints.len()).all(|joint| of(joint) == CoordinateUse::None) {
+            return Self::along(model, |joint| if free(joint) <= 1 { 0 } else { free(joint) });
+        }
+        // A joint has at most five freedoms.
+        Self::along(model, |joint| match of(joint) {
+            CoordinateUse::Prescribed => 0,
+            CoordinateUse::Value => 1,
+            CoordinateUse::Rate => 1 + free(joint).max(1),
+            CoordinateUse::None => 7 + free(joint).max(1),
+        })
+    }
+
+    /// How many angles of the tree lie between the bodies of a joint.
+    fn n_angles_past(&self, model: &Model, joint: usize) -> usize {
+        let link_of = |body: usize| self.links.iter().find(|link| link.body == body);
+        let to_root = |body: usize| {
+            std::iter::successors(link_of(body), |link| match link.attachment {
+                Attachment::Joint { parent, .. } => link_of(parent),
+                Attachment::Free | Attachment::Constrained => None,
+            })
+        };
+        let [first, second] = [model.joints[joint].first.body, model.joints[joint].second.body];
+        let is_on = |body: usize, link: &Link| to_root(body).any(|other| other.body == link.body);
+        let apart = to_root(first).filter(|link| !is_on(second, link));
+        let apart = apart.chain(to_root(second).filter(|link| !is_on(first, link)));
+        let n_angles = |link: &Link| match link.attachment {
+            Attachment::Joint { joint, .. } => {
+                let coordinates = model.joints[joint].kind.coordinates();
+                coordinates.iter().filter(|coordinate| coordinate.is_angle()).count()
+            }
+            Attachment::Free | Attachment::Constrained => 3,
+        };
+        apart.map(n_angles).sum()
     }
 
     /// The same with another order of the joints: those of rank zero are walked breadth first; the others are followed
-    /// one by one, lower ranks first, only where none of a lower rank leads on.
+    /// one by one, lower ranks first and from bodies reached early, only where none of a lower rank leads on.
     pub(crate) fn along(model: &Model, rank: impl Fn(usize) -> u8) -> Self {
         let mut walk = Walk::of(model);
         for (body, support) in model.bodies.iter().map(|body| body.support).enumerate() {
@@ -137,9 +177,11 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// Whether a body could be hung on the first joint, by rank and model file, that leads to one.
+    /// Whether a body could be hung on the first joint that leads to one: by rank, by how early the body was reached
+    /// that it leads from, and by the model file.
     fn follow_one(&mut self, rank: impl Fn(usize) -> u8) -> bool {
-        let next = self.ways(JointKind::carries).min_by_key(|&(joint, ..)| rank(joint));
+        let turn = |body: usize| self.queue.iter().position(|&reached| reached == body);
+        let next = self.ways(JointKind::carries).min_by_key(|&(joint, from, _)| (rank(joint), turn(from)));
         if let Some((joint, parent, body)) = next {
             self.hang(joint, parent, body);
         }

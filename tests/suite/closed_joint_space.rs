@@ -204,7 +204,7 @@ where
 type Check = (&'static str, fn());
 
 /// Each mechanism is compiled for plain and for dual numbers.
-const CHECKED: [Check; 22] = [
+const CHECKED: [Check; 23] = [
     ("all-joints", || {
         check("all-joints", &own::all_joints::AllJoints::default(), &own::all_joints::AllJoints::default())
     }),
@@ -263,6 +263,13 @@ const CHECKED: [Check; 22] = [
             "four-bar-revolute",
             &shipped::four_bar_revolute::FourBarRevolute::default(),
             &shipped::four_bar_revolute::FourBarRevolute::default(),
+        )
+    }),
+    ("friction-in-loops", || {
+        check(
+            "friction-in-loops",
+            &own::friction_in_loops::FrictionInLoops::default(),
+            &own::friction_in_loops::FrictionInLoops::default(),
         )
     }),
     ("gear", || check("gear", &own::gear::Gear::default(), &own::gear::Gear::default())),

@@ -163,13 +163,7 @@ fn compare<T: Real + 'static>(train: &Train, turns: f64, approaches: &[Approach]
 #[test]
 fn ten_thousand_turns_make_no_difference() {
     for train in &TRAINS {
-        let mut approaches = approaches(train.speed);
-        // The nut of this train hangs on its thread, whose rows turn with the spindle: Baumgarte's stabilisation does
-        // not hold them at steps of this length.
-        let is_held =
-            |correction| train.page != "rack-and-screw" || !matches!(correction, Correction::Baumgarte(_));
-        approaches.retain(|approach| is_held(approach.correction));
-        compare::<f64>(train, DURING, &approaches, TURNED);
+        compare::<f64>(train, DURING, &approaches(train.speed), TURNED);
     }
 }
 

@@ -178,11 +178,22 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         left_out.push(format!("row {} of {kind} `{name}` (redundant)", redundant.row.index + 1));
     }
     let has_jacobian = module.programs.contains_key("joint_jacobian");
+    // What was not asked for is known to the sheet alone.
+    let said = |what: &'static str, unasked: &'static str| {
+        let says_so = module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(unasked));
+        if says_so { unasked } else { what }
+    };
     let missing = [
-        (module.joints.is_none(), "joint coordinates"),
+        (
+            module.joints.is_none(),
+            said("joint coordinates", "joint coordinates (functions = [\"joint\"] asks for them)"),
+        ),
         (
             module.joints.is_some() && !has_jacobian,
-            "the Jacobian of the joint form (too many rates, or third derivatives of tables)",
+            said(
+                "the Jacobian of the joint form (too many rates, or third derivatives of tables)",
+                "the Jacobian of the joint form (functions = [\"jacobian\"] asks for it)",
+            ),
         ),
         (
             module.n_charts.is_none(),

@@ -183,6 +183,27 @@ fn a_link_without_mass_between_moving_joints_takes_a_little_of_what_it_carries()
     assert!(page.contains("{ body = \"cross\", point = [-0.5, 0.0, 0.0]"), "{page}");
 }
 
+/// What floats is not held by what it carries.
+#[test]
+fn a_floating_link_without_mass_is_refused() {
+    let rest = r#"<link name="trunk"/><joint name="j" type="floating"><parent link="base"/><child link="trunk"/></joint>
+<joint name="k" type="revolute"><parent link="trunk"/><child link="arm"/></joint>"#;
+    let found = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap_err();
+    let words =
+        "link `trunk` moves and has no mass, nor has anything that is fixed to it: give it an <inertial>";
+    assert_eq!(found, format!("r.urdf:4: {words}"));
+}
+
+/// 0.1 and 0.2 are not 0.30000000000000004: lengths that were typed cancel in the formulas.
+#[test]
+fn sums_of_decimals_are_decimals() {
+    let parts = r#"<link name="tip"/><joint name="k" type="fixed"><origin xyz="0.1 0.7 0"/><parent link="arm"/><child link="tip"/></joint>"#
+        .to_owned()
+        + &link("b", (1.0, [1.0; 3]), "revolute", "tip").replace("0 0 2", "0.2 -0.6 0").replace("0 0 0", "0 0 1");
+    let (page, _) = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{parts}")), PLAIN).unwrap();
+    assert!(page.contains("body = \"arm\", point = [0.3, 0.1, 0.0]"), "{page}");
+}
+
 #[test]
 fn right_angles_are_made_exact() {
     let rest = r#"<joint name="j" type="revolute"><origin rpy="1.5708 0 -3.14159" xyz="0 0 1e-17"/><parent link="base"/><child link="arm"/><axis xyz="1e-9 0 1"/></joint>"#;

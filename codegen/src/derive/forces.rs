@@ -208,12 +208,7 @@ impl Forces {
     }
 
     fn push(&mut self, system: &mut System, body: usize, load: &Load) {
-        let sum = self.loads[body];
-        let graph = &mut system.graph;
-        self.loads[body] = Load {
-            force: graph.add_vec(&sum.force, &load.force),
-            torque: graph.add_vec(&sum.torque, &load.torque),
-        };
+        self.loads[body] = self.loads[body].plus(&mut system.graph, load);
     }
 
     /// The power that has to be fed in to move bodies as prescribed against these forces.
@@ -233,7 +228,14 @@ impl Forces {
 }
 
 impl Load {
-    fn scaled(&self, graph: &mut Graph, factor: ExprId) -> Self {
+    pub fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
+        Self {
+            force: graph.add_vec(&self.force, &other.force),
+            torque: graph.add_vec(&self.torque, &other.torque),
+        }
+    }
+
+    pub fn scaled(&self, graph: &mut Graph, factor: ExprId) -> Self {
         Self { force: graph.scale_vec(factor, &self.force), torque: graph.scale_vec(factor, &self.torque) }
     }
 }

@@ -4,6 +4,7 @@
 use crate::equations::Equations;
 use crate::expr::graph::Graph;
 use crate::expr::schedule::{Operations, Passes};
+use crate::groups::Group;
 use crate::kernels::{Kernel, Kernels};
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
@@ -207,10 +208,16 @@ fn left_out(equations: &Equations) -> Vec<String> {
     match &equations.joint_space {
         Some(space) => {
             left_out.extend(space.jacobian.is_none().then(|| {
-                "the Jacobian of the joint form (too many rates, or third derivatives of tables)".to_owned()
+                let why = if equations.functions.has(Group::Jacobian) {
+                    "too many rates, or third derivatives of tables"
+                } else {
+                    "functions = [\"jacobian\"] asks for it"
+                };
+                format!("the Jacobian of the joint form ({why})")
             }));
         }
-        None => left_out.push("joint coordinates".into()),
+        None if equations.functions.has(Group::Joint) => left_out.push("joint coordinates".into()),
+        None => left_out.push("joint coordinates (functions = [\"joint\"] asks for them)".into()),
     }
     if equations.charts.is_none() {
         left_out

@@ -10,6 +10,7 @@ use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
+use crate::groups::Functions;
 use crate::joint_space::JointSpace;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::vanishes;
@@ -35,6 +36,8 @@ impl Sparse {
 #[derive(Debug)]
 pub struct Equations<'m> {
     pub model: &'m Model,
+    /// What is asked for.
+    pub functions: Functions,
     pub graph: Graph,
     /// Tables of prescribed motions.
     pub tables: Vec<&'m Spline>,
@@ -100,7 +103,7 @@ impl<'m> Equations<'m> {
         mut rotations: Rotations<'_>,
         parts: &Parts,
         solved: Chosen,
-        joint_space: Option<JointSpace>,
+        (functions, joint_space): (&Functions, Option<JointSpace>),
     ) -> Self {
         let Parts { textbook: Textbook { kinematics, dynamics }, solution, observed, .. } = parts;
         let System { model, tables, mut graph, moving_bodies, .. } = system;
@@ -113,6 +116,7 @@ impl<'m> Equations<'m> {
         let phi_q = expanded_matrix(&kinematics.phi_q, &mut expanded);
         let mut equations = Self {
             model,
+            functions: functions.clone(),
             phi,
             phi_q: Sparse(non_zeros(&phi_q)),
             n_vanishing,

@@ -5,26 +5,58 @@ use crate::expr::symbol::Symbol;
 use num_traits::Float;
 use rustc_hash::FxHashMap as HashMap;
 
+/// What computes the values of some roots, again and again.
+#[derive(Debug)]
+pub struct Program<'g> {
+    /// Operands before their users, with the places of the operands.
+    steps: Vec<(&'g Node, [usize; 2])>,
+    /// Constants as they are rounded, one for each step.
+    constants: Vec<f64>,
+    roots: Vec<usize>,
+}
+
+impl<'g> Program<'g> {
+    pub fn of(graph: &'g Graph, roots: &[ExprId]) -> Self {
+        let mut places: HashMap<ExprId, usize> = HashMap::default();
+        let (mut steps, mut constants) = (Vec::new(), Vec::new());
+        for id in graph.reachable(roots) {
+            let node = graph.node(id);
+            let mut operands = node.operands().map(|operand| places[&operand]);
+            let first = operands.next().unwrap_or(0);
+            steps.push((node, [first, operands.next().unwrap_or(0)]));
+            constants.push(if let Node::Constant(constant) = node { constant.to_f64() } else { 0.0 });
+            places.insert(id, places.len());
+        }
+        Self { steps, constants, roots: roots.iter().map(|root| places[root]).collect() }
+    }
+
+    /// The values of the roots, each symbol having the value that `value` gives it.
+    pub fn run<F: Float>(&self, value: impl Fn(Symbol) -> F) -> Vec<F> {
+        let mut values: Vec<F> = Vec::with_capacity(self.steps.len());
+        for ((node, [a, b]), constant) in self.steps.iter().zip(&self.constants) {
+            let operand = |place: &usize| values[*place];
+            let result = match node {
+                Node::Constant(_) => F::from(*constant).unwrap_or_else(F::nan),
+                Node::Symbol(symbol) => value(*symbol),
+                Node::Add(..) => operand(a) + operand(b),
+                Node::Mul(..) => operand(a) * operand(b),
+                Node::Neg(_) => -operand(a),
+                Node::Recip(_) => operand(a).recip(),
+                Node::Sqrt(_) => operand(a).sqrt(),
+                Node::Sin(_) => operand(a).sin(),
+                Node::Cos(_) => operand(a).cos(),
+                Node::Tanh(_) => operand(a).tanh(),
+                Node::Atan2(..) => operand(a).atan2(operand(b)),
+            };
+            values.push(result);
+        }
+        self.roots.iter().map(|&root| values[root]).collect()
+    }
+}
+
 /// The values of some roots, each symbol having the value that `value` gives it.
 pub fn evaluate<F: Float>(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> F) -> Vec<F> {
-    let mut values: HashMap<ExprId, F> = HashMap::default();
-    for id in graph.reachable(roots) {
-        let result = match graph.node(id) {
-            Node::Constant(constant) => F::from(constant.to_f64()).unwrap_or_else(F::nan),
-            Node::Symbol(symbol) => value(*symbol),
-            Node::Add(a, b) => values[a] + values[b],
-            Node::Mul(a, b) => values[a] * values[b],
-            Node::Neg(a) => -values[a],
-            Node::Recip(a) => values[a].recip(),
-            Node::Sqrt(a) => values[a].sqrt(),
-            Node::Sin(a) => values[a].sin(),
-            Node::Cos(a) => values[a].cos(),
-            Node::Tanh(a) => values[a].tanh(),
-            Node::Atan2(a, b) => values[a].atan2(values[b]),
-        };
-        values.insert(id, result);
-    }
-    roots.iter().map(|root| values[root]).collect()
+    Program::of(graph, roots).run(value)
 }
 
 /// A reproducible value between −1 and 1 for each symbol.

@@ -8,6 +8,7 @@ use super::articulated_inertia::ArticulatedInertia;
 use super::axis_frames::{Frame, frames};
 use super::coordinates::Coordinates;
 use super::elementary_joints::{Freedom, Station, stations};
+use super::embedding::Embedding;
 use super::mass_moments::{MassMoments, Motion};
 use crate::derive::joint_coordinate::Load;
 use crate::derive::outputs::time_derivative;
@@ -20,12 +21,16 @@ use crate::expr::vector::{UNIT3, Vec3, ZERO3};
 use crate::solve::ldl::Elimination;
 use std::collections::BTreeMap;
 
+/// Beyond this many rates one after the other a mass matrix takes more operations than a recursion: they grow with the
+/// cube of their number.
+const MAX_DEPTH: usize = 12;
+
 /// A tree with frames, ready to be solved.
 #[derive(Debug)]
 pub struct AxisTree {
     /// Root first.
     segments: Vec<Segment>,
-    n_rates: usize,
+    embedding: Embedding,
 }
 
 #[derive(Debug)]
@@ -58,13 +63,12 @@ enum Start {
 }
 
 impl AxisTree {
-    /// `None` for a tree with joints whose rates follow others, or that are not made of turns and displacements.
+    /// `None` for a tree with loops, or with joints that are not made of turns and displacements.
     pub fn new(system: &mut System, coordinates: &Coordinates, loads: &[Load]) -> Option<Self> {
-        let n_rates = coordinates.layout.n_rates;
-        let is_open = coordinates.closure.rows.is_empty() && coordinates.layout.determined.is_empty();
-        let links = coordinates.layout.links.as_slice();
+        let (embedding, links) = (&coordinates.embedding, coordinates.layout.links.as_slice());
         let turned = |x: usize| !coordinates.invariant.contains(&x);
-        let stations = is_open.then(|| stations(system, links, &turned)).flatten()?;
+        let stations =
+            coordinates.closure.rows.is_empty().then(|| stations(system, links, &turned)).flatten()?;
         let frames = frames(system, &stations);
         let moments = base_parameters(system, &stations, &frames);
         let mut segments: Vec<Segment> = Vec::new();
@@ -74,12 +78,13 @@ impl AxisTree {
                 None => of_ground(system, station.ground),
             };
             let load = load(system, &station, &frame, loads);
-            let free = free(&station.freedom);
+            let is_unknown = |&(_, rate): &(usize, usize)| !embedding.rates[rate].columns.is_empty();
+            let free: Vec<_> = free(&station.freedom).into_iter().filter(is_unknown).collect();
             let along = along(system, &station, &free, &coordinates.along);
             let graph = &mut system.graph;
-            let motion = moving(graph, &station, &frame, from);
+            let motion = moving(graph, &station, (&frame, embedding), from);
             let turning = Motion::new(graph, ZERO3, from.rho, ZERO3);
-            let forced = moving(graph, &station, &frame, turning);
+            let forced = moving(graph, &station, (&frame, embedding), turning);
             let turning = Motion::new(graph, ZERO3, motion.rho, ZERO3);
             let [load, load_at_rest] = [motion, turning].map(|motion| {
                 let taken = moments.wrench(graph, &motion).negated(graph);
@@ -98,7 +103,7 @@ impl AxisTree {
                 along,
             });
         }
-        Some(Self { segments, n_rates })
+        Some(Self { segments, embedding: embedding.clone() })
     }
 
     /// By elimination from the leaves to the roots.
@@ -134,7 +139,7 @@ impl AxisTree {
             inertias[parent] = inertias[parent].plus(graph, &inertia);
             loads[parent] = loads[parent].plus(graph, &load);
         }
-        let mut found = vec![Graph::ZERO; self.n_rates];
+        let mut found = vec![Graph::ZERO; self.embedding.n_unknowns];
         let mut motions: Vec<SpatialVector> = Vec::new();
         for (index, (segment, steps)) in self.segments.iter().zip(eliminated.iter().rev()).enumerate() {
             let mut motion = segment.station.parent.map_or(grounds[index], |parent| motions[parent]);
@@ -143,11 +148,12 @@ impl AxisTree {
             }
             motion = motion.plus(graph, &forced[index]);
             for ((step, share), &(_, rate)) in steps.iter().zip(&segment.free).rev() {
-                found[rate] = step.release(graph, &mut motion, *share);
+                let (unknown, _) = self.embedding.rates[rate].columns[0];
+                found[unknown] = step.release(graph, &mut motion, *share);
             }
             motions.push(motion);
         }
-        self.of_state(system, found)
+        self.of_tree(system, &found)
     }
 
     /// Through the mass matrix of composite bodies.
@@ -156,30 +162,55 @@ impl AxisTree {
         let matrix = self.mass_matrix(&mut system.graph);
         let mut elimination = Elimination::new(matrix, forces);
         let graph = &mut system.graph;
-        let places = self.places();
-        places.iter().flatten().rev().for_each(|&unknown| elimination.pivot(graph, unknown));
-        let solution = elimination.substitute_back(graph);
-        let mut found = vec![Graph::ZERO; self.n_rates];
-        for (&(_, rate), value) in self.segments.iter().flat_map(|segment| &segment.free).zip(solution) {
-            found[rate] = value;
+        self.order().iter().rev().for_each(|&unknown| elimination.pivot(graph, unknown));
+        let found = elimination.substitute_back(graph);
+        self.of_tree(system, &found)
+    }
+
+    /// Unknowns as they occur, root first.
+    fn order(&self) -> Vec<usize> {
+        let rates = self.segments.iter().flat_map(|segment| &segment.free).map(|&(_, rate)| rate);
+        let mut order = Vec::new();
+        for &(unknown, _) in rates.flat_map(|rate| &self.embedding.rates[rate].columns) {
+            if !order.contains(&unknown) {
+                order.push(unknown);
+            }
         }
-        self.of_state(system, found)
+        order
     }
 
     /// The forms of u̇ that are compared.
     pub fn forms(&self, system: &mut System) -> Vec<(&'static str, Vec<ExprId>)> {
-        let recursion = self.recursion(system, Start::ConstantRates);
-        let from_rest = self.recursion(system, Start::Rest);
-        let by_matrix = self.by_mass_matrix(system);
-        let either = self.shorter(&system.graph, [&recursion, &by_matrix]);
-        let is_new = either != recursion && either != by_matrix;
-        let forms = [
-            ("recursion in joint frames", from_rest),
-            ("recursion in joint frames from constant rates", recursion),
-            ("mass matrix in joint frames", by_matrix),
-            ("recursion or mass matrix for each limb", either),
-        ];
-        forms.into_iter().take(if is_new { 4 } else { 3 }).collect()
+        let mut forms = Vec::new();
+        let by_matrix = (self.depth() <= MAX_DEPTH).then(|| self.by_mass_matrix(system));
+        if self.unknowns_are_single() {
+            let from_rates = self.recursion(system, Start::ConstantRates);
+            forms.push(("recursion in joint frames", self.recursion(system, Start::Rest)));
+            if let Some(by_matrix) = &by_matrix {
+                let either = self.shorter(&system.graph, [&from_rates, by_matrix]);
+                if either != from_rates && either != *by_matrix {
+                    forms.push(("recursion or mass matrix for each limb", either));
+                }
+            }
+            forms.push(("recursion in joint frames from constant rates", from_rates));
+        }
+        forms.extend(by_matrix.map(|by_matrix| ("mass matrix in joint frames", by_matrix)));
+        forms
+    }
+
+    /// Whether each unknown is the rate of one joint alone.
+    fn unknowns_are_single(&self) -> bool {
+        let columns = || self.embedding.rates.iter().flat_map(|rate| &rate.columns);
+        columns().count() == self.embedding.n_unknowns && columns().all(|(_, factor)| *factor == Graph::ONE)
+    }
+
+    /// How many rates a station has with all that carry it, at most.
+    fn depth(&self) -> usize {
+        let mut depths: Vec<usize> = Vec::new();
+        for segment in &self.segments {
+            depths.push(segment.free.len() + segment.station.parent.map_or(0, |parent| depths[parent]));
+        }
+        depths.into_iter().max().unwrap_or(0)
     }
 
     /// The shorter of two solutions for each tree that stands on the ground by itself.
@@ -203,45 +234,36 @@ impl AxisTree {
         taken
     }
 
-    /// Unknowns, root first.
-    fn places(&self) -> Vec<Vec<usize>> {
-        let mut next = 0..;
-        self.segments.iter().map(|segment| next.by_ref().take(segment.free.len()).collect()).collect()
-    }
-
     /// What is left along each unknown for the rates to change.
     fn forces(&self, graph: &mut Graph) -> Vec<ExprId> {
         let mut loads: Vec<_> = self.segments.iter().map(|segment| segment.load).collect();
-        let mut forces = Vec::new();
+        let mut forces = vec![Graph::ZERO; self.embedding.rates.len()];
         for (index, segment) in self.segments.iter().enumerate().rev() {
-            for (&(component, _), &along) in segment.free.iter().zip(&segment.along).rev() {
+            for (&(component, rate), &along) in segment.free.iter().zip(&segment.along) {
                 let load = loads[index].component(component);
-                forces.push(graph.add(load, along));
+                forces[rate] = graph.add(load, along);
             }
             let Some(parent) = segment.station.parent else { continue };
             let load = carried(graph, &segment.frame, loads[index]);
             loads[parent] = loads[parent].plus(graph, &load);
         }
-        forces.reverse();
-        forces
+        self.embedding.projected(graph, &forces)
     }
 
     fn mass_matrix(&self, graph: &mut Graph) -> BTreeMap<(usize, usize), ExprId> {
-        let places = self.places();
         let mut composite: Vec<_> = self.segments.iter().map(|segment| segment.moments).collect();
         let mut matrix = BTreeMap::new();
         for (index, segment) in self.segments.iter().enumerate().rev() {
-            for (k, &(component, _)) in segment.free.iter().enumerate() {
-                let unknown = places[index][k];
+            for (k, &(component, rate)) in segment.free.iter().enumerate() {
                 let mut wrench = composite[index].wrench_of(graph, component);
-                for (&(other, _), &place) in segment.free[..=k].iter().zip(&places[index]) {
-                    matrix.insert((unknown, place), wrench.component(other));
+                for &(other, other_rate) in &segment.free[..=k] {
+                    self.couple(graph, &mut matrix, (rate, other_rate), wrench.component(other));
                 }
                 let mut at = index;
                 while let Some(parent) = self.segments[at].station.parent {
                     wrench = carried(graph, &self.segments[at].frame, wrench);
-                    for (&(other, _), &place) in self.segments[parent].free.iter().zip(&places[parent]) {
-                        matrix.insert((unknown, place), wrench.component(other));
+                    for &(other, other_rate) in &self.segments[parent].free {
+                        self.couple(graph, &mut matrix, (rate, other_rate), wrench.component(other));
                     }
                     at = parent;
                 }
@@ -257,8 +279,32 @@ impl AxisTree {
         matrix
     }
 
-    /// A body that nothing holds: its acceleration in the global frame, with that of gravity.
-    fn of_state(&self, system: &mut System, mut found: Vec<ExprId>) -> Vec<ExprId> {
+    /// Adds what two rates have in common to the lower triangle between unknowns.
+    fn couple(
+        &self,
+        graph: &mut Graph,
+        matrix: &mut BTreeMap<(usize, usize), ExprId>,
+        (rate, other): (usize, usize),
+        entry: ExprId,
+    ) {
+        for &(a, factor) in &self.embedding.rates[rate].columns {
+            for &(b, other_factor) in &self.embedding.rates[other].columns {
+                let scaled = graph.mul(factor, entry);
+                let mut scaled = graph.mul(other_factor, scaled);
+                if a == b && rate != other {
+                    // Both orders are on the diagonal.
+                    scaled = graph.add(scaled, scaled);
+                }
+                let whole = matrix.entry((a.max(b), a.min(b))).or_insert(Graph::ZERO);
+                *whole = graph.add(*whole, scaled);
+            }
+        }
+    }
+
+    /// The accelerations of all rates of the tree; those of a body that nothing holds in the global frame, with that of
+    /// gravity.
+    fn of_tree(&self, system: &mut System, unknowns: &[ExprId]) -> Vec<ExprId> {
+        let mut found = self.embedding.rates_of_rates(&mut system.graph, unknowns);
         let gravity = system.numbers(&system.model.gravity);
         for segment in &self.segments {
             if let Freedom::Whole { position, orientation } = segment.station.freedom {
@@ -389,33 +435,45 @@ fn of_carrier(system: &mut System, segment: &Segment, start: Start) -> SpatialVe
 }
 
 /// How a station moves at constant rates, from how its carrier moves.
-fn moving(graph: &mut Graph, station: &Station, frame: &Frame, from: Motion) -> Motion {
+fn moving(
+    graph: &mut Graph,
+    station: &Station,
+    (frame, embedding): (&Frame, &Embedding),
+    from: Motion,
+) -> Motion {
     let mut motion = from;
     for by in frame.moves[frame.joint..].iter().rev() {
         motion = motion.back(graph, by);
     }
-    motion = with_rates(graph, &station.freedom, motion);
+    motion = with_rates(graph, &station.freedom, embedding, motion);
     for by in frame.moves[..frame.joint].iter().rev() {
         motion = motion.back(graph, by);
     }
     motion
 }
 
-fn with_rates(graph: &mut Graph, freedom: &Freedom, motion: Motion) -> Motion {
+/// With the motion of the joint itself, its rates being constant, but for what is given.
+fn with_rates(graph: &mut Graph, freedom: &Freedom, embedding: &Embedding, motion: Motion) -> Motion {
     let rate = |graph: &mut Graph, u: usize| graph.symbol(Symbol::Rate(u));
+    let mut given = ZERO3;
     let spin = match *freedom {
         Freedom::Rigid => return motion,
         Freedom::Slide(place) => {
             let speed = [Graph::ZERO, Graph::ZERO, rate(graph, place.u)];
             let (turned, two) = (graph.cross(&motion.rho, &speed), graph.integer(2));
-            let coriolis = graph.scale_vec(two, &turned);
-            return Motion { t: graph.add_vec(&motion.t, &coriolis), ..motion };
+            let mut relative = graph.scale_vec(two, &turned);
+            relative[2] = graph.add(relative[2], embedding.rates[place.u].bias);
+            return Motion { t: graph.add_vec(&motion.t, &relative), ..motion };
         }
-        Freedom::Turn { place, .. } => [Graph::ZERO, Graph::ZERO, rate(graph, place.u)],
+        Freedom::Turn { place, .. } => {
+            given[2] = embedding.rates[place.u].bias;
+            [Graph::ZERO, Graph::ZERO, rate(graph, place.u)]
+        }
         Freedom::Ball(place) => [0, 1, 2].map(|k| rate(graph, place.u + k)),
         Freedom::Whole { orientation, .. } => [0, 1, 2].map(|k| rate(graph, orientation.u + k)),
     };
     let turning = graph.cross(&motion.rho, &spin);
+    let turning = graph.add_vec(&turning, &given);
     let (rho, rho_dot) = (graph.add_vec(&motion.rho, &spin), graph.add_vec(&motion.rho_dot, &turning));
     Motion::new(graph, motion.t, rho, rho_dot)
 }

@@ -10,6 +10,7 @@ use crate::derive::{Observed, Textbook};
 use crate::expr::definitions::{Expansion, Values};
 use crate::expr::graph::ExprId;
 use crate::expr::symbol::Symbol;
+use crate::groups::{Functions, Group};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use gyro_model::Start;
 
@@ -59,7 +60,7 @@ impl JointSpace {
         coordinates: Coordinates,
         mut candidates: Candidates,
         exact: &[ExprId],
-        start: &Start,
+        (functions, start): (&Functions, &Start),
     ) -> Self {
         let passes = FinalPasses::of(false);
         let in_joints = &coordinates.in_joints;
@@ -84,8 +85,8 @@ impl JointSpace {
         let solution = corrected.roots.iter().copied().chain(solved).collect();
         let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
         let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
-        let along = forces::power(system, &coordinates.layout);
-        let along = system.expanded(&coordinates.determined, &[along])[0];
+        let along = forces::power(system, &coordinates.layout, &coordinates.angles);
+        let along = system.expanded(&coordinates.in_joints, &[along])[0];
         let power = Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
@@ -108,7 +109,7 @@ impl JointSpace {
             balance: &candidates.balance,
             passes,
         };
-        let jacobian = Jacobian::derive(system, &form);
+        let jacobian = functions.has(Group::Jacobian).then(|| Jacobian::derive(system, &form)).flatten();
         let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
@@ -124,7 +125,7 @@ impl JointSpace {
             accelerations_at,
             corrected,
             jacobian,
-            maximal: maps::state(system, &coordinates.layout, &coordinates.maximal, &coordinates.determined),
+            maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),
             reduced,
             layout: coordinates.layout,

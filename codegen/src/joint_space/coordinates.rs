@@ -10,7 +10,7 @@ use super::relation::{Determined, Relation};
 use super::whole_angles::WholeAngles;
 use super::{forces, maps};
 use crate::derive::Textbook;
-use crate::derive::dynamics::Dynamics;
+use crate::derive::joint_coordinate::Load;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
@@ -48,6 +48,8 @@ pub struct Coordinates {
     pub embedding: Embedding,
     /// The force along each rate of the tree.
     pub along: Vec<ExprId>,
+    /// What else acts on each body of the model.
+    pub loads: Vec<Load>,
     /// Sets of atoms of which the squares sum to one.
     pub unit: Vec<Vec<ExprId>>,
 }
@@ -91,9 +93,10 @@ impl Coordinates {
         let loops = loops_of(system, &closure);
         let embedding = loops.embedding(&mut system.graph, &closure, layout.n_rates);
         let embedding = embedding.with_determined(system, &layout, &determined);
-        let invariant = invariant_angles(system, &layout, &links, &textbook.dynamics);
+        let loads = forces::loads(system, (&layout, &angles), &textbook.dynamics.other_loads);
+        let invariant = invariant_angles(system, &layout, &links, &loads);
         let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
-        let along = forces::along(system, &layout);
+        let along = forces::along(system, &layout, &angles);
         Self {
             layout,
             links,
@@ -109,6 +112,7 @@ impl Coordinates {
             loops,
             embedding,
             along,
+            loads,
             unit,
         }
     }
@@ -179,24 +183,39 @@ impl Coordinates {
 /// atoms of which the squares sum to one, rows.
 type Derived = (Layout, Values, Vec<LinkKinematics>, WholeAngles, Vec<Vec<ExprId>>, Vec<(usize, ExprId)>);
 
-/// Why joint coordinates do not describe a mechanism, in words that follow "it has"; `None` if they do. Nothing may act
-/// on the coordinates of a joint that closes a loop, and couplers and drivers must determine coordinates of the tree.
+/// Why joint coordinates do not describe a mechanism, in words that follow "it has"; `None` if they do. Couplers and
+/// drivers must determine coordinates of the tree. Of a joint that closes a loop the angle must be one of the tree's
+/// if something depends on it: else its whole turns are not known, or, of a sum of angles, not proved.
 pub fn obstacle(model: &Model) -> Option<String> {
     let tree = Tree::of_coordinates(model);
-    let acted_on = tree.loop_joints.iter().find(|joint| model.acts_on_coordinates(**joint));
-    let name =
-        |joint: &usize| format!("forces on joint `{}`, which closes a loop", model.joints[*joint].name);
-    acted_on.map(name).or_else(|| match coordinates_beside_joints(model, &tree).1.first()? {
-        RowOwner::Driver(driver) => Some(format!(
+    match coordinates_beside_joints(model, &tree).1.first() {
+        Some(RowOwner::Driver(driver)) => Some(format!(
             "the driver `{}` of a coordinate that is determined already",
             model.drivers[*driver].name
         )),
-        RowOwner::Coupler(coupler) => Some(format!(
+        Some(RowOwner::Coupler(coupler)) => Some(format!(
             "the coupler `{}` of coordinates that are determined already",
             model.couplers[*coupler].name
         )),
-        RowOwner::Joint(_) | RowOwner::Body(_) => None,
-    })
+        _ => unknown_angle(model, &tree).map(|on| {
+            let name = &model.joints[on.joint].name;
+            format!("something that depends on the angle of joint `{name}`, which closes a loop")
+        }),
+    }
+}
+
+/// An angle of a joint that closes a loop, if something depends on it and it is not known.
+fn unknown_angle(model: &Model, tree: &Tree) -> Option<JointCoordinate> {
+    let mut turns = model.turn_references();
+    turns.retain(|turn| tree.loop_joints.contains(&turn.joint));
+    if turns.is_empty() {
+        return None;
+    }
+    let mut system = System::new(model);
+    let layout = Layout::of(&system, coordinates_beside_joints(model, tree).0);
+    let links = links_of(&mut system, &layout, &|_| true);
+    let angles = WholeAngles::of(&mut system, &layout, &links, |_| false);
+    turns.into_iter().find(|&turn| angles.of_loop(turn).is_none_or(|sum| sum.parts().len() > 1))
 }
 
 /// What couplers and drivers determine, and the owners of the rows that determine no coordinate of the tree.
@@ -229,7 +248,7 @@ fn invariant_angles(
     system: &mut System,
     layout: &Layout,
     links: &[LinkKinematics],
-    dynamics: &Dynamics,
+    loads: &[Load],
 ) -> Vec<usize> {
     let is_leaf = |body: usize| links.iter().all(|link_kinematics| link_kinematics.parent != Some(body));
     let links = layout.links.iter().zip(links);
@@ -238,7 +257,7 @@ fn invariant_angles(
         let [angle] = angles[..] else { return None };
         let turning = link_kinematics.free.iter().find(|free| free.rate == angle.place.u)?;
         let axis = turning.twist.rho;
-        let load = dynamics.other_loads[link.link.body];
+        let load = loads[link.link.body];
         let unloaded = load.force == ZERO3 && load.torque == ZERO3;
         let inertia = system.inertia(link_kinematics.moving_body);
         let graph = &mut system.graph;

@@ -4,7 +4,7 @@ use super::closure::held_at_zero;
 use super::dynamics;
 use super::layout::{Layout, LinkCoordinates, Place, Scalar};
 use super::link_kinematics::{LinkKinematics, at_zero};
-use super::whole_angles::WholeAngles;
+use super::whole_angles::{Sum, WholeAngles};
 use crate::derive::frames::{JointFrames, sine_and_cosine};
 use crate::derive::joint_coordinate::{self, relative_spin};
 use crate::derive::readings::{raw_angle, relative_euler};
@@ -316,6 +316,7 @@ pub fn in_joints(
             values.insert(Symbol::Angle(turn), x);
         }
     }
+    values.extend(turns_of_loops(system, angles, determined));
     let rate = |graph: &mut Graph, place: Place| {
         let symbol = Symbol::Rate(place.u);
         determined.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol))
@@ -324,6 +325,18 @@ pub fn in_joints(
     let maximal = expanded(system, values.clone(), maximal.clone());
     values.extend(maximal);
     values
+}
+
+/// The turn references of joints that close loops.
+fn turns_of_loops(system: &mut System, angles: &WholeAngles, determined: &Values) -> Values {
+    let turns = system.model.turn_references().into_iter().enumerate();
+    let sums: Vec<_> = turns.filter_map(|(turn, on)| Some((turn, angles.of_loop(on)?))).collect();
+    let coordinate = |graph: &mut Graph, place: Place| {
+        let symbol = Symbol::Coordinate(place.x);
+        determined.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol))
+    };
+    let value = |(turn, sum): (usize, &Sum)| (Symbol::Angle(turn), sum.sum(&mut system.graph, coordinate));
+    sums.into_iter().map(value).collect()
 }
 
 /// Sines, cosines and rates of sums, from those of the angles.
@@ -362,7 +375,7 @@ pub fn coordinate_rates(system: &mut System, layout: &Layout, rates: &[ExprId]) 
 }
 
 /// Positions (r, p) of each moving_body, then velocities (s, w'), then turn references.
-pub fn state(system: &mut System, layout: &Layout, values: &Values, determined: &Values) -> Vec<ExprId> {
+pub fn state(system: &System, values: &Values, in_joints: &Values) -> Vec<ExprId> {
     let moving_bodies = 0..system.moving_bodies.len();
     let position = |moving_body, k| {
         if k < 3 { Symbol::Position { moving_body, k } } else { Symbol::Euler { moving_body, k: k - 3 } }
@@ -374,12 +387,7 @@ pub fn state(system: &mut System, layout: &Layout, values: &Values, determined: 
         moving_bodies.clone().flat_map(|moving_body| (0..7).map(move |k| position(moving_body, k)));
     let velocities = moving_bodies.flat_map(|moving_body| (0..6).map(move |k| velocity(moving_body, k)));
     let state = positions.chain(velocities).map(|symbol| values[&symbol]);
-    let turns = system.model.turn_references();
-    let turns = turns.into_iter().map(|turn| {
-        let scalar = layout.scalar(turn).expect("joints of a tree have their coordinates");
-        let symbol = Symbol::Coordinate(scalar.place.x);
-        determined.get(&symbol).copied().unwrap_or_else(|| system.graph.symbol(symbol))
-    });
+    let turns = (0..system.model.turn_references().len()).map(|turn| in_joints[&Symbol::Angle(turn)]);
     state.chain(turns).collect()
 }
 

@@ -5,9 +5,12 @@
 //! loops; `link_kinematics` says how a body moves on its carrier, `whole_angles` where it is, and `maps` leads to
 //! maximal coordinates and back. `closure` has the rows of joints that close loops, `loops` how rates keep these
 //! closed, and `embedding` how all rates of the tree follow fewer unknowns. `coordinates` has all that is derived of
-//! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for those
-//! of planar mechanisms; these are the `candidates`, and `choose` takes the cheapest of those that are accurate, with
-//! what follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of the joint form.
+//! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for
+//! those of planar mechanisms, `axis_dynamics` for those of open trees, seen as `elementary_joints`: in `axis_frames`
+//! that suit them, between which `screw_moves` lead, from the base inertial parameters among their `mass_moments`,
+//! with an `articulated_inertia` or a mass matrix. These are the `candidates`, and `choose` takes the cheapest of
+//! those that are accurate, with what follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of
+//! the joint form.
 
 mod articulated_inertia;
 mod axis_dynamics;

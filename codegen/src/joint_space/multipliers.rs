@@ -20,7 +20,7 @@ use crate::solve::articulated_body::Arm;
 use crate::solve::loop_closure::gradient;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use crate::solve::multipliers::imbalance;
-use gyro_model::{Attachment, JointCoordinate, JointKind, RowOwner};
+use gyro_model::Attachment;
 use std::array::from_fn;
 
 /// The multiplier of each row, in terms of [`Symbol::Acceleration`], the maximal state and joint coordinates.
@@ -37,12 +37,11 @@ pub fn of(
         .collect();
     let left = left_over(&mut system.graph, coordinates, &joints, lacking.clone());
     beside_joints(system, coordinates, left, &mut lambda);
-    let closing = coordinates.closure.rows.iter().chain(&coordinates.closure.holding).copied();
-    let along_screws = rows_along_screws(system);
+    // What couplers and drivers supply is at right angles to what each row forces upon its body.
     let mut lacking = lacking;
-    for row in closing.chain(along_screws) {
-        for (lacking, taken) in lacking.iter_mut().zip(gradient(kinematics, row)) {
-            let taken = taken.scaled(&mut system.graph, lambda[row]);
+    for row in coordinates.closure.rows.iter().chain(&coordinates.closure.holding) {
+        for (lacking, taken) in lacking.iter_mut().zip(gradient(kinematics, *row)) {
+            let taken = taken.scaled(&mut system.graph, lambda[*row]);
             *lacking = lacking.plus(&mut system.graph, &taken);
         }
     }
@@ -60,22 +59,6 @@ pub fn of(
         }
     }
     lambda
-}
-
-/// The rows of couplers and drivers along the coordinate of a screw: what they supply loads the screw's own row too. Of
-/// other joints the coordinates are at right angles to what the rows hold.
-fn rows_along_screws(system: &System) -> Vec<usize> {
-    let rows = system.model.rows();
-    let is_screw = |on: JointCoordinate| system.joints[on.joint].kind == JointKind::Screw;
-    let is_along = |row: &usize| match rows[*row].owner {
-        RowOwner::Coupler(coupler) => {
-            let coupler = &system.model.couplers[coupler];
-            is_screw(coupler.first) || is_screw(coupler.second)
-        }
-        RowOwner::Driver(driver) => is_screw(system.model.drivers[driver].coordinate),
-        _ => false,
-    };
-    (0..rows.len()).filter(is_along).collect()
 }
 
 /// A body as its joint holds it.

@@ -8,7 +8,6 @@
 
 use super::coordinates::Coordinates;
 use super::layout::{Place, Scalar};
-use crate::derive::Textbook;
 use crate::derive::system::System;
 use crate::expr::definitions::Definitions;
 use crate::expr::differentiate::{Derivative, Direction};
@@ -49,13 +48,9 @@ struct Planar<'a> {
 
 /// The accelerations of the rates, if all bodies turn about one direction only and no forces but gravity and those
 /// along joint coordinates act.
-pub fn accelerations(
-    system: &mut System,
-    textbook: &Textbook,
-    coordinates: &Coordinates,
-) -> Option<Vec<ExprId>> {
+pub fn accelerations(system: &mut System, coordinates: &Coordinates) -> Option<Vec<ExprId>> {
     let is_unloaded = |body: &usize| {
-        let load = textbook.dynamics.other_loads[*body];
+        let load = coordinates.loads[*body];
         load.force == ZERO3 && load.torque == ZERO3
     };
     if coordinates.closure.rows.is_empty() || !system.moving_bodies.iter().all(is_unloaded) {

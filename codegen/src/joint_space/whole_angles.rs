@@ -3,12 +3,13 @@
 
 use super::layout::{Layout, LinkCoordinates, Place};
 use super::link_kinematics::{LinkKinematics, at_zero, rotated};
+use crate::derive::frames::JointFrames;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3, transposed};
-use gyro_model::{Attachment, CoordinateKind};
+use gyro_model::{Attachment, CoordinateKind, JointCoordinate};
 
 /// Poses of the bodies, and the angles that they are made of.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub struct WholeAngles {
     pub sums: Vec<Sum>,
     /// How each moving_body is turned, and where its joint point is.
     pub bodies: Vec<BodyPlace>,
+    /// The angles of joints that close loops, where they are sums of those of the tree.
+    pub of_loops: Vec<(JointCoordinate, Sum)>,
     first: Place,
 }
 
@@ -48,6 +51,11 @@ struct Attitude {
 }
 
 impl Sum {
+    /// The angles, with whether they are subtracted.
+    pub fn parts(&self) -> &[(Place, bool)] {
+        &self.0
+    }
+
     /// Of one number for each place.
     pub fn sum(&self, graph: &mut Graph, mut number: impl FnMut(&mut Graph, Place) -> ExprId) -> ExprId {
         self.0.iter().fold(Graph::ZERO, |sum, &(place, is_negative)| {
@@ -98,7 +106,13 @@ impl WholeAngles {
         is_held: impl Fn(usize) -> bool,
     ) -> Self {
         let first = Place { x: layout.n_tree_coordinates(), u: layout.n_tree_rates() };
-        let mut angles = Self { poses: Values::default(), sums: Vec::new(), bodies: Vec::new(), first };
+        let mut angles = Self {
+            poses: Values::default(),
+            sums: Vec::new(),
+            bodies: Vec::new(),
+            of_loops: Vec::new(),
+            first,
+        };
         let mut attitudes: Vec<Option<Attitude>> = vec![None; system.moving_bodies.len()];
         // The joint point of each body, and where it is.
         let mut held: Vec<(Vec3, Vec3)> = vec![(ZERO3, ZERO3); attitudes.len()];
@@ -135,6 +149,7 @@ impl WholeAngles {
             }
             (attitudes[moving_body], held[moving_body]) = (Some(own), (kinematics.on_body, place));
         }
+        angles.close_loops(system, &attitudes);
         let places: Vec<_> = attitudes
             .into_iter()
             .zip(held)
@@ -149,6 +164,34 @@ impl WholeAngles {
             .collect();
         angles.bodies = places;
         angles
+    }
+
+    /// Finds the angles of joints that close loops.
+    fn close_loops(&mut self, system: &mut System, attitudes: &[Option<Attitude>]) {
+        for joint in system.tree.loop_joints.clone() {
+            let on = JointCoordinate { joint, coordinate: 0 };
+            let frames = system.joints[joint];
+            if frames.kind.coordinates().first() != Some(&CoordinateKind::Angle) {
+                continue;
+            }
+            let attitude = |body: usize| match system.moving_body_of(body) {
+                Some(moving_body) => attitudes[moving_body].clone().expect("every body is a link"),
+                None => Attitude::of_carrier(&system.graph, system.poses[body].a),
+            };
+            let ends = [attitude(frames.first.body), attitude(frames.second.body)];
+            let Some(sum) = Attitude::between(&mut system.graph, &ends, &frames) else { continue };
+            if let Some(turn) = system.model.turn_references().iter().position(|&turn| turn == on) {
+                let coordinate = |graph: &mut Graph, place: Place| graph.symbol(Symbol::Coordinate(place.x));
+                let value = sum.sum(&mut system.graph, coordinate);
+                self.poses.insert(Symbol::Angle(turn), value);
+            }
+            self.of_loops.push((on, sum));
+        }
+    }
+
+    /// The angle of a joint that closes a loop.
+    pub fn of_loop(&self, on: JointCoordinate) -> Option<&Sum> {
+        self.of_loops.iter().find(|(known, _)| *known == on).map(|(_, sum)| sum)
     }
 
     /// The places of the sums.
@@ -219,6 +262,27 @@ impl Attitude {
         };
         let base = graph.mat_mul(&self.base, &turn.at_zero);
         Self { before: self.before, base, axis, angle }.normalised(graph)
+    }
+
+    /// The angle of a joint between two bodies that turn about its axis only, and are as its zero says where their own
+    /// angles are zero.
+    fn between(graph: &mut Graph, [first, second]: &[Self; 2], joint: &JointFrames) -> Option<Sum> {
+        let mut sign = |own: &Self, axis: &Vec3| {
+            let opposite = graph.neg_vec(axis);
+            match own.angle.0.is_empty() || own.axis == *axis {
+                true => Some(false),
+                false => (own.axis == opposite).then_some(true),
+            }
+        };
+        let signs = [sign(first, &joint.first.h)?, sign(second, &joint.second.h)?];
+        let mut in_space = |own: &Self, axes: [&Vec3; 2]| axes.map(|axis| graph.mat_vec(&own.base, axis));
+        let frames = [
+            in_space(first, [&joint.first.f, &joint.first.h]),
+            in_space(second, [&joint.second.f, &joint.second.h]),
+        ];
+        let is_zero = first.before == second.before && frames[0] == frames[1];
+        let none = Sum(Vec::new());
+        is_zero.then(|| none.plus(&second.angle, signs[1]).plus(&first.angle, !signs[0]))
     }
 
     /// With an angle whose first term is positive.

@@ -3,7 +3,7 @@
 //! error in `f32` against `f64` may not be much larger than that of a form that cancels nothing (see `gram_schmidt`).
 
 use crate::derive::system::System;
-use crate::expr::evaluate::evaluate;
+use crate::expr::evaluate::Program;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use gyro_model::{Number, to_f64};
@@ -98,33 +98,35 @@ impl Trials {
 
     /// Whether a form of some expressions is as accurate as another that is known to cancel nothing: at each state.
     pub fn is_accurate(&self, graph: &Graph, way: &[ExprId], keeping: &[ExprId]) -> bool {
-        self.states.iter().all(|state| {
-            let [error, least] = [way, keeping].map(|roots| error_at(graph, state, roots));
-            error <= LIKE * least.max(f64::from(f32::EPSILON))
-        })
+        let [way, keeping] = [way, keeping].map(|roots| Program::of(graph, roots));
+        self.states.iter().all(|state| error_at(&way, state) <= allowed(error_at(&keeping, state)))
     }
 
-    /// The largest error of a form at any of the states.
-    fn worst(&self, graph: &Graph, roots: &[ExprId]) -> f64 {
-        self.states.iter().map(|state| error_at(graph, state, roots)).fold(0.0, f64::max)
-    }
-
-    /// The forms that are as accurate as another, which may cancel digits too: in terms of their largest errors.
+    /// Of some forms whether each is as accurate as another, which may cancel digits too: in terms of their largest
+    /// errors.
     pub fn are_alike<'w>(
         &self,
         graph: &Graph,
         ways: impl Iterator<Item = &'w [ExprId]>,
         known: &[ExprId],
     ) -> Vec<bool> {
-        let allowed = LIKE * self.worst(graph, known).max(f64::from(f32::EPSILON));
-        ways.map(|way| self.worst(graph, way) <= allowed).collect()
+        let worst = |roots: &[ExprId]| {
+            let program = Program::of(graph, roots);
+            self.states.iter().map(|state| error_at(&program, state)).fold(0.0, f64::max)
+        };
+        let allowed = allowed(worst(known));
+        ways.map(|way| worst(way) <= allowed).collect()
     }
 }
 
+/// The error that counts as equal to another.
+fn allowed(known: f64) -> f64 {
+    LIKE * known.max(f64::from(f32::EPSILON))
+}
+
 /// The largest error of a form at a state.
-fn error_at(graph: &Graph, state: &HashMap<Symbol, f64>, roots: &[ExprId]) -> f64 {
-    let exact = evaluate(graph, roots, |symbol| state[&symbol]);
-    error(&exact, &evaluate(graph, roots, |symbol| shortened(state[&symbol])))
+fn error_at(form: &Program<'_>, state: &HashMap<Symbol, f64>) -> f64 {
+    error(&form.run(|symbol| state[&symbol]), &form.run(|symbol| shortened(state[&symbol])))
 }
 
 /// The largest error in terms of the largest number.

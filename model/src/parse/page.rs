@@ -11,12 +11,13 @@ use super::{bodies, couplings, forces, joints, outputs, parameters};
 use crate::validate::{Owner, Place};
 use crate::{Method, Model, Rational, Simulation, to_f64};
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "format",
     "name",
     "gravity",
     "count_work",
     "simulation",
+    "generate",
     "parameters",
     "inputs",
     "body",
@@ -38,6 +39,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let (parameters, inputs) = parameters::read(reader, &page);
     let gravity = page.vector_or(reader, "gravity", [0; 3]);
     let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
+    let functions = functions(reader, &page);
     let simulation = simulation(reader, &page);
     let bodies = bodies::read(reader, &page);
     let joints = joints::read(reader, &page);
@@ -59,6 +61,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         outputs,
         redundant,
         counts_work,
+        functions,
         nearly_exact: Vec::new(),
         simulation,
     }
@@ -83,6 +86,22 @@ fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
         item.wrong(reader, keyword(name));
     }
     name.to_owned()
+}
+
+/// The names of the functions to be generated: which there are is the generator's to know.
+fn functions(reader: &mut Reader<'_>, page: &Section<'_>) -> Option<Vec<String>> {
+    let example = "[generate] on a line of its own, then functions = [\"joint\"]";
+    let table = page.get("generate")?.table(reader, example)?;
+    let section = Section::open(reader, Owner::Page, "[generate]", table, &["functions"]);
+    let item = section.get("functions")?;
+    let names = item.value.get_ref().as_array().map(|array| {
+        array.iter().map(|name| name.get_ref().as_str().map(str::to_owned)).collect::<Option<Vec<_>>>()
+    });
+    let names = names.flatten();
+    if names.is_none() {
+        item.wrong_type(reader, "an array of names", "functions = [\"joint\", \"jacobian\"]");
+    }
+    names
 }
 
 /// The simulation settings with their defaults: one second in steps of a millisecond, a correction every five steps.

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use gyro_model::{
-    Attachment, Driver, JointCoordinate, Kinematics, Model, Motion, Number, Rational, Tree, analyse, read,
+    Attachment, CoordinateUse, Driver, JointCoordinate, Kinematics, Model, Motion, Number, Rational, Tree,
+    analyse, read,
 };
 
 /// A model file of so many moving bodies on the ground, body 0, and joints of kinds between bodies.
@@ -77,9 +78,39 @@ fn bodies_on_rods_float_and_carry_others() {
 fn an_open_tree_is_the_same_whatever_acts_on_its_joints() {
     let mut model = page(3, &[("revolute", [0, 1]), ("revolute", [0, 2]), ("revolute", [3, 1])]);
     model.joints[2].friction = model.bodies[1].mass.clone();
-    assert!(model.acts_on_coordinates(2));
+    assert_eq!(model.use_of_coordinates(2), CoordinateUse::Rate);
     assert_eq!(order(&Tree::of_coordinates(&model)), order(&Tree::of(&model)));
     assert_eq!(order(&Tree::of(&model)), [(1, Some(0)), (2, Some(1)), (3, Some(2))]);
+}
+
+/// A body hangs on what is nearest to the root; a screw is cut where one angle of the tree says how far it has turned, and
+/// else stays in the tree.
+#[test]
+fn a_nut_hangs_on_its_guide() {
+    let cut = |joints: &[(&str, [usize; 2])], n| {
+        let mut model = page(n, joints);
+        model.joints[0].friction = model.bodies[1].mass.clone();
+        Tree::of_coordinates(&model).loop_joints
+    };
+    let rail = [("revolute", [0, 1]), ("revolute", [1, 2]), ("prismatic", [0, 2])];
+    assert_eq!(cut(&rail, 2), [1]);
+    let press = [("revolute", [0, 1]), ("screw", [1, 2]), ("prismatic", [0, 2])];
+    assert_eq!(cut(&press, 2), [1]);
+    let arm = [("revolute", [0, 1]), ("revolute", [1, 2]), ("screw", [2, 3]), ("prismatic", [0, 3])];
+    assert!(!cut(&arm, 3).contains(&2));
+}
+
+/// Of the joints of a loop one is cut of whose coordinates least is asked, and of these one with many freedoms.
+#[test]
+fn forces_are_kept_off_the_joint_that_is_cut() {
+    let mut model =
+        page(3, &[("revolute", [0, 1]), ("cylindrical", [1, 2]), ("spherical", [2, 3]), ("revolute", [0, 3])]);
+    let cut = |model: &Model| Tree::of_coordinates(model).loop_joints;
+    assert_eq!(cut(&model), [2]);
+    model.joints[2].friction = model.bodies[1].mass.clone();
+    assert_eq!(cut(&model), [1]);
+    (0..4).for_each(|joint| model.joints[joint].friction = model.bodies[1].mass.clone());
+    assert_eq!(cut(&model), [2]);
 }
 
 /// Each coordinate of each kind, driven alone in an open tree: it starts where its driver is and moves as it does.

@@ -30,8 +30,18 @@ const CRATES: [&str; 13] = [
 const LINES: usize = 500;
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
-const STAGES: [&str; 8] =
-    ["expr", "simplify", "derive", "solve", "joint_space", "equations", "kernels", "emit"];
+const STAGES: [&str; 8] = [
+    "groups",
+    "expr",
+    "simplify",
+    "derive",
+    "solve",
+    "joint_space",
+    "equations",
+    "kernels",
+    "selection",
+    "emit",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

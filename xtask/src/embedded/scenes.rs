@@ -17,7 +17,7 @@ pub(crate) fn generate() -> Result<(), Failure> {
     pages.push(files::root().join("models").join(OF_THE_GALLERY));
     let generated = folder().join("scenes").join("generated");
     fs::create_dir_all(&generated).map_err(|e| io_failure(&generated, &e))?;
-    for module in generate::modules(&pages, false) {
+    for module in generate::modules(&pages, None, false) {
         let module = module?;
         files::write(&generated.join(&module.name).with_extension("rs"), &module.as_item())?;
     }

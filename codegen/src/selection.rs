@@ -1,0 +1,99 @@
+//! Functions by their names.
+
+use crate::groups::{Functions, Group};
+use crate::kernels::Kernel;
+use std::fmt;
+
+/// A name that no function and no group has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownFunction {
+    /// The name.
+    pub name: String,
+}
+
+/// The word for all groups.
+const ALL: &str = "all";
+
+impl Functions {
+    /// Groups by their names or by those of functions, each with what it needs; `all` stands for all of them. What
+    /// solvers and observers of every mechanism need is always there.
+    ///
+    /// # Errors
+    /// The first name that is not known.
+    pub fn named<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Self, UnknownFunction> {
+        let of_name = |name: &str| {
+            let of_group = Group::all().filter(|group| name == ALL || group.name() == name);
+            let of_function = Kernel::all().filter(|kernel| kernel.name() == name).map(Kernel::group);
+            let groups: Vec<Group> = of_group.chain(of_function).collect();
+            if groups.is_empty() { Err(UnknownFunction { name: name.to_owned() }) } else { Ok(groups) }
+        };
+        let groups: Result<Vec<_>, _> = names.into_iter().map(of_name).collect();
+        Ok(Self::of(groups?.concat()))
+    }
+
+    /// A line for each group, with its functions, for help texts.
+    pub fn help() -> String {
+        let mut lines = Vec::new();
+        for group in Group::all() {
+            let functions = Kernel::all().filter(|kernel| kernel.group() == group).map(Kernel::name);
+            let functions = functions.collect::<Vec<_>>().join(", ");
+            lines.push(format!("{:9} {}: {functions}", group.name(), group.what()));
+        }
+        lines.push(format!("{ALL:9} all of them"));
+        lines.join("\n")
+    }
+}
+
+impl fmt::Display for UnknownFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let groups: Vec<&str> = Group::all().map(Group::name).chain([ALL]).collect();
+        let functions: Vec<&str> = Kernel::all().map(Kernel::name).collect();
+        write!(f, "unknown function `{}`", self.name)?;
+        let known = groups.iter().chain(&functions);
+        if let Some(near) = known.copied().find(|known| is_near(&self.name, known)) {
+            write!(f, ": did you mean `{near}`?")?;
+        }
+        write!(f, "\nthere are the groups {} and the functions {}", groups.join(", "), functions.join(", "))
+    }
+}
+
+impl std::error::Error for UnknownFunction {}
+
+/// A third of the letters may differ.
+fn is_near(written: &str, known: &str) -> bool {
+    let length = written.chars().count().max(known.chars().count());
+    length <= LONGEST && strsim::damerau_levenshtein(written, known) <= length / 3
+}
+
+/// Longer words are not compared.
+const LONGEST: usize = 100;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_bring_their_group_and_what_it_needs() {
+        let named = |names: &[&str]| Functions::named(names.iter().copied()).expect("known names");
+        assert!(!named(&[]).has(Group::Joint));
+        for name in ["joint", "joint_accelerations", "to_maximal", "corrected_accelerations"] {
+            assert!(named(&[name]).has(Group::Joint) && !named(&[name]).has(Group::Jacobian), "{name}");
+        }
+        assert!(named(&["joint_jacobian"]).has(Group::Joint));
+        assert_eq!(named(&["joint", "all"]), Functions::all());
+        assert_eq!(named(&["jacobian"]), Functions::all());
+        assert_eq!(Functions::all().without(Group::Joint), named(&["phi", "outputs"]));
+        assert_eq!(Functions::all().without(Group::Jacobian), named(&["joint"]));
+    }
+
+    #[test]
+    fn unknown_names_are_met_with_the_known_ones() {
+        let words = |name: &str| Functions::named([name]).expect_err("an unknown name").to_string();
+        let found = words("joint_acelerations");
+        assert!(found.contains("did you mean `joint_accelerations`?"), "{found}");
+        assert!(words("jacobians").contains("did you mean `jacobian`?"));
+        let found = words("xyz");
+        assert!(!found.contains("did you mean"), "{found}");
+        assert!(found.contains("maximal, joint, jacobian, all") && found.contains("newton_step"), "{found}");
+    }
+}
