@@ -8,8 +8,8 @@ use gyro_reference::DoubleWishbone;
 use gyro_runner::Input;
 use gyro_runner::motion::{COLUMNS, Element, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
 use gyro_sim::{CloseLoops, Dual, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
-use gyro_sim_suite::generated as own;
 use gyro_sim_suite::Random;
+use gyro_sim_suite::generated as own;
 
 /// Central differences of fourth order.
 fn slope(step: f64, f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {

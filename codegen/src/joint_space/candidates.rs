@@ -165,6 +165,7 @@ fn spins_at_hand(system: &mut System, coordinates: &Coordinates) -> Vec<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::derive::Textbook;
     use crate::expr::evaluate::{evaluate, sample};
 
     /// Recursions over a dozen bodies, pivots of order one.
@@ -176,7 +177,7 @@ mod tests {
         let mut system = System::new(&model);
         let textbook = Textbook::derive(&mut system);
         let coordinates = Coordinates::derive(&mut system, &textbook);
-        let candidates = Candidates::solve(&mut system, &textbook, &coordinates);
+        let candidates = Candidates::solve(&mut system, &coordinates);
         let forms = candidates.on_rates(&mut system, &coordinates.in_joints);
         let (expected, others) = forms.split_first().expect("there is a recursion");
         for seed in 0..5 {
