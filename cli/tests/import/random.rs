@@ -324,7 +324,7 @@ fn of_model(model: &Model) -> [f64; 5] {
     let mut sums = [0.0; 5];
     for (k, index) in model.coordinate_bodies().into_iter().enumerate() {
         let body = &model.bodies[index];
-        let [mass] = model.values(&[body.mass.clone()]);
+        let [mass] = model.values(std::slice::from_ref(&body.mass));
         let [xx, yy, zz, xy, xz, yz] = model.values(&body.inertia);
         let (r, s) = (&start.q[7 * k..7 * k + 3], &start.v[6 * k..6 * k + 3]);
         let w: Vector = std::array::from_fn(|i| start.v[6 * k + 3 + i]);
