@@ -103,8 +103,10 @@ fn a_nut_hangs_on_its_guide() {
 /// Of the joints of a loop one is cut of whose coordinates least is asked, and of these one with many freedoms.
 #[test]
 fn forces_are_kept_off_the_joint_that_is_cut() {
-    let mut model =
-        page(3, &[("revolute", [0, 1]), ("cylindrical", [1, 2]), ("spherical", [2, 3]), ("revolute", [0, 3])]);
+    let mut model = page(
+        3,
+        &[("revolute", [0, 1]), ("cylindrical", [1, 2]), ("spherical", [2, 3]), ("revolute", [0, 3])],
+    );
     let cut = |model: &Model| Tree::of_coordinates(model).loop_joints;
     assert_eq!(cut(&model), [2]);
     model.joints[2].friction = model.bodies[1].mass.clone();
