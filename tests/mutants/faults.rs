@@ -190,6 +190,7 @@ const FAULTS: &[Fault] = &[
     fault("solve/aggregate_joints.rs", "ties", "loads[unknown] = «graph.sub(loads[unknown], along)»;", "graph.add(loads[unknown], along)"),
     fault("solve/aggregate_joints.rs", "ties", "loads[other] = «graph.sub(loads[other], taken)»;", "graph.add(loads[other], taken)"),
     // Planar mechanisms.
+    fault("joint_space/planar.rs", "plane", "*rate -= if *sign { «-factor» } else { factor };", "factor"),
     fault("joint_space/planar.rs", "four-bar-revolute", "let near = «graph.sub(mass, far)»;", "mass"),
     fault("joint_space/planar.rs", "four-bar-revolute", "let taken = «graph.mul(mass, square)»;", "mass"),
     fault("joint_space/planar.rs", "four-bar-revolute", "moment = «graph.sub(moment, taken)»;", "moment"),
