@@ -30,7 +30,7 @@ const CRATES: [&str; 13] = [
 const LINES: usize = 500;
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
-const STAGES: [&str; 8] = [
+const STAGES: [&str; 10] = [
     "groups",
     "expr",
     "simplify",
