@@ -83,8 +83,8 @@ fn an_open_tree_is_the_same_whatever_acts_on_its_joints() {
     assert_eq!(order(&Tree::of(&model)), [(1, Some(0)), (2, Some(1)), (3, Some(2))]);
 }
 
-/// A body hangs on what is nearest to the root; a screw is cut where one angle of the tree says how far it has turned, and
-/// else stays in the tree.
+/// A body hangs on what is nearest to the root; a screw is cut where one angle of the tree says how far it has turned,
+/// and else stays in the tree.
 #[test]
 fn a_nut_hangs_on_its_guide() {
     let cut = |joints: &[(&str, [usize; 2])], n| {
