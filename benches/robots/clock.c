@@ -12,7 +12,8 @@ static double now(void) {
 }
 
 // Seconds of so many repetitions over n states; `selfs` has one object for each state.
-double clock_run(run *f, void **selfs, int n, int n_q, int n_v, const double *q, const double *v, const double *tau, double *out, int repetitions) {
+double clock_run(run *f, void **selfs, int n, int n_q, int n_v, const double *q, const double *v, const double *tau,
+                 double *out, int repetitions) {
     const double start = now();
     for (int r = 0; r < repetitions; r++)
         for (int k = 0; k < n; k++) f(selfs[k], q + k * n_q, v + k * n_v, tau + k * n_v, out + k * n_v);

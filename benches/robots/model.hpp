@@ -1,8 +1,8 @@
 // A tree of joints from the list that run.py writes, a line a joint:
 //   parent kind axis(3) rotation(9, row by row) translation(3) mass centre(3) inertia(xx xy yy xz yz zz)
 // with kind one of revolute, prismatic, floating. Parents come before children; 0 is the world.
-// The list stands for the URDF file: a parser from a library built for another processor would lay out Eigen's vectors in
-// another way.
+// The list stands for the URDF file: a parser from a library that was built for another processor would lay out Eigen's
+// vectors in another way.
 #pragma once
 
 #include <pinocchio/multibody.hpp>
@@ -13,7 +13,8 @@
 
 inline pinocchio::JointModel joint(const std::string &kind, const Eigen::Vector3d &axis) {
     using namespace pinocchio;
-    const int along = axis == Eigen::Vector3d::UnitX() ? 0 : axis == Eigen::Vector3d::UnitY() ? 1 : axis == Eigen::Vector3d::UnitZ() ? 2 : 3;
+    int along = 0;
+    while (along < 3 && axis != Eigen::Vector3d::Unit(along)) along++;
     if (kind == "floating") return JointModelFreeFlyer();
     if (kind == "revolute") {
         switch (along) {
@@ -49,7 +50,8 @@ inline pinocchio::Model read(const char *file) {
         in >> xx >> xy >> yy >> xz >> yz >> zz;
         if (!in) throw std::runtime_error(std::string("not a list of joints: ") + file);
         inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-        const auto index = model.addJoint(parent, joint(kind, axis), pinocchio::SE3(rotation, translation), "j" + std::to_string(model.njoints));
+        const pinocchio::SE3 place(rotation, translation);
+        const auto index = model.addJoint(parent, joint(kind, axis), place, "j" + std::to_string(model.njoints));
         model.appendBodyToJoint(index, pinocchio::Inertia(mass, centre, inertia), pinocchio::SE3::Identity());
     }
     return model;

@@ -25,7 +25,7 @@ pub extern "C" fn ours_state() -> i32 {
     (size_of::<Joints>() / 8) as i32
 }
 
-/// Writes for each place of the joint state the index of its joint, or -1 for a body; returns how many places there are.
+/// Writes for each place of the joint state the index of its joint, or -1 for a body; returns how many there are.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ours_layout(out: *mut i32) -> i32 {
     let robot = Robot::default();

@@ -1,8 +1,8 @@
-"""The articulated-body algorithm in the frames of the URDF file, unrolled by CasADi: what "plain ABA" means in the table.
+"""The articulated-body algorithm in the frames of the URDF file, unrolled by CasADi: the table's "plain ABA".
 
-Featherstone (2008), chapter 7, joint by joint, with 3 x 3 blocks; constants are folded, common subexpressions shared, and
-nothing is regrouped. `unrolled` gives a function of (q, v, tau); a floating base has q = (position, quaternion x y z w)
-and v = (velocity, angular velocity) of its joint's frame in that frame, as Pinocchio has it.
+Featherstone (2008), chapter 7, joint by joint, with 3 x 3 blocks; constants are folded, common subexpressions shared,
+and nothing is regrouped. `unrolled` gives a function of (q, v, tau); a floating base has q = (position, quaternion x y
+z w) and v = (velocity, angular velocity) of its joint's frame in that frame, as Pinocchio has it.
 """
 
 from dataclasses import dataclass
@@ -81,7 +81,7 @@ def of_quaternion(x, y, z, w):
 
 
 class Body:
-    """What a sweep leaves at a body. Motions are pairs (linear, angular), forces (force, moment), at the joint's frame."""
+    """What a sweep leaves at a body. Motions are pairs (linear, angular), forces (force, moment), at its frame."""
 
     def __init__(self, joint, q, v):
         fixed, place = constant(joint.rotation), constant(joint.translation)

@@ -75,7 +75,8 @@ def tidy(source, target):
 
 
 def pinocchio_model(file, floats):
-    model = pin.buildModelFromUrdf(str(file), pin.JointModelFreeFlyer()) if floats else pin.buildModelFromUrdf(str(file))
+    root = [pin.JointModelFreeFlyer()] if floats else []
+    model = pin.buildModelFromUrdf(str(file), *root)
     model.armature[:] = 0
     return model
 

@@ -40,6 +40,7 @@ def main():
     options.add_argument("--rounds", type=int, default=9, help="rounds of the times [default: 9]")
     options = options.parse_args()
     install()
+    sys.dont_write_bytecode = True
     import table
 
     names = options.only.split(",") if options.only else [""]

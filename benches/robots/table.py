@@ -25,9 +25,11 @@ SOURCES = PREFIX / "share" / "example-robot-data" / "robots"
 STATES = 50
 NATIVE = ["-O3", "-march=native"]
 SHARED = ["-shared", "-fPIC"]
-CXX = ["g++", "-std=c++17", "-DNDEBUG", "-w", "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
-       f"-I{PREFIX}/include", f"-I{PREFIX}/include/eigen3"]
+# Pinocchio's list of joints is longer than boost's default.
+LONG_LISTS = ["-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]
+CXX = ["g++", "-std=c++17", "-DNDEBUG", "-w", *LONG_LISTS, f"-I{PREFIX}/include", f"-I{PREFIX}/include/eigen3"]
 AGREES = 1e-9
+OTHERS = ("plain", "casadi", "native")
 
 
 @dataclass
@@ -102,10 +104,14 @@ def compile_ours(robot, folder, work):
 
 def compile_casadi(source, function, target):
     """C that CasADi wrote, behind the interface of the clock."""
-    text = source.read_text()
-    text += (f"\nvoid run(void *self, const double *q, const double *v, const double *tau, double *out) {{\n"
-             f"  const double *arg[] = {{q, v, tau}};\n  double *res[] = {{out}};\n  {function}(arg, res, 0, 0, 0);\n}}\n")
-    source.write_text(text)
+    interface = f"""
+void run(void *self, const double *q, const double *v, const double *tau, double *out) {{
+  const double *arg[] = {{q, v, tau}};
+  double *res[] = {{out}};
+  {function}(arg, res, 0, 0, 0);
+}}
+"""
+    source.write_text(source.read_text() + interface)
     call(["gcc", *NATIVE, *SHARED, source, "-o", target, "-lm"])
 
 
@@ -213,6 +219,11 @@ def ratio(row, name):
     return statistics.median(other / ours for other, ours in pairs)
 
 
+def share(row):
+    """Our operations over plain ABA's."""
+    return row.operations["ours"] / row.operations["plain"]
+
+
 def lines(rows):
     counts = "| robot (rates) | ours | plain ABA | Pinocchio → CasADi | ours ÷ plain |"
     times = " ours, ns | plain ABA C ÷ ours | Pinocchio → CasADi C ÷ ours | Pinocchio C++ ÷ ours | agreement |"
@@ -220,19 +231,17 @@ def lines(rows):
     yield counts + (times if is_timed else "")
     yield "|---|---|---|---|---|" + ("---|---|---|---|---|" if is_timed else "")
     for row in rows:
-        o = row.operations
-        line = f"| {row.name} ({row.rates}) | {o['ours']} | {o['plain']} | {o['casadi']} | {o['ours'] / o['plain']:.2f} |"
+        counts = (row.operations[name] for name in ("ours", "plain", "casadi"))
+        cells = [f"{row.name} ({row.rates})", *map(str, counts), f"{share(row):.2f}"]
         if is_timed:
             ns = 1e9 * statistics.median(row.seconds["ours"])
-            others = " | ".join(f"{ratio(row, name):.2f}" for name in ("plain", "casadi", "native"))
-            line += f" {ns:.0f} | {others} | {row.agreement:.0e} |"
-        yield line
-    worst = max(row.operations["ours"] / row.operations["plain"] for row in rows)
-    summary = f"Worst: {worst:.2f} of the operations of plain ABA"
+            others = [f"{ratio(row, name):.2f}" for name in OTHERS]
+            cells += [f"{ns:.0f}", *others, f"{row.agreement:.0e}"]
+        yield f"| {' | '.join(cells)} |"
+    summary = f"Worst: {max(map(share, rows)):.2f} of the operations of plain ABA"
     if is_timed:
-        least = {name: min(ratio(row, name) for row in rows) for name in ("plain", "casadi", "native")}
-        summary += (f"; {least['plain']:.2f} of our time by plain ABA's C, {least['casadi']:.2f} by Pinocchio → CasADi's, "
-                    f"{least['native']:.2f} by Pinocchio C++")
+        least = [min(ratio(row, name) for row in rows) for name in OTHERS]
+        summary += "; the others' times are at least {:.2f}, {:.2f} and {:.2f} of ours".format(*least)
     yield ""
     yield summary + "."
 

@@ -110,6 +110,10 @@ impl Inertial {
     }
 }
 
+pub(super) fn tensor([xx, yy, zz, xy, xz, yz]: Elements) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}
+
 fn shown(moments: &Vector3<f64>) -> String {
     let mut moments: Vec<f64> = moments.iter().copied().collect();
     moments.sort_by(f64::total_cmp);
@@ -148,9 +152,8 @@ mod tests {
         Inertial { mass, centre: Vector3::zeros(), tensor }.seen(&pose)
     }
 
-    fn moments([xx, yy, zz, xy, xz, yz]: Elements) -> [f64; 3] {
-        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        let mut moments: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    fn moments(elements: Elements) -> [f64; 3] {
+        let mut moments: [f64; 3] = tensor(elements).symmetric_eigenvalues().into();
         moments.sort_by(f64::total_cmp);
         moments
     }

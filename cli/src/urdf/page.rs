@@ -1,7 +1,7 @@
 //! The model file of a robot as text.
 
 use super::element::settled;
-use super::inertia::rounded;
+use super::inertia::{rounded, tensor};
 use super::merge::{Body, Merged, Place, Root, Settled, on_grid};
 use super::names::{Names, snake_case};
 use super::robot::{Joint, Kind, Limit, Link, Robot};
@@ -19,8 +19,12 @@ const GIVES_WAY: [f64; 2] = [0.01, 1e-3];
 /// Lever, m, at which the weight of what a joint carries stands for the torque of a drive that is not known.
 const LEVER: f64 = 1.0;
 
-/// Damping over stiffness of a stop, s.
-const STOP_TIME: f64 = 0.01;
+/// No stop is stiffer than what makes all that a joint carries vibrate at this, rad/s: with [`STOP_STEP`] a tenth of a
+/// radian a step, and what a joint feels may be a fraction of what it carries.
+const FASTEST: f64 = 1000.0;
+
+/// Step of a robot with stops, s.
+const STOP_STEP: &str = "1e-4";
 
 /// Width over which a stop sets in, as a part of how far it gives way.
 const SOFTNESS: f64 = 0.1;
@@ -109,8 +113,9 @@ impl Page<'_> {
             let [angle, length] = GIVES_WAY;
             remarks.push(format!(
                 "{limited}: a stop gives way by {angle} rad or {length} m under the effort of the limit, or, where that is 0, \
-                 under the weight of what the joint carries (of a revolute one, at {LEVER} m); its damping is {STOP_TIME} s \
-                 of its stiffness. No limit is set to efforts and velocities"
+                 under the weight of what the joint carries (of a revolute one, at {LEVER} m); it is no stiffer than what \
+                 makes that vibrate at {FASTEST} rad/s, and half critically damped. No limit is set to efforts and \
+                 velocities"
             ));
         } else if joints.iter().any(|joint| joint.limit.is_some()) {
             remarks.push(format!("{limited} left out: --limits makes stops of them"));
@@ -143,7 +148,9 @@ impl Page<'_> {
         let name = snake_case(&self.robot.name);
         let name = if gyro_model::is_keyword(&name) { format!("{name}_robot") } else { name };
         let _ = write!(text, "format = 1\nname = \"{name}\"\ngravity = [0, 0, -{GRAVITY}]\n\n");
-        text.push_str("[simulation]\nt_end = 1\nstep = 1e-3\n");
+        let has_stops = self.wishes.limits && self.moving_joints().any(|joint| self.limit(joint).is_some());
+        let step = if has_stops { STOP_STEP } else { "1e-3" };
+        let _ = write!(text, "[simulation]\nt_end = 1\nstep = {step}\n");
         if self.motors().next().is_some() {
             text.push_str("\n[inputs]\n");
         }
@@ -266,11 +273,13 @@ impl Page<'_> {
         let joint = &self.robot.joints[index];
         let [way, lever] =
             if joint.kind == Kind::Revolute { [GIVES_WAY[0], LEVER] } else { [GIVES_WAY[1], 1.0] };
-        let carried = self.mass_on(self.merged.places[joint.child].body);
-        let effort = if limit.effort > 0.0 { limit.effort } else { carried * GRAVITY * lever };
+        let (mass, inertia) = self.carried(index);
+        let effort = if limit.effort > 0.0 { limit.effort } else { mass * GRAVITY * lever };
         let name = &self.joints[index];
-        let stiffness = rounded(effort / way);
-        let (damping, softness) = (rounded(stiffness * STOP_TIME), rounded(way * SOFTNESS));
+        let stiffness = (effort / way).min(inertia * FASTEST * FASTEST);
+        // Half of what is critical.
+        let damping = rounded((stiffness * inertia).sqrt());
+        let (stiffness, softness) = (rounded(stiffness), rounded(way * SOFTNESS));
         for (side, at) in [("lower", limit.lower), ("upper", limit.upper)] {
             let _ = write!(
                 text,
@@ -280,16 +289,35 @@ impl Page<'_> {
         }
     }
 
-    /// The mass of a body and of all that it carries.
-    fn mass_on(&self, body: usize) -> f64 {
-        let own = self.merged.bodies[body].inertial.as_ref().map_or(0.0, |inertial| inertial.mass);
-        let is_carried = |other: &Body| {
+    /// The mass of all that a joint carries, and what of it resists the joint with all others at zero: the mass, or the
+    /// moment of inertia about the axis.
+    fn carried(&self, index: usize) -> (f64, f64) {
+        let joint = &self.robot.joints[index];
+        let place = self.merged.places[joint.child];
+        let frame = self.merged.bodies[place.body].zero * place.pose;
+        let axis = frame.rotation * joint.axis;
+        let (mut mass, mut moment) = (0.0, 0.0);
+        let mut bodies = vec![place.body];
+        while let Some(index) = bodies.pop() {
+            let body = &self.merged.bodies[index];
+            let Some(inertial) = &body.inertial else { continue };
+            let arm = (body.zero.translation.vector - frame.translation.vector).cross(&axis);
+            let about = body.zero.rotation.inverse() * axis;
+            mass += inertial.mass;
+            moment += about.dot(&(tensor(inertial.inertia) * about)) + inertial.mass * arm.norm_squared();
+            bodies.extend(self.on(index));
+        }
+        (mass, if joint.kind == Kind::Revolute { moment } else { mass })
+    }
+
+    /// The bodies whose joints are on a body.
+    fn on(&self, body: usize) -> impl Iterator<Item = usize> {
+        let is_on = move |other: &Body| {
             other
                 .carrier
                 .is_some_and(|joint| self.merged.places[self.robot.joints[joint].parent].body == body)
         };
-        let carried = (0..self.merged.bodies.len()).filter(|&other| is_carried(&self.merged.bodies[other]));
-        own + carried.map(|other| self.mass_on(other)).sum::<f64>()
+        (0..self.merged.bodies.len()).filter(move |other| is_on(&self.merged.bodies[*other]))
     }
 
     fn coupler(&self, text: &mut String, index: usize) {

@@ -240,11 +240,12 @@ fn motors_and_stops_are_made_on_request() {
     );
     assert_eq!(page.matches("kind = \"motor\"").count(), 3, "{page}");
     let stop = "name = \"j_upper_stop\"\nkind = \"stop\"\njoint = \"j\"\nside = \"upper\"\nlimit = 1.0\nstiffness = 300.0\n\
-                damping = 3.0\nsoftness = 0.001\n";
+                damping = 34.6410161513775\nsoftness = 0.001\n";
     assert!(page.contains(stop), "{page}");
+    assert!(page.contains("step = 1e-4\n"), "{page}");
     // The weight of 2 kg on a millimetre.
     assert!(
-        page.contains("limit = -1.0\nstiffness = 19620.0\ndamping = 196.2\nsoftness = 0.0001\n"),
+        page.contains("limit = -1.0\nstiffness = 19620.0\ndamping = 198.09088823063\nsoftness = 0.0001\n"),
         "{page}"
     );
     assert_eq!(page.matches("kind = \"stop\"").count(), 4, "{page}");
@@ -256,6 +257,13 @@ fn motors_and_stops_are_made_on_request() {
         assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
     }
     gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    // A strong drive on a light finger: the stop is as stiff as 1000 rad/s make it.
+    let finger = link("f", (0.001, [1e-6; 3]), "revolute", "arm")
+        .replace("0 0 0\"/>", "0 0 1\"/><limit upper=\"1\" effort=\"50\"/>");
+    let limits = Wishes { limits: true, ..PLAIN };
+    let (finger, _) =
+        super::convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{finger}")), limits).unwrap();
+    assert!(finger.contains("stiffness = 1.0\ndamping = 0.001\n"), "{finger}");
     let (page, remarks) = convert(PLAIN);
     assert!(!page.contains("[[force]]") && !page.contains("[inputs]"), "{page}");
     assert!(

@@ -1,5 +1,5 @@
-//! Random robots, as people and programs write them: what is imported has the mass, the mass centre and, at any rates, the
-//! kinetic energy that a plain recursion over the links finds, and so the same equations of motion.
+//! Random robots, as people and programs write them: what is imported has the mass, the mass centre and, at any rates,
+//! the kinetic energy that a plain recursion over the links finds, and so the same equations of motion.
 
 use super::pose::{Pose, add, cross, dot, rotation, scale, turned, turned_back};
 use super::{Folder, xtask};
@@ -324,7 +324,7 @@ fn of_model(model: &Model) -> [f64; 5] {
     let mut sums = [0.0; 5];
     for (k, index) in model.coordinate_bodies().into_iter().enumerate() {
         let body = &model.bodies[index];
-        let [mass] = model.values(std::slice::from_ref(&body.mass));
+        let mass = model.value(&body.mass);
         let [xx, yy, zz, xy, xz, yz] = model.values(&body.inertia);
         let (r, s) = (&start.q[7 * k..7 * k + 3], &start.v[6 * k..6 * k + 3]);
         let w: Vector = std::array::from_fn(|i| start.v[6 * k + 3 + i]);
@@ -338,7 +338,7 @@ fn of_model(model: &Model) -> [f64; 5] {
     sums
 }
 
-/// Rounding of some rotations and of the file's decimals; and where a link borrows a millionth of a mass, some of these.
+/// Rounding of some rotations and of the file's decimals; where a link borrows a millionth of a mass, some of these.
 const AGREES: [f64; 2] = [1e-12, 1e-4];
 
 const ROBOTS: u64 = 150;
