@@ -77,6 +77,8 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
 
     fn close_positions(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+        normalise_orientations(mechanism.joint_layout(), x.as_mut());
+        check_finite(t, x.as_ref())?;
         let mut worst = self.worst(mechanism, t, x);
         for _ in 0..MAX_ITERATIONS {
             self.before.as_mut().copy_from_slice(x.as_ref());
