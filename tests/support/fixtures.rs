@@ -43,6 +43,7 @@ pub fn generated(page: &str) -> Engine {
         "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
         "four-bar-revolute" => Engine::new(shipped::four_bar_revolute::FourBarRevolute::default()),
         "free-body" => Engine::of_tree(shipped::free_body::FreeBody::default()),
+        "friction-in-loops" => Engine::new(own::friction_in_loops::FrictionInLoops::default()),
         "friction" => Engine::new(own::friction::Friction::default()),
         "gear" => Engine::new(own::gear::Gear::default()),
         "gear-pair" => Engine::new(own::gear_pair::GearPair::default()),
