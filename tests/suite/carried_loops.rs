@@ -122,8 +122,8 @@ fn a_loop_on_a_turning_carrier_runs_for_a_thousand_turns() {
     assert!(turns > TURNS && off.iter().all(|off| *off < KEPT), "{turns}, {off:?}");
 }
 
-/// The check must be able to fail: along global axes the same rows lose their rank twice a turn, and the run goes on only
-/// as it is led over these poses.
+/// The check must be able to fail: along global axes the same rows lose their rank twice a turn, and the run goes on
+/// only as it is led over these poses.
 #[test]
 fn along_global_axes_the_loop_loses_its_rank() {
     let mut model = model(PAGE);
