@@ -11,12 +11,16 @@ pub enum Group {
     Joint,
     /// The Jacobians of `JointSpace`, whose types are `()` in modules without them.
     Jacobian,
+    /// `JointOutputs`.
+    JointOutputs,
+    /// `Frames`.
+    Frames,
 }
 
 impl Group {
     /// All groups.
     pub fn all() -> impl Iterator<Item = Self> {
-        [Self::Maximal, Self::Joint, Self::Jacobian].into_iter()
+        [Self::Maximal, Self::Joint, Self::Jacobian, Self::JointOutputs, Self::Frames].into_iter()
     }
 
     /// Its name on the command line and in model files.
@@ -25,6 +29,8 @@ impl Group {
             Self::Maximal => "maximal",
             Self::Joint => "joint",
             Self::Jacobian => "jacobian",
+            Self::JointOutputs => "joint_outputs",
+            Self::Frames => "frames",
         }
     }
 
@@ -34,6 +40,8 @@ impl Group {
             Self::Maximal => "what every module has (traits Mechanism, Partition, Equations)",
             Self::Joint => "joint coordinates (trait JointSpace)",
             Self::Jacobian => "derivatives of the joint form, with `joint` (JointSpace::Jacobian)",
+            Self::JointOutputs => "outputs of a joint state (trait JointOutputs)",
+            Self::Frames => "how the outputs of kind `velocity` move with a joint state (trait Frames)",
         }
     }
 
@@ -42,7 +50,7 @@ impl Group {
         match self {
             Self::Maximal => vec![self],
             Self::Joint => vec![Self::Maximal, self],
-            Self::Jacobian => vec![Self::Maximal, Self::Joint, self],
+            Self::Jacobian | Self::JointOutputs | Self::Frames => vec![Self::Maximal, Self::Joint, self],
         }
     }
 }
@@ -56,6 +64,11 @@ impl Functions {
     /// All that the generator knows of.
     pub fn all() -> Self {
         Self(Group::all().collect())
+    }
+
+    /// What modules have unless others are asked for.
+    pub fn usual() -> Self {
+        Self::of([Group::Jacobian])
     }
 
     /// Some groups, each with what it needs. What solvers and observers of every mechanism need is always there.

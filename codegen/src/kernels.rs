@@ -6,7 +6,7 @@ use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
-use crate::joint_space::{Jacobian, JointSpace};
+use crate::joint_space::{Frames, Jacobian, JointSpace};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::parameter_setup;
 use std::collections::BTreeMap;
@@ -47,6 +47,9 @@ pub enum Kernel {
     ClosureDistances,
     ClosePositions,
     CloseVelocities,
+    JointOutputs,
+    FrameJacobians,
+    FrameBiases,
 }
 
 /// When a kernel exists, and where its expressions come from.
@@ -61,6 +64,10 @@ enum Source {
     JointSpace(fn(&JointSpace) -> Chosen),
     /// If it has few enough rates for the derivatives of the joint form.
     Jacobian(fn(&Jacobian) -> Chosen),
+    /// If outputs of a joint state are asked for.
+    JointOutputs,
+    /// If the model file has frames, and they are asked for.
+    Frames(fn(&Frames) -> Chosen),
 }
 
 /// What is known of a kernel.
@@ -112,6 +119,9 @@ const TABLE: &[Row] = &[
     row(Kernel::ClosureDistances, "closure_distances", "squares of distances between the rows of the loops' Jacobian", Source::JointSpace(|s| s.distances.clone().into())),
     row(Kernel::ClosePositions, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
     row(Kernel::CloseVelocities, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
+    row(Kernel::JointOutputs, "joint_outputs", "outputs of a joint state, u̇ being known", Source::JointOutputs),
+    row(Kernel::FrameJacobians, "frame_jacobians", "∂(ṡ, w')/∂u of frames, row by row", Source::Frames(|f| f.jacobians.clone())),
+    row(Kernel::FrameBiases, "frame_biases", "(s̈, ẇ') of frames at u̇ = 0", Source::Frames(|f| f.biases.clone())),
 ];
 
 const _: () = {
@@ -144,6 +154,8 @@ impl Kernel {
             Source::Parameters | Source::Equations(_) | Source::Charts(_) => Group::Maximal,
             Source::JointSpace(_) => Group::Joint,
             Source::Jacobian(_) => Group::Jacobian,
+            Source::JointOutputs => Group::JointOutputs,
+            Source::Frames(_) => Group::Frames,
         }
     }
 
@@ -160,6 +172,8 @@ impl Kernel {
             Source::Charts(of) => equations.charts.as_ref().map(of),
             Source::JointSpace(of) => joint_space.map(of),
             Source::Jacobian(of) => joint_space?.jacobian.as_ref().map(of),
+            Source::JointOutputs => joint_space?.outputs.clone(),
+            Source::Frames(of) => joint_space?.frames.as_ref().map(of),
         }
     }
 }

@@ -81,9 +81,10 @@ mod tests {
         }
         assert!(named(&["joint_jacobian"]).has(Group::Joint));
         assert_eq!(named(&["joint", "all"]), Functions::all());
-        assert_eq!(named(&["jacobian"]), Functions::all());
+        assert_eq!(named(&["jacobian"]), Functions::usual());
         assert_eq!(Functions::all().without(Group::Joint), named(&["phi", "outputs"]));
-        assert_eq!(Functions::all().without(Group::Jacobian), named(&["joint"]));
+        assert_eq!(Functions::usual().without(Group::Jacobian), named(&["joint"]));
+        assert!(!Functions::usual().has(Group::Frames) && named(&["frame_biases"]).has(Group::Frames));
     }
 
     #[test]

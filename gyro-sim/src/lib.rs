@@ -115,9 +115,9 @@ mod violation;
 
 pub use apart::apart;
 pub use contract::{
-    Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, Joint, JointBuffers,
-    JointInfo, JointLayout, JointPlace, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo,
-    System, Terms, set_turn_references,
+    Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, FrameBuffers, Frames,
+    Joint, JointBuffers, JointInfo, JointLayout, JointOutputs, JointPlace, JointSpace, Mechanism, Ode,
+    OutputInfo, Owner, Partition, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

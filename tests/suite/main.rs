@@ -27,6 +27,7 @@ mod linkages;
 mod long_run;
 mod moving_base;
 mod no_std_probe;
+mod observed;
 mod paper_scenes;
 mod poses;
 mod reactions;

@@ -89,6 +89,7 @@ pub fn generated(page: &str) -> Engine {
         "gyroscope-viscous" => Engine::of_tree(shipped::gyroscope_viscous::GyroscopeViscous::default()),
         "heavy-top" => Engine::of_tree(shipped::heavy_top::HeavyTop::default()),
         "loads" => Engine::new(own::loads::Loads::default()),
+        "manipulator" => Engine::new(own::manipulator::Manipulator::default()),
         "motor" => Engine::new(own::motor::Motor::default()),
         "parallelogram" => Engine::new(own::parallelogram::Parallelogram::default()),
         "peaucellier" => Engine::new(own::peaucellier::Peaucellier::default()),

@@ -27,13 +27,14 @@ const REGULAR: f64 = 1e-9;
 const VANISHING: f64 = 1e-12;
 
 /// Functions of a joint state that solve for what the rows of loops demand.
-const IN_JOINTS: [&str; 6] = [
+const IN_JOINTS: [&str; 7] = [
     "joint_accelerations",
     "closure_distances",
     "close_positions",
     "close_velocities",
     "joint_jacobian",
     "joint_input_jacobian",
+    "joint_outputs",
 ];
 
 /// All that is not finite and should be.

@@ -14,7 +14,7 @@ use crate::joints::JointLayout;
 use crate::program::Program;
 use crate::refusal::Refusal;
 use block::{Before, Form, Reader, Sizes};
-use gyro_model::{Model, Spline};
+use gyro_model::{Model, Output, OutputKind, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
 use skeleton::{Choice, Has};
@@ -60,7 +60,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 33] = [
+const FUNCTIONS: [(&str, Form); 36] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -94,6 +94,9 @@ const FUNCTIONS: [(&str, Form); 33] = [
     ("close_velocities", Form::JointStores),
     ("joint_jacobian", Form::Jacobian),
     ("joint_input_jacobian", Form::Filling),
+    ("joint_outputs", Form::Filling),
+    ("frame_jacobians", Form::Filling),
+    ("frame_biases", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
@@ -109,7 +112,7 @@ const TARGETS: [(&str, &str); 8] = [
 ];
 
 /// What functions have others compute first.
-const BEFORE: [(&str, Before); 4] = [
+const BEFORE: [(&str, Before); 5] = [
     ("derivative", ACCELERATIONS),
     ("outputs", ACCELERATIONS),
     (
@@ -119,14 +122,14 @@ const BEFORE: [(&str, Before); 4] = [
             call: "gyro_sim :: JointSpace :: corrected_accelerations (self , t , y , & mut accelerations) ;",
         },
     ),
-    (
-        "joint_derivative",
-        Before {
-            buffer: "rates",
-            call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
-        },
-    ),
+    ("joint_derivative", RATES),
+    ("joint_outputs", RATES),
 ];
+
+const RATES: Before = Before {
+    buffer: "rates",
+    call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
+};
 
 const ACCELERATIONS: Before = Before {
     buffer: "accelerations",
@@ -150,10 +153,15 @@ pub fn is_on_constraints(function: &str) -> bool {
 /// The function that gives the accelerations, or rates, that another one reads.
 pub fn source_of_accelerations(function: &str) -> &'static str {
     match function {
-        "joint_derivative" => "joint_accelerations",
+        "joint_derivative" | "joint_outputs" => "joint_accelerations",
         "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
         _ => "accelerations",
     }
+}
+
+/// The outputs that are frames.
+pub(crate) fn frames(model: &Model) -> impl Iterator<Item = &Output> {
+    model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity { .. }))
 }
 
 fn of_function<T: Copy>(table: &[(&str, T)], function: &str) -> Option<T> {
@@ -182,6 +190,8 @@ impl Module {
             jacobian,
             corrected_derivative,
             parameter_setup: text.contains("fn parameter_setup("),
+            joint_outputs: text.contains("fn joint_outputs("),
+            frames: text.contains("fn frame_jacobians("),
         };
         let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
@@ -216,7 +226,7 @@ impl Module {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
             let accelerations = match name {
                 "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
-                "joint_derivative" => joints.as_ref().map_or(0, |joints| joints.n_rates),
+                "joint_derivative" | "joint_outputs" => joints.as_ref().map_or(0, |joints| joints.n_rates),
                 _ => n_accelerations,
             };
             // What is set up does not read what is set up.
@@ -312,6 +322,9 @@ impl Module {
             ("closure_distances", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
+            ("joint_outputs", if has("joint_outputs") { outputs } else { 0 }),
+            ("frame_jacobians", if has("frame_jacobians") { 6 * frames(model).count() * n_rates } else { 0 }),
+            ("frame_biases", if has("frame_jacobians") { 6 * frames(model).count() } else { 0 }),
         ];
         let found = |name: &str| self.written.get(name).map_or(0, |program| program.results.len());
         let patterns = [

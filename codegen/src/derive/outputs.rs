@@ -37,22 +37,28 @@ pub fn drivers_power(system: &mut System, sources: &Sources) -> ExprId {
     power
 }
 
+/// Velocity of a point, global frame, and w'.
+pub fn velocity(system: &mut System, body: usize, point: &[Number; 3]) -> Vec<ExprId> {
+    let velocity = PointOfBody::new(system, body, point).velocity;
+    velocity.into_iter().chain(system.poses[body].w).collect()
+}
+
+/// Acceleration of a point, global frame, and ẇ'.
+pub fn acceleration(system: &mut System, body: usize, point: &[Number; 3]) -> Vec<ExprId> {
+    let (linear, angular) = linear_and_angular(system, body, point);
+    linear.into_iter().chain(angular).collect()
+}
+
 fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<ExprId> {
     match kind {
         OutputKind::Pose { body, point } => {
             let position = PointOfBody::new(system, *body, point).position;
             position.into_iter().chain(system.poses[*body].p).collect()
         }
-        OutputKind::Velocity { body, point } => {
-            let velocity = PointOfBody::new(system, *body, point).velocity;
-            velocity.into_iter().chain(system.poses[*body].w).collect()
-        }
-        OutputKind::Acceleration { body, point } => {
-            let (linear, angular) = acceleration(system, *body, point);
-            linear.into_iter().chain(angular).collect()
-        }
+        OutputKind::Velocity { body, point } => velocity(system, *body, point),
+        OutputKind::Acceleration { body, point } => acceleration(system, *body, point),
         OutputKind::Inertial { body, point } => {
-            let (linear, _) = acceleration(system, *body, point);
+            let (linear, _) = linear_and_angular(system, *body, point);
             let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[*body]);
             let felt = system.graph.sub_vec(&linear, &gravity);
             let felt = system.graph.transposed_vec(&pose.a, &felt);
@@ -70,7 +76,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
 }
 
 /// Acceleration of a point, global frame, `r̈ = s̈ + A (ẇ' × c + w' × (w' × c))`, and ẇ'.
-fn acceleration(system: &mut System, body: usize, point: &[Number; 3]) -> (Vec3, Vec3) {
+fn linear_and_angular(system: &mut System, body: usize, point: &[Number; 3]) -> (Vec3, Vec3) {
     let (pose, point) = (system.poses[body], system.numbers(point));
     let (linear, angular) = match system.moving_body_of(body) {
         Some(moving_body) => {

@@ -4,6 +4,7 @@ use super::candidates::Candidates;
 use super::coordinates::Coordinates;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
+use super::observed::{self, Frames};
 use super::{forces, maps, motions, multipliers};
 use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
@@ -38,6 +39,9 @@ pub struct JointSpace {
     pub start: Vec<f64>,
     /// The derivatives of the joint form, unless the mechanism is too large.
     pub jacobian: Option<Jacobian>,
+    /// The numbers of the outputs, in terms of [`Symbol::RateOfRate`] too.
+    pub outputs: Option<Chosen>,
+    pub frames: Option<Frames>,
     /// Bodies that are described in a frame that does not turn with them.
     pub invariant: Vec<usize>,
     /// The rows of the joints that close loops, by their places among all rows.
@@ -110,6 +114,9 @@ impl JointSpace {
             passes,
         };
         let jacobian = functions.has(Group::Jacobian).then(|| Jacobian::derive(system, &form)).flatten();
+        let outputs =
+            functions.has(Group::JointOutputs).then(|| observed::outputs(system, textbook, &coordinates));
+        let frames = functions.has(Group::Frames).then(|| Frames::derive(system, &coordinates)).flatten();
         let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
@@ -125,6 +132,8 @@ impl JointSpace {
             accelerations_at,
             corrected,
             jacobian,
+            outputs,
+            frames,
             maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),
             reduced,
@@ -173,7 +182,8 @@ impl Power<'_> {
     ) -> Option<ExprId> {
         system.model.has_work().then(|| {
             let rates_of_rates = coordinates.of_tree(system, rates_of_rates);
-            let motions = motions::motions(system, &coordinates.links, &rates_of_rates, true);
+            let motions =
+                motions::motions(system, &coordinates.links, (&rates_of_rates, motions::Part::All), true);
             let motions = system.expanded(&coordinates.in_joints, &motions);
             let mut values = coordinates.in_joints.clone();
             values.extend(motions::accelerations_by_symbol(&motions));

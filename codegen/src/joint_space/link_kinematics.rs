@@ -257,6 +257,10 @@ pub struct Bias {
     pub rho: Vec3,
 }
 
+impl Bias {
+    pub const NONE: Self = Self { on_parent: ZERO3, on_body: ZERO3, rho: ZERO3 };
+}
+
 /// A rotation of the second body relative to the first, about an axis of one of them.
 #[derive(Clone, Copy)]
 enum Turn {

@@ -10,7 +10,7 @@
 //! that suit them, between which `screw_moves` lead, from the base inertial parameters among their `mass_moments`,
 //! with an `articulated_inertia` or a mass matrix. These are the `candidates`, and `choose` takes the cheapest of
 //! those that are accurate, with what follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of
-//! the joint form.
+//! the joint form. `observed` is what outputs and frames are in joint coordinates.
 
 mod articulated_inertia;
 mod axis_dynamics;
@@ -32,6 +32,7 @@ mod maps;
 mod mass_moments;
 mod motions;
 mod multipliers;
+mod observed;
 mod planar;
 mod relation;
 mod screw_moves;
@@ -41,3 +42,4 @@ pub use candidates::Candidates;
 pub use choose::JointSpace;
 pub use coordinates::{Coordinates, obstacle};
 pub use jacobian::Jacobian;
+pub use observed::Frames;

@@ -2,7 +2,7 @@
 
 use super::coordinates::Coordinates;
 use super::dynamics;
-use super::link_kinematics::LinkKinematics;
+use super::link_kinematics::{Bias, LinkKinematics};
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::ExprId;
@@ -21,23 +21,36 @@ pub fn accelerations_by_symbol(accelerations: &[ExprId]) -> Values {
 /// (s̈, ẇ') of each moving body from the rates' rates: translations in each body's own frame, or in the global one.
 pub fn outward(system: &mut System, coordinates: &Coordinates, rates: &[ExprId]) -> [Vec<ExprId>; 2] {
     [false, true].map(|is_global| {
-        let motions = motions(system, &coordinates.links, rates, is_global);
+        let motions = motions(system, &coordinates.links, (rates, Part::All), is_global);
         system.expanded(&coordinates.of_joints, &motions)
     })
+}
+
+/// Which part of an acceleration.
+#[derive(Clone, Copy, Debug)]
+pub enum Part {
+    All,
+    /// What is linear in the rates' rates: what velocities are of rates, where nothing moves without these.
+    Linear,
 }
 
 /// (s̈, ẇ') of each moving body from the rates' rates, with translations in the global frame or in each body's own.
 pub fn motions(
     system: &mut System,
     links: &[LinkKinematics],
-    rates: &[ExprId],
+    (rates, part): (&[ExprId], Part),
     is_global: bool,
 ) -> Vec<ExprId> {
     let spins: Vec<_> = system.moving_bodies.iter().map(|&body| system.poses[body].w).collect();
     let mut motions = vec![SpatialVector::ZERO; spins.len()];
     for link_kinematics in links {
-        let bias = dynamics::bias(system, link_kinematics, &spins);
-        let ground = dynamics::of_ground(system, link_kinematics, &ZERO3);
+        let (bias, ground) = match part {
+            Part::All => (
+                dynamics::bias(system, link_kinematics, &spins),
+                dynamics::of_ground(system, link_kinematics, &ZERO3),
+            ),
+            Part::Linear => (Bias::NONE, SpatialVector::ZERO),
+        };
         let subspace = dynamics::local_subspace(system, link_kinematics);
         let subspace = if is_global { in_global_frame(system, link_kinematics, subspace) } else { subspace };
         let body = system.moving_bodies[link_kinematics.moving_body];

@@ -7,6 +7,7 @@ mod description;
 mod equations;
 mod joint_space;
 mod mechanism;
+mod observed;
 mod ode;
 mod partition;
 
@@ -14,6 +15,7 @@ pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, Row
 pub use equations::{Equations, Terms};
 pub use joint_space::{JointBuffers, JointLayout, JointPlace, JointSpace};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
+pub use observed::{FrameBuffers, Frames, JointOutputs};
 pub use ode::{Corrected, Exact, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
 

@@ -7,11 +7,12 @@ use gyro_verifier::{Depth, verify};
 const SEEDS: std::ops::Range<u64> = 3000..3005;
 
 /// Names of functions that stand for a selection, and the groups that they bring besides what is always there.
-const SELECTIONS: [(&[&str], &[Group]); 4] = [
+const SELECTIONS: [(&[&str], &[Group]); 5] = [
     (&[], &[]),
     (&["gamma", "maximal"], &[]),
     (&["to_maximal"], &[Group::Joint]),
     (&["outputs", "joint_jacobian"], &[Group::Joint, Group::Jacobian]),
+    (&["frame_biases", "joint_outputs"], &[Group::Joint, Group::Frames, Group::JointOutputs]),
 ];
 
 /// What is wrong with a selection.
@@ -35,9 +36,12 @@ fn problems(seed: u64) -> Vec<String> {
             .extend(differences(&full, &module, is_asked).map(|words| format!("{seed} {names:?}: {words}")));
         let has = |text: &str| module.code.contains(text);
         let could = |text: &str| full.code.contains(text);
-        for (group, text) in
-            [(Group::Joint, "gyro_sim::JointSpace for"), (Group::Jacobian, "fn joint_jacobian(")]
-        {
+        for (group, text) in [
+            (Group::Joint, "gyro_sim::JointSpace for"),
+            (Group::Jacobian, "fn joint_jacobian("),
+            (Group::JointOutputs, "gyro_sim::JointOutputs for"),
+            (Group::Frames, "gyro_sim::Frames for"),
+        ] {
             if has(text) != (could(text) && groups.contains(&group)) {
                 problems.push(format!("{seed} {names:?}: `{text}` is there: {}", has(text)));
             }

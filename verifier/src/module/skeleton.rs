@@ -29,6 +29,10 @@ pub struct Has {
     pub corrected_derivative: bool,
     /// A function of what depends on parameters alone.
     pub parameter_setup: bool,
+    /// Outputs of a joint state.
+    pub joint_outputs: bool,
+    /// How frames move with a joint state.
+    pub frames: bool,
 }
 
 /// The expected text.
@@ -46,6 +50,8 @@ pub fn text(
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
+        if has.joint_outputs { joint_outputs(type_name) } else { String::new() },
+        joints.filter(|_| has.frames).map(|joints| frames(model, type_name, joints)).unwrap_or_default(),
     ]
     .concat()
 }
@@ -164,6 +170,39 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
         multipliers("corrected_multipliers", "Velocities"),
         fillings(&[("corrected_solution", "Solution")]),
+    )
+}
+
+fn joint_outputs(name: &str) -> String {
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::JointOutputs for {name}<T> {{
+            fn joint_outputs(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Outputs) {{ HOLE_joint_outputs }}
+        }}"
+    )
+}
+
+fn frames(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let frames: Vec<String> = crate::module::frames(model).map(|frame| format!("{:?}", frame.name)).collect();
+    let biases = 6 * frames.len();
+    let (jacobians, names) = (biases * joints.n_rates, list(frames));
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Frames for {name}<T> {{
+            type FrameJacobians = [T; {jacobians}];
+            type FrameBiases = [T; {biases}];
+            fn frame_names(&self) -> &[&str] {{ &[{names}] }}
+            fn frame_buffers(&self) -> gyro_sim::FrameBuffers<Self> {{
+                gyro_sim::FrameBuffers {{
+                    jacobians: [T::constant(0.0); {jacobians}],
+                    biases: [T::constant(0.0); {biases}]
+                }}
+            }}
+            fn frame_jacobians(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::FrameJacobians) {{
+                HOLE_frame_jacobians
+            }}
+            fn frame_biases(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::FrameBiases) {{
+                HOLE_frame_biases
+            }}
+        }}"
     )
 }
 

@@ -4,7 +4,7 @@ use super::case::{Arguments, Case};
 use super::partition::dot;
 use super::point::stretched;
 use super::residuals::{differences, position_rates};
-use super::{closure, joints, partition};
+use super::{closure, joints, observed, partition};
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
@@ -78,6 +78,12 @@ pub enum Claim {
     JointJacobian,
     /// `joint_input_jacobian` is ∂f/∂(inputs).
     JointInputJacobian,
+    /// `joint_outputs` gives the outputs of the model file at the maximal state of a joint state.
+    JointOutputs,
+    /// `frame_jacobians` is what velocities of frames have of the rates.
+    FrameJacobians,
+    /// `frame_biases` is what accelerations of frames have beside `J u̇`.
+    FrameBiases,
 }
 
 impl Claim {
@@ -122,6 +128,10 @@ impl Claim {
             |function: &str| module.programs.get(function).is_some_and(|program| !program.results.is_empty());
         claims.extend(gives("joint_jacobian").then_some(JointJacobian));
         claims.extend(gives("joint_input_jacobian").then_some(JointInputJacobian));
+        claims.extend(gives("joint_outputs").then_some(JointOutputs));
+        if gives("frame_jacobians") {
+            claims.extend([FrameJacobians, FrameBiases]);
+        }
         claims
     }
 
@@ -159,6 +169,9 @@ impl Claim {
             Self::CloseVelocities => &["close_velocities"],
             Self::JointJacobian => &["joint_jacobian"],
             Self::JointInputJacobian => &["joint_input_jacobian"],
+            Self::JointOutputs => &["joint_outputs"],
+            Self::FrameJacobians => &["frame_jacobians"],
+            Self::FrameBiases => &["frame_biases"],
         }
     }
 
@@ -196,6 +209,9 @@ impl Claim {
             Self::CloseVelocities => "loops stay closed; rates at which they do are kept",
             Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
             Self::JointInputJacobian => "`joint_derivative` by dual numbers, of the inputs",
+            Self::JointOutputs => "outputs at the state of (x, u), at the proved v̇ and λ",
+            Self::FrameJacobians => "velocities at the state of (x, u) by the rates",
+            Self::FrameBiases => "accelerations at the state of (x, u) for u̇ = 0",
         }
     }
 
@@ -224,6 +240,9 @@ impl Claim {
                 "the derivatives of `joint_derivative` by dual numbers"
             }
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
+            Self::JointOutputs | Self::FrameJacobians | Self::FrameBiases => {
+                "the outputs' definitions on the constraints"
+            }
         }
     }
 
@@ -285,6 +304,9 @@ impl Claim {
             Self::CloseVelocities => closure::close_velocities(case),
             Self::JointJacobian => joints::jacobian(case),
             Self::JointInputJacobian => joints::input_jacobian(case),
+            Self::JointOutputs => observed::outputs(case),
+            Self::FrameJacobians => observed::frame_jacobians(case),
+            Self::FrameBiases => observed::frame_biases(case),
         }
     }
 }

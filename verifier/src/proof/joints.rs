@@ -23,13 +23,13 @@ use crate::textbook::Reading;
 use gyro_model::{JointCoordinate, RowOwner};
 
 /// A joint state on its way.
-struct Motion<'c, 'a> {
+pub(super) struct Motion<'c, 'a> {
     case: &'c Case<'a>,
     layout: &'a JointLayout,
     /// Its maximal state.
-    maximal: Point<Term<'a>>,
+    pub maximal: Point<Term<'a>>,
     /// u̇.
-    rates_of_rates: Vec<Term<'a>>,
+    pub rates_of_rates: Vec<Term<'a>>,
     /// `(ẋ, u̇ [, power])`.
     derivative: Vec<Term<'a>>,
     /// How the maximal state changes along it.
@@ -37,7 +37,7 @@ struct Motion<'c, 'a> {
 }
 
 impl<'c, 'a> Motion<'c, 'a> {
-    fn new(case: &'c Case<'a>) -> Option<Self> {
+    pub fn new(case: &'c Case<'a>) -> Option<Self> {
         let layout = case.module.joints.as_ref()?;
         let rates_of_rates = case.run("joint_accelerations", &case.point);
         let derivative = case.run_with("joint_derivative", &case.point, &rates_of_rates);
@@ -53,20 +53,8 @@ impl<'c, 'a> Motion<'c, 'a> {
     }
 
     /// (s̈, ẇ') body after body.
-    fn accelerations(&self) -> &[Term<'a>] {
+    pub fn accelerations(&self) -> &[Term<'a>] {
         velocities(self.case, &self.maximal_rates)
-    }
-
-    /// B by columns.
-    fn free_motions(&self) -> Option<Vec<Vec<Term<'a>>>> {
-        let (case, start) = (self.case, self.layout.n_coordinates);
-        let one = Term::one(case.point.context);
-        let column = |rate: usize| {
-            let only = |source| (source == Source::Joint(start + rate)).then_some(one);
-            let [_, rates] = case.run_along("to_maximal", case.given(&case.point), &only)?;
-            Some(velocities(case, &rates).to_vec())
-        };
-        (0..self.layout.n_rates).map(column).collect()
     }
 
     /// What is left of `Bᵀ (M v̇ − f) = −Jᵀ λ` for any λ, with numbers that exist where the rows of J are independent;
@@ -75,7 +63,7 @@ impl<'c, 'a> Motion<'c, 'a> {
         let (case, context) = (self.case, self.case.point.context);
         let imbalance = case.textbook(&self.maximal)?.imbalance(self.accelerations())?;
         let along = |column: Vec<Term<'a>>| dot(&column, &imbalance);
-        let taken: Vec<_> = self.free_motions()?.into_iter().map(along).collect();
+        let taken: Vec<_> = free_motions(case)?.into_iter().map(along).collect();
         if self.layout.closure_rows.is_empty() {
             return Some([taken, Vec::new()]);
         }
@@ -107,8 +95,20 @@ impl<'c, 'a> Motion<'c, 'a> {
     }
 }
 
+/// B by columns.
+pub(super) fn free_motions<'a>(case: &Case<'a>) -> Option<Vec<Vec<Term<'a>>>> {
+    let layout = case.module.joints.as_ref()?;
+    let one = Term::one(case.point.context);
+    let column = |rate: usize| {
+        let only = |source| (source == Source::Joint(layout.n_coordinates + rate)).then_some(one);
+        let [_, rates] = case.run_along("to_maximal", case.given(&case.point), &only)?;
+        Some(velocities(case, &rates).to_vec())
+    };
+    (0..layout.n_rates).map(column).collect()
+}
+
 /// The velocities of a state.
-fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
+pub(super) fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
     let n = case.n_bodies();
     &state[7 * n..13 * n]
 }

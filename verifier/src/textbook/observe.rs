@@ -82,7 +82,8 @@ impl<F: Field> Evaluation<'_, F> {
         numbers.collect::<Option<Vec<_>>>().map(|numbers| numbers.concat())
     }
 
-    fn output(&self, kind: &OutputKind, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
+    /// The numbers of one output.
+    pub fn output(&self, kind: &OutputKind, accelerations: &[F], lambda: &[F]) -> Option<Vec<F>> {
         let values = |linear: Vector<F>, rest: &[Jet<F>]| {
             linear.0.iter().chain(rest).map(|x| x.value.clone()).collect::<Vec<F>>()
         };

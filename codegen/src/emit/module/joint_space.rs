@@ -215,7 +215,7 @@ impl ModuleWriter<'_> {
     }
 
     /// A function of time and joint state.
-    fn of_joints(
+    pub fn of_joints(
         &self,
         kernel: Kernel,
         what: &str,

@@ -4,6 +4,7 @@ mod definition;
 mod equations;
 mod joint_space;
 mod mechanism;
+mod observed;
 mod ode;
 mod partition;
 mod ports;
@@ -63,6 +64,7 @@ impl ModuleWriter<'_> {
         let (tables, definition, mechanism) =
             (self.tables_of_motions(), self.definition(), self.mechanism(start));
         let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
+        let (joint_outputs, frames) = (self.joint_outputs(), self.frames());
         quote! {
             #tables
             #definition
@@ -70,6 +72,8 @@ impl ModuleWriter<'_> {
             #partition
             #equations
             #joint_space
+            #joint_outputs
+            #frames
         }
     }
 }

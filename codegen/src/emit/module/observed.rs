@@ -1,0 +1,87 @@
+//! What is read off a joint state.
+
+use super::writer::ModuleWriter;
+use crate::emit::tokens::{ident, index};
+use crate::expr::symbol::Symbol;
+use crate::kernels::Kernel;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+impl ModuleWriter<'_> {
+    /// Empty unless it is asked for.
+    pub fn joint_outputs(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        let roots = self.kernels.roots(Kernel::JointOutputs);
+        if roots.is_empty() {
+            return None;
+        }
+        let name = ident(self.type_name);
+        let n_rates = index(space.layout.n_rates);
+        let outputs = self.function("Writes the outputs of a joint state", roots, |body, t, x| {
+            let (statements, values) = (&body.statements, &body.values);
+            let reads_rates = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::RateOfRate(_)));
+            let (t, x, solved) = if reads_rates {
+                let solved = quote! {
+                    let mut rates = [T::constant(0.0); #n_rates];
+                    gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+                };
+                (&quote! { t }, &ident("x"), solved)
+            } else {
+                (t, x, quote! {})
+            };
+            quote! {
+                fn joint_outputs(&self, #t: T, #x: &Self::Joints, out: &mut Self::Outputs) {
+                    #solved
+                    #statements
+                    *out = [#(#values),*];
+                }
+            }
+        });
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::JointOutputs for #name<T> {
+                #outputs
+            }
+        })
+    }
+
+    /// Empty unless the model file has frames and they are asked for.
+    pub fn frames(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        let frames = space.frames.as_ref()?;
+        let name = ident(self.type_name);
+        let n_biases = index(frames.biases.roots.len());
+        let n_jacobians = index(frames.jacobians.roots.len());
+        let names = &frames.names;
+        let write = |values: &[TokenStream]| quote! { *out = [#(#values),*]; };
+        let jacobians = self.of_joints(
+            Kernel::FrameJacobians,
+            "Writes ∂(ṡ, w')/∂u of frames, row by row",
+            &quote! { out: &mut Self::FrameJacobians },
+            write,
+        );
+        let biases = self.of_joints(
+            Kernel::FrameBiases,
+            "Writes (s̈, ẇ') of frames at u̇ = 0",
+            &quote! { out: &mut Self::FrameBiases },
+            write,
+        );
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::Frames for #name<T> {
+                type FrameJacobians = [T; #n_jacobians];
+                type FrameBiases = [T; #n_biases];
+
+                fn frame_names(&self) -> &[&str] {
+                    &[#(#names),*]
+                }
+                fn frame_buffers(&self) -> gyro_sim::FrameBuffers<Self> {
+                    gyro_sim::FrameBuffers {
+                        jacobians: [T::constant(0.0); #n_jacobians],
+                        biases: [T::constant(0.0); #n_biases],
+                    }
+                }
+                #jacobians
+                #biases
+            }
+        })
+    }
+}

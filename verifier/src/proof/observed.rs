@@ -1,0 +1,69 @@
+//! What functions that observe a joint state must satisfy: they give what the textbook reads off its maximal state.
+
+use super::case::{Arguments, Case};
+use super::joints::{Motion, free_motions, velocities};
+use super::residuals::differences;
+use crate::field::Field;
+use crate::module::frames;
+use crate::point::Point;
+use crate::program::Source;
+use crate::tape::Term;
+use gyro_model::{Number, OutputKind};
+
+/// At the accelerations and multipliers that are proved there.
+pub fn outputs<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let motion = Motion::new(case)?;
+    let lambda = case.run_with("corrected_multipliers", &motion.maximal, motion.accelerations());
+    let textbook = case.textbook(&motion.maximal)?;
+    let expected = textbook.outputs(motion.accelerations(), &lambda)?;
+    let found = case.run_with("joint_outputs", &case.point, &motion.rates_of_rates);
+    Some(differences(&found, &expected))
+}
+
+/// By columns: how much faster each frame is if one rate is greater by one.
+pub fn frame_jacobians<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let n_rates = case.module.joints.as_ref()?.n_rates;
+    let maximal = case.maximal(&case.joints);
+    let velocities_of = |point: &Point<Term<'a>>| {
+        let textbook = case.textbook(point)?;
+        let velocity = |kind: &OutputKind| textbook.output(kind, &[], &[]);
+        frames(case.model).map(|frame| velocity(&frame.kind)).collect::<Option<Vec<_>>>()
+    };
+    let slower = velocities_of(&maximal)?.concat();
+    let found = case.run("frame_jacobians", &case.point);
+    let mut residuals = Vec::new();
+    for (rate, column) in free_motions(case)?.into_iter().enumerate() {
+        let mut faster = maximal.clone();
+        let n = case.n_bodies();
+        faster.state[7 * n..13 * n].iter_mut().zip(&column).for_each(|(v, by)| *v = v.add(by));
+        let faster = velocities_of(&faster)?.concat();
+        let found: Vec<_> = found.iter().skip(rate).step_by(n_rates).copied().collect();
+        residuals.extend(differences(&found, &differences(&faster, &slower)));
+    }
+    Some(residuals)
+}
+
+/// The accelerations of frames where u does not change.
+pub fn frame_biases<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let (zero, one) = (Term::zero(case.point.context), Term::one(case.point.context));
+    let at_rest = vec![zero; layout.n_rates];
+    let given = Arguments { accelerations: &at_rest, ..case.given(&case.point) };
+    let moved = case.results("joint_derivative", given);
+    let [state, rates] = case.run_along("to_maximal", case.given(&case.point), &|source| match source {
+        Source::Joint(k) => Some(if k < layout.n_coordinates { moved[k] } else { zero }),
+        Source::Time => Some(one),
+        _ => None,
+    })?;
+    let maximal = Point { state, ..case.point.clone() };
+    let (textbook, accelerations) = (case.textbook(&maximal)?, velocities(case, &rates));
+    let acceleration = |body: usize, point: &[Number; 3]| {
+        textbook.output(&OutputKind::Acceleration { body, point: point.clone() }, accelerations, &[])
+    };
+    let expected = frames(case.model).map(|frame| match &frame.kind {
+        OutputKind::Velocity { body, point } => acceleration(*body, point),
+        _ => None,
+    });
+    let expected = expected.collect::<Option<Vec<_>>>()?.concat();
+    Some(differences(&case.run("frame_biases", &case.point), &expected))
+}
