@@ -13,6 +13,8 @@ pub enum Group {
     Jacobian,
     /// `JointOutputs`.
     JointOutputs,
+    /// `OutputDerivatives`.
+    OutputDerivatives,
     /// `Frames`.
     Frames,
 }
@@ -20,7 +22,15 @@ pub enum Group {
 impl Group {
     /// All groups.
     pub fn all() -> impl Iterator<Item = Self> {
-        [Self::Maximal, Self::Joint, Self::Jacobian, Self::JointOutputs, Self::Frames].into_iter()
+        [
+            Self::Maximal,
+            Self::Joint,
+            Self::Jacobian,
+            Self::JointOutputs,
+            Self::OutputDerivatives,
+            Self::Frames,
+        ]
+        .into_iter()
     }
 
     /// Its name on the command line and in model files.
@@ -30,6 +40,7 @@ impl Group {
             Self::Joint => "joint",
             Self::Jacobian => "jacobian",
             Self::JointOutputs => "joint_outputs",
+            Self::OutputDerivatives => "output_derivatives",
             Self::Frames => "frames",
         }
     }
@@ -41,6 +52,7 @@ impl Group {
             Self::Joint => "joint coordinates (trait JointSpace)",
             Self::Jacobian => "derivatives of the joint form, with `joint` (JointSpace::Jacobian)",
             Self::JointOutputs => "outputs of a joint state (trait JointOutputs)",
+            Self::OutputDerivatives => "their derivatives (trait OutputDerivatives)",
             Self::Frames => "how the outputs of kind `velocity` move with a joint state (trait Frames)",
         }
     }
@@ -51,6 +63,7 @@ impl Group {
             Self::Maximal => vec![self],
             Self::Joint => vec![Self::Maximal, self],
             Self::Jacobian | Self::JointOutputs | Self::Frames => vec![Self::Maximal, Self::Joint, self],
+            Self::OutputDerivatives => vec![Self::Maximal, Self::Joint, Self::JointOutputs, self],
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
-use crate::joint_space::{Frames, Jacobian, JointSpace};
+use crate::joint_space::{Frames, Jacobian, JointSpace, OutputDerivatives};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::parameter_setup;
 use std::collections::BTreeMap;
@@ -48,6 +48,10 @@ pub enum Kernel {
     ClosePositions,
     CloseVelocities,
     JointOutputs,
+    OutputsByState,
+    OutputsByAccelerations,
+    OutputsByInputs,
+    OutputsByParameters,
     FrameJacobians,
     FrameBiases,
 }
@@ -66,6 +70,8 @@ enum Source {
     Jacobian(fn(&Jacobian) -> Chosen),
     /// If outputs of a joint state are asked for.
     JointOutputs,
+    /// If their derivatives are, and exist.
+    OutputDerivatives(fn(&OutputDerivatives) -> Chosen),
     /// If the model file has frames, and they are asked for.
     Frames(fn(&Frames) -> Chosen),
 }
@@ -120,6 +126,10 @@ const TABLE: &[Row] = &[
     row(Kernel::ClosePositions, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
     row(Kernel::CloseVelocities, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
     row(Kernel::JointOutputs, "joint_outputs", "outputs of a joint state, u̇ being known", Source::JointOutputs),
+    row(Kernel::OutputsByState, "outputs_by_state", "∂(outputs)/∂(x, u), u̇ being held", Source::OutputDerivatives(|o| o.by_state.clone())),
+    row(Kernel::OutputsByAccelerations, "outputs_by_accelerations", "∂(outputs)/∂u̇", Source::OutputDerivatives(|o| o.by_accelerations.clone())),
+    row(Kernel::OutputsByInputs, "outputs_by_inputs", "∂(outputs)/∂(inputs), u̇ being held", Source::OutputDerivatives(|o| o.by_inputs.clone())),
+    row(Kernel::OutputsByParameters, "outputs_by_parameters", "∂(outputs)/∂(parameters), u̇ being held", Source::OutputDerivatives(|o| o.by_parameters.clone())),
     row(Kernel::FrameJacobians, "frame_jacobians", "∂(ṡ, w')/∂u of frames, row by row", Source::Frames(|f| f.jacobians.clone())),
     row(Kernel::FrameBiases, "frame_biases", "(s̈, ẇ') of frames at u̇ = 0", Source::Frames(|f| f.biases.clone())),
 ];
@@ -155,6 +165,7 @@ impl Kernel {
             Source::JointSpace(_) => Group::Joint,
             Source::Jacobian(_) => Group::Jacobian,
             Source::JointOutputs => Group::JointOutputs,
+            Source::OutputDerivatives(_) => Group::OutputDerivatives,
             Source::Frames(_) => Group::Frames,
         }
     }
@@ -173,6 +184,7 @@ impl Kernel {
             Source::JointSpace(of) => joint_space.map(of),
             Source::Jacobian(of) => joint_space?.jacobian.as_ref().map(of),
             Source::JointOutputs => joint_space?.outputs.clone(),
+            Source::OutputDerivatives(of) => joint_space?.output_derivatives.as_ref().map(of),
             Source::Frames(of) => joint_space?.frames.as_ref().map(of),
         }
     }

@@ -117,7 +117,8 @@ pub use apart::apart;
 pub use contract::{
     Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, FrameBuffers, Frames,
     Joint, JointBuffers, JointInfo, JointLayout, JointOutputs, JointPlace, JointSpace, Mechanism, Ode,
-    OutputInfo, Owner, Partition, RowInfo, System, Terms, set_turn_references,
+    OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition, RowInfo, System, Terms,
+    set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

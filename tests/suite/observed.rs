@@ -2,13 +2,13 @@
 //! state.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_sim::{Description, Frames, JointOutputs, JointPlace, Mechanism};
+use gyro_sim::{Description, Frames, JointOutputs, JointPlace, JointSpace, Mechanism, OutputDerivatives};
 use gyro_sim_suite::generated::manipulator::Manipulator;
 use gyro_sim_suite::{Engine, Random, dense, model};
 
 const STATES: usize = 200;
 
-/// Relative to the largest number: 3e-13 is seen of outputs, which have reactions among them, and 4e-15 of frames.
+/// Relative to the largest number: 3e-14 is seen of outputs, which have reactions among them, and 9e-16 of Jacobians.
 const OUTPUTS: f64 = 1e-11;
 const FRAMES: f64 = 1e-13;
 
@@ -103,4 +103,82 @@ fn outputs_and_frames_of_a_joint_state_are_those_of_its_maximal_state() {
     }
     println!("outputs {worst_output:.1e}, J {worst_jacobian:.1e}, J u\u{307} + b {worst_bias:.1e}");
     assert!(worst_output < OUTPUTS && worst_jacobian < FRAMES && worst_bias < OUTPUTS);
+}
+
+/// Five points; the error is the fourth power of the step times a fifth derivative.
+fn slope(step: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Vec<f64> {
+    let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| f(k * step));
+    (0..a.len()).map(|k| (a[k] - d[k] + 8.0 * (c[k] - b[k])) / (12.0 * step)).collect()
+}
+
+const STEP: f64 = 1e-3;
+
+/// Relative to the largest output: 1e-10 is seen.
+const SLOPES: f64 = 1e-8;
+
+#[test]
+fn derivatives_of_outputs_are_their_differences() {
+    let (mut mechanism, mut random) = (Manipulator::<f64>::default(), Random::new(12));
+    let n_x = mechanism.joint_layout().n_coordinates();
+    let n = n_x + mechanism.joint_layout().n_rates();
+    let accelerations = |mechanism: &Manipulator<f64>, t: f64, x: &_| {
+        let mut rates = mechanism.joint_buffers().rates;
+        mechanism.joint_accelerations(t, x, &mut rates);
+        rates
+    };
+    let outputs = |mechanism: &Manipulator<f64>, t: f64, x: &_| {
+        let mut outputs = mechanism.buffers().outputs;
+        mechanism.joint_outputs(t, x, &mut outputs);
+        outputs.to_vec()
+    };
+    let mut worst = 0.0_f64;
+    for _ in 0..20 {
+        let t = random.signed();
+        assert!(
+            mechanism.set_input(0, random.signed())
+                && mechanism.set_parameter(0, 1.0 + 0.3 * random.signed())
+        );
+        let x = random_state(&mechanism, &mut random);
+        let (rates, mut slopes) = (accelerations(&mechanism, t, &x), mechanism.output_slopes());
+        mechanism.outputs_by_state(t, &x, &rates, &mut slopes.by_state);
+        mechanism.outputs_by_accelerations(t, &x, &rates, &mut slopes.by_accelerations);
+        mechanism.outputs_by_inputs(t, &x, &rates, &mut slopes.by_inputs);
+        mechanism.outputs_by_parameters(t, &x, &rates, &mut slopes.by_parameters);
+        let size = outputs(&mechanism, t, &x).iter().fold(1.0, |largest: f64, x| x.abs().max(largest));
+        // A column, and what comes through the accelerations.
+        let mut hold = |(column, n, k): (&[f64], usize, usize), of_rates: &[f64], differences: &[f64]| {
+            for (row, by_rates) in slopes.by_accelerations.chunks(of_rates.len()).enumerate() {
+                let through: f64 = by_rates.iter().zip(of_rates).map(|(a, b)| a * b).sum();
+                worst = worst.max((column[row * n + k] + through - differences[row]).abs() / size);
+            }
+        };
+        for k in 0..n {
+            let at = |h: f64| {
+                let mut moved = x;
+                moved[k] += h;
+                moved
+            };
+            let of_rates = slope(STEP, |h| accelerations(&mechanism, t, &at(h)).to_vec());
+            let differences = slope(STEP, |h| outputs(&mechanism, t, &at(h)));
+            hold((&slopes.by_state, n, k), &of_rates, &differences);
+        }
+        let with_input = |h: f64| {
+            let (mut other, torque) = (mechanism, mechanism.torque);
+            assert!(other.set_input(0, torque + h));
+            other
+        };
+        let of_rates = slope(STEP, |h| accelerations(&with_input(h), t, &x).to_vec());
+        let differences = slope(STEP, |h| outputs(&with_input(h), t, &x));
+        hold((&slopes.by_inputs, 1, 0), &of_rates, &differences);
+        let with_payload = |h: f64| {
+            let (mut other, payload) = (mechanism, mechanism.parameters().payload);
+            assert!(other.set_parameter(0, payload + h));
+            other
+        };
+        let of_rates = slope(STEP, |h| accelerations(&with_payload(h), t, &x).to_vec());
+        let differences = slope(STEP, |h| outputs(&with_payload(h), t, &x));
+        hold((&slopes.by_parameters, 1, 0), &of_rates, &differences);
+    }
+    println!("derivatives of outputs {worst:.1e}");
+    assert!(worst < SLOPES, "{worst:.1e}");
 }

@@ -60,7 +60,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 36] = [
+const FUNCTIONS: [(&str, Form); 40] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -95,6 +95,10 @@ const FUNCTIONS: [(&str, Form); 36] = [
     ("joint_jacobian", Form::Jacobian),
     ("joint_input_jacobian", Form::Filling),
     ("joint_outputs", Form::Filling),
+    ("outputs_by_state", Form::Filling),
+    ("outputs_by_accelerations", Form::Filling),
+    ("outputs_by_inputs", Form::Filling),
+    ("outputs_by_parameters", Form::Filling),
     ("frame_jacobians", Form::Filling),
     ("frame_biases", Form::Filling),
 ];
@@ -154,6 +158,7 @@ pub fn is_on_constraints(function: &str) -> bool {
 pub fn source_of_accelerations(function: &str) -> &'static str {
     match function {
         "joint_derivative" | "joint_outputs" => "joint_accelerations",
+        function if function.starts_with("outputs_by_") => "joint_accelerations",
         "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
         _ => "accelerations",
     }
@@ -191,6 +196,7 @@ impl Module {
             corrected_derivative,
             parameter_setup: text.contains("fn parameter_setup("),
             joint_outputs: text.contains("fn joint_outputs("),
+            output_derivatives: text.contains("fn outputs_by_state("),
             frames: text.contains("fn frame_jacobians("),
         };
         let joints = layout::read(model, &tokens)?;
@@ -226,7 +232,9 @@ impl Module {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
             let accelerations = match name {
                 "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
-                "joint_derivative" | "joint_outputs" => joints.as_ref().map_or(0, |joints| joints.n_rates),
+                name if source_of_accelerations(name) == "joint_accelerations" => {
+                    joints.as_ref().map_or(0, |joints| joints.n_rates)
+                }
                 _ => n_accelerations,
             };
             // What is set up does not read what is set up.
@@ -289,9 +297,10 @@ impl Module {
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
         let (n_joints, n_rates) =
             self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
+        let work = usize::from(self.joints.as_ref().is_some_and(|joints| joints.has_work));
         let n_maximal = if self.joints.is_some() { n_state(model) } else { 0 };
         let has = |function: &str| self.programs.contains_key(function);
-        let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
+        let outputs: usize = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
             (PARAMETER_SETUP, number("derived")),
             ("derivative", n_state(model)),
@@ -323,6 +332,13 @@ impl Module {
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
             ("joint_outputs", if has("joint_outputs") { outputs } else { 0 }),
+            ("outputs_by_state", if has("outputs_by_state") { outputs * (n_joints - work) } else { 0 }),
+            ("outputs_by_accelerations", if has("outputs_by_state") { outputs * n_rates } else { 0 }),
+            ("outputs_by_inputs", if has("outputs_by_state") { outputs * model.inputs.len() } else { 0 }),
+            (
+                "outputs_by_parameters",
+                if has("outputs_by_state") { outputs * model.parameters.len() } else { 0 },
+            ),
             ("frame_jacobians", if has("frame_jacobians") { 6 * frames(model).count() * n_rates } else { 0 }),
             ("frame_biases", if has("frame_jacobians") { 6 * frames(model).count() } else { 0 }),
         ];

@@ -4,7 +4,7 @@ use super::candidates::Candidates;
 use super::coordinates::Coordinates;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
-use super::observed::{self, Frames};
+use super::observed::{self, Frames, OutputDerivatives};
 use super::{forces, maps, motions, multipliers};
 use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
@@ -41,6 +41,8 @@ pub struct JointSpace {
     pub jacobian: Option<Jacobian>,
     /// The numbers of the outputs, in terms of [`Symbol::RateOfRate`] too.
     pub outputs: Option<Chosen>,
+    /// Their derivatives, unless a third derivative of a table would be needed.
+    pub output_derivatives: Option<OutputDerivatives>,
     pub frames: Option<Frames>,
     /// Bodies that are described in a frame that does not turn with them.
     pub invariant: Vec<usize>,
@@ -116,6 +118,10 @@ impl JointSpace {
         let jacobian = functions.has(Group::Jacobian).then(|| Jacobian::derive(system, &form)).flatten();
         let outputs =
             functions.has(Group::JointOutputs).then(|| observed::outputs(system, textbook, &coordinates));
+        let output_derivatives = outputs
+            .as_ref()
+            .filter(|_| functions.has(Group::OutputDerivatives))
+            .and_then(|outputs| OutputDerivatives::derive(system, &coordinates, &outputs.roots));
         let frames = functions.has(Group::Frames).then(|| Frames::derive(system, &coordinates)).flatten();
         let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
@@ -133,6 +139,7 @@ impl JointSpace {
             corrected,
             jacobian,
             outputs,
+            output_derivatives,
             frames,
             maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),

@@ -81,15 +81,15 @@ impl Jacobian {
             by_state_and_time: form.choose(graph, of_state),
             by_inputs: form.choose(graph, of_inputs),
         };
-        jacobian.exists(graph).then_some(jacobian)
+        let roots = [&jacobian.by_state_and_time.roots[..], &jacobian.by_inputs.roots].concat();
+        has_tables(graph, &roots).then_some(jacobian)
     }
+}
 
-    /// Tables have two derivatives.
-    fn exists(&self, graph: &Graph) -> bool {
-        let roots = [&self.by_state_and_time.roots[..], &self.by_inputs.roots].concat();
-        let is_third = |id| matches!(graph.node(id), Node::Symbol(Symbol::Table { order, .. }) if *order > 2);
-        !graph.reachable(&roots).into_iter().any(is_third)
-    }
+/// Whether the derivatives of tables that expressions take are there: there are two.
+pub fn has_tables(graph: &Graph, roots: &[ExprId]) -> bool {
+    let is_third = |id| matches!(graph.node(id), Node::Symbol(Symbol::Table { order, .. }) if *order > 2);
+    !graph.reachable(roots).into_iter().any(is_third)
 }
 
 impl JointForm<'_> {
@@ -216,7 +216,7 @@ fn weighted(graph: &mut Graph, columns: &Columns, weights: &[ExprId]) -> Vec<Exp
 }
 
 /// One variable after the other.
-fn forward(graph: &mut Graph, roots: &[ExprId], variables: &[Symbol]) -> Columns {
+pub fn forward(graph: &mut Graph, roots: &[ExprId], variables: &[Symbol]) -> Vec<Vec<ExprId>> {
     let definitions = Definitions::default();
     let column = |&variable: &Symbol| {
         let mut derivative = Derivative::new(&definitions, Direction::from([(variable, Graph::ONE)]));

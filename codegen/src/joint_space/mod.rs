@@ -42,4 +42,4 @@ pub use candidates::Candidates;
 pub use choose::JointSpace;
 pub use coordinates::{Coordinates, obstacle};
 pub use jacobian::Jacobian;
-pub use observed::Frames;
+pub use observed::{Frames, OutputDerivatives};

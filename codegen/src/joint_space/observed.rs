@@ -5,6 +5,7 @@
 //! is `J u̇` and the bias that is left at `u̇ = 0`.
 
 use super::coordinates::Coordinates;
+use super::jacobian::{forward, has_tables};
 use super::{maps, motions, multipliers};
 use crate::derive::Textbook;
 use crate::derive::outputs::{self, Sources};
@@ -25,6 +26,51 @@ pub struct Frames {
     pub jacobians: Chosen,
     /// Six numbers of each frame.
     pub biases: Chosen,
+}
+
+/// The derivatives of the outputs as functions of time, joint state, rates' rates, inputs and parameters: of each number a
+/// row.
+#[derive(Debug)]
+pub struct OutputDerivatives {
+    /// By (x, u).
+    pub by_state: Chosen,
+    /// By u̇.
+    pub by_accelerations: Chosen,
+    pub by_inputs: Chosen,
+    pub by_parameters: Chosen,
+}
+
+impl OutputDerivatives {
+    /// `None` if a third derivative of a table's curve would be needed.
+    pub fn derive(system: &mut System, coordinates: &Coordinates, outputs: &[ExprId]) -> Option<Self> {
+        let layout = &coordinates.layout;
+        let (model, graph) = (system.model, &mut system.graph);
+        let state =
+            (0..layout.n_coordinates).map(Symbol::Coordinate).chain((0..layout.n_rates).map(Symbol::Rate));
+        let by_state = derivatives(graph, outputs, &state.collect::<Vec<_>>());
+        let mut by = |symbol: fn(usize) -> Symbol, n: usize| {
+            derivatives(graph, outputs, &(0..n).map(symbol).collect::<Vec<_>>())
+        };
+        let found = Self {
+            by_accelerations: by(Symbol::RateOfRate, layout.n_rates),
+            by_inputs: by(Symbol::Input, model.inputs.len()),
+            by_parameters: by(Symbol::Parameter, model.parameters.len()),
+            by_state,
+        };
+        let all = [&found.by_state, &found.by_accelerations, &found.by_inputs, &found.by_parameters];
+        let roots: Vec<_> = all.into_iter().flat_map(|chosen| chosen.roots.iter().copied()).collect();
+        has_tables(graph, &roots).then_some(found)
+    }
+}
+
+/// Row by row, from the outputs or from the variables.
+fn derivatives(graph: &mut Graph, outputs: &[ExprId], by: &[Symbol]) -> Chosen {
+    let from_outputs = outputs.iter().flat_map(|&output| gradient(graph, output, by)).collect();
+    let columns = forward(graph, outputs, by);
+    let from_variables = (0..outputs.len()).flat_map(|row| columns.iter().map(move |column| column[row]));
+    let forms = [("from the outputs", from_outputs), ("from the variables", from_variables.collect())];
+    let forms = forms.map(|(name, roots)| (name.to_owned(), roots)).to_vec();
+    FinalPasses::of(false).cheapest(graph, forms)
 }
 
 /// The numbers of all outputs, in terms of joint coordinates, rates and [`Symbol::RateOfRate`].

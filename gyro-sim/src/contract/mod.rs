@@ -15,7 +15,7 @@ pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, Row
 pub use equations::{Equations, Terms};
 pub use joint_space::{JointBuffers, JointLayout, JointPlace, JointSpace};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
-pub use observed::{FrameBuffers, Frames, JointOutputs};
+pub use observed::{FrameBuffers, Frames, JointOutputs, OutputDerivatives, OutputSlopes};
 pub use ode::{Corrected, Exact, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
 

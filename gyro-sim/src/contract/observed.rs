@@ -12,6 +12,76 @@ pub trait JointOutputs: JointSpace {
     fn joint_outputs(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::Outputs);
 }
 
+/// Derivatives of the outputs, without a limit on their number.
+///
+/// The outputs are functions `g(t, x, u, u̇; inputs, parameters)`: what stands here are their partial derivatives at any
+/// u̇, row by row, a row for each number of [`Mechanism::Outputs`](crate::Mechanism::Outputs). With u̇ as the equations
+/// of motion have it, `C = ∂g/∂(x, u) + ∂g/∂u̇ · ∂u̇/∂(x, u)`, and likewise for inputs and parameters.
+///
+/// They are the derivatives of the emitted function as it stands, in directions too in which the state cannot change (of
+/// Euler parameters, across their unit sphere).
+///
+/// Implemented where it is asked for: `functions = ["joint", "output_derivatives"]` in the model file, or
+/// `--functions`; not where a third derivative of a table would be needed.
+pub trait OutputDerivatives: JointOutputs {
+    /// m × n for m numbers of outputs and n of (x, u).
+    type ByState: Storage<Self::Scalar>;
+    /// m × n for n rates.
+    type ByAccelerations: Storage<Self::Scalar>;
+    /// m × n for n inputs.
+    type ByInputs: Storage<Self::Scalar>;
+    /// m × n for n parameters, in the order of the type's `PARAMETERS`.
+    type ByParameters: Storage<Self::Scalar>;
+
+    /// Buffers, zeroed.
+    fn output_slopes(&self) -> OutputSlopes<Self>;
+    /// Writes ∂g/∂(x, u).
+    fn outputs_by_state(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        rates: &Self::Rates,
+        out: &mut Self::ByState,
+    );
+    /// Writes ∂g/∂u̇.
+    fn outputs_by_accelerations(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        rates: &Self::Rates,
+        out: &mut Self::ByAccelerations,
+    );
+    /// Writes ∂g/∂(inputs).
+    fn outputs_by_inputs(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        rates: &Self::Rates,
+        out: &mut Self::ByInputs,
+    );
+    /// Writes ∂g/∂(parameters).
+    fn outputs_by_parameters(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        rates: &Self::Rates,
+        out: &mut Self::ByParameters,
+    );
+}
+
+/// What the functions of [`OutputDerivatives`] write to.
+#[derive(Clone, Debug)]
+pub struct OutputSlopes<M: OutputDerivatives + ?Sized> {
+    /// For [`OutputDerivatives::outputs_by_state`].
+    pub by_state: M::ByState,
+    /// For [`OutputDerivatives::outputs_by_accelerations`].
+    pub by_accelerations: M::ByAccelerations,
+    /// For [`OutputDerivatives::outputs_by_inputs`].
+    pub by_inputs: M::ByInputs,
+    /// For [`OutputDerivatives::outputs_by_parameters`].
+    pub by_parameters: M::ByParameters,
+}
+
 /// How named frames move with the rates: kinematics for control and for inverse kinematics.
 ///
 /// A frame is what an `[[output]]` of kind `velocity` names, a point of a body. Its velocity has six numbers, of the

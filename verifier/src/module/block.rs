@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
             "t" => Known::Time,
             "y" => Known::State,
             "x" => Known::Joints,
-            "accelerations" => Known::Accelerations,
+            "accelerations" | "rates" => Known::Accelerations,
             "rows" => Known::Changes,
             "charts" => Known::Charts,
             "out" => Known::Target,

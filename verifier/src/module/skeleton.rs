@@ -31,6 +31,8 @@ pub struct Has {
     pub parameter_setup: bool,
     /// Outputs of a joint state.
     pub joint_outputs: bool,
+    /// Their derivatives.
+    pub output_derivatives: bool,
     /// How frames move with a joint state.
     pub frames: bool,
 }
@@ -51,6 +53,10 @@ pub fn text(
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
         if has.joint_outputs { joint_outputs(type_name) } else { String::new() },
+        joints
+            .filter(|_| has.output_derivatives)
+            .map(|joints| output_derivatives(model, type_name, joints))
+            .unwrap_or_default(),
         joints.filter(|_| has.frames).map(|joints| frames(model, type_name, joints)).unwrap_or_default(),
     ]
     .concat()
@@ -177,6 +183,36 @@ fn joint_outputs(name: &str) -> String {
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::JointOutputs for {name}<T> {{
             fn joint_outputs(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::Outputs) {{ HOLE_joint_outputs }}
+        }}"
+    )
+}
+
+fn output_derivatives(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let n_outputs: usize = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
+    let n_state = joints.n_coordinates + joints.n_rates;
+    let kinds = [
+        ("state", "State", n_state),
+        ("accelerations", "Accelerations", joints.n_rates),
+        ("inputs", "Inputs", model.inputs.len()),
+        ("parameters", "Parameters", model.parameters.len()),
+    ];
+    let types = lines(kinds.map(|(_, ty, n)| format!("type By{ty} = [T; {}];", n_outputs * n)));
+    let zeros = list(kinds.map(|(name, _, n)| match n_outputs * n {
+        0 => format!("by_{name}: []"),
+        n => format!("by_{name}: [T::constant(0.0); {n}]"),
+    }));
+    let functions = lines(kinds.map(|(name, ty, _)| {
+        format!(
+            "fn outputs_by_{name}(
+                &self, ANY_t: T, ANY_x: &Self::Joints, ANY_rates: &Self::Rates, ANY_out: &mut Self::By{ty},
+            ) {{ HOLE_outputs_by_{name} }}"
+        )
+    }));
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::OutputDerivatives for {name}<T> {{
+            {types}
+            fn output_slopes(&self) -> gyro_sim::OutputSlopes<Self> {{ gyro_sim::OutputSlopes {{ {zeros} }} }}
+            {functions}
         }}"
     )
 }

@@ -80,6 +80,9 @@ pub enum Claim {
     JointInputJacobian,
     /// `joint_outputs` gives the outputs of the model file at the maximal state of a joint state.
     JointOutputs,
+    /// `outputs_by_state`, `outputs_by_accelerations`, `outputs_by_inputs` and `outputs_by_parameters` are its
+    /// derivatives.
+    OutputDerivatives,
     /// `frame_jacobians` is what velocities of frames have of the rates.
     FrameJacobians,
     /// `frame_biases` is what accelerations of frames have beside `J u̇`.
@@ -129,6 +132,7 @@ impl Claim {
         claims.extend(gives("joint_jacobian").then_some(JointJacobian));
         claims.extend(gives("joint_input_jacobian").then_some(JointInputJacobian));
         claims.extend(gives("joint_outputs").then_some(JointOutputs));
+        claims.extend(module.programs.contains_key("outputs_by_state").then_some(OutputDerivatives));
         if gives("frame_jacobians") {
             claims.extend([FrameJacobians, FrameBiases]);
         }
@@ -170,6 +174,12 @@ impl Claim {
             Self::JointJacobian => &["joint_jacobian"],
             Self::JointInputJacobian => &["joint_input_jacobian"],
             Self::JointOutputs => &["joint_outputs"],
+            Self::OutputDerivatives => &[
+                "outputs_by_state",
+                "outputs_by_accelerations",
+                "outputs_by_inputs",
+                "outputs_by_parameters",
+            ],
             Self::FrameJacobians => &["frame_jacobians"],
             Self::FrameBiases => &["frame_biases"],
         }
@@ -210,6 +220,7 @@ impl Claim {
             Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
             Self::JointInputJacobian => "`joint_derivative` by dual numbers, of the inputs",
             Self::JointOutputs => "outputs at the state of (x, u), at the proved v̇ and λ",
+            Self::OutputDerivatives => "`joint_outputs` by dual numbers, at any u̇",
             Self::FrameJacobians => "velocities at the state of (x, u) by the rates",
             Self::FrameBiases => "accelerations at the state of (x, u) for u̇ = 0",
         }
@@ -240,6 +251,7 @@ impl Claim {
                 "the derivatives of `joint_derivative` by dual numbers"
             }
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
+            Self::OutputDerivatives => "the derivatives of `joint_outputs` by dual numbers",
             Self::JointOutputs | Self::FrameJacobians | Self::FrameBiases => {
                 "the outputs' definitions on the constraints"
             }
@@ -305,6 +317,7 @@ impl Claim {
             Self::JointJacobian => joints::jacobian(case),
             Self::JointInputJacobian => joints::input_jacobian(case),
             Self::JointOutputs => observed::outputs(case),
+            Self::OutputDerivatives => observed::output_derivatives(case),
             Self::FrameJacobians => observed::frame_jacobians(case),
             Self::FrameBiases => observed::frame_biases(case),
         }

@@ -20,6 +20,30 @@ pub fn outputs<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(differences(&found, &expected))
 }
 
+/// Row by row, at u̇ that no equation of motion asks for.
+pub fn output_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let layout = case.module.joints.as_ref()?;
+    let (one, rates) = (Term::one(case.point.context), &case.motion[..layout.n_rates]);
+    let given = || Arguments { accelerations: rates, ..case.given(&case.point) };
+    let kinds: [(&str, fn(usize) -> Source, usize); 4] = [
+        ("outputs_by_state", Source::Joint, layout.n_coordinates + layout.n_rates),
+        ("outputs_by_accelerations", Source::Acceleration, layout.n_rates),
+        ("outputs_by_inputs", Source::Input, case.model.inputs.len()),
+        ("outputs_by_parameters", Source::Parameter, case.model.parameters.len()),
+    ];
+    let mut residuals = Vec::new();
+    for (function, source, n) in kinds {
+        let found = case.results(function, given());
+        for k in 0..n {
+            let only = |read: Source| (read == source(k)).then_some(one);
+            let [_, column] = case.run_along("joint_outputs", given(), &only)?;
+            let found: Vec<_> = found.iter().skip(k).step_by(n).copied().collect();
+            residuals.extend(differences(&found, &column));
+        }
+    }
+    Some(residuals)
+}
+
 /// By columns: how much faster each frame is if one rate is greater by one.
 pub fn frame_jacobians<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let n_rates = case.module.joints.as_ref()?.n_rates;

@@ -64,7 +64,8 @@ impl ModuleWriter<'_> {
         let (tables, definition, mechanism) =
             (self.tables_of_motions(), self.definition(), self.mechanism(start));
         let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
-        let (joint_outputs, frames) = (self.joint_outputs(), self.frames());
+        let (joint_outputs, output_derivatives, frames) =
+            (self.joint_outputs(), self.output_derivatives(), self.frames());
         quote! {
             #tables
             #definition
@@ -73,6 +74,7 @@ impl ModuleWriter<'_> {
             #equations
             #joint_space
             #joint_outputs
+            #output_derivatives
             #frames
         }
     }

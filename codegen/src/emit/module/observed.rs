@@ -44,6 +44,78 @@ impl ModuleWriter<'_> {
         })
     }
 
+    /// Empty unless they are asked for.
+    pub fn output_derivatives(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        let derivatives = space.output_derivatives.as_ref()?;
+        if self.kernels.roots(Kernel::JointOutputs).is_empty() {
+            return None;
+        }
+        let name = ident(self.type_name);
+        let kernels = [
+            (Kernel::OutputsByState, "∂(outputs)/∂(x, u), u̇ being held", "ByState", &derivatives.by_state),
+            (
+                Kernel::OutputsByAccelerations,
+                "∂(outputs)/∂u̇",
+                "ByAccelerations",
+                &derivatives.by_accelerations,
+            ),
+            (
+                Kernel::OutputsByInputs,
+                "∂(outputs)/∂(inputs), u̇ being held",
+                "ByInputs",
+                &derivatives.by_inputs,
+            ),
+            (
+                Kernel::OutputsByParameters,
+                "∂(outputs)/∂(parameters), u̇ being held",
+                "ByParameters",
+                &derivatives.by_parameters,
+            ),
+        ];
+        let types = kernels.map(|(.., ty, chosen)| {
+            let (ty, n) = (ident(ty), index(chosen.roots.len()));
+            quote! { type #ty = [T; #n]; }
+        });
+        let zeros = kernels.map(|(.., chosen)| match chosen.roots.len() {
+            0 => quote! { [] },
+            n => {
+                let n = index(n);
+                quote! { [T::constant(0.0); #n] }
+            }
+        });
+        let [by_state, by_accelerations, by_inputs, by_parameters] = zeros;
+        let functions = kernels.map(|(kernel, what, ty, _)| {
+            let (function, ty) = (ident(kernel.name()), ident(ty));
+            self.function(&format!("Writes {what}"), self.kernels.roots(kernel), |body, t, x| {
+                let (statements, values) = (&body.statements, &body.values);
+                let reads_rates = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::RateOfRate(_)));
+                let rates = ident(if reads_rates { "rates" } else { "_rates" });
+                quote! {
+                    fn #function(&self, #t: T, #x: &Self::Joints, #rates: &Self::Rates, out: &mut Self::#ty) {
+                        #statements
+                        *out = [#(#values),*];
+                    }
+                }
+            })
+        });
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::OutputDerivatives for #name<T> {
+                #(#types)*
+
+                fn output_slopes(&self) -> gyro_sim::OutputSlopes<Self> {
+                    gyro_sim::OutputSlopes {
+                        by_state: #by_state,
+                        by_accelerations: #by_accelerations,
+                        by_inputs: #by_inputs,
+                        by_parameters: #by_parameters,
+                    }
+                }
+                #(#functions)*
+            }
+        })
+    }
+
     /// Empty unless the model file has frames and they are asked for.
     pub fn frames(&self) -> Option<TokenStream> {
         let space = self.equations.joint_space.as_ref()?;
