@@ -288,7 +288,7 @@ const FAULTS: &[Fault] = &[
     fault("emit/tokens.rs", "bob", "Some((self.fusible(a)?, «b»))", "a"),
     fault("emit/tokens.rs", "pendulum", "let (a, b) = (self.expression(a, «Binding::Product»), self.expression(b, Binding::Unary));", "Binding::Sum"),
     fault("expr/schedule.rs", "pair", "denominator(b).map(|x| «(a, x)»)", "(x, a)"),
-    fault("joint_space/observed.rs", "tool", "let biases = at_accelerations(system, coordinates, «&at_rest», &accelerations);", "&vec![Graph::ONE; coordinates.layout.n_rates]"),
+    fault("joint_space/observed.rs", "tool", "let at_rest = «vec![Graph::ZERO; coordinates.layout.n_rates]»;", "vec![Graph::ONE; coordinates.layout.n_rates]"),
     fault("joint_space/observed.rs", "tool", "(moving_body, k) => «Symbol::Spin { moving_body, k: k - 3 }»,", "Symbol::Velocity { moving_body, k: k - 3 }"),
     fault("joint_space/observed.rs", "tool", "velocities.iter().flat_map(|&velocity| «gradient(graph, velocity, &by_rate)»)", "vec![velocity; by_rate.len()]"),
     fault("joint_space/observed.rs", "tool", "values.extend(«motions::accelerations_by_symbol(&motions)»);", "Values::default()"),
