@@ -13,7 +13,8 @@ fn refused(seed: u64) -> Option<String> {
         Ok(model) => model,
         Err(problems) => return Some(format!("{problems}")),
     };
-    let module = match gyro_codegen::generate_model("page.toml", &model) {
+    let module = match gyro_codegen::generate_functions("page.toml", &model, &gyro_codegen::Functions::all())
+    {
         Ok(module) => module,
         Err(error) => return Some(format!("{error}")),
     };
