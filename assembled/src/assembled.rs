@@ -147,35 +147,9 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
         let lambda_nu = lambda.iter().zip(nu.iter()).fold(T::zero(), |sum, (l, nu)| sum + *l * *nu);
         f(Solution { accelerations, lambda, lambda_nu })
     }
-}
 
-impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
-    type Scalar = T;
-    type State = Vec<T>;
-    type Rows = Vec<T>;
-    type Constraints = Vec<T>;
-    type Readings = Vec<T>;
-    type Outputs = Vec<T>;
-
-    fn description(&self) -> &Description<'_> {
-        self.description.get()
-    }
-
-    fn buffers(&self) -> Buffers<Self> {
-        let lowered = &self.lowered;
-        Buffers {
-            rows: zeros(lowered.n_rows()),
-            constraints: zeros(lowered.n_rows() + lowered.scene.n_bodies()),
-            readings: zeros(lowered.n_readings()),
-            outputs: zeros(lowered.n_outputs()),
-        }
-    }
-
-    fn start(&self) -> Vec<T> {
-        self.lowered.start.clone()
-    }
-
-    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+    /// ẏ by eqs. (14), (16) and (17).
+    pub(crate) fn write_derivative(&self, t: T, y: &Vec<T>, dy: &mut [T]) {
         let (lowered, at) = (&self.lowered, Moment { t, y });
         for (moving_body, dq) in dy.as_chunks_mut::<7>().0[..lowered.scene.n_bodies()].iter_mut().enumerate()
         {
@@ -202,6 +176,35 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
         }
         lowered.turn_rates(at, &mut dy[lowered.first_turn()..]);
     }
+}
+
+impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
+    type Scalar = T;
+    type State = Vec<T>;
+    type Rows = Vec<T>;
+    type Constraints = Vec<T>;
+    type Velocities = Vec<T>;
+    type Readings = Vec<T>;
+    type Outputs = Vec<T>;
+
+    fn description(&self) -> &Description<'_> {
+        self.description.get()
+    }
+
+    fn buffers(&self) -> Buffers<Self> {
+        let lowered = &self.lowered;
+        Buffers {
+            rows: zeros(lowered.n_rows()),
+            constraints: zeros(lowered.n_rows() + lowered.scene.n_bodies()),
+            velocities: zeros(lowered.scene.n_v()),
+            readings: zeros(lowered.n_readings()),
+            outputs: zeros(lowered.n_outputs()),
+        }
+    }
+
+    fn start(&self) -> Vec<T> {
+        self.lowered.start.clone()
+    }
 
     fn phi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.lowered.phi(Moment { t, y }, out);
@@ -209,6 +212,10 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
 
     fn velocity_residual(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.lowered.velocity_residual(Moment { t, y }, out);
+    }
+
+    fn applied_force(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        self.lowered.applied_force(Moment { t, y }, out);
     }
 
     fn energy(&self, t: T, y: &Vec<T>) -> Energy<T> {

@@ -5,7 +5,6 @@ use crate::{BuildError, Careful, Dense, Form, Precision, Recursive};
 use gyro_model::Model;
 use gyro_runner::protocol::Request;
 use gyro_runner::{Failure, Summary, child, motion};
-use gyro_sim::{Equations, Partition, Real};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -21,7 +20,7 @@ pub fn main(model: &Model, form: Form, precision: Precision) -> ExitCode {
     })
 }
 
-fn answer<M: Partition<Scalar: Real> + Equations + 'static>(
+fn answer<M: motion::Maximal + 'static>(
     mechanism: Result<M, BuildError>,
     request: &Request,
     output: &mut dyn Write,

@@ -4,21 +4,14 @@ use crate::assembled::{Assembled, Solver, zeros};
 use crate::model::place::Moment;
 use crate::number::Number;
 use crate::projection;
-use gyro_sim::{Equations, Terms};
+use gyro_sim::{CorrectedDynamics, Dynamics, Kinematics, Projection, Terms};
 
-impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
-    type Velocities = Vec<T>;
+impl<T: Number, S: Solver<T>> Kinematics for Assembled<T, S> {
     type PhiQ = Vec<T>;
     type PhiPi = Vec<T>;
-    type Accelerations = Vec<T>;
 
     fn terms(&self) -> Terms<Self> {
-        Terms {
-            velocities: zeros(self.lowered.scene.n_v()),
-            phi_q: zeros(self.phi_q_pattern.len()),
-            phi_pi: zeros(self.phi_pi_pattern.len()),
-            accelerations: zeros(self.solver.accelerations_len(&self.lowered)),
-        }
+        Terms { phi_q: zeros(self.phi_q_pattern.len()), phi_pi: zeros(self.phi_pi_pattern.len()) }
     }
 
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
@@ -52,9 +45,13 @@ impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
     fn gamma(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.lowered.gamma(Moment { t, y }, out);
     }
+}
 
-    fn applied_force(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.lowered.applied_force(Moment { t, y }, out);
+impl<T: Number, S: Solver<T>> Dynamics for Assembled<T, S> {
+    type Accelerations = Vec<T>;
+
+    fn acceleration_buffer(&self) -> Vec<T> {
+        zeros(self.solver.accelerations_len(&self.lowered))
     }
 
     fn accelerations(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
@@ -65,6 +62,24 @@ impl<T: Number, S: Solver<T>> Equations for Assembled<T, S> {
         self.solver.multipliers(&self.lowered, t, y, accelerations, lambda);
     }
 
+    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        self.write_derivative(t, y, dy);
+    }
+}
+
+impl<T: Number, S: Solver<T>> CorrectedDynamics for Assembled<T, S> {
+    fn corrected_accelerations(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        let mut solved = self.acceleration_buffer();
+        self.accelerations(t, y, &mut solved);
+        out.copy_from_slice(&solved[..self.lowered.scene.n_v()]);
+    }
+
+    fn corrected_derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        self.derivative(t, y, dy);
+    }
+}
+
+impl<T: Number, S: Solver<T>> Projection for Assembled<T, S> {
     fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, out: &mut Vec<T>) {
         projection::project(&self.lowered, Moment { t, y }, rows, &mut self.work(), out);
     }

@@ -1,7 +1,7 @@
 //! Mechanisms assembled at run time: textbook formulas typed by hand, `nalgebra` and a heap.
 //!
 //! It reads the same [`Model`](gyro_model::Model) as the code generator and keeps the same contract
-//! ([`gyro_sim::Partition`], [`gyro_sim::Equations`]), but shares no derivation with it: Φ, Φ_q, ν and γ are typed from
+//! ([`gyro_sim::Partition`], [`gyro_sim::Dynamics`]), but shares no derivation with it: Φ, Φ_q, ν and γ are typed from
 //! the paper and from Haug (1989). So it is the reference of the tests, the comparison of the benchmarks and the quick
 //! look of `simulate --engine assembled`, all at once. It comes in three forms:
 //! * [`Dense`], the paper's: eq. (17) whole, one dense matrix solved by LU, and a partition by full pivoting of the

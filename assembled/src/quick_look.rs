@@ -4,7 +4,6 @@
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
 use gyro_runner::{Approach, Event, Failure, Settings, Start, Summary, motion, run_by};
-use gyro_sim::{Equations, Partition, Real};
 use std::fmt;
 
 /// Which form of assembled mechanism.
@@ -77,7 +76,7 @@ pub fn quick_look(
     }
 }
 
-fn simulate<M: Partition<Scalar: Real> + Equations + 'static>(
+fn simulate<M: motion::Maximal + 'static>(
     mechanism: Result<M, BuildError>,
     plan: (&Settings, &Approach),
     start: &Start,

@@ -2,7 +2,10 @@
 
 use crate::data_sheet::DataSheet;
 use crate::scene::Scene;
-use gyro_sim::{Equations, Joint, JointSpace, Partition, Partitioned, Rk4};
+use gyro_sim::{
+    CorrectedDynamics, CorrectedSolution, Dynamics, Joint, JointSpace, Kinematics, Partition, Partitioned,
+    Projection, Rk4,
+};
 use gyro_yardstick::{FLOPS, STEP};
 use std::fmt;
 use std::hint::black_box;
@@ -100,7 +103,7 @@ fn floor(scene: &Scene) -> Kernel<'_> {
 /// All functions of a generated mechanism, with the operations of its data sheet.
 fn generated<'a, M>(side: &'static str, mechanism: &'a M, y: &M::State, sheet: DataSheet) -> Vec<Kernel<'a>>
 where
-    M: Equations + Partition<Scalar = f64>,
+    M: Kinematics + Dynamics + CorrectedDynamics + Projection + Partition<Scalar = f64>,
     M::State: 'a,
 {
     let flops = move |functions: &[&str]| Some(sheet.flops(functions));
@@ -112,7 +115,7 @@ where
 /// What a tree has besides: joint coordinates, and short ways for states that satisfy the constraints.
 fn joint_space<'a, M>(mechanism: &'a M, y: &M::State, sheet: DataSheet) -> Vec<Kernel<'a>>
 where
-    M: JointSpace + Partition<Scalar = f64>,
+    M: CorrectedSolution + Dynamics + Partition<Scalar = f64>,
     M::State: 'a,
 {
     let flops = move |functions: &[&str]| Some(sheet.flops(functions));
@@ -126,11 +129,11 @@ where
     kernels.push(Kernel::new(JOINTS_AT, GENERATED, flops(&["joint_accelerations_at"]), move || {
         mechanism.joint_accelerations_at(0.0, black_box(&state), black_box(&mut out));
     }));
-    let (state, mut out) = (y.clone(), mechanism.terms().velocities);
+    let (state, mut out) = (y.clone(), mechanism.buffers().velocities);
     kernels.push(Kernel::new(BODIES, CORRECTED, flops(&["corrected_accelerations"]), move || {
         mechanism.corrected_accelerations(0.0, black_box(&state), black_box(&mut out));
     }));
-    let (state, mut out) = (y.clone(), mechanism.joint_buffers().solution);
+    let (state, mut out) = (y.clone(), mechanism.solution_buffer());
     kernels.push(Kernel::new(LOADS, CORRECTED, flops(&["corrected_solution"]), move || {
         mechanism.corrected_solution(0.0, black_box(&state), black_box(&mut out));
     }));
@@ -150,15 +153,15 @@ fn solves<'a, M>(
     flops: impl Fn(&[&str]) -> Option<u64>,
 ) -> Vec<Kernel<'a>>
 where
-    M: Equations + Partition<Scalar = f64>,
+    M: Kinematics + Dynamics + CorrectedDynamics + Projection + Partition<Scalar = f64>,
     M::State: 'a,
 {
     let mut kernels = Vec::new();
-    let (state, mut out) = (y.clone(), mechanism.terms().accelerations);
+    let (state, mut out) = (y.clone(), mechanism.acceleration_buffer());
     kernels.push(Kernel::new(BODIES, side, flops(&["accelerations"]), move || {
         mechanism.accelerations(0.0, black_box(&state), black_box(&mut out));
     }));
-    let (state, mut out, mut lambda) = (y.clone(), mechanism.terms().accelerations, mechanism.buffers().rows);
+    let (state, mut out, mut lambda) = (y.clone(), mechanism.acceleration_buffer(), mechanism.buffers().rows);
     kernels.push(Kernel::new(LOADS, side, flops(&["accelerations", "multipliers"]), move || {
         mechanism.accelerations(0.0, black_box(&state), black_box(&mut out));
         mechanism.multipliers(0.0, black_box(&state), black_box(&out), black_box(&mut lambda));
@@ -187,7 +190,7 @@ fn terms<'a, M>(
     flops: impl Fn(&[&str]) -> Option<u64>,
 ) -> Vec<Kernel<'a>>
 where
-    M: Equations + Partition<Scalar = f64>,
+    M: Kinematics + Dynamics + CorrectedDynamics + Projection + Partition<Scalar = f64>,
     M::State: 'a,
 {
     let (state, mut out) = (y.clone(), mechanism.buffers().constraints);
@@ -229,7 +232,10 @@ pub fn runs(scene: &Scene) -> Vec<Kernel<'_>> {
 }
 
 /// Coordinate partitioning with RK4.
-fn second<'a, M: Partition<Scalar = f64>>(side: &'static str, mechanism: &'a M) -> Kernel<'a> {
+fn second<'a, M: Partition<Scalar = f64> + CorrectedDynamics>(
+    side: &'static str,
+    mechanism: &'a M,
+) -> Kernel<'a> {
     Kernel::new(SECOND, side, None, move || {
         let mut y = mechanism.start();
         let mut solver = Partitioned::new(mechanism, &y);

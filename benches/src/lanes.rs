@@ -4,7 +4,10 @@ use crate::Kernel;
 use crate::kernels::{CORRECTIONS, STEPS_PER_CORRECTION};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
-use gyro_sim::{Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Rk4, Scalar, charts::Charts};
+use gyro_sim::{
+    CorrectedDynamics, Dynamics, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Rk4, Scalar,
+    charts::Charts,
+};
 use gyro_yardstick::STEP;
 use std::hint::black_box;
 
@@ -219,7 +222,7 @@ fn joint_second<M: JointSpace>(scene: &M, x: &mut M::Joints) {
     }
 }
 
-fn second<M: Partition<Scalar: Real>>(scene: &M, y: &mut M::State) {
+fn second<M: Partition<Scalar: Real> + CorrectedDynamics>(scene: &M, y: &mut M::State) {
     let mut solver = Partitioned::new(scene, y);
     for interval in 0..CORRECTIONS {
         let t = time(interval * STEPS_PER_CORRECTION);
@@ -228,7 +231,7 @@ fn second<M: Partition<Scalar: Real>>(scene: &M, y: &mut M::State) {
     }
 }
 
-fn second_of_lanes<M: Partition>(scene: &M, y: &mut M::State) {
+fn second_of_lanes<M: Partition + CorrectedDynamics>(scene: &M, y: &mut M::State) {
     let mut solver = lanes::Partitioned::new(scene, y);
     for interval in 0..CORRECTIONS {
         let t = time(interval * STEPS_PER_CORRECTION);

@@ -3,7 +3,7 @@
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_mechanisms::gyroscope_maximal::GyroscopeMaximal;
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{Equations, Rk4};
+use gyro_sim::{Dynamics, Kinematics, Projection, Rk4};
 use gyro_yardstick::{Floor, STEP};
 
 /// Steps to the state at which kernels are measured: 0.37 s, where nothing is zero.
@@ -152,8 +152,12 @@ fn turned(p: [f64; 4], v: [f64; 3]) -> [f64; 3] {
     [x, y, z]
 }
 
-fn accelerations<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State, from: usize) -> Vec<f64> {
-    let mut out = mechanism.terms().accelerations;
+fn accelerations<M: Kinematics<Scalar = f64> + Dynamics + Projection>(
+    mechanism: &M,
+    y: &M::State,
+    from: usize,
+) -> Vec<f64> {
+    let mut out = mechanism.acceleration_buffer();
     mechanism.accelerations(0.0, y, &mut out);
     out.as_ref()[from..from + 18].to_vec()
 }

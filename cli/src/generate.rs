@@ -50,7 +50,8 @@ fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
     let mut outputs = Outputs::default();
     let mut names = Vec::new();
     let mut sources: Vec<(PathBuf, &PathBuf)> = Vec::new();
-    for (page, made) in pages.iter().zip(modules(&pages, args.functions.as_ref(), args.strict)) {
+    for (page, made) in pages.iter().zip(modules(&pages, &|page| functions(args, places, page), args.strict))
+    {
         let module = made?;
         let place = place_of(places, page).filter(|_| args.out.is_none());
         let path = args.out.clone().or_else(|| module_path(places, page, &module.name));
@@ -105,16 +106,40 @@ fn data_sheet(module: &Module) -> String {
     text + "\n"
 }
 
+/// Where is said which functions a module has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// Here, by their names.
+    Here(Vec<String>),
+    /// In the model file; the usual ones if it does not say.
+    There,
+    /// In the model file; all if it does not say.
+    ThereOrAll,
+}
+
+/// The model files of this project are read, tested and measured whole.
+fn functions(args: &GenerateArgs, places: &[Place], page: &Path) -> Asked {
+    match &args.functions {
+        Some(names) => Asked::Here(names.clone()),
+        None if place_of(places, page).is_some() => Asked::ThereOrAll,
+        None => Asked::There,
+    }
+}
+
 /// The modules of model files, each proved and with the proof on its data sheet.
 /// With functions that are given here, or else those that a model file asks for.
 pub fn modules(
     pages: &[PathBuf],
-    functions: Option<&Vec<String>>,
+    functions: &(dyn Fn(&Path) -> Asked + Sync),
     strict: bool,
 ) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let mut model = scene::read(page)?;
-        model.functions = functions.cloned().or(model.functions);
+        model.functions = match functions(page) {
+            Asked::Here(names) => Some(names),
+            Asked::There => model.functions,
+            Asked::ThereOrAll => model.functions.or_else(|| Some(vec!["all".to_owned()])),
+        };
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
         let spinner = progress::deriving(&model);
         let module = gyro_codegen::generate_model(&files::shown(page), &model)

@@ -10,7 +10,7 @@ use gyro_assembled::Careful;
 use gyro_model::{
     Joint, JointKind, JointStartSpec, Model, Number, Quaternion, Rational, Support, Tree, Vector,
 };
-use gyro_sim::Mechanism;
+use gyro_sim::{Dynamics, Mechanism};
 use nalgebra::{DMatrix, DVector};
 
 /// A mechanism linearised about its start.

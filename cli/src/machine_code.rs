@@ -21,13 +21,13 @@ fn call(kernel: Kernel) -> Option<Call> {
     let [function, takes, passes, returns] = match kernel {
         Kernel::ParameterSetup => return None,
         Kernel::Phi => ["phi", "y: &State, out: &mut <Module as Mechanism>::Constraints", "y, out", ""],
-        Kernel::PhiQ => ["phi_q", "y: &State, out: &mut <Module as Equations>::PhiQ", "y, out", ""],
-        Kernel::PhiPi => ["phi_pi", "y: &State, out: &mut <Module as Equations>::PhiPi", "y, out", ""],
+        Kernel::PhiQ => ["phi_q", "y: &State, out: &mut <Module as Kinematics>::PhiQ", "y, out", ""],
+        Kernel::PhiPi => ["phi_pi", "y: &State, out: &mut <Module as Kinematics>::PhiPi", "y, out", ""],
         Kernel::Nu => ["nu", "y: &State, out: &mut Rows", "y, out", ""],
         Kernel::Gamma => ["gamma", "y: &State, out: &mut Rows", "y, out", ""],
         Kernel::VelocityResidual => ["velocity_residual", "y: &State, out: &mut Rows", "y, out", ""],
         Kernel::AppliedForce => {
-            ["applied_force", "y: &State, out: &mut <Module as Equations>::Velocities", "y, out", ""]
+            ["applied_force", "y: &State, out: &mut <Module as Mechanism>::Velocities", "y, out", ""]
         }
         Kernel::Accelerations => ["accelerations", "y: &State, out: &mut Accelerations", "y, out", ""],
         Kernel::Multipliers => {
@@ -35,7 +35,7 @@ fn call(kernel: Kernel) -> Option<Call> {
         }
         Kernel::Project => [
             "project",
-            "y: &State, rows: &Rows, out: &mut <Module as Equations>::Velocities",
+            "y: &State, rows: &Rows, out: &mut <Module as Mechanism>::Velocities",
             "y, rows, out",
             "",
         ],
@@ -61,28 +61,32 @@ fn call(kernel: Kernel) -> Option<Call> {
         }
         Kernel::CorrectedAccelerations => [
             "corrected_accelerations",
-            "y: &State, out: &mut <Module as Equations>::Velocities",
+            "y: &State, out: &mut <Module as Mechanism>::Velocities",
             "y, out",
             "",
         ],
+        Kernel::CorrectedDerivative => ["corrected_derivative", "y: &State, dy: &mut State", "y, dy", ""],
         Kernel::CorrectedMultipliers => [
             "corrected_multipliers",
-            "y: &State, a: &<Module as Equations>::Velocities, out: &mut Rows",
+            "y: &State, a: &<Module as Mechanism>::Velocities, out: &mut Rows",
             "y, a, out",
             "",
         ],
-        Kernel::CorrectedSolution => {
-            ["corrected_solution", "y: &State, out: &mut <Module as JointSpace>::Solution", "y, out", ""]
-        }
+        Kernel::CorrectedSolution => [
+            "corrected_solution",
+            "y: &State, out: &mut <Module as CorrectedSolution>::Solution",
+            "y, out",
+            "",
+        ],
         Kernel::JointJacobian => [
             "joint_jacobian",
-            "x: &Joints, dfdx: &mut <Module as JointSpace>::Jacobian, dfdt: &mut Joints",
+            "x: &Joints, dfdx: &mut <Module as JointJacobian>::Jacobian, dfdt: &mut Joints",
             "x, dfdx, dfdt",
             "",
         ],
         Kernel::JointInputJacobian => [
             "joint_input_jacobian",
-            "x: &Joints, out: &mut <Module as JointSpace>::InputJacobian",
+            "x: &Joints, out: &mut <Module as JointJacobian>::InputJacobian",
             "x, out",
             "",
         ],
@@ -94,9 +98,50 @@ fn call(kernel: Kernel) -> Option<Call> {
         }
         Kernel::ClosePositions => ["close_positions", "x: &mut Joints", "x", ""],
         Kernel::CloseVelocities => ["close_velocities", "x: &mut Joints", "x", ""],
+        Kernel::JointOutputs => {
+            ["joint_outputs", "x: &Joints, out: &mut <Module as Mechanism>::Outputs", "x, out", ""]
+        }
+        Kernel::OutputsByState => [
+            "outputs_by_state",
+            "x: &Joints, a: &Rates, out: &mut <Module as OutputDerivatives>::ByState",
+            "x, a, out",
+            "",
+        ],
+        Kernel::OutputsByAccelerations => [
+            "outputs_by_accelerations",
+            "x: &Joints, a: &Rates, out: &mut <Module as OutputDerivatives>::ByAccelerations",
+            "x, a, out",
+            "",
+        ],
+        Kernel::OutputsByInputs => [
+            "outputs_by_inputs",
+            "x: &Joints, a: &Rates, out: &mut <Module as OutputDerivatives>::ByInputs",
+            "x, a, out",
+            "",
+        ],
+        Kernel::OutputsByParameters => [
+            "outputs_by_parameters",
+            "x: &Joints, a: &Rates, out: &mut <Module as OutputDerivatives>::ByParameters",
+            "x, a, out",
+            "",
+        ],
+        Kernel::FrameJacobians => {
+            ["frame_jacobians", "x: &Joints, out: &mut <Module as Frames>::FrameJacobians", "x, out", ""]
+        }
+        Kernel::FrameBiases => {
+            ["frame_biases", "x: &Joints, out: &mut <Module as Frames>::FrameBiases", "x, out", ""]
+        }
     };
     Some(Call { function, takes, passes, returns })
 }
+
+/// Types of the module that only some of the calls name, with the traits that have them.
+const OF_TRAITS: [(&str, &str); 4] = [
+    ("Accelerations", "Dynamics>::Accelerations"),
+    ("Choice", "Partition>::Independent"),
+    ("Joints", "JointSpace>::Joints"),
+    ("Rates", "JointSpace>::Rates"),
+];
 
 /// The root of a library whose module `mechanism` has this type, with the functions of these kernels: without them
 /// nothing would be compiled.
@@ -106,19 +151,19 @@ pub fn library(type_name: &str, kernels: &[Kernel]) -> String {
 mod mechanism;
 
 #[allow(unused_imports)]
-use gyro_sim::{{Energy, Equations, Error, JointSpace, Mechanism, Partition}};
+use gyro_sim::*;
 
 pub type Module = mechanism::{type_name}<f64>;
 type State = <Module as Mechanism>::State;
 type Rows = <Module as Mechanism>::Rows;
-type Accelerations = <Module as Equations>::Accelerations;
-type Choice = <Module as Partition>::Independent;
 "
     );
     let calls: Vec<_> = kernels.iter().filter_map(|&kernel| call(kernel)).collect();
-    if calls.iter().any(|call| [call.takes, call.returns].iter().any(|text| text.contains("Joints"))) {
-        text +=
-            "type Joints = <Module as JointSpace>::Joints;\ntype Rates = <Module as JointSpace>::Rates;\n";
+    for (name, of) in OF_TRAITS {
+        let names = |text: &str| text.contains(&format!("&{name}")) || text.contains(&format!("&mut {name}"));
+        if calls.iter().any(|call| names(call.takes) || call.returns == name) {
+            text += &format!("type {name} = <Module as {of};\n");
+        }
     }
     for Call { function, takes, passes, returns } in calls {
         let returns = if returns.is_empty() { String::new() } else { format!(" -> {returns}") };
@@ -167,9 +212,9 @@ mod tests {
     #[test]
     fn symbols_count_by_their_last_word() {
         let symbols = "0000000000000000 0000000000000010 T chain::accelerations
-0000000000000000 0000000000000100 t <chain::mechanism::Chain2<T> as gyro_sim::mechanism::Equations>::accelerations
+0000000000000000 0000000000000100 t <chain::mechanism::Chain2<T> as gyro_sim::mechanism::Dynamics>::accelerations
 0000000000000000 0000000000000200 T chain::accelerations_other
-0000000000000000 0000000000000001 t gyro_sim::apart::apart::<(f64, f64), <chain::mechanism::Chain2<f64> as gyro_sim::mechanism::Equations>::accelerations::{closure#1}>
+0000000000000000 0000000000000001 t gyro_sim::apart::apart::<(f64, f64), <chain::mechanism::Chain2<f64> as gyro_sim::mechanism::Dynamics>::accelerations::{closure#1}>
 0000000000000000 0000000000000020 T chain::independent
 0000000000000000 0000000000000400 R chain::phi
                  U libm::sin

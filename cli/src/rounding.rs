@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use gyro_assembled::{Careful, Dense};
 use gyro_codegen::Kernel;
 use gyro_model::Model;
-use gyro_sim::{Equations, Scalar};
+use gyro_sim::{Dynamics, Kinematics, Projection, Scalar};
 use gyro_verifier::field::{Precision, Real};
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{DOUBLE_DIGITS, Kind, Reference, Rounding, Spread, error, measure, references};
@@ -149,7 +149,7 @@ fn of_assembled<M>(
     row: &Rounding,
 ) -> Option<Spread>
 where
-    M: Equations<Scalar = f64>,
+    M: Kinematics<Scalar = f64> + Dynamics + Projection,
 {
     let kernel = kernel(&row.function)?;
     // A runtime-assembled model has no u̇: its v̇ stands beside it.
@@ -169,12 +169,8 @@ where
     Spread::of(errors.collect())
 }
 
-/// What a function of a module computes. `corrected_derivative` computes the same as `derivative`, from other
-/// accelerations, and has no row of its own in the table of kernels.
+/// What a function of a module computes.
 fn kernel(function: &str) -> Option<Kernel> {
-    if function == "corrected_derivative" {
-        return Some(Kernel::Derivative);
-    }
     Kernel::all().find(|kernel| kernel.name() == function)
 }
 
@@ -188,7 +184,7 @@ fn computed<M>(
     reference: &Reference<'_>,
 ) -> Option<Vec<f64>>
 where
-    M: Equations<Scalar = f64>,
+    M: Kinematics<Scalar = f64> + Dynamics + Projection,
 {
     let (t, mut y) = (reference.sample.t, assembled.start());
     y.as_mut().iter_mut().zip(state).for_each(|(y, x)| *y = Scalar::constant(*x));
@@ -198,7 +194,7 @@ where
         out.as_ref().to_vec()
     };
     let accelerations = || {
-        let mut out = assembled.terms().accelerations;
+        let mut out = assembled.acceleration_buffer();
         assembled.accelerations(t, &y, &mut out);
         out
     };
@@ -210,7 +206,7 @@ where
             rows(&|out| assembled.multipliers(t, &y, &accelerations(), out))
         }
         Kernel::Accelerations | Kernel::CorrectedAccelerations | Kernel::JointAccelerationsAt => {
-            accelerations().as_ref()[..assembled.terms().velocities.as_ref().len()].to_vec()
+            accelerations().as_ref()[..assembled.buffers().velocities.as_ref().len()].to_vec()
         }
         Kernel::Phi => {
             let mut out = assembled.buffers().constraints;
@@ -228,17 +224,17 @@ where
             at_places(&module.phi_pi_pattern, assembled.phi_pi_pattern(), out.as_ref())
         }
         Kernel::AppliedForce => {
-            let mut out = assembled.terms().velocities;
+            let mut out = assembled.buffers().velocities;
             assembled.applied_force(t, &y, &mut out);
             out.as_ref().to_vec()
         }
         Kernel::Project => {
-            let (mut rows, mut out) = (assembled.buffers().rows, assembled.terms().velocities);
+            let (mut rows, mut out) = (assembled.buffers().rows, assembled.buffers().velocities);
             rows.as_mut().copy_from_slice(&reference.sample.changes);
             assembled.project(t, &y, &rows, &mut out);
             out.as_ref().to_vec()
         }
-        Kernel::Derivative => {
+        Kernel::Derivative | Kernel::CorrectedDerivative => {
             let mut out = assembled.start();
             assembled.derivative(t, &y, &mut out);
             out.as_ref().to_vec()
@@ -263,7 +259,14 @@ where
         | Kernel::ClosePositions
         | Kernel::CloseVelocities
         | Kernel::JointJacobian
-        | Kernel::JointInputJacobian => return None,
+        | Kernel::JointInputJacobian
+        | Kernel::JointOutputs
+        | Kernel::OutputsByState
+        | Kernel::OutputsByAccelerations
+        | Kernel::OutputsByInputs
+        | Kernel::OutputsByParameters
+        | Kernel::FrameJacobians
+        | Kernel::FrameBiases => return None,
     })
 }
 

@@ -5,8 +5,9 @@ use crate::failure::Failure;
 use crate::progress::Spinner;
 use crate::{chain, scene};
 use gyro_assembled::Dense;
+use gyro_codegen::Functions;
 use gyro_model::{Model, Number, Parameter, Rational};
-use gyro_sim::{Equations, Mechanism};
+use gyro_sim::{Dynamics, Mechanism};
 use gyro_verifier::field::Precision;
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{KERNELS, Trial, relative_error, trial};
@@ -119,8 +120,8 @@ struct Subject {
 impl Subject {
     fn new(model: &Model) -> Result<Self, Failure> {
         let model = freed(model);
-        let generated =
-            gyro_codegen::generate_model("model.toml", &model).map_err(|e| Failure::Usage(e.to_string()))?;
+        let generated = gyro_codegen::generate_functions("model.toml", &model, &Functions::all())
+            .map_err(|e| Failure::Usage(e.to_string()))?;
         let module = Module::read(&model, &generated.code, &generated.constants)
             .map_err(|refusal| Failure::Run(refusal.to_string()))?;
         if module.joints.is_none() {
@@ -232,7 +233,7 @@ impl Configuration {
         let dense = Dense::<f64>::new(&self.model).ok()?;
         let mut y = dense.start();
         y.as_mut_slice().copy_from_slice(&state);
-        let mut out = dense.terms().accelerations;
+        let mut out = dense.acceleration_buffer();
         dense.accelerations(0.0, &y, &mut out);
         let computed: &[f64] = out.as_ref();
         Some((errors, relative_error(&accelerations, &computed[..accelerations.len()], &[])))

@@ -57,8 +57,9 @@ fn rounding_of(places: &[Place], page: &Path) -> Result<rounding::Table, Failure
 
 /// A model with its module and exact constants: as they are on disk, or as they are generated where they are not kept.
 fn read_module(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Failure> {
-    let model = scene::read(page)?;
+    let mut model = scene::read(page)?;
     let Some(path) = module_path(places, page, &model.name) else {
+        model.functions.get_or_insert_with(|| vec!["all".to_owned()]);
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
             .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
         return Ok((model, [module.code, module.constants]));

@@ -1,75 +1,110 @@
-//! Groups of functions that a module has together or not at all.
+//! Groups of functions that a module has together or not at all: a trait of the run time's contract each.
 
 use std::collections::BTreeSet;
 
 /// Functions that a module has together or not at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs, reason = "`Group::what` says what each of them is")]
 pub enum Group {
-    /// What every module has: `Mechanism`, `Partition` and `Equations`.
+    Mechanism,
+    Kinematics,
     Maximal,
-    /// `JointSpace`.
+    Corrected,
+    Reactions,
+    Projection,
+    Partition,
     Joint,
-    /// The Jacobians of `JointSpace`, whose types are `()` in modules without them.
     Jacobian,
-    /// `JointOutputs`.
     JointOutputs,
-    /// `OutputDerivatives`.
     OutputDerivatives,
-    /// `Frames`.
     Frames,
 }
+
+/// What is known of a group.
+struct Row {
+    group: Group,
+    /// Its name on the command line and in model files.
+    name: &'static str,
+    /// The trait of the run time that its functions are.
+    trait_name: &'static str,
+    /// What it is, in words.
+    what: &'static str,
+    /// The groups without which it cannot be.
+    needs: &'static [Group],
+    /// Whether modules have it unless something else is asked for.
+    is_usual: bool,
+}
+
+/// All groups, a row for each variant of [`Group`] in the same order.
+#[rustfmt::skip]
+const TABLE: &[Row] = &[
+    Row { group: Group::Mechanism, name: "mechanism", trait_name: "Mechanism", needs: &[], is_usual: true, what: "what every module has" },
+    Row { group: Group::Kinematics, name: "kinematics", trait_name: "Kinematics", needs: &[], is_usual: true, what: "derivatives of the constraints" },
+    Row { group: Group::Maximal, name: "maximal", trait_name: "Dynamics", needs: &[], is_usual: true, what: "eq. (17) at any state" },
+    Row { group: Group::Corrected, name: "corrected", trait_name: "CorrectedDynamics", needs: &[Group::Joint], is_usual: true, what: "accelerations at corrected states" },
+    Row { group: Group::Reactions, name: "reactions", trait_name: "CorrectedSolution", needs: &[Group::Joint, Group::Corrected], is_usual: false, what: "multipliers at corrected states" },
+    Row { group: Group::Projection, name: "projection", trait_name: "Projection", needs: &[Group::Kinematics], is_usual: false, what: "the projection that the masses weigh" },
+    Row { group: Group::Partition, name: "partition", trait_name: "Partition", needs: &[Group::Kinematics], is_usual: true, what: "the coordinate partition" },
+    Row { group: Group::Joint, name: "joint", trait_name: "JointSpace", needs: &[], is_usual: true, what: "joint coordinates" },
+    Row { group: Group::Jacobian, name: "jacobian", trait_name: "JointJacobian", needs: &[Group::Joint], is_usual: false, what: "derivatives of the joint form" },
+    Row { group: Group::JointOutputs, name: "joint_outputs", trait_name: "JointOutputs", needs: &[Group::Joint], is_usual: false, what: "outputs of a joint state" },
+    Row { group: Group::OutputDerivatives, name: "output_derivatives", trait_name: "OutputDerivatives", needs: &[Group::Joint, Group::JointOutputs], is_usual: false, what: "derivatives of the outputs" },
+    Row { group: Group::Frames, name: "frames", trait_name: "Frames", needs: &[Group::Joint], is_usual: false, what: "how outputs of kind `velocity` move with a joint state" },
+];
+
+const _: () = {
+    let mut place = 0;
+    while place < TABLE.len() {
+        assert!(TABLE[place].group as usize == place, "the table has the order of the variants");
+        place += 1;
+    }
+};
 
 impl Group {
     /// All groups.
     pub fn all() -> impl Iterator<Item = Self> {
-        [
-            Self::Maximal,
-            Self::Joint,
-            Self::Jacobian,
-            Self::JointOutputs,
-            Self::OutputDerivatives,
-            Self::Frames,
-        ]
-        .into_iter()
+        TABLE.iter().map(|row| row.group)
     }
 
     /// Its name on the command line and in model files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Maximal => "maximal",
-            Self::Joint => "joint",
-            Self::Jacobian => "jacobian",
-            Self::JointOutputs => "joint_outputs",
-            Self::OutputDerivatives => "output_derivatives",
-            Self::Frames => "frames",
-        }
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The trait of the run time that its functions are.
+    pub fn trait_name(self) -> &'static str {
+        self.row().trait_name
     }
 
     /// What it is, in words.
-    pub const fn what(self) -> &'static str {
-        match self {
-            Self::Maximal => "what every module has (traits Mechanism, Partition, Equations)",
-            Self::Joint => "joint coordinates (trait JointSpace)",
-            Self::Jacobian => "derivatives of the joint form, with `joint` (JointSpace::Jacobian)",
-            Self::JointOutputs => "outputs of a joint state (trait JointOutputs)",
-            Self::OutputDerivatives => "their derivatives (trait OutputDerivatives)",
-            Self::Frames => "how the outputs of kind `velocity` move with a joint state (trait Frames)",
-        }
+    pub fn what(self) -> &'static str {
+        self.row().what
     }
 
     /// Itself with the groups without which it cannot be.
     pub fn with_needs(self) -> Vec<Self> {
-        match self {
-            Self::Maximal => vec![self],
-            Self::Joint => vec![Self::Maximal, self],
-            Self::Jacobian | Self::JointOutputs | Self::Frames => vec![Self::Maximal, Self::Joint, self],
-            Self::OutputDerivatives => vec![Self::Maximal, Self::Joint, Self::JointOutputs, self],
-        }
+        [&[Self::Mechanism], self.row().needs, &[self]].concat()
+    }
+
+    fn row(self) -> &'static Row {
+        &TABLE[self as usize]
     }
 }
 
-/// The functions that are asked for, a group at a time: a group is what a trait of the run time's contract consists of,
-/// or a part of it that can be absent. What is not asked for is neither derived nor written.
+/// What a mechanism makes of groups.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// Whether joint coordinates describe it.
+    pub joint_coordinates: bool,
+    /// Whether an output tells accelerations or multipliers.
+    pub outputs_of_motion: bool,
+    /// Whether an output tells multipliers.
+    pub outputs_of_multipliers: bool,
+    /// Whether work is counted that multipliers of loops do.
+    pub work_of_loops: bool,
+}
+
+/// The functions that are asked for, a group at a time. What is not asked for is neither derived nor written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Functions(BTreeSet<Group>);
 
@@ -79,14 +114,15 @@ impl Functions {
         Self(Group::all().collect())
     }
 
-    /// What modules have unless others are asked for.
+    /// What a module has unless something else is asked for: Φ, Φ_q and γ, what direct integration and coordinate
+    /// partitioning call, and joint coordinates.
     pub fn usual() -> Self {
-        Self::of([Group::Jacobian])
+        Self::of(Group::all().filter(|group| group.row().is_usual))
     }
 
     /// Some groups, each with what it needs. What solvers and observers of every mechanism need is always there.
-    pub(crate) fn of(groups: impl IntoIterator<Item = Group>) -> Self {
-        let groups = groups.into_iter().chain([Group::Maximal]);
+    pub fn of(groups: impl IntoIterator<Item = Group>) -> Self {
+        let groups = groups.into_iter().chain([Group::Mechanism]);
         Self(groups.flat_map(Group::with_needs).collect())
     }
 
@@ -100,5 +136,23 @@ impl Functions {
     /// Whether a group is asked for.
     pub fn has(&self, group: Group) -> bool {
         self.0.contains(&group)
+    }
+
+    /// What is written of these for a mechanism: without joint coordinates accelerations at corrected states are those
+    /// at any state, which outputs may need too.
+    pub(crate) fn of_mechanism(mut self, facts: Facts) -> Self {
+        let has_own = facts.joint_coordinates && !facts.work_of_loops;
+        if facts.outputs_of_motion || self.has(Group::Corrected) && !has_own {
+            self.0.insert(Group::Maximal);
+        }
+        if facts.outputs_of_multipliers && self.has(Group::JointOutputs) {
+            // They are proved for these multipliers.
+            self.0.extend(Group::Reactions.with_needs());
+        }
+        if !facts.joint_coordinates {
+            let needs_joints = |group: &Group| group.with_needs().contains(&Group::Joint);
+            self.0.retain(|group| *group == Group::Corrected || !needs_joints(group));
+        }
+        self
     }
 }

@@ -39,6 +39,7 @@ pub enum Kernel {
     ToJoints,
     JointAccelerationsAt,
     CorrectedAccelerations,
+    CorrectedDerivative,
     CorrectedMultipliers,
     CorrectedSolution,
     JointJacobian,
@@ -56,7 +57,7 @@ pub enum Kernel {
     FrameBiases,
 }
 
-/// When a kernel exists, and where its expressions come from.
+/// When a kernel that is asked for exists, and where its expressions come from.
 enum Source {
     /// If something depends on parameters alone, which is known once all other kernels are.
     Parameters,
@@ -79,6 +80,7 @@ enum Source {
 /// What is known of a kernel.
 struct Row {
     kernel: Kernel,
+    group: Group,
     /// Its name on the data sheet.
     name: &'static str,
     /// What the data sheet claims that it computes; the verifier proves it.
@@ -86,52 +88,59 @@ struct Row {
     source: Source,
 }
 
-const fn row(kernel: Kernel, name: &'static str, computes: &'static str, source: Source) -> Row {
-    Row { kernel, name, computes, source }
+const fn row(
+    kernel: Kernel,
+    group: Group,
+    name: &'static str,
+    computes: &'static str,
+    source: Source,
+) -> Row {
+    Row { kernel, group, name, computes, source }
 }
 
 /// All kernels, a row for each variant of [`Kernel`] in the same order.
 #[rustfmt::skip]
 const TABLE: &[Row] = &[
-    row(Kernel::ParameterSetup, "parameter_setup", "what depends on parameters alone", Source::Parameters),
-    row(Kernel::Phi, "phi", "Φ", Source::Equations(|e| e.phi.clone().into())),
-    row(Kernel::PhiQ, "phi_q", "Φ_q, non-zeros in (r, p)", Source::Equations(|e| e.phi_q.values().into())),
-    row(Kernel::PhiPi, "phi_pi", "(Φ_r, Φ_π'), non-zeros", Source::Equations(|e| e.phi_pi.values().into())),
-    row(Kernel::Nu, "nu", "ν", Source::Equations(|e| e.nu.clone().into())),
-    row(Kernel::Gamma, "gamma", "γ", Source::Equations(|e| e.gamma.clone().into())),
-    row(Kernel::VelocityResidual, "velocity_residual", "Φ_r s + Φ_π' w' − ν", Source::Equations(|e| e.velocity_residual.clone().into())),
-    row(Kernel::AppliedForce, "applied_force", "(f, n' − w̃'J'w')", Source::Equations(|e| e.applied_force.clone().into())),
-    row(Kernel::Accelerations, "accelerations", "(s̈, ẇ'), eq. (17)", Source::Equations(|e| e.solved.clone())),
-    row(Kernel::Multipliers, "multipliers", "λ, the accelerations being known", Source::Equations(|e| e.lambda.clone().into())),
-    row(Kernel::Project, "project", "(δr, δπ') that changes the rows as given", Source::Equations(|e| e.projection.clone())),
-    row(Kernel::Derivative, "derivative", "ẏ but for the accelerations: eqs. (14), (16)", Source::Equations(|e| e.rates_but_accelerations().into())),
-    row(Kernel::Energy, "energy", "T and V", Source::Equations(|e| vec![e.kinetic, e.potential].into())),
-    row(Kernel::ReadJoints, "read_joints", "joint coordinates and rates", Source::Equations(|e| e.readings.clone().into())),
-    row(Kernel::Outputs, "outputs", "outputs, the accelerations being known", Source::Equations(|e| e.outputs.clone().into())),
-    row(Kernel::ChartVectors, "chart vectors", "for the choice of independent coordinates", Source::Charts(|c| c.vectors.clone().into())),
-    row(Kernel::NewtonStep, "newton_step", "dependent positions, one Newton step", Source::Charts(|c| c.newton_positions.clone().into())),
-    row(Kernel::SolveVelocities, "solve_velocities", "dependent velocities, eq. (19)", Source::Charts(|c| c.solved_velocities.clone().into())),
-    row(Kernel::JointAccelerations, "joint_accelerations", "u̇ in joint coordinates", Source::JointSpace(|s| s.accelerations.clone())),
-    row(Kernel::JointDerivative, "joint_derivative", "ẋ but for u̇", Source::JointSpace(|s| s.derivative.clone().into())),
-    row(Kernel::ToMaximal, "to_maximal", "(q, v) of a joint state", Source::JointSpace(|s| s.maximal.clone().into())),
-    row(Kernel::ToJoints, "to_joints", "(x, u) of a maximal state", Source::JointSpace(|s| s.reduced.clone().into())),
-    row(Kernel::JointAccelerationsAt, "joint_accelerations_at", "u̇ at a corrected maximal state", Source::JointSpace(|s| s.accelerations_at.clone())),
-    row(Kernel::CorrectedAccelerations, "corrected_accelerations", "(s̈, ẇ') at a corrected state", Source::JointSpace(|s| s.corrected.clone())),
-    row(Kernel::CorrectedMultipliers, "corrected_multipliers", "λ at such a state and these accelerations", Source::JointSpace(|s| s.multipliers.clone().into())),
-    row(Kernel::CorrectedSolution, "corrected_solution", "both", Source::JointSpace(|s| s.solution.clone().into())),
-    row(Kernel::JointJacobian, "joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", Source::Jacobian(|j| j.by_state_and_time.clone())),
-    row(Kernel::JointInputJacobian, "joint_input_jacobian", "∂f/∂(inputs)", Source::Jacobian(|j| j.by_inputs.clone())),
-    row(Kernel::LoopClosure, "loop_closure", "Φ of the joints that close loops, in joint coordinates", Source::JointSpace(|s| s.closure.clone().into())),
-    row(Kernel::ClosureDistances, "closure_distances", "squares of distances between the rows of the loops' Jacobian", Source::JointSpace(|s| s.distances.clone().into())),
-    row(Kernel::ClosePositions, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
-    row(Kernel::CloseVelocities, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
-    row(Kernel::JointOutputs, "joint_outputs", "outputs of a joint state, u̇ being known", Source::JointOutputs),
-    row(Kernel::OutputsByState, "outputs_by_state", "∂(outputs)/∂(x, u), u̇ being held", Source::OutputDerivatives(|o| o.by_state.clone())),
-    row(Kernel::OutputsByAccelerations, "outputs_by_accelerations", "∂(outputs)/∂u̇", Source::OutputDerivatives(|o| o.by_accelerations.clone())),
-    row(Kernel::OutputsByInputs, "outputs_by_inputs", "∂(outputs)/∂(inputs), u̇ being held", Source::OutputDerivatives(|o| o.by_inputs.clone())),
-    row(Kernel::OutputsByParameters, "outputs_by_parameters", "∂(outputs)/∂(parameters), u̇ being held", Source::OutputDerivatives(|o| o.by_parameters.clone())),
-    row(Kernel::FrameJacobians, "frame_jacobians", "∂(ṡ, w')/∂u of frames, row by row", Source::Frames(|f| f.jacobians.clone())),
-    row(Kernel::FrameBiases, "frame_biases", "(s̈, ẇ') of frames at u̇ = 0", Source::Frames(|f| f.biases.clone())),
+    row(Kernel::ParameterSetup, Group::Mechanism, "parameter_setup", "what depends on parameters alone", Source::Parameters),
+    row(Kernel::Phi, Group::Mechanism, "phi", "Φ", Source::Equations(|e| e.phi.clone().into())),
+    row(Kernel::PhiQ, Group::Kinematics, "phi_q", "Φ_q, non-zeros in (r, p)", Source::Equations(|e| e.phi_q.values().into())),
+    row(Kernel::PhiPi, Group::Kinematics, "phi_pi", "(Φ_r, Φ_π'), non-zeros", Source::Equations(|e| e.phi_pi.values().into())),
+    row(Kernel::Nu, Group::Kinematics, "nu", "ν", Source::Equations(|e| e.nu.clone().into())),
+    row(Kernel::Gamma, Group::Kinematics, "gamma", "γ", Source::Equations(|e| e.gamma.clone().into())),
+    row(Kernel::VelocityResidual, Group::Mechanism, "velocity_residual", "Φ_r s + Φ_π' w' − ν", Source::Equations(|e| e.velocity_residual.clone().into())),
+    row(Kernel::AppliedForce, Group::Mechanism, "applied_force", "(f, n' − w̃'J'w')", Source::Equations(|e| e.applied_force.clone().into())),
+    row(Kernel::Accelerations, Group::Maximal, "accelerations", "(s̈, ẇ'), eq. (17)", Source::Equations(|e| e.solved.clone())),
+    row(Kernel::Multipliers, Group::Maximal, "multipliers", "λ, the accelerations being known", Source::Equations(|e| e.lambda.clone().into())),
+    row(Kernel::Project, Group::Projection, "project", "(δr, δπ') that changes the rows as given", Source::Equations(|e| e.projection.clone())),
+    row(Kernel::Derivative, Group::Maximal, "derivative", "ẏ but for the accelerations: eqs. (14), (16)", Source::Equations(|e| e.rates_but_accelerations().into())),
+    row(Kernel::Energy, Group::Mechanism, "energy", "T and V", Source::Equations(|e| vec![e.kinetic, e.potential].into())),
+    row(Kernel::ReadJoints, Group::Mechanism, "read_joints", "joint coordinates and rates", Source::Equations(|e| e.readings.clone().into())),
+    row(Kernel::Outputs, Group::Mechanism, "outputs", "outputs, the accelerations being known", Source::Equations(|e| e.outputs.clone().into())),
+    row(Kernel::ChartVectors, Group::Partition, "chart vectors", "for the choice of independent coordinates", Source::Charts(|c| c.vectors.clone().into())),
+    row(Kernel::NewtonStep, Group::Partition, "newton_step", "dependent positions, one Newton step", Source::Charts(|c| c.newton_positions.clone().into())),
+    row(Kernel::SolveVelocities, Group::Partition, "solve_velocities", "dependent velocities, eq. (19)", Source::Charts(|c| c.solved_velocities.clone().into())),
+    row(Kernel::JointAccelerations, Group::Joint, "joint_accelerations", "u̇ in joint coordinates", Source::JointSpace(|s| s.accelerations.clone())),
+    row(Kernel::JointDerivative, Group::Joint, "joint_derivative", "ẋ but for u̇", Source::JointSpace(|s| s.derivative.clone().into())),
+    row(Kernel::ToMaximal, Group::Joint, "to_maximal", "(q, v) of a joint state", Source::JointSpace(|s| s.maximal.clone().into())),
+    row(Kernel::ToJoints, Group::Joint, "to_joints", "(x, u) of a maximal state", Source::JointSpace(|s| s.reduced.clone().into())),
+    row(Kernel::JointAccelerationsAt, Group::Reactions, "joint_accelerations_at", "u̇ at a corrected maximal state", Source::JointSpace(|s| s.accelerations_at.clone())),
+    row(Kernel::CorrectedAccelerations, Group::Corrected, "corrected_accelerations", "(s̈, ẇ') at a corrected state", Source::JointSpace(|s| s.corrected.clone())),
+    row(Kernel::CorrectedDerivative, Group::Corrected, "corrected_derivative", "ẏ but for the accelerations, there", Source::Equations(|e| e.rates_at_corrected_states().into())),
+    row(Kernel::CorrectedMultipliers, Group::Reactions, "corrected_multipliers", "λ at such a state and these accelerations", Source::JointSpace(|s| s.multipliers.clone().into())),
+    row(Kernel::CorrectedSolution, Group::Reactions, "corrected_solution", "both", Source::JointSpace(|s| s.solution.clone().into())),
+    row(Kernel::JointJacobian, Group::Jacobian, "joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", Source::Jacobian(|j| j.by_state_and_time.clone())),
+    row(Kernel::JointInputJacobian, Group::Jacobian, "joint_input_jacobian", "∂f/∂(inputs)", Source::Jacobian(|j| j.by_inputs.clone())),
+    row(Kernel::LoopClosure, Group::Joint, "loop_closure", "Φ of the joints that close loops, in joint coordinates", Source::JointSpace(|s| s.closure.clone().into())),
+    row(Kernel::ClosureDistances, Group::Joint, "closure_distances", "squares of distances between the rows of the loops' Jacobian", Source::JointSpace(|s| s.distances.clone().into())),
+    row(Kernel::ClosePositions, Group::Joint, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
+    row(Kernel::CloseVelocities, Group::Joint, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
+    row(Kernel::JointOutputs, Group::JointOutputs, "joint_outputs", "outputs of a joint state, u̇ being known", Source::JointOutputs),
+    row(Kernel::OutputsByState, Group::OutputDerivatives, "outputs_by_state", "∂(outputs)/∂(x, u), u̇ being held", Source::OutputDerivatives(|o| o.by_state.clone())),
+    row(Kernel::OutputsByAccelerations, Group::OutputDerivatives, "outputs_by_accelerations", "∂(outputs)/∂u̇", Source::OutputDerivatives(|o| o.by_accelerations.clone())),
+    row(Kernel::OutputsByInputs, Group::OutputDerivatives, "outputs_by_inputs", "∂(outputs)/∂(inputs), u̇ being held", Source::OutputDerivatives(|o| o.by_inputs.clone())),
+    row(Kernel::OutputsByParameters, Group::OutputDerivatives, "outputs_by_parameters", "∂(outputs)/∂(parameters), u̇ being held", Source::OutputDerivatives(|o| o.by_parameters.clone())),
+    row(Kernel::FrameJacobians, Group::Frames, "frame_jacobians", "∂(ṡ, w')/∂u of frames, row by row", Source::Frames(|f| f.jacobians.clone())),
+    row(Kernel::FrameBiases, Group::Frames, "frame_biases", "(s̈, ẇ') of frames at u̇ = 0", Source::Frames(|f| f.biases.clone())),
 ];
 
 const _: () = {
@@ -160,22 +169,18 @@ impl Kernel {
 
     /// The group that it belongs to.
     pub fn group(self) -> Group {
-        match self.row().source {
-            Source::Parameters | Source::Equations(_) | Source::Charts(_) => Group::Maximal,
-            Source::JointSpace(_) => Group::Joint,
-            Source::Jacobian(_) => Group::Jacobian,
-            Source::JointOutputs => Group::JointOutputs,
-            Source::OutputDerivatives(_) => Group::OutputDerivatives,
-            Source::Frames(_) => Group::Frames,
-        }
+        self.row().group
     }
 
     fn row(self) -> &'static Row {
         &TABLE[self as usize]
     }
 
-    /// Its expressions, unless the mechanism has no such kernel.
+    /// Its expressions, unless the module has no such kernel.
     fn chosen(self, equations: &Equations) -> Option<Chosen> {
+        if !equations.functions.has(self.group()) {
+            return None;
+        }
         let joint_space = equations.joint_space.as_ref();
         match self.row().source {
             Source::Parameters => None,
@@ -206,6 +211,11 @@ impl Kernels {
         for chosen in self.0.values_mut() {
             chosen.roots = passes.applied(graph, &chosen.roots);
         }
+        // Multipliers of loops come with the exact accelerations alone.
+        let is_loop_multiplier = |id| matches!(graph.node(id), Node::Symbol(Symbol::LoopMultiplier(_)));
+        if graph.reachable(self.roots(Kernel::CorrectedDerivative)).into_iter().any(is_loop_multiplier) {
+            self.0.remove(&Kernel::CorrectedDerivative);
+        }
         let roots = self.0.values_mut().map(|chosen| &mut chosen.roots);
         let parameter_setup = parameter_setup::separate(graph, roots);
         if !parameter_setup.is_empty() {
@@ -221,12 +231,6 @@ impl Kernels {
     /// All of them, in the order of the data sheet.
     pub fn iter(&self) -> impl Iterator<Item = (Kernel, &Chosen)> {
         self.0.iter().map(|(&kernel, chosen)| (kernel, chosen))
-    }
-
-    /// Whether part of ẏ depends on multipliers that only the exact accelerations come with.
-    pub fn derivative_needs_multipliers(&self, graph: &Graph) -> bool {
-        let reachable = graph.reachable(self.roots(Kernel::Derivative));
-        reachable.into_iter().any(|id| matches!(graph.node(id), Node::Symbol(Symbol::LoopMultiplier(_))))
     }
 }
 

@@ -61,13 +61,14 @@ use derive::system::System;
 use derive::{Observed, Textbook};
 use emit::module;
 use equations::{Equations, Parts, Rotations};
+use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
 use kernels::Kernels;
 use solve::Solution;
 use solve::forward_dynamics::ForwardDynamics;
 use solve::partition::Partition;
 
-use gyro_model::{AssemblyError, Diagnostics, Model, Start};
+use gyro_model::{AssemblyError, Diagnostics, Model, Output, OutputKind, Start, Support};
 use std::fmt;
 
 /// A generated module.
@@ -163,8 +164,8 @@ pub enum Elimination {
     Saddle,
 }
 
-/// Writes the module of a model that was read already, with the functions that the model file asks for, or with all of
-/// them.
+/// Writes the module of a model that was read already, with the functions that the model file asks for, or with the
+/// [usual](Functions::usual) ones.
 ///
 /// # Errors
 /// Why no consistent start exists, or which function is not known.
@@ -215,21 +216,52 @@ fn equations<'m>(
 ) -> Equations<'m> {
     let mut system = System::new(model);
     let textbook = Textbook::derive(&mut system);
+    let functions = &functions.clone().of_mechanism(facts(&system));
+    // Accelerations at any state are a form of those at corrected states, too.
+    let is_solved = functions.has(Group::Maximal) || functions.has(Group::Corrected);
     let forward_dynamics = ForwardDynamics::of(&mut system, &textbook.kinematics);
-    let solution = Solution::of(&mut system, &textbook, &forward_dynamics, elimination);
+    let solution = Solution::of(&mut system, &textbook, &forward_dynamics, (elimination, is_solved));
     let observed = Observed::derive(&mut system, &textbook, &solution.lambda);
-    let partition = Partition::of(&mut system, &textbook.kinematics);
+    let has_charts = functions.has(Group::Partition);
+    let partition = has_charts.then(|| Partition::of(&mut system, &textbook.kinematics)).flatten();
     let definitions = system.definitions.clone();
     let mut rotations = Rotations::of(&mut system, &definitions);
     let solved = rotations.cheapest(&mut system.graph, &solution.solved);
-    let has_joint_space = functions.has(Group::Joint) && obstacle(model).is_none();
-    let joint_space = has_joint_space.then(|| {
+    let joint_space = functions.has(Group::Joint).then(|| {
         let coordinates = Coordinates::derive(&mut system, &textbook);
         let candidates = Candidates::solve(&mut system, &coordinates);
         let (derived, asked) = ((&textbook, &observed), (functions, start));
         JointSpace::choose(&mut system, derived, coordinates, candidates, &solved.roots, asked)
     });
-    let projection = forward_dynamics.projection(&mut system.graph, &textbook.kinematics);
+    let projects = functions.has(Group::Projection);
+    let projection = projects.then(|| forward_dynamics.projection(&mut system.graph, &textbook.kinematics));
     let parts = Parts { textbook, solution, observed, projection, partition };
     Equations::choose(system, rotations, &parts, solved, (functions, joint_space))
+}
+
+/// What the mechanism makes of groups of functions.
+fn facts(system: &System) -> Facts {
+    let model = system.model;
+    let is_driven = !model.drivers.is_empty() || model.bodies.iter().any(|b| b.support == Support::Driven);
+    let tells_motion = |output: &Output| match output.kind {
+        OutputKind::Acceleration { .. }
+        | OutputKind::Inertial { .. }
+        | OutputKind::Reaction { .. }
+        | OutputKind::Driver { .. } => true,
+        OutputKind::Power => is_driven,
+        OutputKind::Pose { .. } | OutputKind::Velocity { .. } | OutputKind::Energy => false,
+    };
+    let tells_multipliers = |output: &Output| {
+        tells_motion(output)
+            && matches!(
+                output.kind,
+                OutputKind::Reaction { .. } | OutputKind::Driver { .. } | OutputKind::Power
+            )
+    };
+    Facts {
+        joint_coordinates: obstacle(model).is_none(),
+        outputs_of_motion: model.outputs.iter().any(tells_motion),
+        outputs_of_multipliers: model.outputs.iter().any(tells_multipliers),
+        work_of_loops: is_driven && model.has_work() && !system.loop_closure_rows().is_empty(),
+    }
 }

@@ -37,9 +37,10 @@ impl Functions {
         for group in Group::all() {
             let functions = Kernel::all().filter(|kernel| kernel.group() == group).map(Kernel::name);
             let functions = functions.collect::<Vec<_>>().join(", ");
-            lines.push(format!("{:9} {}: {functions}", group.name(), group.what()));
+            let (name, what, of) = (group.name(), group.what(), group.trait_name());
+            lines.push(format!("{name:10} {what} (trait {of}): {functions}"));
         }
-        lines.push(format!("{ALL:9} all of them"));
+        lines.push(format!("{ALL:10} all of them"));
         lines.join("\n")
     }
 }
@@ -81,10 +82,17 @@ mod tests {
         }
         assert!(named(&["joint_jacobian"]).has(Group::Joint));
         assert_eq!(named(&["joint", "all"]), Functions::all());
-        assert_eq!(named(&["jacobian"]), Functions::usual());
-        assert_eq!(Functions::all().without(Group::Joint), named(&["phi", "outputs"]));
-        assert_eq!(Functions::usual().without(Group::Jacobian), named(&["joint"]));
-        assert!(!Functions::usual().has(Group::Frames) && named(&["frame_biases"]).has(Group::Frames));
+        assert_eq!(named(&["corrected_multipliers"]), named(&["joint", "corrected", "reactions"]));
+        assert_eq!(Functions::all().without(Group::Joint), named(&["maximal", "projection", "partition"]));
+        assert_eq!(named(&["phi", "outputs"]), named(&[]));
+        for group in Group::all() {
+            let needed = Functions::of([group]);
+            assert!(
+                Group::all().filter(|&g| needed.has(g)).all(|g| Functions::of([g]).has(Group::Mechanism))
+            );
+            let closed = Group::all().filter(|&g| needed.has(g)).flat_map(Group::with_needs);
+            assert_eq!(Functions::of(closed), needed, "{group:?} brings all that it needs");
+        }
     }
 
     #[test]
@@ -95,6 +103,6 @@ mod tests {
         assert!(words("jacobians").contains("did you mean `jacobian`?"));
         let found = words("xyz");
         assert!(!found.contains("did you mean"), "{found}");
-        assert!(found.contains("maximal, joint, jacobian, all") && found.contains("newton_step"), "{found}");
+        assert!(found.contains("joint, jacobian, all") && found.contains("newton_step"), "{found}");
     }
 }

@@ -1,7 +1,7 @@
 //! Dual numbers: automatic differentiation, accurate to rounding.
 
 use crate::contract::Storage;
-use crate::{Ode, Scalar};
+use crate::{Jacobian, Ode, Scalar};
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -135,18 +135,26 @@ where
 {
     type Scalar = <D as Ode<M>>::Scalar;
     type State = <D as Ode<M>>::State;
-    type Jacobian = J;
 
     fn derivative(&self, model: &M, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
         Ode::<M>::derivative(&self.dynamics, model, t, y, dy);
     }
+}
+
+impl<D, M, Dualled, S, J, const N: usize> Jacobian<M> for ByDuals<D, Dualled, S, J, N>
+where
+    D: Ode<M> + Ode<Dualled, Scalar = Dual<<D as Ode<M>>::Scalar, N>, State = S>,
+    J: Storage<<D as Ode<M>>::Scalar>,
+    S: Storage<Dual<<D as Ode<M>>::Scalar, N>>,
+{
+    type Matrix = J;
 
     fn jacobian(
         &self,
         _: &M,
         t: Self::Scalar,
         y: &Self::State,
-        dfdy: &mut Self::Jacobian,
+        dfdy: &mut Self::Matrix,
         dfdt: &mut Self::State,
     ) {
         let (mut arguments, n) = (self.state.clone(), y.as_ref().len());

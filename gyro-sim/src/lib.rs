@@ -11,14 +11,19 @@
 //! | [`Ode`] | equations `ẏ = f(t, y)` of a model | [`Exact`], [`Corrected`], [`Joint`], [`Baumgarte`], [`ByDuals`] |
 //! | [`Method`](integrate::Method) | a step | [`Kutta4`], [`Tsit5`], [`Dop853`], [`Rodas4`] |
 //! | [`Correction`] | a way back onto the constraints | see [`correct`] |
+//! | [`Jacobian`] | the derivatives of such equations, for implicit methods | [`Joint`], [`ByDuals`] |
 //! | [`Mechanism`] | description, Φ, energy, inputs, outputs | generated and runtime-assembled mechanisms |
-//! | [`Equations`] | the equations of motion term by term | the same |
-//! | [`Partition`] | independent and dependent coordinates | the same |
-//! | [`JointSpace`] | joint coordinates | generated mechanisms that have them |
+//! | [`Kinematics`] | Φ_q, (Φ_r, Φ_π'), ν, γ | the same |
+//! | [`Dynamics`], [`CorrectedDynamics`] | accelerations at any state, at corrected states | the same |
+//! | [`Partition`], [`Projection`] | independent and dependent coordinates; the least change of a state | the same |
+//! | [`JointSpace`], [`JointJacobian`] | joint coordinates; their derivatives | generated mechanisms that have them |
+//! | [`CorrectedSolution`] | multipliers and rates' rates at corrected states | the same |
+//!
+//! Of the traits below [`Mechanism`] a generated module has those that were asked for (`[generate] functions`).
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
 //! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
-//!   types. [`Mechanism::buffers`], [`Equations::terms`] and [`JointSpace::joint_buffers`] return them, zeroed.
+//!   types. [`Mechanism::buffers`], [`Kinematics::terms`], [`JointSpace::joint_buffers`] and others return them, zeroed.
 //! * **Equations.** The equations are a value without content, and the mechanism stays the caller's: its inputs and
 //!   parameters may change between two calls. [`Exact`] holds at any state, [`Corrected`] takes fewer operations near
 //!   the constraints, [`Joint`] integrates joint coordinates, which satisfy all of them by construction but those of
@@ -115,9 +120,10 @@ mod violation;
 
 pub use apart::apart;
 pub use contract::{
-    Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, FrameBuffers, Frames,
-    Joint, JointBuffers, JointInfo, JointLayout, JointOutputs, JointPlace, JointSpace, Mechanism, Ode,
-    OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition, RowInfo, System, Terms,
+    Buffers, Clearance, Coordinate, Corrected, CorrectedDynamics, CorrectedSolution, Description, Dynamics,
+    Energy, Exact, FrameBuffers, Frames, Jacobian, JacobianBuffers, Joint, JointBuffers, JointInfo,
+    JointJacobian, JointLayout, JointOutputs, JointPlace, JointSpace, Kinematics, Mechanism, Ode,
+    OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition, Projection, RowInfo, System, Terms,
     set_turn_references,
 };
 pub use correct::{

@@ -4,8 +4,8 @@
 use gyro_mechanisms::four_bar::FourBar;
 use gyro_sim::pivoting::Pivots;
 use gyro_sim::{
-    Buffers, Clearance, Description, Energy, Equations, Error, JointBuffers, JointLayout, JointPlace,
-    JointSpace, Mechanism, Partition, Real, Scalar, Terms,
+    Buffers, Clearance, CorrectedDynamics, Description, Dynamics, Energy, Error, JointBuffers, JointLayout,
+    JointPlace, JointSpace, Kinematics, Mechanism, Partition, Projection, Real, Scalar, Terms,
 };
 
 /// In maximal coordinates it is the generated one.
@@ -109,10 +109,7 @@ fn multipliers<T: Scalar>(j: &[[T; 3]; 2], inverse: &[[T; 3]; 3], by: [T; 2]) ->
 impl<T: Scalar> JointSpace for Linkage<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
-    type Solution = [T; 0];
     type Closure = [T; 2];
-    type Jacobian = ();
-    type InputJacobian = ();
 
     fn joint_layout(&self) -> &JointLayout<'_> {
         const LAYOUT: JointLayout<'static> = JointLayout {
@@ -127,7 +124,7 @@ impl<T: Scalar> JointSpace for Linkage<T> {
     }
     fn joint_buffers(&self) -> JointBuffers<Self> {
         let zero = T::constant(0.0);
-        JointBuffers { rates: [zero; 3], solution: [], closure: [zero; 2], jacobian: (), input_jacobian: () }
+        JointBuffers { rates: [zero; 3], closure: [zero; 2] }
     }
     fn joint_start(&self) -> [T; 6] {
         let mut x = [1.0, 1.4, -0.6, 0.0, 0.0, 0.0].map(T::constant);
@@ -192,28 +189,14 @@ impl<T: Scalar> JointSpace for Linkage<T> {
         let [crank, coupler, rocker] = planar.least(planar.jacobian().map(|row| dot(&row, &planar.rates)));
         (x[3], x[4], x[5]) = (x[3] + crank, x[4] + rocker, x[5] + coupler - crank);
     }
-
-    fn joint_accelerations_at(&self, _: T, _: &[T; 39], _: &mut [T; 3]) {
-        unreachable!("{NOT_ASKED}")
-    }
-    fn corrected_accelerations(&self, _: T, _: &[T; 39], _: &mut [T; 18]) {
-        unreachable!("{NOT_ASKED}")
-    }
-    fn corrected_multipliers(&self, _: T, _: &[T; 39], _: &[T; 18], _: &mut [T; 17]) {
-        unreachable!("{NOT_ASKED}")
-    }
-    fn corrected_solution(&self, _: T, _: &[T; 39], _: &mut [T; 0]) {
-        unreachable!("{NOT_ASKED}")
-    }
 }
-
-const NOT_ASKED: &str = "no run asks for this";
 
 impl<T: Scalar> Mechanism for Linkage<T> {
     type Scalar = T;
     type State = [T; 39];
     type Rows = [T; 17];
     type Constraints = [T; 20];
+    type Velocities = [T; 18];
     type Readings = [T; 19];
     type Outputs = [T; 0];
 
@@ -221,20 +204,20 @@ impl<T: Scalar> Mechanism for Linkage<T> {
         self.generated.description()
     }
     fn buffers(&self) -> Buffers<Self> {
-        let Buffers { rows, constraints, readings, outputs } = self.generated.buffers();
-        Buffers { rows, constraints, readings, outputs }
+        let Buffers { rows, constraints, velocities, readings, outputs } = self.generated.buffers();
+        Buffers { rows, constraints, velocities, readings, outputs }
     }
     fn start(&self) -> [T; 39] {
         self.generated.start()
-    }
-    fn derivative(&self, t: T, y: &[T; 39], dy: &mut [T; 39]) {
-        self.generated.derivative(t, y, dy);
     }
     fn phi(&self, t: T, y: &[T; 39], out: &mut [T; 20]) {
         self.generated.phi(t, y, out);
     }
     fn velocity_residual(&self, t: T, y: &[T; 39], out: &mut [T; 17]) {
         self.generated.velocity_residual(t, y, out);
+    }
+    fn applied_force(&self, t: T, y: &[T; 39], out: &mut [T; 18]) {
+        self.generated.applied_force(t, y, out);
     }
     fn energy(&self, t: T, y: &[T; 39]) -> Energy<T> {
         self.generated.energy(t, y)
@@ -273,15 +256,13 @@ impl<T: Real> Partition for Linkage<T> {
     }
 }
 
-impl<T: Scalar> Equations for Linkage<T> {
-    type Velocities = [T; 18];
-    type PhiQ = <FourBar<T> as Equations>::PhiQ;
-    type PhiPi = <FourBar<T> as Equations>::PhiPi;
-    type Accelerations = <FourBar<T> as Equations>::Accelerations;
+impl<T: Scalar> Kinematics for Linkage<T> {
+    type PhiQ = <FourBar<T> as Kinematics>::PhiQ;
+    type PhiPi = <FourBar<T> as Kinematics>::PhiPi;
 
     fn terms(&self) -> Terms<Self> {
-        let Terms { velocities, phi_q, phi_pi, accelerations } = self.generated.terms();
-        Terms { velocities, phi_q, phi_pi, accelerations }
+        let Terms { phi_q, phi_pi } = self.generated.terms();
+        Terms { phi_q, phi_pi }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         self.generated.phi_q_pattern()
@@ -301,8 +282,13 @@ impl<T: Scalar> Equations for Linkage<T> {
     fn gamma(&self, t: T, y: &[T; 39], out: &mut [T; 17]) {
         self.generated.gamma(t, y, out);
     }
-    fn applied_force(&self, t: T, y: &[T; 39], out: &mut [T; 18]) {
-        self.generated.applied_force(t, y, out);
+}
+
+impl<T: Scalar> Dynamics for Linkage<T> {
+    type Accelerations = <FourBar<T> as Dynamics>::Accelerations;
+
+    fn acceleration_buffer(&self) -> Self::Accelerations {
+        self.generated.acceleration_buffer()
     }
     fn accelerations(&self, t: T, y: &[T; 39], out: &mut Self::Accelerations) {
         self.generated.accelerations(t, y, out);
@@ -310,6 +296,21 @@ impl<T: Scalar> Equations for Linkage<T> {
     fn multipliers(&self, t: T, y: &[T; 39], accelerations: &Self::Accelerations, lambda: &mut [T; 17]) {
         self.generated.multipliers(t, y, accelerations, lambda);
     }
+    fn derivative(&self, t: T, y: &[T; 39], dy: &mut [T; 39]) {
+        self.generated.derivative(t, y, dy);
+    }
+}
+
+impl<T: Scalar> CorrectedDynamics for Linkage<T> {
+    fn corrected_accelerations(&self, t: T, y: &[T; 39], out: &mut [T; 18]) {
+        self.generated.corrected_accelerations(t, y, out);
+    }
+    fn corrected_derivative(&self, t: T, y: &[T; 39], dy: &mut [T; 39]) {
+        self.derivative(t, y, dy);
+    }
+}
+
+impl<T: Scalar> Projection for Linkage<T> {
     fn project(&self, t: T, y: &[T; 39], rows: &[T; 17], out: &mut [T; 18]) {
         self.generated.project(t, y, rows, out);
     }

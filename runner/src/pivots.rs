@@ -1,10 +1,10 @@
 //! How near a pose is to a singular one.
 
-use gyro_sim::{Equations, Real, Scalar};
+use gyro_sim::{Kinematics, Real, Scalar};
 
 /// The smallest pivot of Φ_q, joint rows and normalisations, by full pivoting (Golub and Van Loan, *Matrix
 /// Computations*, section 3.4.8); lengths in units of the mechanism's size.
-pub(crate) fn smallest<M: Equations<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
+pub(crate) fn smallest<M: Kinematics<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
     let mut values = mechanism.terms().phi_q;
     mechanism.phi_q(Scalar::constant(t), y, &mut values);
     let size = mechanism.size().to_f64();

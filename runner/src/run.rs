@@ -6,13 +6,15 @@ use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
 use crate::motion::{self, Linear, Motion, MotionBuilder, OperatingPoint};
 use crate::offers::Offers;
-use crate::sample::Observer;
+use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
 use crate::{
     Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
     describe, describe_in,
 };
-use gyro_sim::{Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns};
+use gyro_sim::{
+    CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,
+};
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -64,12 +66,15 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// [`Failure::Run`] if a solver fails or the start does not fit the mechanism; [`Failure::Output`] from `tell`.
-pub fn run<M: Partition<Scalar: Real> + 'static>(
+pub fn run<M>(
     mechanism: &mut M,
     settings: &Settings,
     start: &Start,
     tell: impl FnMut(Event<'_>) -> io::Result<()>,
-) -> Result<Summary, Failure> {
+) -> Result<Summary, Failure>
+where
+    M: Partition<Scalar: Real> + Dynamics + CorrectedDynamics + 'static,
+{
     run_by(mechanism, &motion::Any, (settings, &Approach::default()), start, tell)
 }
 
@@ -312,7 +317,7 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         if t > 0.0 {
             self.look_at_pivots(builder, approach, t);
         }
-        let scale = builder.work_scale(self.mechanism, t, &self.y).max(sample.potential.abs());
+        let scale = work_scale(self.mechanism, t, &self.y).max(sample.potential.abs());
         tracker.add(&sample, scale * <M::Scalar as Real>::EPSILON.to_f64());
         Ok((told.tell)(Event::Sample(&sample))?)
     }

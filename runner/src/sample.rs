@@ -132,3 +132,16 @@ fn body<M: Mechanism<Scalar: Real>>(mechanism: &M, moving_body: usize, y: &M::St
         velocity: std::array::from_fn(|k| y[velocities + 6 * moving_body + k].to_f64()),
     }
 }
+
+/// The work of all applied forces over the mechanism's size and of all moments over a radian, J: what energies
+/// are rounded against.
+pub(crate) fn work_scale<M: Mechanism<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
+    let mut forces = mechanism.buffers().velocities;
+    mechanism.applied_force(Scalar::constant(t), y, &mut forces);
+    let size = mechanism.size().to_f64();
+    let work = |(k, force): (usize, &M::Scalar)| {
+        let force = force.abs().to_f64();
+        if k % 6 < 3 { force * size } else { force }
+    };
+    forces.as_ref().iter().enumerate().map(work).sum()
+}

@@ -2,8 +2,8 @@
 
 use crate::Start;
 use gyro_sim::{
-    Buffers, Coordinate, Description, Energy, Error, JointInfo, Mechanism, OutputInfo, Owner, Partition,
-    RowInfo, charts,
+    Buffers, Coordinate, CorrectedDynamics, Description, Dynamics, Energy, Error, JointInfo, Mechanism,
+    OutputInfo, Owner, Partition, RowInfo, charts,
 };
 
 /// State: r, p, s, w'.
@@ -39,6 +39,7 @@ impl Mechanism for Spinner {
     type State = [f64; 13];
     type Rows = [f64; 5];
     type Constraints = [f64; 6];
+    type Velocities = [f64; 6];
     type Readings = [f64; 3];
     type Outputs = [f64; 1];
 
@@ -63,7 +64,13 @@ impl Mechanism for Spinner {
         &DESCRIPTION
     }
     fn buffers(&self) -> Buffers<Self> {
-        Buffers { rows: [0.0; 5], constraints: [0.0; 6], readings: [0.0; 3], outputs: [0.0] }
+        Buffers {
+            rows: [0.0; 5],
+            constraints: [0.0; 6],
+            velocities: [0.0; 6],
+            readings: [0.0; 3],
+            outputs: [0.0],
+        }
     }
 
     fn start(&self) -> [f64; 13] {
@@ -72,19 +79,15 @@ impl Mechanism for Spinner {
         state
     }
 
-    fn derivative(&self, _: f64, y: &[f64; 13], dy: &mut [f64; 13]) {
-        *dy = [0.0; 13];
-        for (rate, tangent) in dy[3..7].iter_mut().zip(Self::tangent(y)[0]) {
-            *rate = tangent * y[10];
-        }
-        dy[10] = self.torque;
-    }
     fn phi(&self, _: f64, y: &[f64; 13], out: &mut [f64; 6]) {
         let norm: f64 = y[3..7].iter().map(|e| e * e).sum();
         *out = [y[0], y[1], y[2], y[5], y[6], norm - 1.0];
     }
     fn velocity_residual(&self, _: f64, y: &[f64; 13], out: &mut [f64; 5]) {
         *out = [y[7], y[8], y[9], y[11], y[12]];
+    }
+    fn applied_force(&self, _: f64, _: &[f64; 13], out: &mut [f64; 6]) {
+        *out = [0.0, 0.0, 0.0, self.torque, 0.0, 0.0];
     }
     fn energy(&self, _: f64, y: &[f64; 13]) -> Energy<f64> {
         Energy { kinetic: 0.5 * y[10] * y[10], potential: 0.0 }
@@ -101,6 +104,36 @@ impl Mechanism for Spinner {
             self.torque = value;
         }
         index == 0
+    }
+}
+
+impl Dynamics for Spinner {
+    type Accelerations = [f64; 6];
+
+    fn acceleration_buffer(&self) -> [f64; 6] {
+        [0.0; 6]
+    }
+    fn accelerations(&self, _: f64, _: &[f64; 13], out: &mut [f64; 6]) {
+        *out = [0.0, 0.0, 0.0, self.torque, 0.0, 0.0];
+    }
+    fn multipliers(&self, _: f64, _: &[f64; 13], _: &[f64; 6], lambda: &mut [f64; 5]) {
+        *lambda = [0.0; 5];
+    }
+    fn derivative(&self, _: f64, y: &[f64; 13], dy: &mut [f64; 13]) {
+        *dy = [0.0; 13];
+        for (rate, tangent) in dy[3..7].iter_mut().zip(Self::tangent(y)[0]) {
+            *rate = tangent * y[10];
+        }
+        dy[10] = self.torque;
+    }
+}
+
+impl CorrectedDynamics for Spinner {
+    fn corrected_accelerations(&self, t: f64, y: &[f64; 13], out: &mut [f64; 6]) {
+        self.accelerations(t, y, out);
+    }
+    fn corrected_derivative(&self, t: f64, y: &[f64; 13], dy: &mut [f64; 13]) {
+        self.derivative(t, y, dy);
     }
 }
 

@@ -6,9 +6,9 @@ use gyro_assembled::{Careful, Dense};
 use gyro_mechanisms::{gyroscope::Gyroscope, gyroscope_viscous::GyroscopeViscous};
 use gyro_sim::integrate::Method;
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Exact, Joint,
-    JointCoordinate, JointSpace, Kutta4, MassWeighted, Mechanism, Ode, Partition, Partitioned, Partitioning,
-    Rodas4, Solver, Tsit5, Turns, Uncorrected, violation,
+    Baumgarte, ByDuals, ClosedForm, Control, Corrected, CorrectedDynamics, Correction, Dop853, Dual, Exact,
+    Joint, JointCoordinate, JointJacobian, JointSpace, Kutta4, MassWeighted, Mechanism, Ode, Partition,
+    Partitioned, Partitioning, Rodas4, Solver, Tsit5, Turns, Uncorrected, violation,
 };
 use gyro_sim_suite::model;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -45,7 +45,7 @@ fn allocations<T>(f: impl FnOnce() -> T) -> (usize, T) {
 const A_SECOND: u32 = 2000;
 
 /// A run at the paper's settings from building the solver to the last reading: the worst violation and α at the end.
-fn simulation<M: Partition<Scalar = f64>>(mechanism: &M, corrections: u32) -> (f64, f64) {
+fn simulation<M: Partition<Scalar = f64> + CorrectedDynamics>(mechanism: &M, corrections: u32) -> (f64, f64) {
     let mut y = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &y);
     let mut turns = Turns::new(mechanism, 0.0, &y, &[]);
@@ -145,7 +145,7 @@ fn every_integrator_with_every_correction_allocates_nothing() {
     let control = Control::default().with_tolerance(1e-6);
     let joint = || {
         adaptive(Joint, &gyroscope, Dop853::new(&x), Uncorrected, control, &x);
-        let method = Rodas4::new(&x, gyroscope.joint_buffers().jacobian);
+        let method = Rodas4::new(&x, gyroscope.jacobian_buffers().jacobian);
         adaptive(Joint, &gyroscope, method, Uncorrected, control, &x)
     };
     assert_eq!(allocations(joint).0, 0);

@@ -3,7 +3,9 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_mechanisms as shipped;
-use gyro_sim::{CloseLoops, Coordinate, Dual, Equations, JointPlace, JointSpace, Mechanism};
+use gyro_sim::{
+    CloseLoops, Coordinate, CorrectedSolution, Dual, Dynamics, JointPlace, JointSpace, Mechanism,
+};
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, dense, is_open, model, pages};
 use nalgebra::DMatrix;
@@ -150,13 +152,13 @@ where
 /// Compares joint accelerations, corrected accelerations and multipliers.
 fn check<M, D>(page: &str, mechanism: &M, in_duals: &D)
 where
-    M: JointSpace<Scalar = f64>,
+    M: CorrectedSolution<Scalar = f64>,
     D: JointSpace<Scalar = Seeded>,
 {
     let (model, mut walk) = (model(page), Walk::new(mechanism));
     assert!(!is_open(&model), "{page} is an open tree");
     let twin: Engine = dense(&model);
-    let n_v = mechanism.terms().velocities.as_ref().len();
+    let n_v = mechanism.buffers().velocities.as_ref().len();
     let n_rows = mechanism.buffers().rows.as_ref().len();
     let n_states = if n_rows > LARGE { STATES_OF_LARGE } else { STATES };
     let (mut worst, mut largest_condition) = ([0.0_f64; 4], 1.0_f64);
@@ -165,16 +167,16 @@ where
         let (t, x) = (walk.t, &walk.x);
         let mut y = mechanism.start();
         mechanism.to_maximal(t, x, &mut y);
-        let mut solution = twin.terms().accelerations;
+        let mut solution = twin.acceleration_buffer();
         twin.accelerations(t, &y.as_ref().to_vec(), &mut solution);
         let (expected, lambda) = solution.split_at(n_v);
 
         let by_rates = carried_over(mechanism, in_duals, (t, x), n_v);
-        let mut corrected = mechanism.terms().velocities;
+        let mut corrected = mechanism.buffers().velocities;
         mechanism.corrected_accelerations(t, &y, &mut corrected);
         let mut multipliers = mechanism.buffers().rows;
         mechanism.corrected_multipliers(t, &y, &corrected, &mut multipliers);
-        let mut both = mechanism.joint_buffers().solution;
+        let mut both = mechanism.solution_buffer();
         mechanism.corrected_solution(t, &y, &mut both);
         let found = [
             difference(&by_rates, expected),

@@ -7,7 +7,8 @@ use gyro_mechanisms as shipped;
 use gyro_reference::{DoubleDouble, Gyroscope as Reference, JointRow, Start as ReferenceStart, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim::{
-    Direct, Error, Exact, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Rk4, Turns,
+    CorrectedDynamics, Direct, Dynamics, Error, Exact, Joint, JointCoordinate, JointSpace, Mechanism,
+    Partition, Partitioned, Rk4, Turns,
 };
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, Run, coordinate, fed, generated, model, simulate, violated_start};
@@ -287,7 +288,7 @@ fn a_wrong_start_is_corrected_by_the_partition_and_not_hidden_by_direct_integrat
 const NO_NUMBERS: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 /// Both algorithms end in an error.
-fn assert_refused<M: Partition<Scalar = f64>>(what: &str, mechanism: &M) {
+fn assert_refused<M: Partition<Scalar = f64> + Dynamics + CorrectedDynamics>(what: &str, mechanism: &M) {
     let start = mechanism.start();
     let (mut y, mut z) = (start.clone(), start.clone());
     let by_partition = Partitioned::new(mechanism, &start).advance(mechanism, 0.0, 1e-4, 5, &mut y);

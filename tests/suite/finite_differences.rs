@@ -7,7 +7,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
-use gyro_sim::{Coordinate, Equations, Mechanism};
+use gyro_sim::{Coordinate, Kinematics, Mechanism};
 use gyro_sim_suite::{
     Engine, Random, careful, dense, difference, for_each_generated, generated, model, phi_pi, phi_q, state,
 };

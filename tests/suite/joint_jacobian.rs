@@ -6,7 +6,7 @@ use crate::joint_space::random_state;
 use gyro_mechanisms as shipped;
 use gyro_runner::motion::{Linear, TreeWithJacobian};
 use gyro_runner::{Approach, Event, Settings, run_by};
-use gyro_sim::{Dual, JointSpace, Mechanism};
+use gyro_sim::{Dual, Dynamics, JointJacobian, JointSpace, Mechanism};
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, dense, model, start_of};
 use nalgebra::{DMatrix, DVector};
@@ -85,7 +85,7 @@ impl<M: JointSpace<Scalar = f64>> Twin<'_, M> {
 
 fn check<M>(page: &str, mechanism: &M)
 where
-    M: JointSpace<Scalar = f64, Jacobian: AsRef<[f64]>, InputJacobian: AsRef<[f64]>> + Clone,
+    M: JointJacobian<Scalar = f64> + Clone,
 {
     let (model, mut random) = (model(page), Random::new(5));
     let (n_rates, n) =
@@ -99,9 +99,9 @@ where
         for (index, &value) in inputs.iter().enumerate() {
             assert!(mechanism.set_input(index, value) && dense.set_input(index, value));
         }
-        let (mut by_state, mut by_time) = (mechanism.joint_buffers().jacobian, mechanism.joint_start());
+        let (mut by_state, mut by_time) = (mechanism.jacobian_buffers().jacobian, mechanism.joint_start());
         mechanism.joint_jacobian(t, &x, &mut by_state, &mut by_time);
-        let mut by_inputs = mechanism.joint_buffers().input_jacobian;
+        let mut by_inputs = mechanism.jacobian_buffers().input_jacobian;
         mechanism.joint_input_jacobian(t, &x, &mut by_inputs);
 
         let twin = Twin { mechanism: &mechanism, dense, n_coordinates, n_rates };

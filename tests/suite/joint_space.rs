@@ -3,7 +3,7 @@
 
 use gyro_mechanisms as shipped;
 use gyro_model::{JointKind, Model, Support};
-use gyro_sim::{JointSpace, Partition};
+use gyro_sim::{CorrectedSolution, Dynamics, JointSpace, Partition};
 use gyro_sim_suite::Random;
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::model;
@@ -77,7 +77,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     largest(&difference) / largest(a).max(largest(b)).max(f64::MIN_POSITIVE)
 }
 
-fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
+fn check<M: CorrectedSolution<Scalar = f64> + Dynamics + Partition>(page: &str, mechanism: &M) {
     let (model, mut random) = (model(page), Random::new(7));
     let mut worst = [0.0_f64; 7];
     for _ in 0..200 {
@@ -96,16 +96,16 @@ fn check<M: JointSpace<Scalar = f64> + Partition>(page: &str, mechanism: &M) {
         worst[1] = worst[1].max(difference(back.as_ref(), x.as_ref()));
 
         // One acceleration, three ways.
-        let mut exact = mechanism.terms().accelerations;
+        let mut exact = mechanism.acceleration_buffer();
         mechanism.accelerations(t, &y, &mut exact);
-        let mut corrected = mechanism.terms().velocities;
+        let mut corrected = mechanism.buffers().velocities;
         mechanism.corrected_accelerations(t, &y, &mut corrected);
         worst[2] = worst[2].max(difference(exact.as_ref(), corrected.as_ref()));
         let (mut lambda, mut short) = (mechanism.buffers().rows, mechanism.buffers().rows);
         mechanism.multipliers(t, &y, &exact, &mut lambda);
         mechanism.corrected_multipliers(t, &y, &corrected, &mut short);
         worst[6] = worst[6].max(difference(lambda.as_ref(), short.as_ref()));
-        let mut both = mechanism.joint_buffers().solution;
+        let mut both = mechanism.solution_buffer();
         mechanism.corrected_solution(t, &y, &mut both);
         let (v, of_rows) = both.as_ref().split_at(corrected.as_ref().len());
         worst[2] = worst[2].max(difference(exact.as_ref(), v));

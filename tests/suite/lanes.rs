@@ -9,7 +9,9 @@ use gyro_mechanisms::{
     heavy_top::HeavyTop,
 };
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
-use gyro_sim::{Direct, Error, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar};
+use gyro_sim::{
+    CorrectedDynamics, Direct, Error, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar,
+};
 use gyro_sim_suite::Random;
 
 /// Long enough for a rotor at 100 rad/s to switch charts in every lane.
@@ -99,8 +101,8 @@ where
 /// In maximal coordinates with corrections. Returns how many lanes ran to the end and how often their charts switched.
 fn corrected_runs_agree<S, P>(name: &str, scalar: &S, packs: &P) -> (usize, u64)
 where
-    S: JointSpace + Partition<Scalar: Real>,
-    P: Partition<Scalar: Lanes<Lane = <S as Mechanism>::Scalar>>,
+    S: JointSpace + CorrectedDynamics + Partition<Scalar: Real>,
+    P: CorrectedDynamics + Partition<Scalar: Lanes<Lane = <S as Mechanism>::Scalar>>,
 {
     let to_maximal = |x: &S::Joints| {
         let mut y = scalar.start();

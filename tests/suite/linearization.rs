@@ -6,8 +6,8 @@
 use gyro_mechanisms as shipped;
 use gyro_reference::DoubleWishbone;
 use gyro_runner::Input;
-use gyro_runner::motion::{COLUMNS, Element, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
-use gyro_sim::{CloseLoops, Dual, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
+use gyro_runner::motion::{COLUMNS, Element, Maximal, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
+use gyro_sim::{CloseLoops, Dual, Dynamics, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
 use gyro_sim_suite::Random;
 use gyro_sim_suite::generated as own;
 
@@ -155,8 +155,8 @@ fn angles<M: JointSpace<Scalar = f64>>(mechanism: &M, x: &M::Joints) -> Vec<f64>
 
 fn check_tree<M, D>(page: &str, mechanism: &M, duals: D)
 where
-    M: Partition<Scalar = f64> + JointSpace + Clone + 'static,
-    D: JointSpace<Scalar = Dual<f64, COLUMNS>> + Clone + 'static,
+    M: Maximal<Scalar = f64> + JointSpace + Clone + 'static,
+    D: JointSpace<Scalar = Dual<f64, COLUMNS>> + Dynamics + Clone + 'static,
 {
     check(page, mechanism, &Tree(duals));
 }

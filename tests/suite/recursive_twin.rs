@@ -3,7 +3,7 @@
 
 use gyro_assembled::{Dense, Recursive};
 use gyro_model::{JointKind, Model, Support, Tree};
-use gyro_sim::{Equations, Mechanism, Partition};
+use gyro_sim::{Dynamics, Mechanism, Partition};
 use gyro_sim_suite::{Random, difference, is_open, model, pages, posed, state_at};
 
 const STATES: usize = 100;
@@ -113,8 +113,8 @@ fn compare(model: &Model, what: &str) -> f64 {
 }
 
 /// s̈, ẇ', λ of lengths, λ of angles, and the derivative's.
-fn solution<M: Equations<Scalar = f64, State = Vec<f64>>>(twin: &M, y: &Vec<f64>) -> [Vec<f64>; 5] {
-    let (mut out, mut lambda, mut dy) = (twin.terms().accelerations, twin.buffers().rows, twin.start());
+fn solution<M: Dynamics<Scalar = f64, State = Vec<f64>>>(twin: &M, y: &Vec<f64>) -> [Vec<f64>; 5] {
+    let (mut out, mut lambda, mut dy) = (twin.acceleration_buffer(), twin.buffers().rows, twin.start());
     twin.accelerations(T, y, &mut out);
     twin.multipliers(T, y, &out, &mut lambda);
     twin.derivative(T, y, &mut dy);

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::Model;
-use gyro_sim::{Direct, Equations, Error, Exact, Mechanism, Partitioned, Real, Turns, violation};
+use gyro_sim::{Direct, Dynamics, Error, Exact, Kinematics, Mechanism, Partitioned, Real, Turns, violation};
 use gyro_sim_suite::{Engine, Random, for_each_generated, in_single_precision, model, pages};
 use std::collections::BTreeSet;
 
@@ -49,9 +49,9 @@ fn exercise<T: Real + 'static>(mechanism: &Engine<T>, y: &Vec<T>) -> Result<(), 
     let (mut phi_q, mut phi_pi) = (mechanism.terms().phi_q, mechanism.terms().phi_pi);
     mechanism.phi_q(t, y, &mut phi_q);
     mechanism.phi_pi(t, y, &mut phi_pi);
-    let mut velocities = mechanism.terms().velocities;
+    let mut velocities = mechanism.buffers().velocities;
     mechanism.applied_force(t, y, &mut velocities);
-    let (mut accelerations, mut outputs) = (mechanism.terms().accelerations, mechanism.buffers().outputs);
+    let (mut accelerations, mut outputs) = (mechanism.acceleration_buffer(), mechanism.buffers().outputs);
     mechanism.accelerations(t, y, &mut accelerations);
     mechanism.multipliers(t, y, &accelerations, &mut rows);
     mechanism.outputs(t, y, &mut outputs);

@@ -1,7 +1,7 @@
 //! Kernels take any scalar: packs of lanes and dual numbers run the same generated source.
 
 use gyro_mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Mechanism, Scalar};
+use gyro_sim::{Dynamics, Mechanism, Scalar};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Two numbers side by side.

@@ -139,9 +139,6 @@ impl<T: Real + 'static> MotionBuilder<Engine<T>> for LoopsNotLinearised<T> {
     fn offers(&self) -> Offers {
         self.0.offers()
     }
-    fn work_scale(&self, mechanism: &Engine<T>, t: f64, y: &Vec<T>) -> f64 {
-        self.0.work_scale(mechanism, t, y)
-    }
     fn smallest_pivot(&self, mechanism: &Engine<T>, t: f64, y: &Vec<T>) -> Option<f64> {
         self.0.smallest_pivot(mechanism, t, y)
     }

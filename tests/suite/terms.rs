@@ -5,7 +5,7 @@
 
 use gyro_assembled::Careful;
 use gyro_model::Model;
-use gyro_sim::{Equations, Mechanism};
+use gyro_sim::{Dynamics, Kinematics, Mechanism, Projection};
 use gyro_sim_suite::{
     Engine, Matrix, Random, careful, dense, difference, fixture_folders, for_each_generated, is_open, model,
     phi_pi, phi_q, state,
@@ -83,7 +83,7 @@ fn terms(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     kinds.extend(by_unit(mechanism, ["velocity, lengths", "velocity, pure"], &out));
     kinds.extend(by_block(["Φ_r of Φ_q", "Φ_p"], 7, &phi_q(mechanism, T, &y)));
     kinds.extend(by_block(["Φ_r", "Φ_π'"], 6, &phi_pi(mechanism, T, &y)));
-    let mut force = mechanism.terms().velocities;
+    let mut force = mechanism.buffers().velocities;
     mechanism.applied_force(t, &y, &mut force);
     let mut forces = halves(["f", "n' − w̃'J'w'"], 6, &force);
     // A body with equal moments has no gyroscopic torque but rounding.
@@ -153,7 +153,7 @@ fn condition(mechanism: &Engine, model: &Model, values: &[f64]) -> f64 {
 /// What follows from eq. (17).
 fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     let y = &values.to_vec();
-    let (mut accelerations, mut lambda) = (mechanism.terms().accelerations, mechanism.buffers().rows);
+    let (mut accelerations, mut lambda) = (mechanism.acceleration_buffer(), mechanism.buffers().rows);
     mechanism.accelerations(T, y, &mut accelerations);
     mechanism.multipliers(T, y, &accelerations, &mut lambda);
     let n_velocities = 6 * mechanism.description().bodies.len();
@@ -177,7 +177,7 @@ fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
 /// rotations at an arm of the mechanism's size, and the other way round.
 fn projections(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
     let of_rows = |names: [&'static str; 2], is_length: bool| {
-        let (mut rows, mut motion) = (mechanism.buffers().rows, mechanism.terms().velocities);
+        let (mut rows, mut motion) = (mechanism.buffers().rows, mechanism.buffers().velocities);
         for (row, change) in rows.iter_mut().enumerate() {
             *change =
                 if mechanism.description().rows[row].is_length == is_length { y[row % y.len()] } else { 0.0 };

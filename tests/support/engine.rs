@@ -5,11 +5,12 @@ mod erased;
 
 pub use erased::Choice;
 
-use erased::{Erased, ErasedDuals, ErasedTree, Numbers, Term};
-use gyro_runner::motion::{COLUMNS, Closing, MotionBuilder, TreeWithJacobian, WithDuals};
+use erased::{Erased, ErasedDuals, ErasedTree, Term};
+use gyro_runner::motion::{COLUMNS, Closing, Maximal, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Buffers, Clearance, Description, Dual, Energy, Equations, Error, JointBuffers, JointLayout, JointSpace,
-    Mechanism, Partition, Real, Terms,
+    Buffers, Clearance, CorrectedDynamics, Description, Dual, Dynamics, Energy, Error, JacobianBuffers,
+    JointBuffers, JointJacobian, JointLayout, JointSpace, Kinematics, Mechanism, Partition, Projection, Real,
+    Terms,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -32,7 +33,7 @@ impl<T: Real + 'static> Engine<T> {
     /// The same mechanism, its type forgotten.
     pub fn new<M>(mechanism: M) -> Self
     where
-        M: Partition<Scalar = T, Independent: 'static> + Equations + Clone + Debug + 'static,
+        M: Partition<Scalar = T, Independent: 'static> + Maximal + Clone + Debug + 'static,
     {
         Self { mechanism: Box::new(mechanism), tree: |_| None }
     }
@@ -40,11 +41,7 @@ impl<T: Real + 'static> Engine<T> {
     /// A tree, with its joint coordinates.
     pub fn of_tree<M>(mechanism: M) -> Self
     where
-        M: Partition<Scalar = T, Independent: 'static>
-            + JointSpace<Jacobian: Numbers<T>, InputJacobian: Numbers<T>>
-            + Clone
-            + Debug
-            + 'static,
+        M: Partition<Scalar = T, Independent: 'static> + Maximal + JointJacobian + Clone + Debug + 'static,
     {
         let tree: AsTree<T> = |mechanism| {
             let mechanism = mechanism as &dyn Any;
@@ -72,7 +69,7 @@ impl<T: Real + 'static> Duals<T> {
     /// The same mechanism, its type forgotten.
     pub fn new<D>(mechanism: D) -> Self
     where
-        D: Mechanism<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
+        D: Dynamics<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
     {
         Self(Some(Box::new(mechanism)))
     }
@@ -101,6 +98,7 @@ impl<T: Real + 'static> Mechanism for Duals<T> {
     type State = Vec<Dual<T, COLUMNS>>;
     type Rows = Vec<Dual<T, COLUMNS>>;
     type Constraints = Vec<Dual<T, COLUMNS>>;
+    type Velocities = Vec<Dual<T, COLUMNS>>;
     type Readings = Vec<Dual<T, COLUMNS>>;
     type Outputs = Vec<Dual<T, COLUMNS>>;
     fn description(&self) -> &Description<'_> {
@@ -112,13 +110,13 @@ impl<T: Real + 'static> Mechanism for Duals<T> {
     fn start(&self) -> Self::State {
         self.0.as_ref().expect(NO_DUALS).start()
     }
-    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        self.0.as_ref().expect(NO_DUALS).derivative(t, y, dy);
-    }
     fn phi(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
         unreachable!("{NOT_FORWARDED}")
     }
     fn velocity_residual(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn applied_force(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
         unreachable!("{NOT_FORWARDED}")
     }
     fn energy(&self, _: Self::Scalar, _: &Self::State) -> Energy<Self::Scalar> {
@@ -132,6 +130,22 @@ impl<T: Real + 'static> Mechanism for Duals<T> {
     }
     fn set_input(&mut self, index: usize, value: Self::Scalar) -> bool {
         self.0.as_mut().is_some_and(|duals| duals.set_input(index, value))
+    }
+}
+
+impl<T: Real + 'static> Dynamics for Duals<T> {
+    type Accelerations = Vec<Dual<T, COLUMNS>>;
+    fn acceleration_buffer(&self) -> Self::Accelerations {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn accelerations(&self, _: Self::Scalar, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn multipliers(&self, _: Self::Scalar, _: &Self::State, _: &Self::State, _: &mut Self::State) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        self.0.as_ref().expect(NO_DUALS).derivative(t, y, dy);
     }
 }
 
@@ -152,6 +166,7 @@ impl<T: Real + 'static> Mechanism for Engine<T> {
     type State = Vec<T>;
     type Rows = Vec<T>;
     type Constraints = Vec<T>;
+    type Velocities = Vec<T>;
     type Readings = Vec<T>;
     type Outputs = Vec<T>;
     fn description(&self) -> &Description<'_> {
@@ -161,6 +176,7 @@ impl<T: Real + 'static> Mechanism for Engine<T> {
         Buffers {
             rows: self.mechanism.buffer(Term::Nu),
             constraints: self.mechanism.buffer(Term::Phi),
+            velocities: self.mechanism.buffer(Term::AppliedForce),
             readings: self.mechanism.buffer(Term::Readings),
             outputs: self.mechanism.buffer(Term::Outputs),
         }
@@ -168,20 +184,14 @@ impl<T: Real + 'static> Mechanism for Engine<T> {
     fn start(&self) -> Vec<T> {
         self.mechanism.buffer(Term::Derivative)
     }
-    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
-        self.mechanism.write(Term::Derivative, t, y, dy);
-    }
-    fn corrected_derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
-        match (self.tree)(&*self.mechanism) {
-            Some(tree) => tree.corrected_derivative(t, y, dy),
-            None => self.derivative(t, y, dy),
-        }
-    }
     fn phi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::Phi, t, y, out);
     }
     fn velocity_residual(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::VelocityResidual, t, y, out);
+    }
+    fn applied_force(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
+        self.mechanism.write(Term::AppliedForce, t, y, out);
     }
     fn energy(&self, t: T, y: &Vec<T>) -> Energy<T> {
         self.mechanism.energy(t, y)
@@ -222,18 +232,11 @@ impl<T: Real + 'static> Partition for Engine<T> {
     }
 }
 
-impl<T: Real + 'static> Equations for Engine<T> {
-    type Velocities = Vec<T>;
+impl<T: Real + 'static> Kinematics for Engine<T> {
     type PhiQ = Vec<T>;
     type PhiPi = Vec<T>;
-    type Accelerations = Vec<T>;
     fn terms(&self) -> Terms<Self> {
-        Terms {
-            velocities: self.mechanism.buffer(Term::AppliedForce),
-            phi_q: self.mechanism.buffer(Term::PhiQ),
-            phi_pi: self.mechanism.buffer(Term::PhiPi),
-            accelerations: self.mechanism.buffer(Term::Accelerations),
-        }
+        Terms { phi_q: self.mechanism.buffer(Term::PhiQ), phi_pi: self.mechanism.buffer(Term::PhiPi) }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         self.mechanism.phi_q_pattern()
@@ -253,8 +256,12 @@ impl<T: Real + 'static> Equations for Engine<T> {
     fn gamma(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::Gamma, t, y, out);
     }
-    fn applied_force(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.mechanism.write(Term::AppliedForce, t, y, out);
+}
+
+impl<T: Real + 'static> Dynamics for Engine<T> {
+    type Accelerations = Vec<T>;
+    fn acceleration_buffer(&self) -> Vec<T> {
+        self.mechanism.buffer(Term::Accelerations)
     }
     fn accelerations(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::Accelerations, t, y, out);
@@ -262,6 +269,24 @@ impl<T: Real + 'static> Equations for Engine<T> {
     fn multipliers(&self, t: T, y: &Vec<T>, accelerations: &Vec<T>, lambda: &mut Vec<T>) {
         self.mechanism.multipliers(t, y, accelerations, lambda);
     }
+    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        self.mechanism.write(Term::Derivative, t, y, dy);
+    }
+}
+
+impl<T: Real + 'static> CorrectedDynamics for Engine<T> {
+    fn corrected_accelerations(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn corrected_derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        match (self.tree)(&*self.mechanism) {
+            Some(tree) => tree.corrected_derivative(t, y, dy),
+            None => self.derivative(t, y, dy),
+        }
+    }
+}
+
+impl<T: Real + 'static> Projection for Engine<T> {
     fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, motion: &mut Vec<T>) {
         self.mechanism.project(t, y, rows, motion);
     }
@@ -271,22 +296,13 @@ impl<T: Real + 'static> Equations for Engine<T> {
 impl<T: Real + 'static> JointSpace for Engine<T> {
     type Joints = Vec<T>;
     type Rates = Vec<T>;
-    type Solution = Vec<T>;
     type Closure = Vec<T>;
-    type Jacobian = Vec<T>;
-    type InputJacobian = Vec<T>;
     fn joint_layout(&self) -> &JointLayout<'_> {
         self.tree().joint_layout()
     }
     fn joint_buffers(&self) -> JointBuffers<Self> {
         let tree = self.tree();
-        JointBuffers {
-            rates: tree.rates(),
-            solution: Vec::new(),
-            closure: tree.closure_buffer(),
-            jacobian: tree.jacobian_buffer(),
-            input_jacobian: tree.input_jacobian_buffer(),
-        }
+        JointBuffers { rates: tree.rates(), closure: tree.closure_buffer() }
     }
     fn joint_start(&self) -> Vec<T> {
         self.tree().joint_start()
@@ -303,24 +319,6 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     fn to_joints(&self, t: T, y: &Vec<T>, x: &mut Vec<T>) {
         self.tree().to_joints(t, y, x);
     }
-    fn joint_accelerations_at(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
-        unreachable!("{NOT_FORWARDED}")
-    }
-    fn corrected_accelerations(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
-        unreachable!("{NOT_FORWARDED}")
-    }
-    fn corrected_multipliers(&self, _: T, _: &Vec<T>, _: &Vec<T>, _: &mut Vec<T>) {
-        unreachable!("{NOT_FORWARDED}")
-    }
-    fn corrected_solution(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
-        unreachable!("{NOT_FORWARDED}")
-    }
-    fn joint_jacobian(&self, t: T, x: &Vec<T>, dfdx: &mut Vec<T>, dfdt: &mut Vec<T>) {
-        self.tree().joint_jacobian(t, x, dfdx, dfdt);
-    }
-    fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
-        self.tree().joint_input_jacobian(t, x, out);
-    }
     fn loop_closure(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
         self.tree().loop_closure(t, x, out);
     }
@@ -332,6 +330,21 @@ impl<T: Real + 'static> JointSpace for Engine<T> {
     }
     fn close_velocities(&self, t: T, x: &mut Vec<T>) {
         self.tree().close_velocities(t, x);
+    }
+}
+
+impl<T: Real + 'static> JointJacobian for Engine<T> {
+    type Jacobian = Vec<T>;
+    type InputJacobian = Vec<T>;
+    fn jacobian_buffers(&self) -> JacobianBuffers<Self> {
+        let tree = self.tree();
+        JacobianBuffers { jacobian: tree.jacobian_buffer(), input_jacobian: tree.input_jacobian_buffer() }
+    }
+    fn joint_jacobian(&self, t: T, x: &Vec<T>, dfdx: &mut Vec<T>, dfdt: &mut Vec<T>) {
+        self.tree().joint_jacobian(t, x, dfdx, dfdt);
+    }
+    fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        self.tree().joint_input_jacobian(t, x, out);
     }
 }
 

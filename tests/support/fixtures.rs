@@ -3,7 +3,7 @@
 use crate::generated as own;
 use crate::{Duals, Engine};
 use gyro_assembled::{Careful, Dense};
-use gyro_codegen::Module;
+use gyro_codegen::{Functions, Module};
 use gyro_mechanisms as shipped;
 use gyro_model::{Model, Tree};
 use gyro_sim::Real;
@@ -271,10 +271,9 @@ pub fn model(name: &str) -> Model {
     model.unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
-/// The generated module of a model file.
+/// The generated module of a model file, with all functions.
 pub fn module(name: &str) -> Module {
-    let load = &mut |table: &str| Ok(table_of(name, table));
-    let module = gyro_codegen::generate_with(&file_name(name), &page(name), load);
+    let module = gyro_codegen::generate_functions(&file_name(name), &model(name), &Functions::all());
     module.unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -1,7 +1,7 @@
 //! Dense copies of sparse values, and how far two lists of numbers differ.
 
 use crate::Engine;
-use gyro_sim::{Equations, Mechanism};
+use gyro_sim::{Kinematics, Mechanism};
 
 /// A dense matrix, row by row.
 #[derive(Clone, Debug, PartialEq)]

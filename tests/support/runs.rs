@@ -6,7 +6,7 @@ use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{
     Approach, Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run, run_by,
 };
-use gyro_sim::{Equations, Mechanism, Real};
+use gyro_sim::{Dynamics, Mechanism, Real};
 
 /// The paper's settings for one second, section 7.
 pub const PAPER: Settings =
@@ -146,7 +146,7 @@ pub fn multipliers(mechanism: &Engine, model: &Model, sample: &Sample) -> Vec<f6
     let first = |joint: usize| -> usize { model.joints[..joint].iter().map(n_samples).sum() };
     let turns = model.turn_references().into_iter();
     values.extend(turns.map(|turn| coordinate(sample, first(turn.joint) + turn.coordinate).0));
-    let (mut accelerations, mut lambda) = (mechanism.terms().accelerations, mechanism.buffers().rows);
+    let (mut accelerations, mut lambda) = (mechanism.acceleration_buffer(), mechanism.buffers().rows);
     mechanism.accelerations(sample.t, &values, &mut accelerations);
     mechanism.multipliers(sample.t, &values, &accelerations, &mut lambda);
     lambda

@@ -11,20 +11,20 @@ use std::collections::BTreeSet;
 /// What a module says of one of its functions.
 struct Words {
     function: &'static str,
-    /// What its row on the data sheet says that it computes; `None` if it has no row.
-    computes: Option<&'static str>,
+    /// What its row on the data sheet says that it computes.
+    computes: &'static str,
     /// How its documentation begins, unless that is the word `Writes` and what it computes.
     documentation: Option<&'static str>,
 }
 
 /// A function whose documentation repeats its row.
 const fn writes(function: &'static str, computes: &'static str) -> Words {
-    Words { function, computes: Some(computes), documentation: None }
+    Words { function, computes, documentation: None }
 }
 
 /// A function whose documentation has words of its own.
 const fn says(function: &'static str, computes: &'static str, documentation: &'static str) -> Words {
-    Words { function, computes: Some(computes), documentation: Some(documentation) }
+    Words { function, computes, documentation: Some(documentation) }
 }
 
 #[rustfmt::skip]
@@ -40,7 +40,7 @@ const WORDS: &[Words] = &[
     says("accelerations", "(s̈, ẇ'), eq. (17)", "Solves eq. (17)"),
     says("multipliers", "λ, the accelerations being known", "Writes λ"),
     says("project", "(δr, δπ') that changes the rows as given", "Solves eq. (17) without forces, the changes of the rows for γ"),
-    says("derivative", "ẏ but for the accelerations: eqs. (14), (16)", "Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes"),
+    says("derivative", "ẏ but for the accelerations: eqs. (14), (16)", "Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes"),
     says("energy", "T and V", "Kinetic and potential energy"),
     says("read_joints", "joint coordinates and rates", "Writes the joint readings"),
     says("outputs", "outputs, the accelerations being known", "Writes the outputs"),
@@ -55,12 +55,7 @@ const WORDS: &[Words] = &[
     says("corrected_accelerations", "(s̈, ẇ') at a corrected state", "Writes (s̈, ẇ') at a state that satisfies the constraints"),
     says("corrected_multipliers", "λ at such a state and these accelerations", "Writes λ"),
     says("corrected_solution", "both", "Writes (s̈, ẇ') and λ at a state that satisfies the constraints"),
-    // The same continuation as in `derivative`, from other accelerations.
-    Words {
-        function: "corrected_derivative",
-        computes: None,
-        documentation: Some("Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes"),
-    },
+    says("corrected_derivative", "ẏ but for the accelerations, there", "Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes"),
     says("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
     writes("joint_input_jacobian", "∂f/∂(inputs)"),
     says("joint_outputs", "outputs of a joint state, u̇ being known", "Writes the outputs of a joint state"),
@@ -149,14 +144,16 @@ fn expected_head(model: &Model, module: &Module) -> Vec<String> {
         ),
         format!("* degrees of freedom: {}", (6 * n).saturating_sub(rows)),
         format!("* unknowns of eq. (17): {}", 6 * n + rows),
-        format!(
+    ];
+    if module.implements("Kinematics") {
+        lines.push(format!(
             "* non-zeros: Φ_q {} of {}, (Φ_r, Φ_π') {} of {}",
             module.phi_q_pattern.len(),
             (rows + n) * 7 * n,
             module.phi_pi_pattern.len(),
             rows * 6 * n
-        ),
-    ];
+        ));
+    }
     lines.extend(left_out(model, module).into_iter().map(|what| format!("* left out: {what}")));
     let table =
         ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"];
@@ -184,26 +181,39 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         };
         left_out.push(format!("row {} of {kind} `{name}` (redundant)", redundant.row.index + 1));
     }
-    let has_jacobian = module.programs.contains_key("joint_jacobian");
+    let has_joints = module.joints.is_some();
+    let lacks = |name: &str| !module.implements(name);
     // What was not asked for is known to the sheet alone.
     let said = |what: &'static str, unasked: &'static str| {
         let says_so = module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(unasked));
         if says_so { unasked } else { what }
     };
     let missing = [
+        (!has_joints, said("joint coordinates", "joint coordinates (functions = [\"joint\"] asks for them)")),
         (
-            module.joints.is_none(),
-            said("joint coordinates", "joint coordinates (functions = [\"joint\"] asks for them)"),
-        ),
-        (
-            module.joints.is_some() && !has_jacobian,
+            has_joints && lacks("JointJacobian"),
             said(
                 "the Jacobian of the joint form (too many rates, or third derivatives of tables)",
                 "the Jacobian of the joint form (functions = [\"jacobian\"] asks for it)",
             ),
         ),
+        (lacks("Kinematics"), "derivatives of the constraints (functions = [\"kinematics\"] asks for it)"),
+        (lacks("Dynamics"), "eq. (17) at any state (functions = [\"maximal\"] asks for it)"),
         (
-            module.n_charts.is_none(),
+            lacks("CorrectedDynamics"),
+            "accelerations at corrected states (functions = [\"corrected\"] asks for it)",
+        ),
+        (
+            has_joints && lacks("CorrectedSolution"),
+            "multipliers at corrected states (functions = [\"reactions\"] asks for it)",
+        ),
+        (
+            lacks("Projection"),
+            "the projection that the masses weigh (functions = [\"projection\"] asks for it)",
+        ),
+        (lacks("Partition"), "the coordinate partition (functions = [\"partition\"] asks for it)"),
+        (
+            module.implements("Partition") && module.n_charts.is_none(),
             "charts (for trees of revolute, spherical and fixed joints: the run time pivots)",
         ),
         (model.gravity.iter().all(Number::is_zero), "gravity"),
@@ -222,7 +232,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
 
 /// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`; what gives no numbers has no row.
 fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<String> {
-    let computes = words(name)?.computes?;
+    let computes = words(name)?.computes;
     let operations = Operations::of(program);
     let is_zero = |id: usize| match program.nodes[id] {
         Node::Constant(place) => module.constants.values[place].literal == 0.0,
@@ -237,7 +247,7 @@ fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<
         "solve_velocities" => (name, 6 * n),
         "close_positions" => (name, n_coordinates),
         "close_velocities" => (name, n_rates),
-        "derivative" => (name, program.results.len() - 6 * n),
+        "derivative" | "corrected_derivative" => (name, program.results.len() - 6 * n),
         "joint_derivative" => (name, program.results.len() - n_rates),
         // Work goes through.
         "to_maximal" | "to_joints" => (name, program.results.len() - work),
@@ -267,8 +277,7 @@ fn undocumented(module: &Module) -> Vec<Refusal> {
 /// ` Writes ν: 3 operations (1 ±, 2 ×, 0 ÷).`
 fn documentation(name: &str, program: &Program) -> Option<String> {
     let Words { computes, documentation, .. } = words(name)?;
-    let words =
-        documentation.map_or_else(|| format!("Writes {}", computes.unwrap_or_default()), str::to_owned);
+    let words = documentation.map_or_else(|| format!("Writes {computes}"), str::to_owned);
     let operations = Operations::of(program);
     let Operations { additions, multiplications, divisions, functions } = operations;
     let calls = if functions > 0 { format!(" and {functions} functions") } else { String::new() };
@@ -315,11 +324,12 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
             .iter()
             .map(|table| format!(" Times of the points of `{}`, s.", printable(&table.source))),
     );
-    let n_closing = module.n_accelerations - 6 * model.coordinate_bodies().len();
-    docs.push(match n_closing {
-        0 => " (s̈, ẇ') of each body.".to_owned(),
-        n => format!(" (s̈, ẇ') of each body, then {n} multipliers of the rows that close loops."),
-    });
+    docs.extend(module.implements("Dynamics").then(|| {
+        match module.n_accelerations - 6 * model.coordinate_bodies().len() {
+            0 => " (s̈, ẇ') of each body.".to_owned(),
+            n => format!(" (s̈, ẇ') of each body, then {n} multipliers of the rows that close loops."),
+        }
+    }));
     docs
 }
 

@@ -17,7 +17,7 @@ use block::{Before, Form, Reader, Sizes};
 use gyro_model::{Model, Output, OutputKind, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
-use skeleton::{Choice, Has};
+use skeleton::Has;
 pub(crate) use skeleton::{n_state, type_name};
 use std::collections::BTreeMap;
 use syn::Block;
@@ -36,7 +36,7 @@ pub struct Module {
     pub docs: BTreeMap<String, String>,
     /// All documentation but the data sheet, with its line.
     pub all_docs: Vec<(usize, String)>,
-    /// Row and column of each value that `phi_q` gives.
+    /// Row and column of each value that `phi_q` gives, if the module has it.
     pub phi_q_pattern: Vec<(usize, usize)>,
     /// Row and column of each value that `phi_pi` gives.
     pub phi_pi_pattern: Vec<(usize, usize)>,
@@ -44,9 +44,11 @@ pub struct Module {
     pub start: Vec<f64>,
     /// The start in joint coordinates; nothing of mechanisms that have none.
     pub joint_start: Vec<f64>,
+    /// What it has of what the description leaves to choice.
+    has: Has,
     /// Where joint coordinates stand, if the module has them.
     pub joints: Option<JointLayout>,
-    /// Number of accelerations and multipliers that `accelerations` gives.
+    /// Number of accelerations and multipliers that `accelerations` gives, if the module has it.
     pub n_accelerations: usize,
     /// Number of charts, if the coordinate partition goes by charts.
     pub n_charts: Option<usize>,
@@ -123,7 +125,7 @@ const BEFORE: [(&str, Before); 5] = [
         "corrected_derivative",
         Before {
             buffer: "accelerations",
-            call: "gyro_sim :: JointSpace :: corrected_accelerations (self , t , y , & mut accelerations) ;",
+            call: "gyro_sim :: CorrectedDynamics :: corrected_accelerations (self , t , y , & mut accelerations) ;",
         },
     ),
     ("joint_derivative", RATES),
@@ -137,7 +139,7 @@ const RATES: Before = Before {
 
 const ACCELERATIONS: Before = Before {
     buffer: "accelerations",
-    call: "gyro_sim :: Equations :: accelerations (self , t , y , & mut accelerations) ;",
+    call: "gyro_sim :: Dynamics :: accelerations (self , t , y , & mut accelerations) ;",
 };
 
 /// Functions that are made for states that satisfy the constraints.
@@ -187,32 +189,21 @@ impl Module {
         let (tables, text) = tables::read(model, text)?;
         let tokens: TokenStream =
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
-        let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
-        let jacobian = text.contains("fn joint_jacobian(");
-        let corrected_derivative = text.contains("fn corrected_derivative(");
-        let has = Has {
-            choice,
-            jacobian,
-            corrected_derivative,
-            parameter_setup: text.contains("fn parameter_setup("),
-            joint_outputs: text.contains("fn joint_outputs("),
-            output_derivatives: text.contains("fn outputs_by_state("),
-            frames: text.contains("fn frame_jacobians("),
-        };
+        let has = Has::of(&text);
         let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
-        let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
+        let expected = skeleton::text(model, &name, &tables, &has, joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
-        Self::assemble(model, constants, tables, joints, &matched)
+        Self::assemble(model, constants, tables, (has, joints), &matched)
     }
 
     fn assemble(
         model: &Model,
         constants: Constants,
         tables: Vec<Spline>,
-        joints: Option<JointLayout>,
+        (has, joints): (Has, Option<JointLayout>),
         matched: &Matched,
     ) -> Result<Self, Refusal> {
         let number = |name: &str| matched.numbers.get(name).copied();
@@ -265,7 +256,10 @@ impl Module {
             }
             None => written.clone(),
         };
-        let pattern = |name: &str| block::pattern(&block(&matched.holes[name])?);
+        let pattern = |name: &str| match matched.holes.get(name) {
+            Some(hole) => block::pattern(&block(hole)?),
+            None => Ok(Vec::new()),
+        };
         let module = Self {
             data_sheet: matched.data_sheet.clone(),
             all_docs: matched.docs.clone(),
@@ -277,6 +271,7 @@ impl Module {
                 Some(hole) => block::start(&block(hole)?)?,
                 None => Vec::new(),
             },
+            has,
             joints,
             written,
             programs,
@@ -285,10 +280,15 @@ impl Module {
             tables,
             constants,
         };
-        if n_accelerations < 6 * model.coordinate_bodies().len() {
+        if module.implements("Dynamics") && n_accelerations < 6 * model.coordinate_bodies().len() {
             return Err(Refusal::new(1, format!("{n_accelerations} accelerations are too few")));
         }
         module.sizes_agree(model, matched).map(|()| module)
+    }
+
+    /// Whether it implements a trait of the run time, of those that it may leave out.
+    pub fn implements(&self, name: &str) -> bool {
+        self.has.implements(name)
     }
 
     /// Each function gives as many numbers as its type says.
@@ -297,9 +297,7 @@ impl Module {
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
         let (n_joints, n_rates) =
             self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
-        let work = usize::from(self.joints.as_ref().is_some_and(|joints| joints.has_work));
-        let n_maximal = if self.joints.is_some() { n_state(model) } else { 0 };
-        let has = |function: &str| self.programs.contains_key(function);
+        let n_motion = self.joints.as_ref().map_or(0, JointLayout::n_motion);
         let outputs: usize = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
             (PARAMETER_SETUP, number("derived")),
@@ -318,38 +316,36 @@ impl Module {
             ("project", 6 * n),
             ("outputs", outputs),
             ("chart_vectors", 4 * number("charts")),
-            ("corrected_derivative", if has("corrected_derivative") { n_state(model) } else { 0 }),
+            ("corrected_derivative", n_state(model)),
             ("joint_accelerations", n_rates),
             ("joint_derivative", n_joints),
-            ("to_maximal", n_maximal),
+            ("to_maximal", n_state(model)),
             ("to_joints", n_joints),
             ("joint_accelerations_at", n_rates),
-            ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
-            ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
-            ("corrected_solution", if self.joints.is_some() { 6 * n + rows } else { 0 }),
+            ("corrected_accelerations", 6 * n),
+            ("corrected_multipliers", rows),
+            ("corrected_solution", 6 * n + rows),
             ("loop_closure", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("closure_distances", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
-            ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
-            ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
-            ("joint_outputs", if has("joint_outputs") { outputs } else { 0 }),
-            ("outputs_by_state", if has("outputs_by_state") { outputs * (n_joints - work) } else { 0 }),
-            ("outputs_by_accelerations", if has("outputs_by_state") { outputs * n_rates } else { 0 }),
-            ("outputs_by_inputs", if has("outputs_by_state") { outputs * model.inputs.len() } else { 0 }),
-            (
-                "outputs_by_parameters",
-                if has("outputs_by_state") { outputs * model.parameters.len() } else { 0 },
-            ),
-            ("frame_jacobians", if has("frame_jacobians") { 6 * frames(model).count() * n_rates } else { 0 }),
-            ("frame_biases", if has("frame_jacobians") { 6 * frames(model).count() } else { 0 }),
+            ("joint_jacobian", n_joints * (n_joints + 1)),
+            ("joint_input_jacobian", n_joints * model.inputs.len()),
+            ("joint_outputs", outputs),
+            ("outputs_by_state", outputs * n_motion),
+            ("outputs_by_accelerations", outputs * n_rates),
+            ("outputs_by_inputs", outputs * model.inputs.len()),
+            ("outputs_by_parameters", outputs * model.parameters.len()),
+            ("frame_jacobians", 6 * frames(model).count() * n_rates),
+            ("frame_biases", 6 * frames(model).count()),
         ];
-        let found = |name: &str| self.written.get(name).map_or(0, |program| program.results.len());
+        // What is not written was not to be there.
+        let of_function = |(name, size)| Some((name, self.written.get(name)?.results.len(), size));
         let patterns = [
             ("phi_q_pattern", self.phi_q_pattern.len(), number("phi_q")),
             ("phi_pi_pattern", self.phi_pi_pattern.len(), number("phi_pi")),
             ("start", self.start.len(), n_state(model)),
             ("joint_start", self.joint_start.len(), n_joints),
         ];
-        let sizes = expected.map(|(name, size)| (name, found(name), size)).into_iter().chain(patterns);
+        let sizes = expected.into_iter().filter_map(of_function).chain(patterns);
         for (name, found, expected) in sizes {
             if found != expected {
                 let line = matched.holes.get(name).map_or(0, |hole| hole.body.span_open().start().line);

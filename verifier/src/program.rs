@@ -48,8 +48,8 @@ pub enum Source {
     ParameterSetup(usize),
     /// An input.
     Input(usize),
-    /// What the function has another one compute first, or is given: an element of `Equations::Accelerations`,
-    /// `Equations::Velocities` or `JointSpace::Rates`.
+    /// What the function has another one compute first, or is given: an element of `Dynamics::Accelerations`,
+    /// `Mechanism::Velocities` or `JointSpace::Rates`.
     Acceleration(usize),
     /// By how much a row is asked to change.
     Change(usize),

@@ -92,7 +92,6 @@ pub const START: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.0, 100.0];
 impl Ode for Floor {
     type Scalar = f64;
     type State = [f64; 6];
-    type Jacobian = ();
 
     fn derivative(&self, _: &(), _: f64, y: &[f64; 6], dy: &mut [f64; 6]) {
         dy[..3].copy_from_slice(&y[3..]);

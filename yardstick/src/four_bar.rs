@@ -118,7 +118,6 @@ impl<T: Number> FourBar<T> {
 impl<T: Number> Ode for FourBar<T> {
     type Scalar = T;
     type State = [T; 2];
-    type Jacobian = ();
 
     fn derivative(&self, _: &(), _: T, y: &[T; 2], dy: &mut [T; 2]) {
         *dy = [y[1], self.acceleration(y[0], y[1])];

@@ -77,7 +77,6 @@ impl<T: Number> SliderCrank<T> {
 impl<T: Number> Ode for SliderCrank<T> {
     type Scalar = T;
     type State = [T; 2];
-    type Jacobian = ();
 
     fn derivative(&self, _: &(), _: T, y: &[T; 2], dy: &mut [T; 2]) {
         *dy = [y[1], self.acceleration(y[0], y[1])];

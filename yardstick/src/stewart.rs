@@ -316,7 +316,6 @@ impl<T: Number> Stewart<T> {
 impl<T: Number> Ode for Stewart<T> {
     type Scalar = T;
     type State = [T; 13];
-    type Jacobian = ();
 
     fn derivative(&self, _: &(), _: T, y: &[T; 13], dy: &mut [T; 13]) {
         *dy = self.rates(y);

@@ -3,7 +3,7 @@
 
 use crate::support::careful_models;
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{Equations, Partition, Partitioned};
+use gyro_sim::{CorrectedDynamics, Dynamics, Kinematics, Partition, Partitioned, Projection};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -31,13 +31,13 @@ static ALLOCATOR: Counting = Counting;
 /// term.
 fn allocations<M>(mechanism: &M, step: f64) -> usize
 where
-    M: Partition<Scalar = f64, State = Vec<f64>> + Equations,
+    M: Partition<Scalar = f64, State = Vec<f64>> + Kinematics + Dynamics + CorrectedDynamics + Projection,
 {
     let mut y = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &y);
     let (mut constraints, mut rows, mut lambda) =
         (mechanism.buffers().constraints, mechanism.buffers().rows, mechanism.buffers().rows);
-    let (mut readings, mut accelerations) = (mechanism.buffers().readings, mechanism.terms().accelerations);
+    let (mut readings, mut accelerations) = (mechanism.buffers().readings, mechanism.acceleration_buffer());
     let (mut phi_q, mut phi_pi) = (mechanism.terms().phi_q, mechanism.terms().phi_pi);
     let mut outputs = mechanism.buffers().outputs;
     let before = ALLOCATIONS.with(Cell::get);

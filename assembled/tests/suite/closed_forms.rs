@@ -2,7 +2,7 @@
 
 use crate::support::{dense, model};
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{JointCoordinate, Partition, Partitioned, Turns};
+use gyro_sim::{CorrectedDynamics, JointCoordinate, Partition, Partitioned, Turns};
 
 /// `models/torsion.toml`: x = x0 exp(−d t) (cos w t + d/w sin w t).
 fn torsion(t: f64) -> f64 {
@@ -13,7 +13,7 @@ fn torsion(t: f64) -> f64 {
 
 /// The spring unwinds by six turns and a half and winds up again. At 90 rad/s the Euler parameters turn by 0.009 in a
 /// step, the fifth power of which makes 1e-9 of a turn in all.
-fn check<M: Partition<Scalar = f64, State = Vec<f64>>>(mechanism: &M) {
+fn check<M: Partition<Scalar = f64, State = Vec<f64>> + CorrectedDynamics>(mechanism: &M) {
     let mut y = mechanism.start();
     let mut turns = Turns::new(mechanism, 0.0, &y, &[torsion(0.0)]);
     let mut solver = Partitioned::new(mechanism, &y);

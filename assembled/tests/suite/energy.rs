@@ -4,7 +4,7 @@
 use crate::support::{Random, assert_close, dense, models, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::Model;
-use gyro_sim::{Direct, Exact, Mechanism};
+use gyro_sim::{Direct, Dynamics, Exact, Mechanism};
 
 /// Step and length of the runs. The fourth power of the step times the rates of the test models, 30 rad/s, is 1e-10.
 const STEP: f64 = 1e-4;

@@ -2,7 +2,7 @@
 
 use crate::support::{Random, assert_close, careful_models, dense_phi_pi, state_near};
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{Equations, Mechanism};
+use gyro_sim::{Dynamics, Kinematics, Mechanism, Projection};
 use nalgebra::{DMatrix, DVector};
 
 const STATES: usize = 200;
@@ -13,8 +13,11 @@ const TIME: f64 = 0.3;
 /// How closely both engines must agree: rounding of eq. (17), with a margin of some decades.
 const AGREEMENT: f64 = 1e-10;
 
-fn accelerations<M: Equations<Scalar = f64>>(mechanism: &M, y: &M::State) -> (Vec<f64>, Vec<f64>) {
-    let (mut a, mut lambda) = (mechanism.terms().accelerations, mechanism.buffers().rows);
+fn accelerations<M: Kinematics<Scalar = f64> + Dynamics + Projection>(
+    mechanism: &M,
+    y: &M::State,
+) -> (Vec<f64>, Vec<f64>) {
+    let (mut a, mut lambda) = (mechanism.acceleration_buffer(), mechanism.buffers().rows);
     mechanism.accelerations(TIME, y, &mut a);
     mechanism.multipliers(TIME, y, &a, &mut lambda);
     (a.as_ref()[..6 * mechanism.description().bodies.len()].to_vec(), lambda.as_ref().to_vec())
@@ -55,7 +58,7 @@ fn both_forms_leave_no_residual_in_equation_17() {
     for_each_state(0.3, |what, model, dense, careful, y| {
         let phi_pi = dense_phi_pi(dense, TIME, &y);
         let mass = mass_matrix(model);
-        let (mut force, mut gamma) = (dense.terms().velocities, dense.buffers().rows);
+        let (mut force, mut gamma) = (dense.buffers().velocities, dense.buffers().rows);
         dense.applied_force(TIME, &y, &mut force);
         dense.gamma(TIME, &y, &mut gamma);
         for (a, lambda) in [accelerations(dense, &y), accelerations(careful, &y)] {

@@ -2,7 +2,7 @@
 
 use crate::support::model;
 use gyro_assembled::{Careful, Dense};
-use gyro_sim::{JointCoordinate, Partition, Partitioned, Turns};
+use gyro_sim::{CorrectedDynamics, JointCoordinate, Partition, Partitioned, Turns};
 
 /// The reference angles at 0.01 s, rad.
 const ALPHA: f64 = 3.126_943_474_878_552e-4;
@@ -10,7 +10,7 @@ const BETA: f64 = -6.982_394_046_843_141e-4;
 
 const TOLERANCE: f64 = 1e-10;
 
-fn check<M: Partition<Scalar = f64, State = Vec<f64>>>(what: &str, mechanism: &M) {
+fn check<M: Partition<Scalar = f64, State = Vec<f64>> + CorrectedDynamics>(what: &str, mechanism: &M) {
     let mut y = mechanism.start();
     let mut turns = Turns::new(mechanism, 0.0, &y, &[]);
     let mut solver = Partitioned::new(mechanism, &y);

@@ -5,7 +5,7 @@ use crate::support::{
     velocity_residual,
 };
 use gyro_assembled::Dense;
-use gyro_sim::{Equations, Mechanism};
+use gyro_sim::{Dynamics, Kinematics, Mechanism};
 
 const STATES: usize = 50;
 

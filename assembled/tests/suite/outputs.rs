@@ -3,7 +3,7 @@
 use crate::support::{Random, assert_close, careful_models, dense, read_text, state_near, test_model};
 use gyro_assembled::Dense;
 use gyro_model::{JointKind, Model, Number, OutputKind, Support};
-use gyro_sim::{Exact, Mechanism, Rk4};
+use gyro_sim::{Dynamics, Exact, Mechanism, Rk4};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 const STATES: usize = 50;

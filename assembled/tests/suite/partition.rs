@@ -6,13 +6,17 @@ use crate::support::{
 };
 use gyro_assembled::{Careful, Dense};
 use gyro_model::{Attachment, JointKind, Tree};
-use gyro_sim::{Mechanism, Partition, Partitioned};
+use gyro_sim::{CorrectedDynamics, Dynamics, Mechanism, Partition, Partitioned};
 use nalgebra::Vector3;
 
 /// Sixteen roundings, as the solver asks, with room for lengths that are divided by the mechanism's size.
 const RESTORED: f64 = 1e-13;
 
-fn check_restored<M: Partition<Scalar = f64, State = Vec<f64>>>(what: &str, mechanism: &M, seed: u64) {
+fn check_restored<M: Partition<Scalar = f64, State = Vec<f64>> + CorrectedDynamics>(
+    what: &str,
+    mechanism: &M,
+    seed: u64,
+) {
     let mut random = Random(seed);
     for state in 0..20 {
         let what = format!("{what} state {state}");
@@ -130,7 +134,7 @@ fn a_consistent_state_is_left_alone() {
 }
 
 /// The rotor turns 1.6 times in 0.1 s: the choice must follow it, and no more often than it needs to.
-fn check_switches<M: Partition<Scalar = f64, State = Vec<f64>>>(
+fn check_switches<M: Partition<Scalar = f64, State = Vec<f64>> + CorrectedDynamics>(
     mechanism: &M,
     switches: std::ops::Range<u64>,
 ) {

@@ -3,7 +3,7 @@
 
 use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
-use gyro_sim::{Equations, Mechanism, Partition};
+use gyro_sim::{Dynamics, Kinematics, Mechanism, Partition, Projection};
 use nalgebra::DMatrix;
 use std::path::{Path, PathBuf};
 
@@ -118,7 +118,11 @@ pub fn normalise(q: &mut [f64]) {
 }
 
 /// (Φ_r, Φ_π') as a dense matrix.
-pub fn dense_phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> DMatrix<f64> {
+pub fn dense_phi_pi<M: Kinematics<Scalar = f64> + Dynamics + Projection>(
+    mechanism: &M,
+    t: f64,
+    y: &M::State,
+) -> DMatrix<f64> {
     let mut values = mechanism.terms().phi_pi;
     mechanism.phi_pi(t, y, &mut values);
     let n_rows = mechanism.buffers().rows.as_ref().len();
@@ -126,7 +130,11 @@ pub fn dense_phi_pi<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::St
 }
 
 /// Φ_q as a dense matrix.
-pub fn dense_phi_q<M: Equations<Scalar = f64>>(mechanism: &M, t: f64, y: &M::State) -> DMatrix<f64> {
+pub fn dense_phi_q<M: Kinematics<Scalar = f64> + Dynamics + Projection>(
+    mechanism: &M,
+    t: f64,
+    y: &M::State,
+) -> DMatrix<f64> {
     let mut values = mechanism.terms().phi_q;
     mechanism.phi_q(t, y, &mut values);
     let n_rows = mechanism.buffers().constraints.as_ref().len();

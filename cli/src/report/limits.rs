@@ -7,7 +7,7 @@ use gyro_assembled::Dense;
 use gyro_model::{ForceKind, Model, Number, Rational, to_f64};
 use gyro_runner::{Approach, Coordinates, Correction, Integrator, JointSample, Sample, Settings, When};
 use gyro_sim::integrate::{Method, Work};
-use gyro_sim::{Dop853, Kutta4, Mechanism, Ode, Rodas4, System, Tsit5};
+use gyro_sim::{Dop853, Dynamics, Jacobian, Kutta4, Mechanism, Ode, Rodas4, System, Tsit5};
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// `ẏ = λ y` for a complex y, in real and imaginary part.
@@ -16,12 +16,16 @@ struct Test(Complex<f64>);
 impl Ode for Test {
     type Scalar = f64;
     type State = [f64; 2];
-    type Jacobian = [f64; 4];
 
     fn derivative(&self, _: &(), _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
         let rate = self.0 * Complex::new(y[0], y[1]);
         *dy = [rate.re, rate.im];
     }
+}
+
+impl Jacobian for Test {
+    type Matrix = [f64; 4];
+
     fn jacobian(&self, _: &(), _: f64, _: &[f64; 2], dfdy: &mut [f64; 4], dfdt: &mut [f64; 2]) {
         *dfdy = [self.0.re, -self.0.im, self.0.im, self.0.re];
         *dfdt = [0.0; 2];

@@ -5,6 +5,7 @@ use crate::equations::Equations;
 use crate::expr::graph::Graph;
 use crate::expr::schedule::{Operations, Passes};
 use crate::groups::Group;
+use crate::joint_space::obstacle;
 use crate::kernels::{Kernel, Kernels};
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
@@ -58,7 +59,7 @@ impl DataSheet {
         Self {
             mechanism: model.name.clone(),
             bodies: bodies.collect(),
-            rows: equations.n_rows(),
+            rows: equations.n_rows,
             phi_q: equations.phi_q.len(),
             phi_pi: equations.phi_pi.len(),
             left_out: left_out(equations),
@@ -116,14 +117,16 @@ impl DataSheet {
             ),
             format!("* degrees of freedom: {}", self.degrees_of_freedom()),
             format!("* unknowns of eq. (17): {}", self.unknowns()),
-            format!(
+        ];
+        if self.phi_q > 0 {
+            lines.push(format!(
                 "* non-zeros: Φ_q {} of {}, (Φ_r, Φ_π') {} of {}",
                 self.phi_q,
                 self.constraints() * self.coordinates(),
                 self.phi_pi,
                 rows * 6 * n
-            ),
-        ];
+            ));
+        }
         lines.extend(self.left_out.iter().map(|what| format!("* left out: {what}")));
         lines.extend(
             ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"]
@@ -216,10 +219,23 @@ fn left_out(equations: &Equations) -> Vec<String> {
                 format!("the Jacobian of the joint form ({why})")
             }));
         }
-        None if equations.functions.has(Group::Joint) => left_out.push("joint coordinates".into()),
+        None if obstacle(model).is_some() => left_out.push("joint coordinates".into()),
         None => left_out.push("joint coordinates (functions = [\"joint\"] asks for them)".into()),
     }
-    if equations.charts.is_none() {
+    let unasked = Group::all().filter(|&group| !equations.functions.has(group));
+    left_out.extend(unasked.filter_map(|group| {
+        let is_possible = match group {
+            // Said above.
+            Group::Joint | Group::Jacobian => false,
+            // Nobody misses what is not there for any solver.
+            Group::JointOutputs | Group::OutputDerivatives | Group::Frames => false,
+            Group::Reactions => equations.joint_space.is_some(),
+            _ => true,
+        };
+        let (what, name) = (group.what(), group.name());
+        is_possible.then(|| format!("{what} (functions = [\"{name}\"] asks for it)"))
+    }));
+    if equations.functions.has(Group::Partition) && equations.charts.is_none() {
         left_out
             .push("charts (for trees of revolute, spherical and fixed joints: the run time pivots)".into());
     }

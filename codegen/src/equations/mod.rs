@@ -10,7 +10,7 @@ use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
-use crate::groups::Functions;
+use crate::groups::{Functions, Group};
 use crate::joint_space::JointSpace;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::vanishes;
@@ -32,11 +32,11 @@ impl Sparse {
     }
 }
 
-/// What all generated functions compute.
+/// What all generated functions compute. What belongs to functions that are not asked for is empty.
 #[derive(Debug)]
 pub struct Equations<'m> {
     pub model: &'m Model,
-    /// What is asked for.
+    /// What is asked for and what this needs.
     pub functions: Functions,
     pub graph: Graph,
     /// Tables of prescribed motions.
@@ -55,6 +55,8 @@ pub struct Equations<'m> {
     pub solved: Chosen,
     /// (δr, δπ') of each moving body that change the rows as given.
     pub projection: Chosen,
+    /// Number of joint rows.
+    pub n_rows: usize,
     /// All multipliers, the accelerations being known.
     pub lambda: Vec<ExprId>,
     /// (ṙ, ṗ) of each moving body.
@@ -89,8 +91,8 @@ pub struct Parts {
     pub textbook: Textbook,
     pub solution: Solution,
     pub observed: Observed,
-    /// The smallest (δr, δπ') of each moving body that change the rows as given.
-    pub projection: Vec<ExprId>,
+    /// The smallest (δr, δπ') of each moving body that change the rows as given, if they are asked for.
+    pub projection: Option<Vec<ExprId>>,
     /// Where charts cover the mechanism.
     pub partition: Option<Partition>,
 }
@@ -107,26 +109,33 @@ impl<'m> Equations<'m> {
     ) -> Self {
         let Parts { textbook: Textbook { kinematics, dynamics }, solution, observed, .. } = parts;
         let System { model, tables, mut graph, moving_bodies, .. } = system;
-        let (phi_pi, n_vanishing) =
-            virtual_jacobian(&mut graph, &mut rotations, &kinematics.phi_pi, moving_bodies.len());
-        let projection = rotations.cheapest(&mut graph, &parts.projection);
+        let has_kinematics = functions.has(Group::Kinematics);
+        let (phi_pi, n_vanishing) = if has_kinematics {
+            virtual_jacobian(&mut graph, &mut rotations, &kinematics.phi_pi, moving_bodies.len())
+        } else {
+            (Sparse(Vec::new()), 0)
+        };
+        let projection = parts.projection.as_ref().map(|form| rotations.cheapest(&mut graph, form));
         let mut expanded = |roots: &[ExprId]| rotations.expanded(&mut graph, roots);
         let energy = expanded(&[dynamics.kinetic, dynamics.potential]);
         let phi = expanded(&[&kinematics.phi[..], &kinematics.normalisations].concat());
-        let phi_q = expanded_matrix(&kinematics.phi_q, &mut expanded);
+        let phi_q = has_kinematics.then(|| expanded_matrix(&kinematics.phi_q, &mut expanded));
+        let mut of_kinematics = |roots: &[ExprId]| if has_kinematics { expanded(roots) } else { Vec::new() };
+        let (nu, gamma) = (of_kinematics(&kinematics.nu), of_kinematics(&kinematics.gamma));
         let mut equations = Self {
             model,
             functions: functions.clone(),
             phi,
-            phi_q: Sparse(non_zeros(&phi_q)),
+            phi_q: Sparse(phi_q.map_or(Vec::new(), |phi_q| non_zeros(&phi_q))),
             n_vanishing,
             phi_pi,
-            nu: expanded(&kinematics.nu),
-            gamma: expanded(&kinematics.gamma),
+            nu,
+            gamma,
             velocity_residual: expanded(&kinematics.velocity_residual),
             applied_force: expanded(&dynamics.applied_force),
             solved,
-            projection,
+            projection: projection.unwrap_or_default(),
+            n_rows: kinematics.phi.len(),
             lambda: expanded(&solution.lambda),
             position_rates: observed.position_rates.clone(),
             power: model.has_work().then(|| expanded(&[observed.power])[0]),
@@ -148,11 +157,7 @@ impl<'m> Equations<'m> {
     }
 
     pub fn n_moving_bodies(&self) -> usize {
-        self.phi.len() - self.n_rows()
-    }
-
-    pub fn n_rows(&self) -> usize {
-        self.lambda.len()
+        self.phi.len() - self.n_rows
     }
 
     /// Length of (s̈, ẇ') of all moving bodies.
@@ -162,7 +167,7 @@ impl<'m> Equations<'m> {
 
     /// Number of multipliers that are found with the accelerations.
     pub fn n_loop_multipliers(&self) -> usize {
-        self.solved.roots.len() - self.n_velocities()
+        self.solved.roots.len().saturating_sub(self.n_velocities())
     }
 
     pub fn n_state(&self) -> usize {
@@ -172,6 +177,11 @@ impl<'m> Equations<'m> {
     /// ẏ without the accelerations.
     pub fn rates_but_accelerations(&self) -> Vec<ExprId> {
         self.position_rates.iter().chain(&self.power).chain(&self.turn_rates).copied().collect()
+    }
+
+    /// The same where accelerations at corrected states go with it.
+    pub fn rates_at_corrected_states(&self) -> Vec<ExprId> {
+        self.joint_space.as_ref().map_or(Vec::new(), |_| self.rates_but_accelerations())
     }
 }
 

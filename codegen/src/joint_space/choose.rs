@@ -15,7 +15,8 @@ use crate::groups::{Functions, Group};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use gyro_model::Start;
 
-/// What `gyro_sim::JointSpace` asks of a generated tree, as final expressions.
+/// What is generated of a tree in joint coordinates, as final expressions. What belongs to functions that are not asked
+/// for is empty.
 #[derive(Debug)]
 pub struct JointSpace {
     pub layout: Layout,
@@ -80,15 +81,29 @@ impl JointSpace {
             reductions: candidates.reductions.clone(),
             ..passes.cheapest(&mut system.graph, of_state(&on_rates))
         };
-        let at = candidates.all(system, &coordinates.of_joints);
-        let accelerations_at = passes.cheapest(&mut system.graph, of_state(&at));
-        let corrected = corrected(system, &coordinates, &at, exact);
-        let corrected = passes.cheapest(&mut system.graph, corrected);
+        let (has_corrected, has_reactions) =
+            (functions.has(Group::Corrected), functions.has(Group::Reactions));
+        let mut at = Vec::new();
+        if has_corrected {
+            at = candidates.all(system, &coordinates.of_joints);
+        }
+        let mut accelerations_at = Chosen::default();
+        if has_reactions {
+            accelerations_at = passes.cheapest(&mut system.graph, of_state(&at));
+        }
+        let mut corrected = Chosen::default();
+        if has_corrected {
+            let forms = corrected_forms(system, &coordinates, &at, exact);
+            corrected = passes.cheapest(&mut system.graph, forms);
+        }
         let lambda = multipliers::of(system, textbook, &coordinates);
-        let multipliers = system.expanded(&coordinates.of_joints, &lambda);
-        let known = motions::accelerations_by_symbol(&corrected.roots);
-        let solved = system.expanded(&known, &multipliers);
-        let solution = corrected.roots.iter().copied().chain(solved).collect();
+        let (mut multipliers, mut solution) = (Vec::new(), Vec::new());
+        if has_reactions {
+            multipliers = system.expanded(&coordinates.of_joints, &lambda);
+            let known = motions::accelerations_by_symbol(&corrected.roots);
+            let solved = system.expanded(&known, &multipliers);
+            solution = corrected.roots.iter().copied().chain(solved).collect();
+        }
         let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
         let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
         let along = forces::power(system, &coordinates.layout, &coordinates.angles);
@@ -151,7 +166,7 @@ impl JointSpace {
 
 /// The forms of the bodies' accelerations at a corrected state: by each form of the rates' rates, or by `exact`, which
 /// hold at any state.
-fn corrected(
+fn corrected_forms(
     system: &mut System,
     coordinates: &Coordinates,
     forms_of_rates: &[(String, Vec<ExprId>)],

@@ -68,13 +68,17 @@ impl ForwardDynamics {
         Self { subspaces, eliminated, reduced, gram_schmidt, loop_rows }
     }
 
-    /// Solves eq. (17).
-    pub fn solve(&self, system: &mut System, textbook: &Textbook) -> Solution {
+    /// Solves eq. (17): for the multipliers, and for the accelerations if these are asked for.
+    pub fn solve(&self, system: &mut System, textbook: &Textbook, is_solved: bool) -> Solution {
         let Textbook { kinematics, dynamics } = textbook;
-        let candidates = self.candidates(system, kinematics, dynamics);
-        let admitted = candidates.admitted(system);
-        let solved = cheapest(&system.graph, admitted);
+        let solved = if is_solved { self.accelerations(system, textbook) } else { Vec::new() };
         Solution { solved, lambda: multipliers::of(system, kinematics, dynamics, &self.subspaces) }
+    }
+
+    fn accelerations(&self, system: &mut System, textbook: &Textbook) -> Vec<ExprId> {
+        let candidates = self.candidates(system, &textbook.kinematics, &textbook.dynamics);
+        let admitted = candidates.admitted(system);
+        cheapest(&system.graph, admitted)
     }
 
     fn candidates(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Candidates {
@@ -268,7 +272,7 @@ mod tests {
         let mut system = System::new(&model);
         let textbook = Textbook::derive(&mut system);
         let trees = ForwardDynamics::of(&mut system, &textbook.kinematics);
-        let form = trees.solve(&mut system, &textbook).solved;
+        let form = trees.solve(&mut system, &textbook, true).solved;
         let tree = GramSchmidtTree::new(&mut system, trees.subspaces.clone(), Basis::Mixed);
         let excitation = Excitation::by_forces(&mut system, &textbook.dynamics, &tree.subspaces);
         let keeping = listed(&tree.respond(&mut system.graph, &excitation).motions);

@@ -24,7 +24,7 @@ use forward_dynamics::ForwardDynamics;
 #[derive(Debug)]
 pub struct Solution {
     /// (s̈, ẇ') of each moving body, then the multipliers of the rows that close loops or couple joints, those that no
-    /// joint of the tree owns.
+    /// joint of the tree owns. Empty where nobody asks for it.
     pub solved: Vec<ExprId>,
     /// The multiplier of each row, in terms of known accelerations and loop multipliers.
     pub lambda: Vec<ExprId>,
@@ -35,12 +35,12 @@ impl Solution {
         system: &mut System,
         textbook: &Textbook,
         forward_dynamics: &ForwardDynamics,
-        elimination: Elimination,
+        (elimination, is_solved): (Elimination, bool),
     ) -> Self {
         if elimination == Elimination::Saddle && system.loop_closure_rows().is_empty() {
             saddle::solve(system, textbook)
         } else {
-            forward_dynamics.solve(system, textbook)
+            forward_dynamics.solve(system, textbook, is_solved)
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use crate::runs::{CHAIN, PAPER, STEPS, Settings, time};
 use crate::{Minimal, Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{Corrected, Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
+use gyro_sim::{Corrected, CorrectedDynamics, Dynamics, Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
 
 /// A piece of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 8] {
     ]
 }
 
-fn maximal<M: Partition<Scalar: Real> + JointSpace>(
+fn maximal<M: Partition<Scalar: Real> + Dynamics + CorrectedDynamics>(
     mechanism: &M,
     settings: Settings,
     clock: &mut impl Clock,

@@ -41,7 +41,6 @@ impl<T: Real> Default for Minimal<T> {
 impl<T: Real> Ode for Minimal<T> {
     type Scalar = T;
     type State = [T; 6];
-    type Jacobian = ();
 
     fn derivative(&self, _: &(), _: T, y: &[T; 6], dy: &mut [T; 6]) {
         let [_, beta, _, alpha_rate, beta_rate, phi_rate] = *y;

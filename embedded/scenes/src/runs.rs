@@ -6,7 +6,7 @@ use crate::mechanisms::gimbal::{Gimbal, Parameters};
 use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{
+use gyro_sim::{CorrectedDynamics, 
     Direct, Error, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Turns,
 };
 
@@ -83,7 +83,7 @@ pub(crate) const CHAIN: Settings = Settings { step: 1e-3, intervals: 200 };
 /// Those of the solver.
 pub fn maximal<M>(mechanism: &M, settings: Settings) -> Result<Outcome<M::Scalar>, Error>
 where
-    M: Partition<Scalar: Bits> + JointSpace,
+    M: Partition<Scalar: Bits> + CorrectedDynamics + JointSpace,
 {
     let mut state = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &state);

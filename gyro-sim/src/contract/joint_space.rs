@@ -1,9 +1,8 @@
 //! Joint coordinates.
 
-use super::{Equations, Storage};
+use super::{Mechanism, Storage};
 
-/// A mechanism in joint coordinates, with the maps to and from maximal coordinates, and shorter formulas for the
-/// accelerations of a maximal state that satisfies the constraints.
+/// A mechanism in joint coordinates, with the maps to and from maximal coordinates.
 ///
 /// The joint state is `(x, u [, work])`: coordinates of a tree of joints that carries all bodies, and their rates, as
 /// [`JointSpace::joint_layout`] lists them. x has, joint after joint in the order of the model file, each scalar
@@ -18,25 +17,13 @@ use super::{Equations, Storage};
 /// closure's Jacobian J the columns are rates: `Φ̇_c = J u + ∂Φ_c/∂t`. u̇ is defined off the closure too, such that
 /// `Φ̈_c = 0`; what drifts off it all the same, [`CloseLoops`](crate::CloseLoops) brings back. Trees have no closure:
 /// joint coordinates satisfy all rows by construction.
-///
-/// # The Jacobian
-/// Generated mechanisms of up to eight rates have the derivatives of the joint form `ẋ = f(t, x)`, unless a third
-/// derivative of a table would be needed; for the others both Jacobians are `()`. They are the derivatives of the
-/// emitted functions as they stand, in directions too in which the state cannot change (of Euler parameters, across
-/// their unit sphere).
-pub trait JointSpace: Equations {
+pub trait JointSpace: Mechanism {
     /// `(x, u [, work])`.
     type Joints: Storage<Self::Scalar>;
     /// One scalar for each rate.
     type Rates: Storage<Self::Scalar>;
-    /// One scalar for each unknown of eq. (17).
-    type Solution: Storage<Self::Scalar>;
     /// One scalar for each row of the closure.
     type Closure: Storage<Self::Scalar>;
-    /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
-    type Jacobian: Clone;
-    /// ∂f/∂(inputs), n × m for m inputs, row by row.
-    type InputJacobian: Clone;
 
     /// Where the numbers of a joint state stand, and which rows are the closure.
     fn joint_layout(&self) -> &JointLayout<'_>;
@@ -52,33 +39,6 @@ pub trait JointSpace: Equations {
     fn to_maximal(&self, t: Self::Scalar, x: &Self::Joints, y: &mut Self::State);
     /// Writes the joint state of a maximal state; angles are those nearest to the previous contents of `x`.
     fn to_joints(&self, t: Self::Scalar, y: &Self::State, x: &mut Self::Joints);
-    /// Writes u̇ at a maximal state that satisfies the constraints.
-    fn joint_accelerations_at(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rates);
-    /// Writes (s̈, ẇ') at a maximal state that satisfies the constraints; elsewhere
-    /// [`Equations::accelerations`] solves eq. (17).
-    fn corrected_accelerations(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
-    /// Writes λ of all joint rows at such a state and these accelerations.
-    fn corrected_multipliers(
-        &self,
-        t: Self::Scalar,
-        y: &Self::State,
-        accelerations: &Self::Velocities,
-        lambda: &mut Self::Rows,
-    );
-    /// Writes both, (s̈, ẇ') and then λ; what they have in common is computed once.
-    fn corrected_solution(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Solution);
-    /// Writes ∂f/∂x, row by row, and ∂f/∂t of [`JointSpace::joint_derivative`]. Implemented where
-    /// [`JointSpace::Jacobian`] is not `()`.
-    fn joint_jacobian(
-        &self,
-        _t: Self::Scalar,
-        _x: &Self::Joints,
-        _dfdx: &mut Self::Jacobian,
-        _dfdt: &mut Self::Joints,
-    ) {
-    }
-    /// Writes ∂f/∂(inputs), row by row. Implemented where [`JointSpace::InputJacobian`] is not `()`.
-    fn joint_input_jacobian(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::InputJacobian) {}
     /// Writes Φ_c. Like the functions below, it does nothing for trees.
     fn loop_closure(&self, _t: Self::Scalar, _x: &Self::Joints, _out: &mut Self::Closure) {}
     /// Writes for each row of J the square of its distance from the span of the rows before it: the diagonal of D in
@@ -89,6 +49,40 @@ pub trait JointSpace: Equations {
     fn close_positions(&self, _t: Self::Scalar, _x: &mut Self::Joints) {}
     /// Changes u by a δ with `J δ = −Φ̇_c`, such that `Φ̇_c = 0` at these positions.
     fn close_velocities(&self, _t: Self::Scalar, _x: &mut Self::Joints) {}
+}
+
+/// The derivatives of the joint form `ẋ = f(t, x)`.
+///
+/// Generated mechanisms of up to eight rates can have them, unless a third derivative of a table would be needed. They
+/// are the derivatives of the emitted functions as they stand, in directions too in which the state cannot change (of
+/// Euler parameters, across their unit sphere).
+pub trait JointJacobian: JointSpace {
+    /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
+    type Jacobian: Storage<Self::Scalar>;
+    /// ∂f/∂(inputs), n × m for m inputs, row by row.
+    type InputJacobian: Storage<Self::Scalar>;
+
+    /// Buffers, zeroed.
+    fn jacobian_buffers(&self) -> JacobianBuffers<Self>;
+    /// Writes ∂f/∂x, row by row, and ∂f/∂t of [`JointSpace::joint_derivative`].
+    fn joint_jacobian(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    );
+    /// Writes ∂f/∂(inputs), row by row.
+    fn joint_input_jacobian(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::InputJacobian);
+}
+
+/// What the functions of [`JointJacobian`] write to.
+#[derive(Clone, Debug)]
+pub struct JacobianBuffers<M: JointJacobian + ?Sized> {
+    /// For [`JointJacobian::joint_jacobian`].
+    pub jacobian: M::Jacobian,
+    /// For [`JointJacobian::joint_input_jacobian`].
+    pub input_jacobian: M::InputJacobian,
 }
 
 /// Where the numbers of a joint state stand.
@@ -162,12 +156,6 @@ impl JointPlace {
 pub struct JointBuffers<M: JointSpace + ?Sized> {
     /// For [`JointSpace::joint_accelerations`].
     pub rates: M::Rates,
-    /// For [`JointSpace::corrected_solution`].
-    pub solution: M::Solution,
     /// For [`JointSpace::loop_closure`] and [`JointSpace::closure_distances`].
     pub closure: M::Closure,
-    /// For [`JointSpace::joint_jacobian`].
-    pub jacobian: M::Jacobian,
-    /// For [`JointSpace::joint_input_jacobian`].
-    pub input_jacobian: M::InputJacobian,
 }

@@ -3,7 +3,8 @@
 use super::{Description, Storage};
 use crate::Scalar;
 
-/// A mechanism in maximal coordinates, as its solvers and observers see it.
+/// A mechanism in maximal coordinates: what solvers and observers of every mechanism see of it. How it moves is told by
+/// further traits, of which a generated module has those that were asked for.
 pub trait Mechanism {
     /// The number type.
     type Scalar: Scalar;
@@ -13,6 +14,8 @@ pub trait Mechanism {
     type Rows: Storage<Self::Scalar>;
     /// One scalar for each joint row, then one for each body's normalisation.
     type Constraints: Storage<Self::Scalar>;
+    /// One scalar for each velocity: `(s, w')` body after body.
+    type Velocities: Storage<Self::Scalar>;
     /// Raw joint coordinates, joint after joint and coordinate after coordinate: see [`Coordinate`](crate::Coordinate).
     type Readings: Storage<Self::Scalar>;
     /// One scalar for each number of each output.
@@ -25,17 +28,12 @@ pub trait Mechanism {
     /// The assembled start, with all parameters at their defaults.
     fn start(&self) -> Self::State;
 
-    /// Writes `ẏ = f(t, y)`, eqs. (14), (16) and (17), at any state.
-    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State);
-    /// Writes the same for states that were corrected a few steps ago: violations of the constraints are then of the
-    /// order of the integrator's error, and so is the error of this. Trees need far fewer operations for it.
-    fn corrected_derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        self.derivative(t, y, dy);
-    }
     /// Writes Φ: joint rows, eqs. (5) to (10), then normalisations, eq. (12).
     fn phi(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Constraints);
     /// Writes `Φ_r s + Φ_π' w' − ν`, the residual of eq. (18).
     fn velocity_residual(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Rows);
+    /// Writes `(f, n' − w̃'J'w')`, body after body.
+    fn applied_force(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);
     /// Kinetic and potential energy, J.
     fn energy(&self, t: Self::Scalar, y: &Self::State) -> Energy<Self::Scalar>;
     /// Writes the raw joint coordinates and rates.
@@ -70,6 +68,8 @@ pub struct Buffers<M: Mechanism + ?Sized> {
     pub rows: M::Rows,
     /// For [`Mechanism::phi`].
     pub constraints: M::Constraints,
+    /// For [`Mechanism::applied_force`] and [`Projection::project`](crate::Projection::project).
+    pub velocities: M::Velocities,
     /// For [`Mechanism::read_joints`].
     pub readings: M::Readings,
     /// For [`Mechanism::outputs`].

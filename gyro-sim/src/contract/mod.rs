@@ -4,19 +4,21 @@
 //! generated mechanisms use arrays, runtime-assembled ones heap-backed vectors.
 
 mod description;
-mod equations;
+mod dynamics;
 mod joint_space;
+mod kinematics;
 mod mechanism;
 mod observed;
 mod ode;
 mod partition;
 
 pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
-pub use equations::{Equations, Terms};
-pub use joint_space::{JointBuffers, JointLayout, JointPlace, JointSpace};
+pub use dynamics::{CorrectedDynamics, CorrectedSolution, Dynamics, Projection};
+pub use joint_space::{JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointPlace, JointSpace};
+pub use kinematics::{Kinematics, Terms};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use observed::{FrameBuffers, Frames, JointOutputs, OutputDerivatives, OutputSlopes};
-pub use ode::{Corrected, Exact, Joint, Ode, System};
+pub use ode::{Corrected, Exact, Jacobian, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
 
 use core::fmt::Debug;

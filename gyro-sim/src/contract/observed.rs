@@ -4,7 +4,7 @@ use super::{JointSpace, Storage};
 
 /// Outputs of a joint state, without a maximal state on the way.
 ///
-/// Implemented where it is asked for: `functions = ["joint", "joint_outputs"]` in the model file, or `--functions`.
+/// Implemented where it is asked for: `functions = ["joint_outputs"]` in the model file, or `--functions`.
 pub trait JointOutputs: JointSpace {
     /// Writes all outputs, with the present values of the inputs, as [`Mechanism::outputs`](crate::Mechanism::outputs)
     /// has them at the maximal state of `x`. What needs accelerations or reactions calls
@@ -21,7 +21,7 @@ pub trait JointOutputs: JointSpace {
 /// They are the derivatives of the emitted function as it stands, in directions too in which the state cannot change (of
 /// Euler parameters, across their unit sphere).
 ///
-/// Implemented where it is asked for: `functions = ["joint", "output_derivatives"]` in the model file, or
+/// Implemented where it is asked for: `functions = ["output_derivatives"]` in the model file, or
 /// `--functions`; not where a third derivative of a table would be needed.
 pub trait OutputDerivatives: JointOutputs {
     /// m × n for m numbers of outputs and n of (x, u).
@@ -91,7 +91,7 @@ pub struct OutputSlopes<M: OutputDerivatives + ?Sized> {
 /// ```
 /// u̇ are the rates' rates of the joint state: of a mechanism with loops any that keep them closed.
 ///
-/// Implemented where it is asked for (`functions = ["joint", "frames"]` in the model file, or `--functions`) and the
+/// Implemented where it is asked for (`functions = ["frames"]` in the model file, or `--functions`) and the
 /// model file has such an output. Poses and velocities themselves are [`JointOutputs`].
 pub trait Frames: JointSpace {
     /// 6 × n for n rates, row by row, frame after frame.

@@ -1,6 +1,6 @@
 //! First-order systems: what integrators integrate.
 
-use super::{JointSpace, Mechanism, Storage};
+use super::{CorrectedDynamics, Dynamics, JointJacobian, JointSpace, Storage};
 use crate::Scalar;
 
 /// A first-order system `ẏ = f(t, y)` of a model `M`: all that an explicit integrator needs.
@@ -16,7 +16,6 @@ use crate::Scalar;
 /// impl Ode for Oscillator {
 ///     type Scalar = f64;
 ///     type State = [f64; 2];
-///     type Jacobian = ();
 ///
 ///     fn derivative(&self, _: &(), _t: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
 ///         *dy = [y[1], -y[0]];
@@ -36,30 +35,33 @@ pub trait Ode<M = ()> {
     type Scalar: Scalar;
     /// The state y.
     type State: Storage<Self::Scalar>;
-    /// ∂f/∂y, n × n for a state of n numbers, row by row: for implicit methods. `()` for a system that does not offer
-    /// it.
-    type Jacobian;
 
     /// Writes `f(t, y)`.
     fn derivative(&self, model: &M, t: Self::Scalar, y: &Self::State, dy: &mut Self::State);
-    /// Writes ∂f/∂y, row by row, and ∂f/∂t. To be implemented together with a [`Ode::Jacobian`] other than `()`.
+}
+
+/// A first-order system with its Jacobian: what implicit methods need besides.
+pub trait Jacobian<M = ()>: Ode<M> {
+    /// ∂f/∂y, n × n for a state of n numbers, row by row.
+    type Matrix: Storage<Self::Scalar>;
+
+    /// Writes ∂f/∂y, row by row, and ∂f/∂t.
     fn jacobian(
         &self,
-        _model: &M,
-        _t: Self::Scalar,
-        _y: &Self::State,
-        _dfdy: &mut Self::Jacobian,
-        _dfdt: &mut Self::State,
-    ) {
-    }
+        model: &M,
+        t: Self::Scalar,
+        y: &Self::State,
+        dfdy: &mut Self::Matrix,
+        dfdt: &mut Self::State,
+    );
 }
 
 /// A mechanism's equations of motion in maximal coordinates, exact on the constraints and off them:
-/// [`Mechanism::derivative`].
+/// [`Dynamics::derivative`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exact;
 
-/// The same for states that are corrected every few steps: [`Mechanism::corrected_derivative`].
+/// The same for states that are corrected every few steps: [`CorrectedDynamics::corrected_derivative`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Corrected;
 
@@ -67,20 +69,18 @@ pub struct Corrected;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Joint;
 
-impl<M: Mechanism> Ode<M> for Exact {
+impl<M: Dynamics> Ode<M> for Exact {
     type Scalar = M::Scalar;
     type State = M::State;
-    type Jacobian = ();
 
     fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
         mechanism.derivative(t, y, dy);
     }
 }
 
-impl<M: Mechanism> Ode<M> for Corrected {
+impl<M: CorrectedDynamics> Ode<M> for Corrected {
     type Scalar = M::Scalar;
     type State = M::State;
-    type Jacobian = ();
 
     fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
         mechanism.corrected_derivative(t, y, dy);
@@ -90,11 +90,15 @@ impl<M: Mechanism> Ode<M> for Corrected {
 impl<M: JointSpace> Ode<M> for Joint {
     type Scalar = M::Scalar;
     type State = M::Joints;
-    type Jacobian = M::Jacobian;
 
     fn derivative(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, dx: &mut M::Joints) {
         mechanism.joint_derivative(t, x, dx);
     }
+}
+
+impl<M: JointJacobian> Jacobian<M> for Joint {
+    type Matrix = M::Jacobian;
+
     fn jacobian(
         &self,
         mechanism: &M,
@@ -130,10 +134,12 @@ impl<D: Ode<M>, M> System<'_, D, M> {
     pub fn derivative(&self, t: D::Scalar, y: &D::State, dy: &mut D::State) {
         self.dynamics.derivative(self.model, t, y, dy);
     }
+}
 
+impl<D: Jacobian<M>, M> System<'_, D, M> {
     /// Writes ∂f/∂y and ∂f/∂t.
     #[inline(always)]
-    pub fn jacobian(&self, t: D::Scalar, y: &D::State, dfdy: &mut D::Jacobian, dfdt: &mut D::State) {
+    pub fn jacobian(&self, t: D::Scalar, y: &D::State, dfdy: &mut D::Matrix, dfdt: &mut D::State) {
         self.dynamics.jacobian(self.model, t, y, dfdy, dfdt);
     }
 }

@@ -1,6 +1,6 @@
 //! Baumgarte's stabilisation.
 
-use crate::{Equations, Ode, Scalar};
+use crate::{Dynamics, Ode, Projection, Scalar};
 
 /// Equations of motion whose accelerations reduce violations, `Φ̈ + 2 ω Φ̇ + ω² Φ = 0`, critically damped, with Euler
 /// parameters drawn towards unit length at the rate ω (J. Baumgarte, *Stabilization of constraints and integrals of
@@ -12,16 +12,15 @@ pub struct Baumgarte<T> {
     pub rate: T,
 }
 
-impl<M: Equations> Ode<M> for Baumgarte<M::Scalar> {
+impl<M: Dynamics + Projection> Ode<M> for Baumgarte<M::Scalar> {
     type Scalar = M::Scalar;
     type State = M::State;
-    type Jacobian = ();
 
     fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
         let rate = self.rate;
         mechanism.derivative(t, y, dy);
         let (mut phi, mut rows) = (mechanism.buffers().constraints, mechanism.buffers().rows);
-        let mut change = mechanism.terms().velocities;
+        let mut change = mechanism.buffers().velocities;
         mechanism.phi(t, y, &mut phi);
         mechanism.velocity_residual(t, y, &mut rows);
         for (row, phi) in rows.as_mut().iter_mut().zip(phi.as_ref()) {

@@ -3,7 +3,10 @@
 use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
 use crate::pivoting::{self, is_met, silence};
 use crate::violation::{Violation, constraint_violation, violation};
-use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, Real, Scalar, refer_turns};
+use crate::{
+    ByDuals, Clearance, Dynamics, Error, Exact, Kinematics, Mechanism, Ode, Owner, Partition, Projection,
+    Real, Scalar, refer_turns,
+};
 
 /// The nearest state that satisfies the constraints: of all changes that lead there the smallest in the metric of the
 /// masses, δᵀ M δ, first of the positions, then of the velocities. What is integrated accurately, because it moves much
@@ -16,22 +19,28 @@ use crate::{ByDuals, Clearance, Equations, Error, Exact, Ode, Owner, Partition, 
 /// it admits [`Exact`] equations, with a Jacobian by [`ByDuals`] or without. [`Corrected`](crate::Corrected) ones do
 /// not compile:
 /// ```compile_fail,E0277
-/// # use gyro_sim::{Corrected, Equations, Error, Kutta4, MassWeighted, Partition, Solver};
-/// fn step<M: Partition<Scalar = f64> + Equations>(mechanism: &M, y: &M::State) -> Result<(), Error> {
+/// # use gyro_sim::{Corrected, CorrectedDynamics, Error, Kinematics, Kutta4, MassWeighted, Partition, Projection, Solver};
+/// fn step<M>(mechanism: &M, y: &M::State) -> Result<(), Error>
+/// where
+///     M: Partition<Scalar = f64> + Kinematics + Projection + CorrectedDynamics,
+/// {
 ///     let (method, correction) = (Kutta4::new(y), MassWeighted::new(mechanism));
 ///     Solver::with_correction(Corrected, method, correction, 0.0, y).step(mechanism, 1e-4)
 /// }
 /// ```
 /// With `Exact` in the place of `Corrected` they do:
 /// ```
-/// # use gyro_sim::{Equations, Error, Exact, Kutta4, MassWeighted, Partition, Solver};
-/// fn step<M: Partition<Scalar = f64> + Equations>(mechanism: &M, y: &M::State) -> Result<(), Error> {
+/// # use gyro_sim::{Dynamics, Error, Exact, Kinematics, Kutta4, MassWeighted, Partition, Projection, Solver};
+/// fn step<M>(mechanism: &M, y: &M::State) -> Result<(), Error>
+/// where
+///     M: Partition<Scalar = f64> + Kinematics + Projection + Dynamics,
+/// {
 ///     let (method, correction) = (Kutta4::new(y), MassWeighted::new(mechanism));
 ///     Solver::with_correction(Exact, method, correction, 0.0, y).step(mechanism, 1e-4)
 /// }
 /// ```
 #[derive(Clone, Debug)]
-pub struct MassWeighted<M: Equations> {
+pub struct MassWeighted<M: Mechanism> {
     /// Near singular poses the residual of the iteration is amplified, so it takes one more step.
     has_poses: bool,
     phi: M::Constraints,
@@ -39,7 +48,7 @@ pub struct MassWeighted<M: Equations> {
     change: M::Velocities,
 }
 
-impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
+impl<M: Partition<Scalar: Real> + Kinematics + Projection> MassWeighted<M> {
     /// Work space for a mechanism.
     pub fn new(mechanism: &M) -> Self {
         let has_poses = mechanism.clearance(M::Scalar::constant(0.0), &mechanism.start()).is_some();
@@ -47,7 +56,7 @@ impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
             has_poses,
             phi: mechanism.buffers().constraints,
             rows: mechanism.buffers().rows,
-            change: mechanism.terms().velocities,
+            change: mechanism.buffers().velocities,
         }
     }
 
@@ -127,7 +136,7 @@ impl<M: Partition<Scalar: Real> + Equations> MassWeighted<M> {
 
 impl<M> Correction<Exact, M> for MassWeighted<M>
 where
-    M: Partition<Scalar: Real> + Equations,
+    M: Partition<Scalar: Real> + Kinematics + Projection + Dynamics,
 {
     fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         self.correct(mechanism, t, y)
@@ -144,7 +153,7 @@ where
 /// Exact equations are exact with a Jacobian too.
 impl<M, Dualled, S, J, const N: usize> Correction<ByDuals<Exact, Dualled, S, J, N>, M> for MassWeighted<M>
 where
-    M: Partition<Scalar: Real> + Equations,
+    M: Partition<Scalar: Real> + Kinematics + Projection + Dynamics,
     ByDuals<Exact, Dualled, S, J, N>: Ode<M, Scalar = M::Scalar, State = M::State>,
 {
     fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {

@@ -3,7 +3,9 @@
 use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, check_time, reach};
 use crate::contract::Storage;
 use crate::violation::{Violation, constraint_violation};
-use crate::{Clearance, Corrected, Error, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
+use crate::{
+    Clearance, Corrected, CorrectedDynamics, Error, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns,
+};
 
 /// *Direct integration* of the equations `D`, [`Exact`](crate::Exact) or [`Joint`](crate::Joint) of a mechanism or
 /// those of a system of one's own. No constraint is corrected: violations grow, as the paper says.
@@ -143,12 +145,12 @@ where
 
 /// The paper's algorithm: RK4 and, after a number of steps, [`Partitioning`].
 #[derive(Clone, Debug)]
-pub struct Partitioned<M: Partition> {
+pub struct Partitioned<M: Partition + CorrectedDynamics> {
     direct: Direct<Corrected, M::State>,
     partitioning: Partitioning<M>,
 }
 
-impl<M: Partition<Scalar: Real>> Partitioned<M> {
+impl<M: Partition<Scalar: Real> + CorrectedDynamics> Partitioned<M> {
     /// A solver that starts with the best choice of independent coordinates at `state` and time zero.
     pub fn new(mechanism: &M, state: &M::State) -> Self {
         Self::with_independent(mechanism, state, mechanism.independent(M::Scalar::constant(0.0), state))

@@ -36,6 +36,7 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 62 | 0 | 125 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 80 | 1 | 139 | 6 of 18 |
+//! | corrected_derivative | ẏ but for the accelerations, there | 24 | 48 | 0 | 72 | 0 of 21 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 |
 //! | corrected_solution | both | 83 | 125 | 1 | 209 | 6 of 33 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 |
@@ -86,6 +87,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
     type State = [T; 39];
     type Rows = [T; 15];
     type Constraints = [T; 18];
+    type Velocities = [T; 18];
     type Readings = [T; 9];
     type Outputs = [T; 0];
     fn description(&self) -> &gyro_sim::Description<'_> {
@@ -181,6 +183,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
         gyro_sim::Buffers {
             rows: [T::constant(0.0); 15],
             constraints: [T::constant(0.0); 18],
+            velocities: [T::constant(0.0); 18],
             readings: [T::constant(0.0); 9],
             outputs: [T::constant(0.0); 0],
         }
@@ -228,312 +231,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
             k(0.0),
             k(0.0),
         ]
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
-    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 18];
-        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    outer_ring_e3,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    outer_ring_e2,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e3,
-                        outer_ring_wy,
-                        outer_ring_e0 * outer_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -outer_ring_e1,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e1,
-                        outer_ring_wy,
-                        outer_ring_e2 * outer_ring_wx,
-                    ),
-                )),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    inner_ring_e3,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    inner_ring_e2,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e3,
-                        inner_ring_wy,
-                        inner_ring_e0 * inner_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -inner_ring_e1,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -inner_ring_e0,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e1,
-                        inner_ring_wy,
-                        inner_ring_e2 * inner_ring_wx,
-                    ),
-                )),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * T::fused(
-                    rotor_e3,
-                    rotor_wz,
-                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    rotor_e2,
-                    rotor_wz,
-                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -rotor_e1,
-                    rotor_wz,
-                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -rotor_e0,
-                    rotor_wz,
-                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
-                )),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-        ];
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 18];
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    outer_ring_e3,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    outer_ring_e2,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e3,
-                        outer_ring_wy,
-                        outer_ring_e0 * outer_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -outer_ring_e1,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e1,
-                        outer_ring_wy,
-                        outer_ring_e2 * outer_ring_wx,
-                    ),
-                )),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    inner_ring_e3,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    inner_ring_e2,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e3,
-                        inner_ring_wy,
-                        inner_ring_e0 * inner_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -inner_ring_e1,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -inner_ring_e0,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e1,
-                        inner_ring_wy,
-                        inner_ring_e2 * inner_ring_wx,
-                    ),
-                )),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * T::fused(
-                    rotor_e3,
-                    rotor_wz,
-                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    rotor_e2,
-                    rotor_wz,
-                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -rotor_e1,
-                    rotor_wz,
-                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -rotor_e0,
-                    rotor_wz,
-                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
-                )),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-        ];
     }
     /// Writes Φ: 99 operations (50 ±, 49 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
@@ -764,6 +461,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
             ),
             -(k(4.0) * T::fused(inner_ring_wz, t54, -t53)),
             k(4.0) * T::fused(inner_ring_wy, t54, t56),
+        ];
+    }
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
+    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
+        let k = T::constant;
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
+        *out = [
+            k(0.0),
+            k(-0.1),
+            k(0.0),
+            k(0.0),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
+            k(0.0),
+            k(-0.1),
+            k(0.0),
+            inner_ring_wz * t1,
+            k(0.0),
+            -(inner_ring_wx * t1),
+            k(0.0),
+            k(-0.8),
+            k(0.0),
+            k(0.0),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
     /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
@@ -1437,18 +1170,13 @@ impl<T: gyro_sim::Lanes> gyro_sim::Partition for Gyroscope<T> {
         Ok(())
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
-    type Velocities = [T; 18];
+impl<T: gyro_sim::Scalar> gyro_sim::Kinematics for Gyroscope<T> {
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
-    /// (s̈, ẇ') of each body.
-    type Accelerations = [T; 18];
     fn terms(&self) -> gyro_sim::Terms<Self> {
         gyro_sim::Terms {
-            velocities: [T::constant(0.0); 18],
             phi_q: [T::constant(0.0); 77],
             phi_pi: [T::constant(0.0); 41],
-            accelerations: [T::constant(0.0); 18],
         }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
@@ -2039,41 +1767,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             -t86,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
-    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
-        let k = T::constant;
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let t0 = k(1e-6) * outer_ring_wx;
-        let t1 = k(1e-6) * inner_ring_wy;
-        let t2 = k(5e-6) * rotor_wx;
-        *out = [
-            k(0.0),
-            k(-0.1),
-            k(0.0),
-            k(0.0),
-            -(outer_ring_wz * t0),
-            outer_ring_wy * t0,
-            k(0.0),
-            k(-0.1),
-            k(0.0),
-            inner_ring_wz * t1,
-            k(0.0),
-            -(inner_ring_wx * t1),
-            k(0.0),
-            k(-0.8),
-            k(0.0),
-            k(0.0),
-            -(rotor_wz * t2),
-            rotor_wy * t2,
-        ];
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Dynamics for Gyroscope<T> {
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
+    fn acceleration_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     /// Solves eq. (17): 407 operations (164 ±, 238 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
@@ -2566,6 +2265,161 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             -(k(1.25e-6) * T::fused(-t26, t52 * t77, t31 * (t53 * t77))),
         ];
     }
+    /// Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 18];
+        gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gyroscope<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 355 operations (141 ±, 209 ×, 5 ÷).
     fn project(
         &self,
@@ -2831,13 +2685,308 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedDynamics for Gyroscope<T> {
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 139 operations (58 ±, 80 ×, 1 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = outer_ring_wy * outer_ring_wz;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t2 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = t2 * t1;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = t7 * t3;
+        let t9 = t8 * T::fused(-k(0.4005), t5, t6)
+            / T::fused(t3, t3, k(0.333263903353468));
+        let t10 = outer_ring_wx * outer_ring_wy;
+        let t11 = k(3.3326390335346803) * (t4 * t9);
+        let t12 = T::fused(t0, t3, T::fused(inner_ring_wy, t7, -t11));
+        let t13 = k(1.6663195167673401) * t3;
+        let t14 = T::fused(-t9, t13, T::fused(-k(2.0), t0 * t4, inner_ring_wx * t7));
+        let t15 = T::fused(
+            -T::fused(outer_ring_wy, T::fused(k(0.79975), t5, t6), k(10.0)),
+            t13,
+            t10,
+        );
+        let t16 = inner_ring_e0 * inner_ring_e2;
+        let t17 = inner_ring_e1 * inner_ring_e3;
+        let t18 = t17 + t16;
+        let t19 = inner_ring_e0 * inner_ring_e3;
+        let t20 = inner_ring_e1 * inner_ring_e2;
+        let t21 = t20 - t19;
+        let t22 = inner_ring_wx * inner_ring_wz;
+        let t23 = inner_ring_wx * inner_ring_wy;
+        let t24 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t25 = inner_ring_e0 * inner_ring_e0;
+        let t26 = T::fused(
+            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25),
+            t24,
+            T::fused(t18, t22, t21 * t23),
+        );
+        let t27 = inner_ring_e0 * inner_ring_e1;
+        let t28 = inner_ring_e2 * inner_ring_e3;
+        let t29 = t28 - t27;
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t25);
+        let t31 = T::fused(
+            t30,
+            t15,
+            T::fused(t20 + t19, t24, T::fused(-t29, t22, t30 * t23)),
+        );
+        let t32 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25);
+        let t33 = t28 + t27;
+        let t34 = T::fused(
+            -t33,
+            t15,
+            T::fused(t17 - t16, t24, -T::fused(-t32, t22, t33 * t23)),
+        );
+        let t35 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t36 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t37 = k(2.0) * (t36 * t35);
+        let t38 = (t36 + t35) * (t36 - t35);
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -(k(1.6663195167673401) * t9),
+            t10,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t12,
+            t14,
+            t15,
+            k(0.00025) * T::fused(-t18, t14, T::fused(t21, t15, t26)),
+            -(k(0.00025) * T::fused(t29, t14, t31)),
+            -(k(0.00025) * T::fused(-t32, t14, t34)),
+            T::fused(outer_ring_wy, t8, -t11) - t12,
+            T::fused(t38, t14, -T::fused(t15, t37, rotor_wz * t6)),
+            T::fused(t14, t37, T::fused(t38, t15, rotor_wy * t6)),
+        ];
+    }
+    /// Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 18];
+        gyro_sim::CorrectedDynamics::corrected_accelerations(
+            self,
+            t,
+            y,
+            &mut accelerations,
+        );
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
-    type Solution = [T; 33];
     type Closure = [T; 0];
-    type Jacobian = [T; 36];
-    type InputJacobian = [T; 0];
     fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
         const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
             places: &[
@@ -2861,10 +3010,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
     fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
         gyro_sim::JointBuffers {
             rates: [T::constant(0.0); 3],
-            solution: [T::constant(0.0); 33],
             closure: [],
-            jacobian: [T::constant(0.0); 36],
-            input_jacobian: [T::constant(0.0); 0],
         }
     }
     fn joint_start(&self) -> Self::Joints {
@@ -3072,6 +3218,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedSolution for Gyroscope<T> {
+    type Solution = [T; 33];
+    fn solution_buffer(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
+    }
     /// Writes u̇ at a state that satisfies the constraints: 39 operations (15 ±, 23 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
@@ -3118,144 +3270,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             -(k(1.6663195167673401)
                 * (t2 * T::fused(outer_ring_wy, T::fused(k(0.79975), t4, t5), k(10.0)))),
             T::fused(-k(3.3326390335346803), t3 * t7, outer_ring_wy * t6),
-        ];
-    }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 139 operations (58 ±, 80 ×, 1 ÷).
-    fn corrected_accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-    ) {
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t2 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t3 = (t2 + t1) * (t2 - t1);
-        let t4 = t2 * t1;
-        let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = t7 * t3;
-        let t9 = t8 * T::fused(-k(0.4005), t5, t6)
-            / T::fused(t3, t3, k(0.333263903353468));
-        let t10 = outer_ring_wx * outer_ring_wy;
-        let t11 = k(3.3326390335346803) * (t4 * t9);
-        let t12 = T::fused(t0, t3, T::fused(inner_ring_wy, t7, -t11));
-        let t13 = k(1.6663195167673401) * t3;
-        let t14 = T::fused(-t9, t13, T::fused(-k(2.0), t0 * t4, inner_ring_wx * t7));
-        let t15 = T::fused(
-            -T::fused(outer_ring_wy, T::fused(k(0.79975), t5, t6), k(10.0)),
-            t13,
-            t10,
-        );
-        let t16 = inner_ring_e0 * inner_ring_e2;
-        let t17 = inner_ring_e1 * inner_ring_e3;
-        let t18 = t17 + t16;
-        let t19 = inner_ring_e0 * inner_ring_e3;
-        let t20 = inner_ring_e1 * inner_ring_e2;
-        let t21 = t20 - t19;
-        let t22 = inner_ring_wx * inner_ring_wz;
-        let t23 = inner_ring_wx * inner_ring_wy;
-        let t24 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t25 = inner_ring_e0 * inner_ring_e0;
-        let t26 = T::fused(
-            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25),
-            t24,
-            T::fused(t18, t22, t21 * t23),
-        );
-        let t27 = inner_ring_e0 * inner_ring_e1;
-        let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = t28 - t27;
-        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t25);
-        let t31 = T::fused(
-            t30,
-            t15,
-            T::fused(t20 + t19, t24, T::fused(-t29, t22, t30 * t23)),
-        );
-        let t32 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25);
-        let t33 = t28 + t27;
-        let t34 = T::fused(
-            -t33,
-            t15,
-            T::fused(t17 - t16, t24, -T::fused(-t32, t22, t33 * t23)),
-        );
-        let t35 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t36 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t37 = k(2.0) * (t36 * t35);
-        let t38 = (t36 + t35) * (t36 - t35);
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t0,
-            -(k(1.6663195167673401) * t9),
-            t10,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t12,
-            t14,
-            t15,
-            k(0.00025) * T::fused(-t18, t14, T::fused(t21, t15, t26)),
-            -(k(0.00025) * T::fused(t29, t14, t31)),
-            -(k(0.00025) * T::fused(-t32, t14, t34)),
-            T::fused(outer_ring_wy, t8, -t11) - t12,
-            T::fused(t38, t14, -T::fused(t15, t37, rotor_wz * t6)),
-            T::fused(t14, t37, T::fused(t38, t15, rotor_wy * t6)),
         ];
     }
     /// Writes λ: 137 operations (57 ±, 80 ×, 0 ÷).
@@ -3592,6 +3606,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gyroscope<T> {
             k(1e-5) * t59,
             -(k(5e-6) * t52),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gyroscope<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn jacobian_buffers(&self) -> gyro_sim::JacobianBuffers<Self> {
+        gyro_sim::JacobianBuffers {
+            jacobian: [T::constant(0.0); 36],
+            input_jacobian: [T::constant(0.0); 0],
+        }
     }
     /// Writes ∂f/∂x and ∂f/∂t: 58 operations (12 ±, 45 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(

@@ -5,7 +5,7 @@
 //! | [`Kutta4`] | 4, fixed steps | the paper's settings; [`Rk4`] is its bare step, for small machines |
 //! | [`Tsit5`] | 5(4) | moderate tolerances |
 //! | [`Dop853`] | 8(5, 3) | fine tolerances; the cheapest on smooth motions from 1e-5 on |
-//! | [`Rodas4`] | 4(3), L-stable | stiff scenes; needs a system with a [Jacobian](crate::Ode::Jacobian) |
+//! | [`Rodas4`] | 4(3), L-stable | stiff scenes; needs a system with its [`Jacobian`](crate::Jacobian) |
 //!
 //! A method holds its own work space, whose size is part of the type of the state: nothing is allocated. Methods do not
 //! depend on mechanisms or corrections; [`Solver`](crate::Solver) combines them.

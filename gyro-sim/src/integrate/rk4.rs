@@ -77,7 +77,6 @@ mod tests {
     impl Ode for Oscillator {
         type Scalar = f64;
         type State = [f64; 2];
-        type Jacobian = ();
         fn derivative(&self, _: &(), _: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
             *dy = [y[1], -y[0]];
         }

@@ -6,7 +6,7 @@
 
 use super::{Method, Work, combine, lu, size, sum_at};
 use crate::contract::Storage;
-use crate::{Ode, Real, Scalar, System};
+use crate::{Jacobian, Real, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -70,10 +70,9 @@ impl<S: Clone, J> Rodas4<S, J> {
     }
 }
 
-impl<D: Ode<M>, M> Method<D, M> for Rodas4<D::State, D::Jacobian>
+impl<D: Jacobian<M>, M> Method<D, M> for Rodas4<D::State, D::Matrix>
 where
     D::Scalar: Real,
-    D::Jacobian: Storage<D::Scalar>,
 {
     const ORDER: u32 = 4;
     const STABILITY: f64 = f64::INFINITY;

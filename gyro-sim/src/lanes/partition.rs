@@ -6,7 +6,10 @@ use crate::contract::Storage;
 use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS, reach};
 use crate::scalar::larger;
 use crate::violation::constraint_violation;
-use crate::{Corrected, Error, Lanes, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns};
+use crate::{
+    Corrected, CorrectedDynamics, Error, Lanes, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar,
+    refer_turns,
+};
 
 /// *Direct integration* of the equations `D`: of maximal coordinates or, with [`Joint`](crate::Joint), of joint
 /// coordinates.
@@ -51,13 +54,13 @@ impl<D, S: Clone> Direct<D, S> {
 /// *Coordinate partitioning* of a tree of revolute, spherical and fixed joints: after a number of steps dependent
 /// positions and velocities are corrected, in each lane on charts of its own.
 #[derive(Clone, Debug)]
-pub struct Partitioned<M: Partition> {
+pub struct Partitioned<M: Partition + CorrectedDynamics> {
     direct: Direct<Corrected, M::State>,
     independent: M::Independent,
     phi: M::Constraints,
 }
 
-impl<M: Partition> Partitioned<M> {
+impl<M: Partition + CorrectedDynamics> Partitioned<M> {
     /// A solver that starts on the best charts at `state`.
     pub fn new(mechanism: &M, state: &M::State) -> Self {
         let independent = mechanism.independent(M::Scalar::constant(0.0), state);

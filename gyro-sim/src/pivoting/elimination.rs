@@ -1,7 +1,7 @@
 //! Gaussian elimination with full pivoting in arrays of fixed size.
 
 use super::{Pivot, is_noise};
-use crate::{Equations, Mechanism, Real};
+use crate::{Kinematics, Mechanism, Real};
 
 /// The scaled Jacobian with a right side, on its way to an upper triangle.
 ///
@@ -21,7 +21,7 @@ impl<T: Real, const NC: usize, const NQ: usize> Elimination<T, NC, NQ> {
     /// The Jacobian of a mechanism, with columns in the given order and zero on the right.
     pub(super) fn of<M>(mechanism: &M, t: T, y: &M::State, columns: [u16; NQ]) -> Self
     where
-        M: Equations<Scalar = T>,
+        M: Kinematics<Scalar = T>,
     {
         const { assert!(NC <= NQ, "a mechanism has at least as many coordinates as constraints") };
         let mut values = mechanism.terms().phi_q;

@@ -6,8 +6,8 @@
 //! crank.
 
 use crate::{
-    Buffers, Coordinate, Description, Energy, Equations, Error, JointInfo, Mechanism, Owner, Partition,
-    RowInfo, Terms,
+    Buffers, Coordinate, CorrectedDynamics, Description, Dynamics, Energy, Error, JointInfo, Kinematics,
+    Mechanism, Owner, Partition, RowInfo, Terms,
 };
 use crate::{pivoting, pivoting::Pivots};
 
@@ -189,6 +189,7 @@ impl Mechanism for FourBar {
     type State = State;
     type Rows = [f64; JOINT_ROWS];
     type Constraints = [f64; NC];
+    type Velocities = [f64; 18];
     type Readings = [f64; 8];
     type Outputs = [f64; 0];
 
@@ -226,7 +227,13 @@ impl Mechanism for FourBar {
         &DESCRIPTION
     }
     fn buffers(&self) -> Buffers<Self> {
-        Buffers { rows: [0.0; JOINT_ROWS], constraints: [0.0; NC], readings: [0.0; 8], outputs: [] }
+        Buffers {
+            rows: [0.0; JOINT_ROWS],
+            constraints: [0.0; NC],
+            velocities: [0.0; 18],
+            readings: [0.0; 8],
+            outputs: [],
+        }
     }
     /// Of these rods: the description is that of all.
     fn size(&self) -> f64 {
@@ -237,12 +244,6 @@ impl Mechanism for FourBar {
         self.state(1.0, 1.0, 0.0)
     }
 
-    fn derivative(&self, t: f64, y: &State, dy: &mut State) {
-        dy[..NQ].copy_from_slice(&Self::q_dot(y));
-        let mut accelerations = self.terms().accelerations;
-        self.accelerations(t, y, &mut accelerations);
-        dy[NQ..].copy_from_slice(&accelerations);
-    }
     fn phi(&self, _: f64, y: &State, out: &mut Self::Constraints) {
         *out = [0.0; NC];
         for (pin, ends) in PINS.iter().enumerate() {
@@ -273,6 +274,7 @@ impl Mechanism for FourBar {
             }
         });
     }
+    fn applied_force(&self, _: f64, _: &State, _: &mut [f64; 18]) {}
     fn energy(&self, _: f64, y: &State) -> Energy<f64> {
         let mut energy = Energy { kinetic: 0.0, potential: 0.0 };
         for body in 0..3 {
@@ -292,14 +294,12 @@ impl Mechanism for FourBar {
     }
 }
 
-impl Equations for FourBar {
-    type Velocities = [f64; 18];
+impl Kinematics for FourBar {
     type PhiQ = [f64; NON_ZEROS];
     type PhiPi = [f64; 0];
-    type Accelerations = [f64; 18];
 
     fn terms(&self) -> Terms<Self> {
-        Terms { velocities: [0.0; 18], phi_q: [0.0; NON_ZEROS], phi_pi: [], accelerations: [0.0; 18] }
+        Terms { phi_q: [0.0; NON_ZEROS], phi_pi: [] }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
         &self.pattern
@@ -316,7 +316,14 @@ impl Equations for FourBar {
         *out = [0.0; JOINT_ROWS];
     }
     fn gamma(&self, _: f64, _: &State, _: &mut Self::Rows) {}
-    fn applied_force(&self, _: f64, _: &State, _: &mut [f64; 18]) {}
+}
+
+impl Dynamics for FourBar {
+    type Accelerations = [f64; 18];
+
+    fn acceleration_buffer(&self) -> [f64; 18] {
+        [0.0; 18]
+    }
     fn accelerations(&self, _: f64, y: &State, out: &mut [f64; 18]) {
         let solution = self.solve(y);
         for body in 0..3 {
@@ -327,7 +334,21 @@ impl Equations for FourBar {
     fn multipliers(&self, _: f64, y: &State, _: &[f64; 18], lambda: &mut Self::Rows) {
         lambda[..8].copy_from_slice(&self.solve(y)[9..]);
     }
-    fn project(&self, _: f64, _: &State, _: &Self::Rows, _: &mut [f64; 18]) {}
+    fn derivative(&self, t: f64, y: &State, dy: &mut State) {
+        dy[..NQ].copy_from_slice(&Self::q_dot(y));
+        let mut accelerations = self.acceleration_buffer();
+        self.accelerations(t, y, &mut accelerations);
+        dy[NQ..].copy_from_slice(&accelerations);
+    }
+}
+
+impl CorrectedDynamics for FourBar {
+    fn corrected_accelerations(&self, t: f64, y: &State, out: &mut [f64; 18]) {
+        self.accelerations(t, y, out);
+    }
+    fn corrected_derivative(&self, t: f64, y: &State, dy: &mut State) {
+        self.derivative(t, y, dy);
+    }
 }
 
 impl Partition for FourBar {

@@ -53,7 +53,7 @@ pub(crate) use rounding::silence;
 use crate::contract::Storage;
 use crate::scalar::largest_magnitude;
 use crate::violation::constraint_violation;
-use crate::{Clearance, Equations, Error, Mechanism, Owner, Real, Scalar};
+use crate::{Clearance, Error, Kinematics, Mechanism, Owner, Real, Scalar};
 use elimination::Elimination;
 
 /// Which `NC` of the `NQ` coordinates are dependent.
@@ -125,7 +125,7 @@ pub fn independent<M, const NC: usize, const NQ: usize>(
     y: &M::State,
 ) -> Pivots<NC, NQ>
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
     elimination.reduce(NQ);
@@ -143,7 +143,7 @@ pub fn clearance<M, const NC: usize, const NQ: usize>(
     y: &M::State,
 ) -> Clearance<M::Scalar>
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let jacobian = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
     let nearest = jacobian.nearness();
@@ -162,7 +162,7 @@ pub fn follow<M, const NC: usize, const NQ: usize>(
     choice: &mut Pivots<NC, NQ>,
 ) -> u32
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let before = *choice;
     for _ in 0..NQ {
@@ -192,7 +192,7 @@ pub fn newton_step<M, const NC: usize, const NQ: usize>(
     y: &mut M::State,
 ) -> Result<(), Error>
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
     let mut phi = mechanism.buffers().constraints;
@@ -228,7 +228,7 @@ pub fn solve_velocities<M, const NC: usize, const NQ: usize>(
     y: &mut M::State,
 ) -> Result<(), Error>
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
     let mut residual = mechanism.buffers().rows;

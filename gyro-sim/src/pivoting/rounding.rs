@@ -5,7 +5,7 @@
 //! row with a large ratio what it multiplies. Each row is judged by its own terms.
 
 use crate::correct::CONVERGED_EPSILONS;
-use crate::{Equations, Real, Scalar};
+use crate::{Kinematics, Real, Scalar};
 use core::f64::consts::TAU;
 
 /// Whether no row of Φ exceeds the rounding of what it subtracts: of its unit (one, or the mechanism's size), of each
@@ -17,7 +17,7 @@ use core::f64::consts::TAU;
 /// One evaluation of Φ_q, and one of Φ for each turn reference.
 pub fn is_met<M>(mechanism: &M, t: M::Scalar, y: &M::State, phi: &M::Constraints) -> bool
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let mut sizes = mechanism.buffers().constraints;
     add_units(mechanism, sizes.as_mut());
@@ -34,7 +34,7 @@ const SILENT_EPSILONS: f64 = 2.0;
 /// single precision that rows which bend never come to rest.
 pub(crate) fn silence<M>(mechanism: &M, t: M::Scalar, y: &M::State, phi: &mut M::Constraints)
 where
-    M: Equations<Scalar: Real>,
+    M: Kinematics<Scalar: Real>,
 {
     let mut sizes = mechanism.buffers().constraints;
     add_turns(mechanism, t, y, phi.as_ref(), sizes.as_mut());
@@ -46,7 +46,7 @@ where
     }
 }
 
-fn add_units<M: Equations<Scalar: Real>>(mechanism: &M, sizes: &mut [M::Scalar]) {
+fn add_units<M: Kinematics<Scalar: Real>>(mechanism: &M, sizes: &mut [M::Scalar]) {
     for (row, size) in sizes.iter_mut().enumerate() {
         let is_length = mechanism.description().is_length(row);
         *size = if is_length { mechanism.size() } else { M::Scalar::constant(1.0) };
@@ -54,7 +54,7 @@ fn add_units<M: Equations<Scalar: Real>>(mechanism: &M, sizes: &mut [M::Scalar])
 }
 
 /// `Σ |∂Φ/∂q_j| |q_j|`: what an error of one part in each coordinate amounts to.
-fn add_coordinates<M: Equations<Scalar: Real>>(
+fn add_coordinates<M: Kinematics<Scalar: Real>>(
     mechanism: &M,
     t: M::Scalar,
     y: &M::State,
@@ -72,7 +72,7 @@ fn add_coordinates<M: Equations<Scalar: Real>>(
 
 /// What the whole turns of each angle contribute, found by taking them off its turn reference; of an angle on its first
 /// turn, one turn. The work done, which is among the last elements too, is in no row.
-fn add_turns<M: Equations<Scalar: Real>>(
+fn add_turns<M: Kinematics<Scalar: Real>>(
     mechanism: &M,
     t: M::Scalar,
     y: &M::State,

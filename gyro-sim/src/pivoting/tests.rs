@@ -4,7 +4,7 @@ extern crate std;
 
 use super::four_bar::{FourBar, NC, NQ, State};
 use super::*;
-use crate::{JointCoordinate, Partition, Partitioned, Turns};
+use crate::{Dynamics, JointCoordinate, Partition, Partitioned, Turns};
 use core::f64::consts::PI;
 use std::vec::Vec;
 

@@ -22,7 +22,6 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// # impl Ode for Rest {
     /// #     type Scalar = f64;
     /// #     type State = [f64; 1];
-    /// #     type Jacobian = ();
     /// #     fn derivative(&self, _: &(), _: f64, _: &[f64; 1], dy: &mut [f64; 1]) {
     /// #         *dy = [0.0];
     /// #     }

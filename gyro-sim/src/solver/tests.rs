@@ -3,7 +3,8 @@
 use crate::contract::Storage;
 use crate::integrate::Method;
 use crate::{
-    ByDuals, Control, Direct, Dop853, Dual, Error, Kutta4, Ode, Rodas4, Scalar, Solver, Tsit5, Uncorrected,
+    ByDuals, Control, Direct, Dop853, Dual, Error, Jacobian, Kutta4, Ode, Rodas4, Scalar, Solver, Tsit5,
+    Uncorrected,
 };
 use core::marker::PhantomData;
 
@@ -18,7 +19,6 @@ const REAL: Numbers<f64> = PhantomData;
 impl<T: Scalar> Ode<Numbers<T>> for Chirp {
     type Scalar = T;
     type State = [T; 2];
-    type Jacobian = ();
 
     fn derivative(&self, _: &Numbers<T>, t: T, y: &[T; 2], dy: &mut [T; 2]) {
         let rate = T::constant(1.0) + T::constant(0.5) * t;
@@ -130,11 +130,15 @@ struct Stiff(f64);
 impl Ode for Stiff {
     type Scalar = f64;
     type State = [f64; 1];
-    type Jacobian = [f64; 1];
 
     fn derivative(&self, _: &(), t: f64, y: &[f64; 1], dy: &mut [f64; 1]) {
         *dy = [self.0 * (y[0] - libm::cos(t)) - libm::sin(t)];
     }
+}
+
+impl Jacobian for Stiff {
+    type Matrix = [f64; 1];
+
     fn jacobian(&self, _: &(), t: f64, _: &[f64; 1], dfdy: &mut [f64; 1], dfdt: &mut [f64; 1]) {
         (*dfdy, *dfdt) = ([self.0], [self.0 * libm::sin(t) - libm::cos(t)]);
     }
@@ -213,7 +217,6 @@ struct BlowUp;
 impl Ode for BlowUp {
     type Scalar = f64;
     type State = [f64; 1];
-    type Jacobian = ();
 
     fn derivative(&self, _: &(), _: f64, y: &[f64; 1], dy: &mut [f64; 1]) {
         *dy = [y[0] * y[0]];

@@ -9,6 +9,7 @@
 #![deny(missing_docs)]
 #![allow(clippy::print_stdout, reason = "it is how a build script tells cargo what it depends on")]
 
+use gyro_codegen::Functions;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -27,7 +28,7 @@ pub fn pages(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(pages)
 }
 
-/// Generates the modules of model files, on all cores, and `modules.rs`, which declares them.
+/// Generates the modules of model files with all functions, on all cores, and `modules.rs`, which declares them.
 ///
 /// # Errors
 /// What is wrong with a model file or another file, and which one it is.
@@ -57,7 +58,10 @@ fn generate_one(page: &Path, out: &Path) -> Result<String, String> {
         println!("cargo::rerun-if-changed={}", table.display());
         read(&table)
     };
-    let module = gyro_codegen::generate_with(&page.to_string_lossy(), &read(page)?, &mut load);
+    let name = page.to_string_lossy();
+    let model = gyro_model::read_with(&name, &read(page)?, &mut load);
+    let model = model.map_err(|e| format!("{}: {e}", page.display()))?;
+    let module = gyro_codegen::generate_functions(&name, &model, &Functions::all());
     let module = module.map_err(|e| format!("{}: {e}", page.display()))?;
     let path = out.join(&module.name).with_extension("rs");
     renew(&path, &module.code)?;

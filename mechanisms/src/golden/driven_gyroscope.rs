@@ -35,6 +35,7 @@
 //! | to_joints | (x, u) of a maximal state | 65 | 66 | 0 | 131 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 62 | 1 | 98 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 184 | 266 | 5 | 455 | 7 of 18 |
+//! | corrected_derivative | ẏ but for the accelerations, there | 115 | 173 | 1 | 289 | 0 of 22 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 59 | 86 | 0 | 145 | 0 of 15 |
 //! | corrected_solution | both | 218 | 319 | 5 | 542 | 7 of 33 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 529 | 872 | 2 | 1403 | 29 of 56 |
@@ -85,6 +86,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
     type State = [T; 40];
     type Rows = [T; 15];
     type Constraints = [T; 18];
+    type Velocities = [T; 18];
     type Readings = [T; 9];
     type Outputs = [T; 0];
     fn description(&self) -> &gyro_sim::Description<'_> {
@@ -180,6 +182,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
         gyro_sim::Buffers {
             rows: [T::constant(0.0); 15],
             constraints: [T::constant(0.0); 18],
+            velocities: [T::constant(0.0); 18],
             readings: [T::constant(0.0); 9],
             outputs: [T::constant(0.0); 0],
         }
@@ -228,556 +231,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
             k(0.0),
             k(0.0),
         ]
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
-    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 18];
-        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let outer_ring_dwx = accelerations[3];
-        let outer_ring_dwz = accelerations[5];
-        let inner_ring_dwx = accelerations[9];
-        let inner_ring_dwy = accelerations[10];
-        let inner_ring_dwz = accelerations[11];
-        let rotor_dsx = accelerations[12];
-        let rotor_dsy = accelerations[13];
-        let rotor_dsz = accelerations[14];
-        let rotor_dwx = accelerations[15];
-        let rotor_dwy = accelerations[16];
-        let rotor_dwz = accelerations[17];
-        let t0 = k(12.566370614359172) * t;
-        let t1 = k(0.1) * t0.sin();
-        let t2 = t1.cos();
-        let t3 = t0.cos();
-        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
-        let t5 = t1.sin();
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = T::fused(
-            T::fused(outer_ring_e2, outer_ring_e2, -t4),
-            t3 * t2,
-            (t7 + t6) * (t3 * t5),
-        );
-        let t9 = k(2.0) * rotor_dwx;
-        let t10 = T::fused(-rotor_e0, rotor_e0, k(0.5));
-        let t11 = T::fused(rotor_e1, rotor_e1, -t10);
-        let t12 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
-        let t13 = T::fused(inner_ring_e1, inner_ring_e1, -t12);
-        let t14 = rotor_e0 * rotor_e2;
-        let t15 = rotor_e1 * rotor_e3;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = t18 - t17;
-        let t20 = rotor_e0 * rotor_e3;
-        let t21 = rotor_e1 * rotor_e2;
-        let t22 = t21 + t20;
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = t24 + t23;
-        let t26 = T::fused(rotor_e3, rotor_e3, -t10);
-        let t27 = rotor_e0 * rotor_e1;
-        let t28 = rotor_e2 * rotor_e3;
-        let t29 = t28 - t27;
-        let t30 = t15 + t14;
-        let t31 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t32 = T::fused(
-            t31,
-            T::fused(t30, t13, T::fused(t19, t26, t25 * t29)),
-            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-        );
-        let t33 = T::fused(rotor_e2, rotor_e2, -t10);
-        let t34 = t28 + t27;
-        let t35 = t21 - t20;
-        let t36 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t37 = T::fused(t36, T::fused(t35, t13, T::fused(t25, t33, t19 * t34)), -t32);
-        let t38 = T::fused(T::fused(t13, t11, T::fused(t19, t16, t25 * t22)), t9, t37);
-        let t39 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
-        let t40 = outer_ring_e0 * outer_ring_e2;
-        let t41 = outer_ring_e1 * outer_ring_e3;
-        let t42 = t41 - t40;
-        let t43 = T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
-        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t12);
-        let t45 = inner_ring_e0 * inner_ring_e1;
-        let t46 = inner_ring_e2 * inner_ring_e3;
-        let t47 = t46 + t45;
-        let t48 = t24 - t23;
-        let t49 = T::fused(inner_ring_e3, inner_ring_e3, -t12);
-        let t50 = rotor_dsy + k(10.0);
-        let t51 = t46 - t45;
-        let t52 = t18 + t17;
-        let t53 = T::fused(
-            t52,
-            rotor_dsx,
-            T::fused(t51, t50, -T::fused(-rotor_dsz, t49, k(0.1) * inner_ring_dwy)),
-        );
-        let t54 = T::fused(t31, T::fused(t48, t30, T::fused(t47, t26, t29 * t44)), t53);
-        let t55 = T::fused(t36, T::fused(t48, t35, T::fused(t33, t44, t47 * t34)), -t54);
-        let t56 = T::fused(T::fused(t48, t11, T::fused(t22, t44, t47 * t16)), t9, t55);
-        let t57 = T::fused(
-            t44,
-            t50,
-            T::fused(
-                k(0.05),
-                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-                t47 * rotor_dsz,
-            ),
-        );
-        let t58 = T::fused(
-            t31,
-            T::fused(t52, t30, T::fused(t26, t49, t51 * t29)),
-            -T::fused(t48, rotor_dsx, t57),
-        );
-        let t59 = T::fused(t36, T::fused(t52, t35, T::fused(t34, t49, t51 * t33)), -t58);
-        let t60 = T::fused(T::fused(t52, t11, T::fused(t16, t49, t51 * t22)), t9, t59);
-        let t61 = T::fused(
-            T::fused(t52, t39, T::fused(t42, t49, t43 * t51)),
-            t60,
-            k(0.025) * outer_ring_dwx,
-        );
-        let t62 = T::fused(T::fused(t48, t39, T::fused(t43, t44, t42 * t47)), t56, t61);
-        let t63 = T::fused(T::fused(t39, t13, T::fused(t42, t19, t43 * t25)), t38, t62);
-        let t64 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
-        let t65 = t7 - t6;
-        let t66 = t41 + t40;
-        let t67 = T::fused(
-            t39,
-            T::fused(-t2, t64, t5 * t65),
-            t66 * T::fused(-t5, t43, t2 * t42),
-        );
-        let t68 = k(1.0) / t67;
-        let t69 = T::fused(
-            -T::fused(t66, t52, T::fused(t64, t49, t65 * t51)),
-            t60,
-            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-        );
-        let t70 = T::fused(-T::fused(t66, t48, T::fused(t47, t64, t65 * t44)), t56, t69);
-        let t71 = T::fused(-T::fused(t66, t13, T::fused(t19, t64, t65 * t25)), t38, t70);
-        let t72 = k(0.00010053096491487339)
-            * (T::fused(-(t39 * t68), t63, t66 * t68 * t71) * t8);
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    outer_ring_e3,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    outer_ring_e2,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e3,
-                        outer_ring_wy,
-                        outer_ring_e0 * outer_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -outer_ring_e1,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e1,
-                        outer_ring_wy,
-                        outer_ring_e2 * outer_ring_wx,
-                    ),
-                )),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    inner_ring_e3,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    inner_ring_e2,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e3,
-                        inner_ring_wy,
-                        inner_ring_e0 * inner_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -inner_ring_e1,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -inner_ring_e0,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e1,
-                        inner_ring_wy,
-                        inner_ring_e2 * inner_ring_wx,
-                    ),
-                )),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * T::fused(
-                    rotor_e3,
-                    rotor_wz,
-                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    rotor_e2,
-                    rotor_wz,
-                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -rotor_e1,
-                    rotor_wz,
-                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -rotor_e0,
-                    rotor_wz,
-                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
-                )),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            t72,
-        ];
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 18];
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let outer_ring_dwx = accelerations[3];
-        let outer_ring_dwz = accelerations[5];
-        let inner_ring_dwx = accelerations[9];
-        let inner_ring_dwy = accelerations[10];
-        let inner_ring_dwz = accelerations[11];
-        let rotor_dsx = accelerations[12];
-        let rotor_dsy = accelerations[13];
-        let rotor_dsz = accelerations[14];
-        let rotor_dwx = accelerations[15];
-        let rotor_dwy = accelerations[16];
-        let rotor_dwz = accelerations[17];
-        let t0 = k(12.566370614359172) * t;
-        let t1 = k(0.1) * t0.sin();
-        let t2 = t1.cos();
-        let t3 = t0.cos();
-        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
-        let t5 = t1.sin();
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = T::fused(
-            T::fused(outer_ring_e2, outer_ring_e2, -t4),
-            t3 * t2,
-            (t7 + t6) * (t3 * t5),
-        );
-        let t9 = k(2.0) * rotor_dwx;
-        let t10 = T::fused(-rotor_e0, rotor_e0, k(0.5));
-        let t11 = T::fused(rotor_e1, rotor_e1, -t10);
-        let t12 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
-        let t13 = T::fused(inner_ring_e1, inner_ring_e1, -t12);
-        let t14 = rotor_e0 * rotor_e2;
-        let t15 = rotor_e1 * rotor_e3;
-        let t16 = t15 - t14;
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = t18 - t17;
-        let t20 = rotor_e0 * rotor_e3;
-        let t21 = rotor_e1 * rotor_e2;
-        let t22 = t21 + t20;
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = t24 + t23;
-        let t26 = T::fused(rotor_e3, rotor_e3, -t10);
-        let t27 = rotor_e0 * rotor_e1;
-        let t28 = rotor_e2 * rotor_e3;
-        let t29 = t28 - t27;
-        let t30 = t15 + t14;
-        let t31 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t32 = T::fused(
-            t31,
-            T::fused(t30, t13, T::fused(t19, t26, t25 * t29)),
-            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-        );
-        let t33 = T::fused(rotor_e2, rotor_e2, -t10);
-        let t34 = t28 + t27;
-        let t35 = t21 - t20;
-        let t36 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t37 = T::fused(t36, T::fused(t35, t13, T::fused(t25, t33, t19 * t34)), -t32);
-        let t38 = T::fused(T::fused(t13, t11, T::fused(t19, t16, t25 * t22)), t9, t37);
-        let t39 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
-        let t40 = outer_ring_e0 * outer_ring_e2;
-        let t41 = outer_ring_e1 * outer_ring_e3;
-        let t42 = t41 - t40;
-        let t43 = T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
-        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t12);
-        let t45 = inner_ring_e0 * inner_ring_e1;
-        let t46 = inner_ring_e2 * inner_ring_e3;
-        let t47 = t46 + t45;
-        let t48 = t24 - t23;
-        let t49 = T::fused(inner_ring_e3, inner_ring_e3, -t12);
-        let t50 = rotor_dsy + k(10.0);
-        let t51 = t46 - t45;
-        let t52 = t18 + t17;
-        let t53 = T::fused(
-            t52,
-            rotor_dsx,
-            T::fused(t51, t50, -T::fused(-rotor_dsz, t49, k(0.1) * inner_ring_dwy)),
-        );
-        let t54 = T::fused(t31, T::fused(t48, t30, T::fused(t47, t26, t29 * t44)), t53);
-        let t55 = T::fused(t36, T::fused(t48, t35, T::fused(t33, t44, t47 * t34)), -t54);
-        let t56 = T::fused(T::fused(t48, t11, T::fused(t22, t44, t47 * t16)), t9, t55);
-        let t57 = T::fused(
-            t44,
-            t50,
-            T::fused(
-                k(0.05),
-                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-                t47 * rotor_dsz,
-            ),
-        );
-        let t58 = T::fused(
-            t31,
-            T::fused(t52, t30, T::fused(t26, t49, t51 * t29)),
-            -T::fused(t48, rotor_dsx, t57),
-        );
-        let t59 = T::fused(t36, T::fused(t52, t35, T::fused(t34, t49, t51 * t33)), -t58);
-        let t60 = T::fused(T::fused(t52, t11, T::fused(t16, t49, t51 * t22)), t9, t59);
-        let t61 = T::fused(
-            T::fused(t52, t39, T::fused(t42, t49, t43 * t51)),
-            t60,
-            k(0.025) * outer_ring_dwx,
-        );
-        let t62 = T::fused(T::fused(t48, t39, T::fused(t43, t44, t42 * t47)), t56, t61);
-        let t63 = T::fused(T::fused(t39, t13, T::fused(t42, t19, t43 * t25)), t38, t62);
-        let t64 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
-        let t65 = t7 - t6;
-        let t66 = t41 + t40;
-        let t67 = T::fused(
-            t39,
-            T::fused(-t2, t64, t5 * t65),
-            t66 * T::fused(-t5, t43, t2 * t42),
-        );
-        let t68 = k(1.0) / t67;
-        let t69 = T::fused(
-            -T::fused(t66, t52, T::fused(t64, t49, t65 * t51)),
-            t60,
-            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-        );
-        let t70 = T::fused(-T::fused(t66, t48, T::fused(t47, t64, t65 * t44)), t56, t69);
-        let t71 = T::fused(-T::fused(t66, t13, T::fused(t19, t64, t65 * t25)), t38, t70);
-        let t72 = k(0.00010053096491487339)
-            * (T::fused(-(t39 * t68), t63, t66 * t68 * t71) * t8);
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    outer_ring_e3,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    outer_ring_e2,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e3,
-                        outer_ring_wy,
-                        outer_ring_e0 * outer_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -outer_ring_e1,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e1,
-                        outer_ring_wy,
-                        outer_ring_e2 * outer_ring_wx,
-                    ),
-                )),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    inner_ring_e3,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    inner_ring_e2,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e3,
-                        inner_ring_wy,
-                        inner_ring_e0 * inner_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -inner_ring_e1,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -inner_ring_e0,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e1,
-                        inner_ring_wy,
-                        inner_ring_e2 * inner_ring_wx,
-                    ),
-                )),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * T::fused(
-                    rotor_e3,
-                    rotor_wz,
-                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    rotor_e2,
-                    rotor_wz,
-                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -rotor_e1,
-                    rotor_wz,
-                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -rotor_e0,
-                    rotor_wz,
-                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
-                )),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            t72,
-        ];
     }
     /// Writes Φ: 104 operations (51 ±, 53 ×, 0 ÷) and 3 functions.
     fn phi(&self, t: T, y: &Self::State, out: &mut Self::Constraints) {
@@ -1026,6 +479,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
             ),
             -(k(4.0) * T::fused(inner_ring_wz, t62, -t61)),
             k(4.0) * T::fused(inner_ring_wy, t62, t64),
+        ];
+    }
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
+    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
+        let k = T::constant;
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
+        *out = [
+            k(0.0),
+            k(-0.1),
+            k(0.0),
+            k(0.0),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
+            k(0.0),
+            k(-0.1),
+            k(0.0),
+            inner_ring_wz * t1,
+            k(0.0),
+            -(inner_ring_wx * t1),
+            k(0.0),
+            k(-0.8),
+            k(0.0),
+            k(0.0),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
     /// Kinetic and potential energy: 48 operations (19 ±, 29 ×, 0 ÷).
@@ -1718,18 +1207,13 @@ impl<T: gyro_sim::Lanes> gyro_sim::Partition for DrivenGyroscope<T> {
         Ok(())
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
-    type Velocities = [T; 18];
+impl<T: gyro_sim::Scalar> gyro_sim::Kinematics for DrivenGyroscope<T> {
     type PhiQ = [T; 77];
     type PhiPi = [T; 41];
-    /// (s̈, ẇ') of each body.
-    type Accelerations = [T; 18];
     fn terms(&self) -> gyro_sim::Terms<Self> {
         gyro_sim::Terms {
-            velocities: [T::constant(0.0); 18],
             phi_q: [T::constant(0.0); 77],
             phi_pi: [T::constant(0.0); 41],
-            accelerations: [T::constant(0.0); 18],
         }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
@@ -2367,41 +1851,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             -t101,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
-    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
-        let k = T::constant;
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let t0 = k(1e-6) * outer_ring_wx;
-        let t1 = k(1e-6) * inner_ring_wy;
-        let t2 = k(5e-6) * rotor_wx;
-        *out = [
-            k(0.0),
-            k(-0.1),
-            k(0.0),
-            k(0.0),
-            -(outer_ring_wz * t0),
-            outer_ring_wy * t0,
-            k(0.0),
-            k(-0.1),
-            k(0.0),
-            inner_ring_wz * t1,
-            k(0.0),
-            -(inner_ring_wx * t1),
-            k(0.0),
-            k(-0.8),
-            k(0.0),
-            k(0.0),
-            -(rotor_wz * t2),
-            rotor_wy * t2,
-        ];
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Dynamics for DrivenGyroscope<T> {
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 18];
+    fn acceleration_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 18]
     }
     /// Solves eq. (17): 455 operations (184 ±, 266 ×, 5 ÷) and 4 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
@@ -2903,6 +2358,283 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             -(k(1.25e-6) * T::fused(-t26, t52 * t82, t31 * (t53 * t82))),
         ];
     }
+    /// Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 18];
+        gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(12.566370614359172) * t;
+        let t1 = k(0.1) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t5 = t1.sin();
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = T::fused(
+            T::fused(outer_ring_e2, outer_ring_e2, -t4),
+            t3 * t2,
+            (t7 + t6) * (t3 * t5),
+        );
+        let t9 = k(2.0) * rotor_dwx;
+        let t10 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t11 = T::fused(rotor_e1, rotor_e1, -t10);
+        let t12 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t13 = T::fused(inner_ring_e1, inner_ring_e1, -t12);
+        let t14 = rotor_e0 * rotor_e2;
+        let t15 = rotor_e1 * rotor_e3;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 - t17;
+        let t20 = rotor_e0 * rotor_e3;
+        let t21 = rotor_e1 * rotor_e2;
+        let t22 = t21 + t20;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 + t23;
+        let t26 = T::fused(rotor_e3, rotor_e3, -t10);
+        let t27 = rotor_e0 * rotor_e1;
+        let t28 = rotor_e2 * rotor_e3;
+        let t29 = t28 - t27;
+        let t30 = t15 + t14;
+        let t31 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t32 = T::fused(
+            t31,
+            T::fused(t30, t13, T::fused(t19, t26, t25 * t29)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+        );
+        let t33 = T::fused(rotor_e2, rotor_e2, -t10);
+        let t34 = t28 + t27;
+        let t35 = t21 - t20;
+        let t36 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t37 = T::fused(t36, T::fused(t35, t13, T::fused(t25, t33, t19 * t34)), -t32);
+        let t38 = T::fused(T::fused(t13, t11, T::fused(t19, t16, t25 * t22)), t9, t37);
+        let t39 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
+        let t40 = outer_ring_e0 * outer_ring_e2;
+        let t41 = outer_ring_e1 * outer_ring_e3;
+        let t42 = t41 - t40;
+        let t43 = T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t12);
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
+        let t47 = t46 + t45;
+        let t48 = t24 - t23;
+        let t49 = T::fused(inner_ring_e3, inner_ring_e3, -t12);
+        let t50 = rotor_dsy + k(10.0);
+        let t51 = t46 - t45;
+        let t52 = t18 + t17;
+        let t53 = T::fused(
+            t52,
+            rotor_dsx,
+            T::fused(t51, t50, -T::fused(-rotor_dsz, t49, k(0.1) * inner_ring_dwy)),
+        );
+        let t54 = T::fused(t31, T::fused(t48, t30, T::fused(t47, t26, t29 * t44)), t53);
+        let t55 = T::fused(t36, T::fused(t48, t35, T::fused(t33, t44, t47 * t34)), -t54);
+        let t56 = T::fused(T::fused(t48, t11, T::fused(t22, t44, t47 * t16)), t9, t55);
+        let t57 = T::fused(
+            t44,
+            t50,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t47 * rotor_dsz,
+            ),
+        );
+        let t58 = T::fused(
+            t31,
+            T::fused(t52, t30, T::fused(t26, t49, t51 * t29)),
+            -T::fused(t48, rotor_dsx, t57),
+        );
+        let t59 = T::fused(t36, T::fused(t52, t35, T::fused(t34, t49, t51 * t33)), -t58);
+        let t60 = T::fused(T::fused(t52, t11, T::fused(t16, t49, t51 * t22)), t9, t59);
+        let t61 = T::fused(
+            T::fused(t52, t39, T::fused(t42, t49, t43 * t51)),
+            t60,
+            k(0.025) * outer_ring_dwx,
+        );
+        let t62 = T::fused(T::fused(t48, t39, T::fused(t43, t44, t42 * t47)), t56, t61);
+        let t63 = T::fused(T::fused(t39, t13, T::fused(t42, t19, t43 * t25)), t38, t62);
+        let t64 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
+        let t65 = t7 - t6;
+        let t66 = t41 + t40;
+        let t67 = T::fused(
+            t39,
+            T::fused(-t2, t64, t5 * t65),
+            t66 * T::fused(-t5, t43, t2 * t42),
+        );
+        let t68 = k(1.0) / t67;
+        let t69 = T::fused(
+            -T::fused(t66, t52, T::fused(t64, t49, t65 * t51)),
+            t60,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+        );
+        let t70 = T::fused(-T::fused(t66, t48, T::fused(t47, t64, t65 * t44)), t56, t69);
+        let t71 = T::fused(-T::fused(t66, t13, T::fused(t19, t64, t65 * t25)), t38, t70);
+        let t72 = k(0.00010053096491487339)
+            * (T::fused(-(t39 * t68), t63, t66 * t68 * t71) * t8);
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            t72,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenGyroscope<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 365 operations (144 ±, 216 ×, 5 ÷) and 3 functions.
     fn project(
         &self,
@@ -3111,13 +2843,618 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedDynamics for DrivenGyroscope<T> {
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 455 operations (184 ±, 266 ×, 5 ÷) and 4 functions.
+    fn corrected_accelerations(
+        &self,
+        t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = k(12.566370614359172) * t;
+        let t5 = k(1.2566370614359172) * t4.cos();
+        let t6 = t5 * (t3 - t1);
+        let t7 = outer_ring_wy - t6;
+        let t8 = outer_ring_e2 * t0;
+        let t9 = outer_ring_e3 * t2;
+        let t10 = t9 + t8;
+        let t11 = t5 * t10;
+        let t12 = outer_ring_wz - t11;
+        let t13 = outer_ring_e1 * t0;
+        let t14 = k(2.0) * outer_ring_e2;
+        let t15 = outer_ring_e3 * t14;
+        let t16 = t4.sin();
+        let t17 = k(0.1) * t16;
+        let t18 = t17.cos();
+        let t19 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t20 = t17.sin();
+        let t21 = T::fused(
+            -t18,
+            t15 - t13,
+            t20 * T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t19),
+        );
+        let t22 = T::fused(-outer_ring_e1, t2, t19);
+        let t23 = t5 * t22;
+        let t24 = outer_ring_wx + t23;
+        let t25 = T::fused(t12, t12, t24 * t24)
+            / T::fused(-t18, T::fused(-outer_ring_e2, t14, t19), t20 * (t15 + t13));
+        let t26 = k(15.791367041742975) * t16;
+        let t27 = T::fused(-t26, t22, T::fused(-outer_ring_wz, t6, outer_ring_wy * t11))
+            - T::fused(-t12, t7, t25 * t21);
+        let t28 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t29 = k(2.0) * t28;
+        let t30 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t31 = t30 * t29;
+        let t32 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t33 = k(2.0) * t32;
+        let t34 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t35 = t34 * t33;
+        let t36 = t35 + t31;
+        let t37 = k(5e-6) * t36;
+        let t38 = t34 * t29;
+        let t39 = t30 * t33;
+        let t40 = t39 - t38;
+        let t41 = k(5e-6) * t40;
+        let t42 = t32 * t29;
+        let t43 = k(2.0) * t34;
+        let t44 = t30 * t43;
+        let t45 = t44 - t42;
+        let t46 = T::fused(-t28, t29, k(1.0));
+        let t47 = T::fused(-t30, k(2.0) * t30, t46);
+        let t48 = T::fused(-t45, t37, t47 * t41);
+        let t49 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t45, k(5e-6) * t45, t47 * (k(5e-6) * t47)));
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * t48;
+        let t52 = T::fused(t48, t51, -(k(1e-6) + T::fused(t36, t37, t40 * t41)));
+        let t53 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t54 = k(2.0) * t53;
+        let t55 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t56 = t55 * t54;
+        let t57 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t58 = k(2.0) * t57;
+        let t59 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t60 = t59 * t58;
+        let t61 = t60 - t56;
+        let t62 = T::fused(-t34, t43, t46);
+        let t63 = t44 + t42;
+        let t64 = k(5e-6) * t62;
+        let t65 = k(5e-6) * t63;
+        let t66 = T::fused(t45, t64, t47 * t65);
+        let t67 = T::fused(t66, t51, -T::fused(-t62, t37, t63 * t41));
+        let t68 = k(2.0) * t59;
+        let t69 = T::fused(-t53, t54, k(1.0));
+        let t70 = T::fused(-t59, t68, t69);
+        let t71 = T::fused(-t61, t52, t70 * t67);
+        let t72 = T::fused(
+            t66,
+            t50 * t66,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t62, t64, t63 * t65))),
+        );
+        let t73 = T::fused(-t61, t67, t70 * t72);
+        let t74 = T::fused(-t32, t33, t46);
+        let t75 = T::fused(
+            inner_ring_wz,
+            t39 + t38,
+            T::fused(-inner_ring_wx, t74, inner_ring_wy * (t35 - t31)),
+        );
+        let t76 = rotor_wx - t75;
+        let t77 = T::fused(
+            inner_ring_wz,
+            t47,
+            -T::fused(inner_ring_wx, t40, inner_ring_wy * t63),
+        );
+        let t78 = rotor_wz + t77;
+        let t79 = T::fused(
+            inner_ring_wz,
+            t45,
+            -T::fused(-inner_ring_wx, t36, inner_ring_wy * t62),
+        );
+        let t80 = rotor_wy - t79;
+        let t81 = T::fused(t78, t78, t80 * t80) / t74;
+        let t82 = T::fused(rotor_wx, t77, rotor_wz * t75)
+            + T::fused(-t78, t76, t40 * t81);
+        let t83 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t82);
+        let t84 = T::fused(-rotor_wy, t75, rotor_wx * t79)
+            - T::fused(-t80, t76, t36 * t81);
+        let t85 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t84);
+        let t86 = k(2.0) * inner_ring_e0;
+        let t87 = inner_ring_e3 * t86;
+        let t88 = k(2.0) * inner_ring_e1;
+        let t89 = inner_ring_e2 * t88;
+        let t90 = t89 - t87;
+        let t91 = k(0.000125) * t90;
+        let t92 = T::fused(-inner_ring_e0, t86, k(1.0));
+        let t93 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t94 = inner_ring_wx * inner_ring_wy;
+        let t95 = inner_ring_e2 * t86;
+        let t96 = inner_ring_e3 * t88;
+        let t97 = t96 + t95;
+        let t98 = inner_ring_wx * inner_ring_wz;
+        let t99 = T::fused(
+            t98,
+            t97,
+            T::fused(t93, T::fused(-inner_ring_e1, t88, t92), t94 * t90),
+        );
+        let t100 = k(1e-5) * t99;
+        let t101 = k(2.0) * inner_ring_e2;
+        let t102 = T::fused(-inner_ring_e2, t101, t92);
+        let t103 = k(0.000125) * t102;
+        let t104 = inner_ring_e1 * t86;
+        let t105 = inner_ring_e3 * t101;
+        let t106 = t105 - t104;
+        let t107 = T::fused(t98, t106, -T::fused(t93, t89 + t87, t94 * t102));
+        let t108 = T::fused(k(1e-5), t107, k(0.8));
+        let t109 = t105 + t104;
+        let t110 = k(0.000125) * t109;
+        let t111 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t92);
+        let t112 = T::fused(t98, t111, -T::fused(-t93, t96 - t95, t94 * t109));
+        let t113 = k(1e-5) * t112;
+        let t114 = T::fused(t113, t110, T::fused(-t100, t91, t108 * t103))
+            - T::fused(t45, t83, t47 * t85);
+        let t115 = T::fused(k(1e-6), t94, -t114);
+        let t116 = t50 * t115;
+        let t117 = T::fused(
+            t48,
+            t116,
+            -T::fused(
+                k(1e-6),
+                inner_ring_wy * inner_ring_wz,
+                T::fused(-t36, t83, t40 * t85),
+            ),
+        );
+        let t118 = t59 * t54;
+        let t119 = t55 * t58;
+        let t120 = t57 * t54;
+        let t121 = t55 * t68;
+        let t122 = T::fused(-t55, k(2.0) * t55, t69);
+        let t123 = T::fused(
+            outer_ring_wz,
+            t122,
+            -T::fused(outer_ring_wx, t119 - t118, outer_ring_wy * (t121 + t120)),
+        );
+        let t124 = inner_ring_wz + t123;
+        let t125 = t60 + t56;
+        let t126 = t121 - t120;
+        let t127 = T::fused(
+            outer_ring_wz,
+            t126,
+            -T::fused(-outer_ring_wx, t125, outer_ring_wy * t70),
+        );
+        let t128 = inner_ring_wy - t127;
+        let t129 = T::fused(-t57, t58, t69);
+        let t130 = t119 + t118;
+        let t131 = T::fused(
+            outer_ring_wz,
+            t130,
+            T::fused(-outer_ring_wx, t129, outer_ring_wy * t61),
+        );
+        let t132 = inner_ring_wx - t131;
+        let t133 = T::fused(t128, t128, t132 * t132) / t122;
+        let t134 = T::fused(inner_ring_wz, t127, inner_ring_wy * t123)
+            - T::fused(-t128, t124, t126 * t133);
+        let t135 = T::fused(inner_ring_wx, t123, inner_ring_wz * t131)
+            - T::fused(-t132, t124, t130 * t133);
+        let t136 = k(0.000125) * t97;
+        let t137 = k(0.000125) * t106;
+        let t138 = k(0.000125) * t111;
+        let t139 = T::fused(t113, t138, T::fused(t100, t136, t108 * t137))
+            + T::fused(t62, t83, t63 * t85);
+        let t140 = T::fused(
+            -t61,
+            T::fused(-t52, t134, t67 * t135) + t117,
+            t70 * (T::fused(-t67, t134, t72 * t135) + T::fused(t66, t116, -t139)),
+        );
+        let t141 = T::fused(
+            -t61,
+            T::fused(-t129, t52, t125 * t67),
+            t70 * T::fused(-t129, t67, t125 * t72),
+        );
+        let t142 = T::fused(t24, t7, t25 * T::fused(t18, t3 + t1, t20 * (t9 - t8)));
+        let t143 = T::fused(t26, t10, T::fused(outer_ring_wy, t23, outer_ring_wx * t6))
+            - t142;
+        let t144 = T::fused(t27, t141, t143 * T::fused(t130, t71, t126 * t73))
+            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t140);
+        let t145 = t144 / (k(1e-6) - T::fused(-t61, t71, t70 * t73));
+        let t146 = t134 - T::fused(t130, t143, -T::fused(t129, t27, t61 * t145));
+        let t147 = t135 + T::fused(t126, t143, T::fused(t125, t27, t70 * t145));
+        let t148 = t50 * (t115 + T::fused(-t48, t146, t66 * t147));
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t27,
+            t145,
+            -t143,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t146,
+            -t147,
+            -t148,
+            T::fused(k(0.000125), t99, -T::fused(-t136, t147, t91 * t148)),
+            T::fused(k(0.000125), t107, T::fused(t137, t147, t103 * t148)),
+            -T::fused(k(0.000125), t112, T::fused(t138, t147, t110 * t148)),
+            k(0.0),
+            -(t82 + T::fused(t45, t148, -T::fused(t36, t146, t62 * t147))),
+            T::fused(t47, t148, -T::fused(-t40, t146, t63 * t147)) - t84,
+        ];
+    }
+    /// Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes: 289 operations (115 ±, 173 ×, 1 ÷) and 4 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 18];
+        gyro_sim::CorrectedDynamics::corrected_accelerations(
+            self,
+            t,
+            y,
+            &mut accelerations,
+        );
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let outer_ring_dwx = accelerations[3];
+        let outer_ring_dwz = accelerations[5];
+        let inner_ring_dwx = accelerations[9];
+        let inner_ring_dwy = accelerations[10];
+        let inner_ring_dwz = accelerations[11];
+        let rotor_dsx = accelerations[12];
+        let rotor_dsy = accelerations[13];
+        let rotor_dsz = accelerations[14];
+        let rotor_dwx = accelerations[15];
+        let rotor_dwy = accelerations[16];
+        let rotor_dwz = accelerations[17];
+        let t0 = k(12.566370614359172) * t;
+        let t1 = k(0.1) * t0.sin();
+        let t2 = t1.cos();
+        let t3 = t0.cos();
+        let t4 = T::fused(-outer_ring_e0, outer_ring_e0, k(0.5));
+        let t5 = t1.sin();
+        let t6 = outer_ring_e0 * outer_ring_e1;
+        let t7 = outer_ring_e2 * outer_ring_e3;
+        let t8 = T::fused(
+            T::fused(outer_ring_e2, outer_ring_e2, -t4),
+            t3 * t2,
+            (t7 + t6) * (t3 * t5),
+        );
+        let t9 = k(2.0) * rotor_dwx;
+        let t10 = T::fused(-rotor_e0, rotor_e0, k(0.5));
+        let t11 = T::fused(rotor_e1, rotor_e1, -t10);
+        let t12 = T::fused(-inner_ring_e0, inner_ring_e0, k(0.5));
+        let t13 = T::fused(inner_ring_e1, inner_ring_e1, -t12);
+        let t14 = rotor_e0 * rotor_e2;
+        let t15 = rotor_e1 * rotor_e3;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 - t17;
+        let t20 = rotor_e0 * rotor_e3;
+        let t21 = rotor_e1 * rotor_e2;
+        let t22 = t21 + t20;
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = t24 + t23;
+        let t26 = T::fused(rotor_e3, rotor_e3, -t10);
+        let t27 = rotor_e0 * rotor_e1;
+        let t28 = rotor_e2 * rotor_e3;
+        let t29 = t28 - t27;
+        let t30 = t15 + t14;
+        let t31 = T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t32 = T::fused(
+            t31,
+            T::fused(t30, t13, T::fused(t19, t26, t25 * t29)),
+            k(0.05) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+        );
+        let t33 = T::fused(rotor_e2, rotor_e2, -t10);
+        let t34 = t28 + t27;
+        let t35 = t21 - t20;
+        let t36 = T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t37 = T::fused(t36, T::fused(t35, t13, T::fused(t25, t33, t19 * t34)), -t32);
+        let t38 = T::fused(T::fused(t13, t11, T::fused(t19, t16, t25 * t22)), t9, t37);
+        let t39 = T::fused(outer_ring_e1, outer_ring_e1, -t4);
+        let t40 = outer_ring_e0 * outer_ring_e2;
+        let t41 = outer_ring_e1 * outer_ring_e3;
+        let t42 = t41 - t40;
+        let t43 = T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
+        let t44 = T::fused(inner_ring_e2, inner_ring_e2, -t12);
+        let t45 = inner_ring_e0 * inner_ring_e1;
+        let t46 = inner_ring_e2 * inner_ring_e3;
+        let t47 = t46 + t45;
+        let t48 = t24 - t23;
+        let t49 = T::fused(inner_ring_e3, inner_ring_e3, -t12);
+        let t50 = rotor_dsy + k(10.0);
+        let t51 = t46 - t45;
+        let t52 = t18 + t17;
+        let t53 = T::fused(
+            t52,
+            rotor_dsx,
+            T::fused(t51, t50, -T::fused(-rotor_dsz, t49, k(0.1) * inner_ring_dwy)),
+        );
+        let t54 = T::fused(t31, T::fused(t48, t30, T::fused(t47, t26, t29 * t44)), t53);
+        let t55 = T::fused(t36, T::fused(t48, t35, T::fused(t33, t44, t47 * t34)), -t54);
+        let t56 = T::fused(T::fused(t48, t11, T::fused(t22, t44, t47 * t16)), t9, t55);
+        let t57 = T::fused(
+            t44,
+            t50,
+            T::fused(
+                k(0.05),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                t47 * rotor_dsz,
+            ),
+        );
+        let t58 = T::fused(
+            t31,
+            T::fused(t52, t30, T::fused(t26, t49, t51 * t29)),
+            -T::fused(t48, rotor_dsx, t57),
+        );
+        let t59 = T::fused(t36, T::fused(t52, t35, T::fused(t34, t49, t51 * t33)), -t58);
+        let t60 = T::fused(T::fused(t52, t11, T::fused(t16, t49, t51 * t22)), t9, t59);
+        let t61 = T::fused(
+            T::fused(t52, t39, T::fused(t42, t49, t43 * t51)),
+            t60,
+            k(0.025) * outer_ring_dwx,
+        );
+        let t62 = T::fused(T::fused(t48, t39, T::fused(t43, t44, t42 * t47)), t56, t61);
+        let t63 = T::fused(T::fused(t39, t13, T::fused(t42, t19, t43 * t25)), t38, t62);
+        let t64 = T::fused(outer_ring_e3, outer_ring_e3, -t4);
+        let t65 = t7 - t6;
+        let t66 = t41 + t40;
+        let t67 = T::fused(
+            t39,
+            T::fused(-t2, t64, t5 * t65),
+            t66 * T::fused(-t5, t43, t2 * t42),
+        );
+        let t68 = k(1.0) / t67;
+        let t69 = T::fused(
+            -T::fused(t66, t52, T::fused(t64, t49, t65 * t51)),
+            t60,
+            k(0.0125) * T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+        );
+        let t70 = T::fused(-T::fused(t66, t48, T::fused(t47, t64, t65 * t44)), t56, t69);
+        let t71 = T::fused(-T::fused(t66, t13, T::fused(t19, t64, t65 * t25)), t38, t70);
+        let t72 = k(0.00010053096491487339)
+            * (T::fused(-(t39 * t68), t63, t66 * t68 * t71) * t8);
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            t72,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
-    type Solution = [T; 33];
     type Closure = [T; 0];
-    type Jacobian = [T; 49];
-    type InputJacobian = [T; 0];
     fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
         const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
             places: &[
@@ -3141,10 +3478,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
     fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
         gyro_sim::JointBuffers {
             rates: [T::constant(0.0); 3],
-            solution: [T::constant(0.0); 33],
             closure: [],
-            jacobian: [T::constant(0.0); 49],
-            input_jacobian: [T::constant(0.0); 0],
         }
     }
     fn joint_start(&self) -> Self::Joints {
@@ -3708,6 +4042,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedSolution for DrivenGyroscope<T> {
+    type Solution = [T; 33];
+    fn solution_buffer(&self) -> Self::Solution {
+        [T::constant(0.0); 33]
+    }
     /// Writes u̇ at a state that satisfies the constraints: 98 operations (35 ±, 62 ×, 1 ÷) and 5 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
@@ -3805,332 +4145,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
                 -T::fused(k(16.6631951676734), t25, outer_ring_wx * outer_ring_wy),
             ),
             T::fused(t8, t16, T::fused(-k(28.566327441528298), t4 * t21, t1)),
-        ];
-    }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 455 operations (184 ±, 266 ×, 5 ÷) and 4 functions.
-    fn corrected_accelerations(
-        &self,
-        t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-    ) {
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let t0 = k(2.0) * outer_ring_e0;
-        let t1 = outer_ring_e3 * t0;
-        let t2 = k(2.0) * outer_ring_e1;
-        let t3 = outer_ring_e2 * t2;
-        let t4 = k(12.566370614359172) * t;
-        let t5 = k(1.2566370614359172) * t4.cos();
-        let t6 = t5 * (t3 - t1);
-        let t7 = outer_ring_wy - t6;
-        let t8 = outer_ring_e2 * t0;
-        let t9 = outer_ring_e3 * t2;
-        let t10 = t9 + t8;
-        let t11 = t5 * t10;
-        let t12 = outer_ring_wz - t11;
-        let t13 = outer_ring_e1 * t0;
-        let t14 = k(2.0) * outer_ring_e2;
-        let t15 = outer_ring_e3 * t14;
-        let t16 = t4.sin();
-        let t17 = k(0.1) * t16;
-        let t18 = t17.cos();
-        let t19 = T::fused(-outer_ring_e0, t0, k(1.0));
-        let t20 = t17.sin();
-        let t21 = T::fused(
-            -t18,
-            t15 - t13,
-            t20 * T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t19),
-        );
-        let t22 = T::fused(-outer_ring_e1, t2, t19);
-        let t23 = t5 * t22;
-        let t24 = outer_ring_wx + t23;
-        let t25 = T::fused(t12, t12, t24 * t24)
-            / T::fused(-t18, T::fused(-outer_ring_e2, t14, t19), t20 * (t15 + t13));
-        let t26 = k(15.791367041742975) * t16;
-        let t27 = T::fused(-t26, t22, T::fused(-outer_ring_wz, t6, outer_ring_wy * t11))
-            - T::fused(-t12, t7, t25 * t21);
-        let t28 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t29 = k(2.0) * t28;
-        let t30 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t31 = t30 * t29;
-        let t32 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t33 = k(2.0) * t32;
-        let t34 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t35 = t34 * t33;
-        let t36 = t35 + t31;
-        let t37 = k(5e-6) * t36;
-        let t38 = t34 * t29;
-        let t39 = t30 * t33;
-        let t40 = t39 - t38;
-        let t41 = k(5e-6) * t40;
-        let t42 = t32 * t29;
-        let t43 = k(2.0) * t34;
-        let t44 = t30 * t43;
-        let t45 = t44 - t42;
-        let t46 = T::fused(-t28, t29, k(1.0));
-        let t47 = T::fused(-t30, k(2.0) * t30, t46);
-        let t48 = T::fused(-t45, t37, t47 * t41);
-        let t49 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t45, k(5e-6) * t45, t47 * (k(5e-6) * t47)));
-        let t50 = k(1.0) / t49;
-        let t51 = t50 * t48;
-        let t52 = T::fused(t48, t51, -(k(1e-6) + T::fused(t36, t37, t40 * t41)));
-        let t53 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t54 = k(2.0) * t53;
-        let t55 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t56 = t55 * t54;
-        let t57 = T::fused(
-            outer_ring_e2,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e3,
-                inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
-            ),
-        );
-        let t58 = k(2.0) * t57;
-        let t59 = T::fused(
-            -outer_ring_e1,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e0,
-                inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-            ),
-        );
-        let t60 = t59 * t58;
-        let t61 = t60 - t56;
-        let t62 = T::fused(-t34, t43, t46);
-        let t63 = t44 + t42;
-        let t64 = k(5e-6) * t62;
-        let t65 = k(5e-6) * t63;
-        let t66 = T::fused(t45, t64, t47 * t65);
-        let t67 = T::fused(t66, t51, -T::fused(-t62, t37, t63 * t41));
-        let t68 = k(2.0) * t59;
-        let t69 = T::fused(-t53, t54, k(1.0));
-        let t70 = T::fused(-t59, t68, t69);
-        let t71 = T::fused(-t61, t52, t70 * t67);
-        let t72 = T::fused(
-            t66,
-            t50 * t66,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t62, t64, t63 * t65))),
-        );
-        let t73 = T::fused(-t61, t67, t70 * t72);
-        let t74 = T::fused(-t32, t33, t46);
-        let t75 = T::fused(
-            inner_ring_wz,
-            t39 + t38,
-            T::fused(-inner_ring_wx, t74, inner_ring_wy * (t35 - t31)),
-        );
-        let t76 = rotor_wx - t75;
-        let t77 = T::fused(
-            inner_ring_wz,
-            t47,
-            -T::fused(inner_ring_wx, t40, inner_ring_wy * t63),
-        );
-        let t78 = rotor_wz + t77;
-        let t79 = T::fused(
-            inner_ring_wz,
-            t45,
-            -T::fused(-inner_ring_wx, t36, inner_ring_wy * t62),
-        );
-        let t80 = rotor_wy - t79;
-        let t81 = T::fused(t78, t78, t80 * t80) / t74;
-        let t82 = T::fused(rotor_wx, t77, rotor_wz * t75)
-            + T::fused(-t78, t76, t40 * t81);
-        let t83 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t82);
-        let t84 = T::fused(-rotor_wy, t75, rotor_wx * t79)
-            - T::fused(-t80, t76, t36 * t81);
-        let t85 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t84);
-        let t86 = k(2.0) * inner_ring_e0;
-        let t87 = inner_ring_e3 * t86;
-        let t88 = k(2.0) * inner_ring_e1;
-        let t89 = inner_ring_e2 * t88;
-        let t90 = t89 - t87;
-        let t91 = k(0.000125) * t90;
-        let t92 = T::fused(-inner_ring_e0, t86, k(1.0));
-        let t93 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t94 = inner_ring_wx * inner_ring_wy;
-        let t95 = inner_ring_e2 * t86;
-        let t96 = inner_ring_e3 * t88;
-        let t97 = t96 + t95;
-        let t98 = inner_ring_wx * inner_ring_wz;
-        let t99 = T::fused(
-            t98,
-            t97,
-            T::fused(t93, T::fused(-inner_ring_e1, t88, t92), t94 * t90),
-        );
-        let t100 = k(1e-5) * t99;
-        let t101 = k(2.0) * inner_ring_e2;
-        let t102 = T::fused(-inner_ring_e2, t101, t92);
-        let t103 = k(0.000125) * t102;
-        let t104 = inner_ring_e1 * t86;
-        let t105 = inner_ring_e3 * t101;
-        let t106 = t105 - t104;
-        let t107 = T::fused(t98, t106, -T::fused(t93, t89 + t87, t94 * t102));
-        let t108 = T::fused(k(1e-5), t107, k(0.8));
-        let t109 = t105 + t104;
-        let t110 = k(0.000125) * t109;
-        let t111 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t92);
-        let t112 = T::fused(t98, t111, -T::fused(-t93, t96 - t95, t94 * t109));
-        let t113 = k(1e-5) * t112;
-        let t114 = T::fused(t113, t110, T::fused(-t100, t91, t108 * t103))
-            - T::fused(t45, t83, t47 * t85);
-        let t115 = T::fused(k(1e-6), t94, -t114);
-        let t116 = t50 * t115;
-        let t117 = T::fused(
-            t48,
-            t116,
-            -T::fused(
-                k(1e-6),
-                inner_ring_wy * inner_ring_wz,
-                T::fused(-t36, t83, t40 * t85),
-            ),
-        );
-        let t118 = t59 * t54;
-        let t119 = t55 * t58;
-        let t120 = t57 * t54;
-        let t121 = t55 * t68;
-        let t122 = T::fused(-t55, k(2.0) * t55, t69);
-        let t123 = T::fused(
-            outer_ring_wz,
-            t122,
-            -T::fused(outer_ring_wx, t119 - t118, outer_ring_wy * (t121 + t120)),
-        );
-        let t124 = inner_ring_wz + t123;
-        let t125 = t60 + t56;
-        let t126 = t121 - t120;
-        let t127 = T::fused(
-            outer_ring_wz,
-            t126,
-            -T::fused(-outer_ring_wx, t125, outer_ring_wy * t70),
-        );
-        let t128 = inner_ring_wy - t127;
-        let t129 = T::fused(-t57, t58, t69);
-        let t130 = t119 + t118;
-        let t131 = T::fused(
-            outer_ring_wz,
-            t130,
-            T::fused(-outer_ring_wx, t129, outer_ring_wy * t61),
-        );
-        let t132 = inner_ring_wx - t131;
-        let t133 = T::fused(t128, t128, t132 * t132) / t122;
-        let t134 = T::fused(inner_ring_wz, t127, inner_ring_wy * t123)
-            - T::fused(-t128, t124, t126 * t133);
-        let t135 = T::fused(inner_ring_wx, t123, inner_ring_wz * t131)
-            - T::fused(-t132, t124, t130 * t133);
-        let t136 = k(0.000125) * t97;
-        let t137 = k(0.000125) * t106;
-        let t138 = k(0.000125) * t111;
-        let t139 = T::fused(t113, t138, T::fused(t100, t136, t108 * t137))
-            + T::fused(t62, t83, t63 * t85);
-        let t140 = T::fused(
-            -t61,
-            T::fused(-t52, t134, t67 * t135) + t117,
-            t70 * (T::fused(-t67, t134, t72 * t135) + T::fused(t66, t116, -t139)),
-        );
-        let t141 = T::fused(
-            -t61,
-            T::fused(-t129, t52, t125 * t67),
-            t70 * T::fused(-t129, t67, t125 * t72),
-        );
-        let t142 = T::fused(t24, t7, t25 * T::fused(t18, t3 + t1, t20 * (t9 - t8)));
-        let t143 = T::fused(t26, t10, T::fused(outer_ring_wy, t23, outer_ring_wx * t6))
-            - t142;
-        let t144 = T::fused(t27, t141, t143 * T::fused(t130, t71, t126 * t73))
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t140);
-        let t145 = t144 / (k(1e-6) - T::fused(-t61, t71, t70 * t73));
-        let t146 = t134 - T::fused(t130, t143, -T::fused(t129, t27, t61 * t145));
-        let t147 = t135 + T::fused(t126, t143, T::fused(t125, t27, t70 * t145));
-        let t148 = t50 * (t115 + T::fused(-t48, t146, t66 * t147));
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t27,
-            t145,
-            -t143,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t146,
-            -t147,
-            -t148,
-            T::fused(k(0.000125), t99, -T::fused(-t136, t147, t91 * t148)),
-            T::fused(k(0.000125), t107, T::fused(t137, t147, t103 * t148)),
-            -T::fused(k(0.000125), t112, T::fused(t138, t147, t110 * t148)),
-            k(0.0),
-            -(t82 + T::fused(t45, t148, -T::fused(t36, t146, t62 * t147))),
-            T::fused(t47, t148, -T::fused(-t40, t146, t63 * t147)) - t84,
         ];
     }
     /// Writes λ: 145 operations (59 ±, 86 ×, 0 ÷) and 3 functions.
@@ -4713,6 +4727,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             k(1e-5) * t163,
             -(k(5e-6) * t152),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn jacobian_buffers(&self) -> gyro_sim::JacobianBuffers<Self> {
+        gyro_sim::JacobianBuffers {
+            jacobian: [T::constant(0.0); 49],
+            input_jacobian: [T::constant(0.0); 0],
+        }
     }
     /// Writes ∂f/∂x and ∂f/∂t: 1403 operations (529 ±, 872 ×, 2 ÷) and 18 functions.
     fn joint_jacobian(

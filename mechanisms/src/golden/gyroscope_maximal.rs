@@ -35,6 +35,7 @@
 //! | to_joints | (x, u) of a maximal state | 82 | 79 | 0 | 161 | 0 of 6 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 23 | 1 | 40 | 0 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 59 | 80 | 1 | 140 | 12 of 24 |
+//! | corrected_derivative | ẏ but for the accelerations, there | 32 | 64 | 0 | 96 | 0 of 28 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 89 | 125 | 1 | 215 | 0 of 21 |
 //! | corrected_solution | both | 112 | 171 | 2 | 285 | 12 of 45 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 45 | 1 | 58 | 28 of 42 |
@@ -85,6 +86,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
     type State = [T; 52];
     type Rows = [T; 21];
     type Constraints = [T; 25];
+    type Velocities = [T; 24];
     type Readings = [T; 9];
     type Outputs = [T; 0];
     fn description(&self) -> &gyro_sim::Description<'_> {
@@ -204,6 +206,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         gyro_sim::Buffers {
             rows: [T::constant(0.0); 21],
             constraints: [T::constant(0.0); 25],
+            velocities: [T::constant(0.0); 24],
             readings: [T::constant(0.0); 9],
             outputs: [T::constant(0.0); 0],
         }
@@ -264,398 +267,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
         ]
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
-    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 24];
-        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let base_e0 = y[3];
-        let base_e1 = y[4];
-        let base_e2 = y[5];
-        let base_e3 = y[6];
-        let outer_ring_e0 = y[10];
-        let outer_ring_e1 = y[11];
-        let outer_ring_e2 = y[12];
-        let outer_ring_e3 = y[13];
-        let inner_ring_e0 = y[17];
-        let inner_ring_e1 = y[18];
-        let inner_ring_e2 = y[19];
-        let inner_ring_e3 = y[20];
-        let rotor_e0 = y[24];
-        let rotor_e1 = y[25];
-        let rotor_e2 = y[26];
-        let rotor_e3 = y[27];
-        let base_sx = y[28];
-        let base_sy = y[29];
-        let base_sz = y[30];
-        let outer_ring_sx = y[34];
-        let outer_ring_sy = y[35];
-        let outer_ring_sz = y[36];
-        let inner_ring_sx = y[40];
-        let inner_ring_sy = y[41];
-        let inner_ring_sz = y[42];
-        let rotor_sx = y[46];
-        let rotor_sy = y[47];
-        let rotor_sz = y[48];
-        let base_wx = y[31];
-        let base_wy = y[32];
-        let base_wz = y[33];
-        let outer_ring_wx = y[37];
-        let outer_ring_wy = y[38];
-        let outer_ring_wz = y[39];
-        let inner_ring_wx = y[43];
-        let inner_ring_wy = y[44];
-        let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
-        let rotor_wy = y[50];
-        let rotor_wz = y[51];
-        *dy = [
-            base_sx,
-            base_sy,
-            base_sz,
-            -(k(0.5)
-                * T::fused(
-                    base_e3,
-                    base_wz,
-                    T::fused(base_e2, base_wy, base_e1 * base_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    base_e2,
-                    base_wz,
-                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -base_e1,
-                    base_wz,
-                    T::fused(base_e0, base_wy, base_e3 * base_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -base_e0,
-                    base_wz,
-                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
-                )),
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    outer_ring_e3,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    outer_ring_e2,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e3,
-                        outer_ring_wy,
-                        outer_ring_e0 * outer_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -outer_ring_e1,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e1,
-                        outer_ring_wy,
-                        outer_ring_e2 * outer_ring_wx,
-                    ),
-                )),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    inner_ring_e3,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    inner_ring_e2,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e3,
-                        inner_ring_wy,
-                        inner_ring_e0 * inner_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -inner_ring_e1,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -inner_ring_e0,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e1,
-                        inner_ring_wy,
-                        inner_ring_e2 * inner_ring_wx,
-                    ),
-                )),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * T::fused(
-                    rotor_e3,
-                    rotor_wz,
-                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    rotor_e2,
-                    rotor_wz,
-                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -rotor_e1,
-                    rotor_wz,
-                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -rotor_e0,
-                    rotor_wz,
-                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
-                )),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            accelerations[18],
-            accelerations[19],
-            accelerations[20],
-            accelerations[21],
-            accelerations[22],
-            accelerations[23],
-        ];
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 24];
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let base_e0 = y[3];
-        let base_e1 = y[4];
-        let base_e2 = y[5];
-        let base_e3 = y[6];
-        let outer_ring_e0 = y[10];
-        let outer_ring_e1 = y[11];
-        let outer_ring_e2 = y[12];
-        let outer_ring_e3 = y[13];
-        let inner_ring_e0 = y[17];
-        let inner_ring_e1 = y[18];
-        let inner_ring_e2 = y[19];
-        let inner_ring_e3 = y[20];
-        let rotor_e0 = y[24];
-        let rotor_e1 = y[25];
-        let rotor_e2 = y[26];
-        let rotor_e3 = y[27];
-        let base_sx = y[28];
-        let base_sy = y[29];
-        let base_sz = y[30];
-        let outer_ring_sx = y[34];
-        let outer_ring_sy = y[35];
-        let outer_ring_sz = y[36];
-        let inner_ring_sx = y[40];
-        let inner_ring_sy = y[41];
-        let inner_ring_sz = y[42];
-        let rotor_sx = y[46];
-        let rotor_sy = y[47];
-        let rotor_sz = y[48];
-        let base_wx = y[31];
-        let base_wy = y[32];
-        let base_wz = y[33];
-        let outer_ring_wx = y[37];
-        let outer_ring_wy = y[38];
-        let outer_ring_wz = y[39];
-        let inner_ring_wx = y[43];
-        let inner_ring_wy = y[44];
-        let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
-        let rotor_wy = y[50];
-        let rotor_wz = y[51];
-        *dy = [
-            base_sx,
-            base_sy,
-            base_sz,
-            -(k(0.5)
-                * T::fused(
-                    base_e3,
-                    base_wz,
-                    T::fused(base_e2, base_wy, base_e1 * base_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    base_e2,
-                    base_wz,
-                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -base_e1,
-                    base_wz,
-                    T::fused(base_e0, base_wy, base_e3 * base_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -base_e0,
-                    base_wz,
-                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
-                )),
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    outer_ring_e3,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    outer_ring_e2,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e3,
-                        outer_ring_wy,
-                        outer_ring_e0 * outer_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -outer_ring_e1,
-                    outer_ring_wz,
-                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_wz,
-                    T::fused(
-                        -outer_ring_e1,
-                        outer_ring_wy,
-                        outer_ring_e2 * outer_ring_wx,
-                    ),
-                )),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * T::fused(
-                    inner_ring_e3,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    inner_ring_e2,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e3,
-                        inner_ring_wy,
-                        inner_ring_e0 * inner_ring_wx,
-                    ),
-                ),
-            k(0.5)
-                * T::fused(
-                    -inner_ring_e1,
-                    inner_ring_wz,
-                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -inner_ring_e0,
-                    inner_ring_wz,
-                    T::fused(
-                        -inner_ring_e1,
-                        inner_ring_wy,
-                        inner_ring_e2 * inner_ring_wx,
-                    ),
-                )),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * T::fused(
-                    rotor_e3,
-                    rotor_wz,
-                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
-                )),
-            k(0.5)
-                * T::fused(
-                    rotor_e2,
-                    rotor_wz,
-                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
-                ),
-            k(0.5)
-                * T::fused(
-                    -rotor_e1,
-                    rotor_wz,
-                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
-                ),
-            -(k(0.5)
-                * T::fused(
-                    -rotor_e0,
-                    rotor_wz,
-                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
-                )),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            accelerations[18],
-            accelerations[19],
-            accelerations[20],
-            accelerations[21],
-            accelerations[22],
-            accelerations[23],
-        ];
     }
     /// Writes Φ: 133 operations (68 ±, 65 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
@@ -985,6 +596,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             ),
             -(k(4.0) * T::fused(inner_ring_wz, t73, -t72)),
             k(4.0) * T::fused(inner_ring_wy, t73, t75),
+        ];
+    }
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
+    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
+        let k = T::constant;
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
+        *out = [
+            k(0.0),
+            k(-0.01),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(-0.1),
+            k(0.0),
+            k(0.0),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
+            k(0.0),
+            k(-0.1),
+            k(0.0),
+            inner_ring_wz * t1,
+            k(0.0),
+            -(inner_ring_wx * t1),
+            k(0.0),
+            k(-0.8),
+            k(0.0),
+            k(0.0),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
     /// Kinetic and potential energy: 64 operations (26 ±, 38 ×, 0 ÷).
@@ -1729,18 +1382,13 @@ impl<T: gyro_sim::Lanes> gyro_sim::Partition for GyroscopeMaximal<T> {
         Ok(())
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
-    type Velocities = [T; 24];
+impl<T: gyro_sim::Scalar> gyro_sim::Kinematics for GyroscopeMaximal<T> {
     type PhiQ = [T; 98];
     type PhiPi = [T; 60];
-    /// (s̈, ẇ') of each body.
-    type Accelerations = [T; 24];
     fn terms(&self) -> gyro_sim::Terms<Self> {
         gyro_sim::Terms {
-            velocities: [T::constant(0.0); 24],
             phi_q: [T::constant(0.0); 98],
             phi_pi: [T::constant(0.0); 60],
-            accelerations: [T::constant(0.0); 24],
         }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
@@ -2561,47 +2209,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -t120,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
-    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
-        let k = T::constant;
-        let outer_ring_wx = y[37];
-        let outer_ring_wy = y[38];
-        let outer_ring_wz = y[39];
-        let inner_ring_wx = y[43];
-        let inner_ring_wy = y[44];
-        let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
-        let rotor_wy = y[50];
-        let rotor_wz = y[51];
-        let t0 = k(1e-6) * outer_ring_wx;
-        let t1 = k(1e-6) * inner_ring_wy;
-        let t2 = k(5e-6) * rotor_wx;
-        *out = [
-            k(0.0),
-            k(-0.01),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(-0.1),
-            k(0.0),
-            k(0.0),
-            -(outer_ring_wz * t0),
-            outer_ring_wy * t0,
-            k(0.0),
-            k(-0.1),
-            k(0.0),
-            inner_ring_wz * t1,
-            k(0.0),
-            -(inner_ring_wx * t1),
-            k(0.0),
-            k(-0.8),
-            k(0.0),
-            k(0.0),
-            -(rotor_wz * t2),
-            rotor_wy * t2,
-        ];
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Dynamics for GyroscopeMaximal<T> {
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 24];
+    fn acceleration_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 24]
     }
     /// Solves eq. (17): 577 operations (232 ±, 339 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
@@ -3309,6 +2922,204 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -(k(1.25e-6) * T::fused(-t29, t55 * t118, t34 * (t56 * t118))),
         ];
     }
+    /// Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 24];
+        gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_sx = y[28];
+        let base_sy = y[29];
+        let base_sz = y[30];
+        let outer_ring_sx = y[34];
+        let outer_ring_sy = y[35];
+        let outer_ring_sz = y[36];
+        let inner_ring_sx = y[40];
+        let inner_ring_sy = y[41];
+        let inner_ring_sz = y[42];
+        let rotor_sx = y[46];
+        let rotor_sy = y[47];
+        let rotor_sz = y[48];
+        let base_wx = y[31];
+        let base_wy = y[32];
+        let base_wz = y[33];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        *dy = [
+            base_sx,
+            base_sy,
+            base_sz,
+            -(k(0.5)
+                * T::fused(
+                    base_e3,
+                    base_wz,
+                    T::fused(base_e2, base_wy, base_e1 * base_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    base_e2,
+                    base_wz,
+                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -base_e1,
+                    base_wz,
+                    T::fused(base_e0, base_wy, base_e3 * base_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -base_e0,
+                    base_wz,
+                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
+                )),
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMaximal<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 460 operations (184 ±, 270 ×, 6 ÷).
     fn project(
         &self,
@@ -3596,13 +3407,359 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedDynamics for GyroscopeMaximal<T> {
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 140 operations (59 ±, 80 ×, 1 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_wy = y[32];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        let t0 = base_wy - outer_ring_wy;
+        let t1 = outer_ring_wz * t0;
+        let t2 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t3 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t4 = (t3 + t2) * (t3 - t2);
+        let t5 = t3 * t2;
+        let t6 = t0 * t5;
+        let t7 = inner_ring_wx - rotor_wx;
+        let t8 = outer_ring_wz - inner_ring_wz;
+        let t9 = t8 * t4;
+        let t10 = t9 * T::fused(k(0.4005), t6, t7)
+            / T::fused(t4, t4, k(0.333263903353468));
+        let t11 = outer_ring_wx * t0;
+        let t12 = k(3.3326390335346803) * (t5 * t10);
+        let t13 = T::fused(t4, t1, -T::fused(inner_ring_wy, t8, -t12));
+        let t14 = k(1.6663195167673401) * t4;
+        let t15 = T::fused(-t10, t14, T::fused(k(2.0), t5 * t1, inner_ring_wx * t8));
+        let t16 = T::fused(
+            T::fused(-t0, T::fused(-k(0.79975), t6, t7), k(10.0)),
+            t14,
+            t11,
+        );
+        let t17 = inner_ring_e0 * inner_ring_e2;
+        let t18 = inner_ring_e1 * inner_ring_e3;
+        let t19 = t18 + t17;
+        let t20 = inner_ring_e0 * inner_ring_e3;
+        let t21 = inner_ring_e1 * inner_ring_e2;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_wx * inner_ring_wz;
+        let t24 = inner_ring_wx * inner_ring_wy;
+        let t25 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t26 = inner_ring_e0 * inner_ring_e0;
+        let t27 = T::fused(
+            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t26),
+            t25,
+            T::fused(t19, t23, t22 * t24),
+        );
+        let t28 = inner_ring_e0 * inner_ring_e1;
+        let t29 = inner_ring_e2 * inner_ring_e3;
+        let t30 = t29 - t28;
+        let t31 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t26);
+        let t32 = T::fused(
+            -t31,
+            t16,
+            T::fused(t21 + t20, t25, T::fused(-t30, t23, t31 * t24)),
+        );
+        let t33 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t26);
+        let t34 = t29 + t28;
+        let t35 = T::fused(
+            t34,
+            t16,
+            T::fused(t18 - t17, t25, -T::fused(-t33, t23, t34 * t24)),
+        );
+        let t36 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t37 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t38 = k(2.0) * (t37 * t36);
+        let t39 = (t37 + t36) * (t37 - t36);
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            -(k(1.6663195167673401) * t10),
+            -t11,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t13,
+            t15,
+            -t16,
+            k(0.00025) * T::fused(-t19, t15, T::fused(-t22, t16, t27)),
+            -(k(0.00025) * T::fused(t30, t15, t32)),
+            -(k(0.00025) * T::fused(-t33, t15, t35)),
+            t13 - T::fused(t0, t9, t12),
+            T::fused(t39, t15, -T::fused(-t16, t38, rotor_wz * t7)),
+            T::fused(t15, t38, T::fused(-t39, t16, rotor_wy * t7)),
+        ];
+    }
+    /// Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 24];
+        gyro_sim::CorrectedDynamics::corrected_accelerations(
+            self,
+            t,
+            y,
+            &mut accelerations,
+        );
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_sx = y[28];
+        let base_sy = y[29];
+        let base_sz = y[30];
+        let outer_ring_sx = y[34];
+        let outer_ring_sy = y[35];
+        let outer_ring_sz = y[36];
+        let inner_ring_sx = y[40];
+        let inner_ring_sy = y[41];
+        let inner_ring_sz = y[42];
+        let rotor_sx = y[46];
+        let rotor_sy = y[47];
+        let rotor_sz = y[48];
+        let base_wx = y[31];
+        let base_wy = y[32];
+        let base_wz = y[33];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        *dy = [
+            base_sx,
+            base_sy,
+            base_sz,
+            -(k(0.5)
+                * T::fused(
+                    base_e3,
+                    base_wz,
+                    T::fused(base_e2, base_wy, base_e1 * base_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    base_e2,
+                    base_wz,
+                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -base_e1,
+                    base_wz,
+                    T::fused(base_e0, base_wy, base_e3 * base_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -base_e0,
+                    base_wz,
+                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
+                )),
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
-    type Solution = [T; 45];
     type Closure = [T; 0];
-    type Jacobian = [T; 36];
-    type InputJacobian = [T; 0];
     fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
         const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
             places: &[
@@ -3626,10 +3783,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
         gyro_sim::JointBuffers {
             rates: [T::constant(0.0); 3],
-            solution: [T::constant(0.0); 45],
             closure: [],
-            jacobian: [T::constant(0.0); 36],
-            input_jacobian: [T::constant(0.0); 0],
         }
     }
     fn joint_start(&self) -> Self::Joints {
@@ -3872,6 +4026,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedSolution for GyroscopeMaximal<T> {
+    type Solution = [T; 45];
+    fn solution_buffer(&self) -> Self::Solution {
+        [T::constant(0.0); 45]
+    }
     /// Writes u̇ at a state that satisfies the constraints: 40 operations (16 ±, 23 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
@@ -3920,152 +4080,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -(k(1.6663195167673401)
                 * (t2 * T::fused(-t4, T::fused(-k(0.79975), t5, t6), k(10.0)))),
             -T::fused(k(3.3326390335346803), t3 * t8, t4 * t7),
-        ];
-    }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 140 operations (59 ±, 80 ×, 1 ÷).
-    fn corrected_accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-    ) {
-        let k = T::constant;
-        let outer_ring_e0 = y[10];
-        let outer_ring_e1 = y[11];
-        let outer_ring_e2 = y[12];
-        let outer_ring_e3 = y[13];
-        let inner_ring_e0 = y[17];
-        let inner_ring_e1 = y[18];
-        let inner_ring_e2 = y[19];
-        let inner_ring_e3 = y[20];
-        let rotor_e0 = y[24];
-        let rotor_e1 = y[25];
-        let rotor_e2 = y[26];
-        let rotor_e3 = y[27];
-        let base_wy = y[32];
-        let outer_ring_wx = y[37];
-        let outer_ring_wy = y[38];
-        let outer_ring_wz = y[39];
-        let inner_ring_wx = y[43];
-        let inner_ring_wy = y[44];
-        let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
-        let rotor_wy = y[50];
-        let rotor_wz = y[51];
-        let t0 = base_wy - outer_ring_wy;
-        let t1 = outer_ring_wz * t0;
-        let t2 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t3 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t4 = (t3 + t2) * (t3 - t2);
-        let t5 = t3 * t2;
-        let t6 = t0 * t5;
-        let t7 = inner_ring_wx - rotor_wx;
-        let t8 = outer_ring_wz - inner_ring_wz;
-        let t9 = t8 * t4;
-        let t10 = t9 * T::fused(k(0.4005), t6, t7)
-            / T::fused(t4, t4, k(0.333263903353468));
-        let t11 = outer_ring_wx * t0;
-        let t12 = k(3.3326390335346803) * (t5 * t10);
-        let t13 = T::fused(t4, t1, -T::fused(inner_ring_wy, t8, -t12));
-        let t14 = k(1.6663195167673401) * t4;
-        let t15 = T::fused(-t10, t14, T::fused(k(2.0), t5 * t1, inner_ring_wx * t8));
-        let t16 = T::fused(
-            T::fused(-t0, T::fused(-k(0.79975), t6, t7), k(10.0)),
-            t14,
-            t11,
-        );
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = t18 + t17;
-        let t20 = inner_ring_e0 * inner_ring_e3;
-        let t21 = inner_ring_e1 * inner_ring_e2;
-        let t22 = t21 - t20;
-        let t23 = inner_ring_wx * inner_ring_wz;
-        let t24 = inner_ring_wx * inner_ring_wy;
-        let t25 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t26 = inner_ring_e0 * inner_ring_e0;
-        let t27 = T::fused(
-            k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t26),
-            t25,
-            T::fused(t19, t23, t22 * t24),
-        );
-        let t28 = inner_ring_e0 * inner_ring_e1;
-        let t29 = inner_ring_e2 * inner_ring_e3;
-        let t30 = t29 - t28;
-        let t31 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t26);
-        let t32 = T::fused(
-            -t31,
-            t16,
-            T::fused(t21 + t20, t25, T::fused(-t30, t23, t31 * t24)),
-        );
-        let t33 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t26);
-        let t34 = t29 + t28;
-        let t35 = T::fused(
-            t34,
-            t16,
-            T::fused(t18 - t17, t25, -T::fused(-t33, t23, t34 * t24)),
-        );
-        let t36 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t37 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t38 = k(2.0) * (t37 * t36);
-        let t39 = (t37 + t36) * (t37 - t36);
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t1,
-            -(k(1.6663195167673401) * t10),
-            -t11,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t13,
-            t15,
-            -t16,
-            k(0.00025) * T::fused(-t19, t15, T::fused(-t22, t16, t27)),
-            -(k(0.00025) * T::fused(t30, t15, t32)),
-            -(k(0.00025) * T::fused(-t33, t15, t35)),
-            t13 - T::fused(t0, t9, t12),
-            T::fused(t39, t15, -T::fused(-t16, t38, rotor_wz * t7)),
-            T::fused(t15, t38, T::fused(-t39, t16, rotor_wy * t7)),
         ];
     }
     /// Writes λ: 215 operations (89 ±, 125 ×, 1 ÷).
@@ -4542,6 +4556,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             t61,
             t67,
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn jacobian_buffers(&self) -> gyro_sim::JacobianBuffers<Self> {
+        gyro_sim::JacobianBuffers {
+            jacobian: [T::constant(0.0); 36],
+            input_jacobian: [T::constant(0.0); 0],
+        }
     }
     /// Writes ∂f/∂x and ∂f/∂t: 58 operations (12 ±, 45 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(

@@ -36,6 +36,7 @@
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 30 | 0 | 53 | 1 of 6 |
+//! | corrected_derivative | ẏ but for the accelerations, there | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
 //! | corrected_solution | both | 24 | 33 | 0 | 57 | 1 of 9 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 14 | 0 | 14 | 20 of 56 |
@@ -86,6 +87,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
     type State = [T; 13];
     type Rows = [T; 3];
     type Constraints = [T; 4];
+    type Velocities = [T; 6];
     type Readings = [T; 7];
     type Outputs = [T; 0];
     fn description(&self) -> &gyro_sim::Description<'_> {
@@ -125,6 +127,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         gyro_sim::Buffers {
             rows: [T::constant(0.0); 3],
             constraints: [T::constant(0.0); 4],
+            velocities: [T::constant(0.0); 6],
             readings: [T::constant(0.0); 7],
             outputs: [T::constant(0.0); 0],
         }
@@ -146,76 +149,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
             k(1.1982587525585533),
             k(200.0),
         ]
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::Equations::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 6];
-        gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_sx = y[7];
-        let top_sy = y[8];
-        let top_sz = y[9];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        *dy = [
-            top_sx,
-            top_sy,
-            top_sz,
-            -(k(0.5)
-                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
-            k(0.5)
-                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
-            k(0.5)
-                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
-            -(k(0.5)
-                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
-    }
-    /// Writes ẏ; beyond what [`gyro_sim::JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = [T::constant(0.0); 6];
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_sx = y[7];
-        let top_sy = y[8];
-        let top_sz = y[9];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        *dy = [
-            top_sx,
-            top_sy,
-            top_sz,
-            -(k(0.5)
-                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
-            k(0.5)
-                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
-            k(0.5)
-                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
-            -(k(0.5)
-                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
     }
     /// Writes Φ: 21 operations (10 ±, 11 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
@@ -266,6 +199,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
             T::fused(-top_e0, top_e2, top_e1 * top_e3) * top_wy,
         );
         *out = [t3, t4, T::fused(-k(0.08), t5, top_sz)];
+    }
+    /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
+    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
+        let k = T::constant;
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = k(0.0002) * top_wz;
+        *out = [k(0.0), k(0.0), k(-4.905), -(top_wy * t0), top_wx * t0, k(0.0)];
     }
     /// Kinetic and potential energy: 15 operations (5 ±, 10 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -410,18 +352,13 @@ impl<T: gyro_sim::Lanes> gyro_sim::Partition for HeavyTop<T> {
         Ok(())
     }
 }
-impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
-    type Velocities = [T; 6];
+impl<T: gyro_sim::Scalar> gyro_sim::Kinematics for HeavyTop<T> {
     type PhiQ = [T; 17];
     type PhiPi = [T; 9];
-    /// (s̈, ẇ') of each body.
-    type Accelerations = [T; 6];
     fn terms(&self) -> gyro_sim::Terms<Self> {
         gyro_sim::Terms {
-            velocities: [T::constant(0.0); 6],
             phi_q: [T::constant(0.0); 17],
             phi_pi: [T::constant(0.0); 9],
-            accelerations: [T::constant(0.0); 6],
         }
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
@@ -543,14 +480,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         );
         *out = [k(0.08) * t8, k(0.08) * t11, k(0.08) * t12];
     }
-    /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
-    fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
-        let k = T::constant;
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        let t0 = k(0.0002) * top_wz;
-        *out = [k(0.0), k(0.0), k(-4.905), -(top_wy * t0), top_wx * t0, k(0.0)];
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Dynamics for HeavyTop<T> {
+    /// (s̈, ẇ') of each body.
+    type Accelerations = [T; 6];
+    fn acceleration_buffer(&self) -> Self::Accelerations {
+        [T::constant(0.0); 6]
     }
     /// Solves eq. (17): 78 operations (31 ±, 47 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
@@ -627,6 +562,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
             -T::fused(k(0.5), top_dsz, k(4.905)),
         ];
     }
+    /// Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 6];
+        gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for HeavyTop<T> {
     /// Solves eq. (17) without forces, the changes of the rows for γ: 58 operations (24 ±, 34 ×, 0 ÷).
     fn project(
         &self,
@@ -673,13 +645,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedDynamics for HeavyTop<T> {
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 53 operations (23 ±, 30 ×, 0 ÷).
+    fn corrected_accelerations(
+        &self,
+        _t: T,
+        y: &Self::State,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        let t0 = top_e0 * top_e1;
+        let t1 = top_e2 * top_e3;
+        let t2 = t1 + t0;
+        let t3 = top_wy * top_wz;
+        let t4 = k(0.5454545454545454) * T::fused(k(654.0), t2, t3);
+        let t5 = t3 - t4;
+        let t6 = top_e0 * top_e3;
+        let t7 = top_e1 * top_e2;
+        let t8 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t9 = top_e0 * top_e2;
+        let t10 = top_e1 * top_e3;
+        let t11 = t10 - t9;
+        let t12 = top_wx * top_wz;
+        let t13 = k(0.5454545454545454) * T::fused(k(654.0), t11, t12);
+        let t14 = t12 - t13;
+        let t15 = top_e0 * top_e0;
+        let t16 = T::fused(
+            k(0.5) - T::fused(top_e1, top_e1, t15),
+            t14,
+            T::fused(-(t7 - t6), t5, (t10 + t9) * t8),
+        );
+        let t17 = T::fused(k(0.5) - T::fused(top_e2, top_e2, t15), t5, (t1 - t0) * t8);
+        let t18 = T::fused(
+            t11,
+            t14,
+            T::fused(t2, t5, (k(0.5) - T::fused(top_e3, top_e3, t15)) * t8),
+        );
+        *out = [
+            -(k(0.08) * t16),
+            k(0.08) * T::fused(t7 + t6, t14, -t17),
+            k(0.08) * t18,
+            t4,
+            -t13,
+            k(0.0),
+        ];
+    }
+    /// Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = [T::constant(0.0); 6];
+        gyro_sim::CorrectedDynamics::corrected_accelerations(
+            self,
+            t,
+            y,
+            &mut accelerations,
+        );
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
-    type Solution = [T; 9];
     type Closure = [T; 0];
-    type Jacobian = [T; 49];
-    type InputJacobian = [T; 0];
     fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
         const LAYOUT: gyro_sim::JointLayout<'static> = gyro_sim::JointLayout {
             places: &[
@@ -694,10 +756,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
     fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
         gyro_sim::JointBuffers {
             rates: [T::constant(0.0); 3],
-            solution: [T::constant(0.0); 9],
             closure: [],
-            jacobian: [T::constant(0.0); 49],
-            input_jacobian: [T::constant(0.0); 0],
         }
     }
     fn joint_start(&self) -> Self::Joints {
@@ -803,6 +862,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         x[5] = top_wy;
         x[6] = top_wz;
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::CorrectedSolution for HeavyTop<T> {
+    type Solution = [T; 9];
+    fn solution_buffer(&self) -> Self::Solution {
+        [T::constant(0.0); 9]
+    }
     /// Writes u̇ at a state that satisfies the constraints: 13 operations (4 ±, 9 ×, 0 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
@@ -825,57 +890,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
                 T::fused(-top_e0, top_e2, top_e1 * top_e3),
                 top_wx * t0,
             ),
-            k(0.0),
-        ];
-    }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 53 operations (23 ±, 30 ×, 0 ÷).
-    fn corrected_accelerations(
-        &self,
-        _t: T,
-        y: &Self::State,
-        out: &mut Self::Velocities,
-    ) {
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        let t0 = top_e0 * top_e1;
-        let t1 = top_e2 * top_e3;
-        let t2 = t1 + t0;
-        let t3 = top_wy * top_wz;
-        let t4 = k(0.5454545454545454) * T::fused(k(654.0), t2, t3);
-        let t5 = t3 - t4;
-        let t6 = top_e0 * top_e3;
-        let t7 = top_e1 * top_e2;
-        let t8 = T::fused(top_wx, top_wx, top_wy * top_wy);
-        let t9 = top_e0 * top_e2;
-        let t10 = top_e1 * top_e3;
-        let t11 = t10 - t9;
-        let t12 = top_wx * top_wz;
-        let t13 = k(0.5454545454545454) * T::fused(k(654.0), t11, t12);
-        let t14 = t12 - t13;
-        let t15 = top_e0 * top_e0;
-        let t16 = T::fused(
-            k(0.5) - T::fused(top_e1, top_e1, t15),
-            t14,
-            T::fused(-(t7 - t6), t5, (t10 + t9) * t8),
-        );
-        let t17 = T::fused(k(0.5) - T::fused(top_e2, top_e2, t15), t5, (t1 - t0) * t8);
-        let t18 = T::fused(
-            t11,
-            t14,
-            T::fused(t2, t5, (k(0.5) - T::fused(top_e3, top_e3, t15)) * t8),
-        );
-        *out = [
-            -(k(0.08) * t16),
-            k(0.08) * T::fused(t7 + t6, t14, -t17),
-            k(0.08) * t18,
-            t4,
-            -t13,
             k(0.0),
         ];
     }
@@ -946,6 +960,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             -(k(0.04) * t18),
             -(k(0.04) * (k(122.625) + t19)),
         ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn jacobian_buffers(&self) -> gyro_sim::JacobianBuffers<Self> {
+        gyro_sim::JacobianBuffers {
+            jacobian: [T::constant(0.0); 49],
+            input_jacobian: [T::constant(0.0); 0],
+        }
     }
     /// Writes ∂f/∂x and ∂f/∂t: 14 operations (0 ±, 14 ×, 0 ÷).
     fn joint_jacobian(

@@ -1,6 +1,6 @@
 //! What can be begun with which mechanism: the more it implements, the more there is.
 
-use super::contract::{COLUMNS, Linear, Motion, MotionBuilder, OperatingPoint, in_f64};
+use super::contract::{COLUMNS, Linear, Maximal, Motion, MotionBuilder, OperatingPoint, in_f64};
 use super::correction::{Boxed, keeping, partitioning};
 use super::independent::Closing;
 use super::lens::{Slopes, joint_duals, joints};
@@ -11,10 +11,9 @@ use crate::failure::describe_in;
 use crate::offers::Offers;
 use crate::pivots;
 use gyro_sim::{
-    Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, Dual, Equations, Exact, Joint, JointLayout,
-    JointSpace, Mechanism, Ode, Partition, Real, Rodas4, Scalar, Watched,
+    Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact,
+    Jacobian, Joint, JointJacobian, JointLayout, JointSpace, Partition, Real, Rodas4, Scalar, Watched,
 };
-use std::fmt::Debug;
 
 /// For whatever can be partitioned.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +35,10 @@ pub struct Tree<D>(pub D);
 #[derive(Clone, Copy, Debug)]
 pub struct TreeWithJacobian<D>(pub D);
 
-impl<M: Partition<Scalar: Real> + 'static> MotionBuilder<M> for Any {
+impl<M> MotionBuilder<M> for Any
+where
+    M: Partition<Scalar: Real> + Dynamics + CorrectedDynamics + 'static,
+{
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         only_explicit(approach)?;
@@ -54,7 +56,7 @@ impl<M: Partition<Scalar: Real> + 'static> MotionBuilder<M> for Any {
     }
 }
 
-impl<M: Partition<Scalar: Real> + Equations + 'static> MotionBuilder<M> for Projecting {
+impl<M: Maximal + 'static> MotionBuilder<M> for Projecting {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         only_explicit(approach)?;
@@ -66,10 +68,6 @@ impl<M: Partition<Scalar: Real> + Equations + 'static> MotionBuilder<M> for Proj
         Offers { joint_space: false, derivatives: false, ..Offers::ALL }
     }
 
-    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
-        work_scale(mechanism, t, y)
-    }
-
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
         Some(pivots::smallest(mechanism, t, y))
     }
@@ -77,8 +75,8 @@ impl<M: Partition<Scalar: Real> + Equations + 'static> MotionBuilder<M> for Proj
 
 impl<M, D> MotionBuilder<M> for WithDuals<D>
 where
-    M: Partition<Scalar: Real> + Equations + 'static,
-    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+    M: Maximal + 'static,
+    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
@@ -93,10 +91,6 @@ where
         Offers { joint_space: false, ..Offers::ALL }
     }
 
-    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
-        work_scale(mechanism, t, y)
-    }
-
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
         Some(pivots::smallest(mechanism, t, y))
     }
@@ -104,8 +98,8 @@ where
 
 impl<M, D> MotionBuilder<M> for Tree<D>
 where
-    M: Partition<Scalar: Real> + JointSpace + 'static,
-    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+    M: Maximal + JointSpace + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Dynamics + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -121,10 +115,6 @@ where
 
     fn offers(&self) -> Offers {
         Offers::ALL
-    }
-
-    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
-        work_scale(mechanism, t, y)
     }
 
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
@@ -153,12 +143,8 @@ where
 
 impl<M, D> MotionBuilder<M> for TreeWithJacobian<D>
 where
-    M: Partition<Scalar: Real>
-        + JointSpace<
-            Jacobian: AsRef<[M::Scalar]> + AsMut<[M::Scalar]> + Debug,
-            InputJacobian: AsRef<[M::Scalar]>,
-        > + 'static,
-    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+    M: Maximal + JointJacobian + 'static,
+    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>> + Dynamics + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -166,7 +152,7 @@ where
         }
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         if approach.integrator == Integrator::Rodas4 {
-            let method = Rodas4::new(&x, mechanism.joint_buffers().jacobian);
+            let method = Rodas4::new(&x, mechanism.jacobian_buffers().jacobian);
             return Ok(adaptive(Joint, method, closing, &approach, &x));
         }
         Ok(explicit(Joint, closing, &approach, &x))
@@ -174,10 +160,6 @@ where
 
     fn offers(&self) -> Offers {
         Offers::ALL
-    }
-
-    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
-        work_scale(mechanism, t, y)
     }
 
     fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
@@ -190,7 +172,7 @@ where
 
     fn linearise(&self, mechanism: &M, at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
         linearised(mechanism, &self.0, at, |_, t, x| {
-            let (mut by_time, buffers) = (x.clone(), mechanism.joint_buffers());
+            let (mut by_time, buffers) = (x.clone(), mechanism.jacobian_buffers());
             let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
             mechanism.joint_jacobian(t, x, &mut by_state, &mut by_time);
             mechanism.joint_input_jacobian(t, x, &mut by_inputs);
@@ -232,18 +214,6 @@ fn only_explicit(approach: &Approach) -> Result<(), String> {
     Ok(())
 }
 
-/// The work of all applied forces over the mechanism's size and of all moments over a radian, J.
-pub(super) fn work_scale<M: Equations<Scalar: Real>>(mechanism: &M, t: f64, y: &M::State) -> f64 {
-    let mut forces = mechanism.terms().velocities;
-    mechanism.applied_force(Scalar::constant(t), y, &mut forces);
-    let size = mechanism.size().to_f64();
-    let work = |(k, force): (usize, &M::Scalar)| {
-        let force = force.abs().to_f64();
-        if k % 6 < 3 { force * size } else { force }
-    };
-    forces.as_ref().iter().enumerate().map(work).sum()
-}
-
 fn square<T>(state: &[T]) -> usize {
     state.len() * state.len()
 }
@@ -256,8 +226,8 @@ fn in_maximal<M, D>(
     y: &M::State,
 ) -> Result<Box<dyn Motion<M>>, String>
 where
-    M: Partition<Scalar: Real> + JointSpace + 'static,
-    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+    M: Maximal + JointSpace + 'static,
+    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     let correction = match approach.correction {
         Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
@@ -272,7 +242,7 @@ where
 /// Explicit methods in maximal coordinates.
 fn maximal<M>(approach: &Approach, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
 where
-    M: Partition<Scalar: Real> + Equations + 'static,
+    M: Maximal + 'static,
 {
     let slopes = match approach.correction {
         // The projection is as good as it is only with accelerations that are exact off the constraints.
@@ -286,8 +256,8 @@ where
 /// Rodas in maximal coordinates.
 fn implicit<M, D>(approach: &Approach, duals: D, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
 where
-    M: Partition<Scalar: Real> + 'static,
-    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>> + 'static,
+    M: Partition<Scalar: Real> + Dynamics + 'static,
+    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + 'static,
 {
     let method = Rodas4::new(y, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
     let start = duals.start();

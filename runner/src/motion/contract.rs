@@ -3,7 +3,10 @@
 use crate::approach::Approach;
 use crate::input::Input;
 use crate::offers::Offers;
-use gyro_sim::{Error, JointLayout, JointPlace, Mechanism, Partition, Real, Statistics};
+use gyro_sim::{
+    CorrectedDynamics, Dynamics, Error, JointLayout, JointPlace, Kinematics, Mechanism, Partition,
+    Projection, Real, Statistics,
+};
 use std::fmt::Debug;
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
@@ -49,11 +52,6 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     fn offers(&self) -> Offers {
         Offers { joint_space: false, derivatives: false, projection: false, ..Offers::ALL }
     }
-    /// The work of the applied forces over the mechanism's size and of their moments over a radian, J: what energies
-    /// are rounded against. Zero where the forces are not at hand.
-    fn work_scale(&self, _mechanism: &M, _t: f64, _y: &M::State) -> f64 {
-        0.0
-    }
     /// The smallest pivot of the constraint Jacobian by full pivoting, lengths in units of the mechanism's size; `None`
     /// where the Jacobian is not at hand. It vanishes in singular poses.
     fn smallest_pivot(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<f64> {
@@ -68,6 +66,12 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
         None
     }
 }
+
+/// What runs in maximal coordinates call, whatever keeps them on the constraints.
+///
+/// An abbreviation of its bounds; nothing else implements it.
+pub trait Maximal: Partition<Scalar: Real> + Kinematics + Dynamics + CorrectedDynamics + Projection {}
+impl<M: Partition<Scalar: Real> + Kinematics + Dynamics + CorrectedDynamics + Projection> Maximal for M {}
 
 /// Where and when a mechanism is linearised.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,11 @@
 //! Corrections of whatever maximal system is integrated, as one type.
 
+use super::contract::Maximal;
+use super::lens::Slopes;
 use crate::approach::{Approach, Correction as Keeping};
 use gyro_sim::{
-    Clearance, Correction, Equations, Error, Exact, MassWeighted, Mechanism, Ode, Partition, Partitioning,
-    Real, Scalar, Watched,
+    Clearance, Correction, Error, Exact, MassWeighted, Mechanism, Ode, Partition, Partitioning, Real, Scalar,
+    Watched,
 };
 
 /// Boxed corrections, so that integrators are not compiled anew for each.
@@ -13,16 +15,28 @@ pub(super) trait Keeps<M: Mechanism> {
     fn switches(&self) -> u64;
 }
 
-/// All of them admit exact equations, and those that `maximal` chooses for them.
-impl<M: Mechanism, C: Correction<Exact, M>> Keeps<M> for C {
+/// Those that admit any equations.
+impl<M: Mechanism + 'static, C: Correction<Slopes<M>, M>> Keeps<M> for C {
     fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
-        Correction::<Exact, M>::correct(self, mechanism, t, y)
+        Correction::<Slopes<M>, M>::correct(self, mechanism, t, y)
     }
     fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
-        Correction::<Exact, M>::violation(self, mechanism, t, y)
+        Correction::<Slopes<M>, M>::violation(self, mechanism, t, y)
     }
     fn switches(&self) -> u64 {
-        Correction::<Exact, M>::switches(self)
+        Correction::<Slopes<M>, M>::switches(self)
+    }
+}
+
+/// The projection that the masses weigh. `keeping` is asked for it with exact equations alone.
+struct Weighted<M: Mechanism>(MassWeighted<M>);
+
+impl<M: Maximal + 'static> Correction<Slopes<M>, M> for Weighted<M> {
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.0.correct(mechanism, t, y)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        Correction::<Exact, M>::violation(&mut self.0, mechanism, t, y)
     }
 }
 
@@ -52,11 +66,11 @@ where
 
 pub(super) fn keeping<M>(mechanism: &M, approach: &Approach, y: &M::State) -> Result<Boxed<M>, String>
 where
-    M: Partition<Scalar: Real> + Equations + 'static,
+    M: Maximal + 'static,
 {
     Ok(Boxed(match approach.correction {
         Keeping::Partition => return Ok(partitioning(mechanism, y)),
-        Keeping::MassWeighted => Box::new(MassWeighted::new(mechanism)),
+        Keeping::MassWeighted => Box::new(Weighted(MassWeighted::new(mechanism))),
         Keeping::None | Keeping::Baumgarte(_) => Box::new(Watched::new(mechanism)),
         Keeping::ClosedForm => {
             return Err("the closed form is for generated code with joint coordinates".to_owned());

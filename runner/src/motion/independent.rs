@@ -264,7 +264,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use gyro_mechanisms::heavy_top::HeavyTop;
-    use gyro_sim::{ByDuals, Joint, Ode};
+    use gyro_sim::{ByDuals, Jacobian, Joint};
 
     type Duals = HeavyTop<Dual<f64, COLUMNS>>;
 

@@ -1,7 +1,7 @@
 //! The equations that are integrated, and the maximal state as seen through each of them.
 
 use super::contract::COLUMNS;
-use gyro_sim::{ByDuals, Dual, Exact, Joint, JointPlace, JointSpace, Mechanism, Ode, Scalar};
+use gyro_sim::{ByDuals, Dual, Dynamics, Exact, Joint, JointPlace, JointSpace, Mechanism, Ode, Scalar};
 
 /// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
 /// joint.
@@ -56,7 +56,6 @@ impl<M: Mechanism + 'static> Slopes<M> {
 impl<M: Mechanism> Ode<M> for Slopes<M> {
     type Scalar = M::Scalar;
     type State = M::State;
-    type Jacobian = ();
 
     fn derivative(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
         self.0(mechanism, t, y, dy);
@@ -74,8 +73,8 @@ type Duals<D, T> = ByDuals<Exact, D, <D as Mechanism>::State, Vec<T>, COLUMNS>;
 
 impl<M, D> Lens<M> for Duals<D, M::Scalar>
 where
-    M: Mechanism<State: 'static, Scalar: 'static> + 'static,
-    D: Mechanism<Scalar = Dual<M::Scalar, COLUMNS>, State: 'static> + 'static,
+    M: Dynamics<State: 'static, Scalar: 'static> + 'static,
+    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>, State: 'static> + 'static,
 {
     fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
         copy::<M>(from, to);

@@ -10,6 +10,6 @@ mod moving;
 mod single;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
-pub use contract::{COLUMNS, Element, Linear, Motion, MotionBuilder, OperatingPoint};
+pub use contract::{COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
 pub use independent::Closing;
 pub use single::{Direct, InClosedForm, InJoints, Kind, Only, Partitioned, Projected, Stabilised};

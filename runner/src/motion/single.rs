@@ -1,16 +1,16 @@
 //! Builders for runs of one kind. A program that makes no others is compiled in a fraction of the time: it holds no
 //! other equations, no other correction and no dual numbers.
 
-use super::builders::{in_joints, work_scale};
-use super::contract::{Motion, MotionBuilder};
+use super::builders::in_joints;
+use super::contract::{Maximal, Motion, MotionBuilder};
 use super::correction::{Boxed, keeping, partitioning};
 use super::lens::Slopes;
 use super::moving::explicit;
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
 use crate::offers::Offers;
 use gyro_sim::{
-    Baumgarte, ClosedForm, Corrected, Equations, Exact, Joint, JointLayout, JointSpace, Partition, Real,
-    Scalar, Watched,
+    Baumgarte, ClosedForm, Corrected, CorrectedDynamics, Dynamics, Exact, Joint, JointLayout, JointSpace,
+    Partition, Real, Scalar, Watched,
 };
 
 /// For runs of one kind.
@@ -37,7 +37,7 @@ pub trait Kind<M: Partition<Scalar: Real>> {
     }
 }
 
-impl<K: Kind<M>, M: Partition<Scalar: Real> + Equations> MotionBuilder<M> for Only<K> {
+impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         let is_explicit = approach.integrator != Integrator::Rodas4;
         if !is_explicit || !self.kind.makes(approach.coordinates, approach.correction) {
@@ -51,10 +51,6 @@ impl<K: Kind<M>, M: Partition<Scalar: Real> + Equations> MotionBuilder<M> for On
         Offers { joint_space: self.joint_space, ..Offers::ALL }
     }
 
-    fn work_scale(&self, mechanism: &M, t: f64, y: &M::State) -> f64 {
-        work_scale(mechanism, t, y)
-    }
-
     fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
         self.kind.joint_layout(mechanism)
     }
@@ -64,7 +60,7 @@ impl<K: Kind<M>, M: Partition<Scalar: Real> + Equations> MotionBuilder<M> for On
 #[derive(Clone, Copy, Debug)]
 pub struct Partitioned;
 
-impl<M: Partition<Scalar: Real> + 'static> Kind<M> for Partitioned {
+impl<M: Partition<Scalar: Real> + CorrectedDynamics + 'static> Kind<M> for Partitioned {
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && correction == Keeping::Partition
     }
@@ -78,7 +74,7 @@ impl<M: Partition<Scalar: Real> + 'static> Kind<M> for Partitioned {
 #[derive(Clone, Copy, Debug)]
 pub struct Direct;
 
-impl<M: Partition<Scalar: Real> + 'static> Kind<M> for Direct {
+impl<M: Partition<Scalar: Real> + Dynamics + 'static> Kind<M> for Direct {
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && correction == Keeping::None
     }
@@ -92,7 +88,10 @@ impl<M: Partition<Scalar: Real> + 'static> Kind<M> for Direct {
 #[derive(Clone, Copy, Debug)]
 pub struct InClosedForm;
 
-impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InClosedForm {
+impl<M> Kind<M> for InClosedForm
+where
+    M: Partition<Scalar: Real> + JointSpace + CorrectedDynamics + 'static,
+{
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && correction == Keeping::ClosedForm
     }
@@ -107,7 +106,7 @@ impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InClosedForm
 #[derive(Clone, Copy, Debug)]
 pub struct Projected;
 
-impl<M: Partition<Scalar: Real> + Equations + 'static> Kind<M> for Projected {
+impl<M: Maximal + 'static> Kind<M> for Projected {
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && correction == Keeping::MassWeighted
     }
@@ -121,7 +120,7 @@ impl<M: Partition<Scalar: Real> + Equations + 'static> Kind<M> for Projected {
 #[derive(Clone, Copy, Debug)]
 pub struct Stabilised;
 
-impl<M: Partition<Scalar: Real> + Equations + 'static> Kind<M> for Stabilised {
+impl<M: Maximal + 'static> Kind<M> for Stabilised {
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && matches!(correction, Keeping::Baumgarte(_))
     }

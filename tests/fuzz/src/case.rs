@@ -103,7 +103,7 @@ fn read(text: &str, table: &str) -> Option<Model> {
 }
 
 fn generate(model: &Model) -> &'static str {
-    match gyro_codegen::generate_model("fuzz.toml", model) {
+    match gyro_codegen::generate_functions("fuzz.toml", model, &gyro_codegen::Functions::all()) {
         Err(error) => {
             assert!(!error.to_string().is_empty());
             "read, not generated"

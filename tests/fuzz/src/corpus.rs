@@ -52,7 +52,11 @@ impl Emitted {
     /// The module and its constants.
     pub fn module(&self) -> &[String; 2] {
         self.module.get_or_init(|| {
-            let module = gyro_codegen::generate_model("fuzz.toml", &model(&self.page));
+            let module = gyro_codegen::generate_functions(
+                "fuzz.toml",
+                &model(&self.page),
+                &gyro_codegen::Functions::all(),
+            );
             let module = module.expect("a model file of the workspace has a module");
             [module.code, module.constants]
         })

@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout, reason = "the list of survivors is for readers")]
 
 use gyro_model::Model;
-use gyro_mutants::{generate_model, switch_on};
+use gyro_mutants::{Functions, generate_functions, switch_on};
 use gyro_verifier::module::Module;
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
 use gyro_verifier::{Depth, verify};
@@ -39,7 +39,8 @@ fn page(name: &str) -> Model {
 /// What the generator writes with a fault; `None` if it writes nothing.
 fn written(model: &Model, fault: usize) -> Option<gyro_mutants::Module> {
     switch_on(fault);
-    let module = catch_unwind(AssertUnwindSafe(|| generate_model("mutant", model).ok()));
+    let module =
+        catch_unwind(AssertUnwindSafe(|| generate_functions("mutant", model, &Functions::all()).ok()));
     switch_on(0);
     module.ok().flatten()
 }

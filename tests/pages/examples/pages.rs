@@ -67,7 +67,9 @@ const PROVED: &str = "proved";
 fn module(seed: u64) -> String {
     let model = gyro_model::read_with("page.toml", &gyro_pages::page(seed), &mut gyro_pages::load);
     let model = model.unwrap_or_else(|problems| panic!("{problems}"));
-    gyro_codegen::generate_model("page.toml", &model).unwrap_or_else(|error| panic!("{error}")).code
+    gyro_codegen::generate_functions("page.toml", &model, &gyro_codegen::Functions::all())
+        .unwrap_or_else(|error| panic!("{error}"))
+        .code
 }
 
 fn of_file(path: &Path) -> String {
@@ -84,7 +86,8 @@ fn fate(text: &str, load: &mut dyn FnMut(&str) -> Result<String, String>) -> Str
         Ok(model) => model,
         Err(problems) => return format!("not read: {problems}"),
     };
-    let module = match gyro_codegen::generate_model("page.toml", &model) {
+    let module = match gyro_codegen::generate_functions("page.toml", &model, &gyro_codegen::Functions::all())
+    {
         Ok(module) => module,
         Err(error) => return format!("not generated: {error}"),
     };

@@ -1,7 +1,6 @@
 //! A sample of random model files is generated and proved.
 //! `cargo run --release -p gyro-pages --example pages -- --count 10000` does more.
 
-use gyro_codegen::Functions;
 use gyro_verifier::{Depth, verify};
 
 /// Seeds of the sample. Any will do: model files are short, and a few of a thousand take long.
@@ -14,7 +13,8 @@ fn refused(seed: u64) -> Option<String> {
         Ok(model) => model,
         Err(problems) => return Some(format!("{problems}")),
     };
-    let module = match gyro_codegen::generate_functions("page.toml", &model, &Functions::all()) {
+    let module = match gyro_codegen::generate_functions("page.toml", &model, &gyro_codegen::Functions::all())
+    {
         Ok(module) => module,
         Err(error) => return Some(format!("{error}")),
     };

@@ -52,10 +52,10 @@ const ODD_PAGES: usize = 6;
 /// Names of what Rust, its prelude, the run time, generated code and the programs around it know, and names at the
 /// limits of what a name is.
 fn odd() -> Vec<String> {
-    let known = "mechanism equations error result default core gyro_sim t k self_ dual scalar std alloc gyro_runner y x tree tree_with_jacobian \
+    let known = "mechanism dynamics kinematics error result default core gyro_sim t k self_ dual scalar std alloc gyro_runner y x tree tree_with_jacobian \
         with_duals columns new start set_parameter value index option some none ok err vec string copy clone debug partial_eq phantom_data main build \
         ode energy rows state u8 f64 usize bool str union auto macro_rules raw safe dyn_ a_ charts accelerations rates out lambda dfdx dfdt dy dx apart \
-        fused constant spline knots_0 pieces_0 table0 chart0 x0 u0 t0 row0 turn0 closing0 parameter_setup static_ work a__b e0 dy_ parameters_ test";
+        fused constant spline projection corrected_dynamics velocities knots_0 pieces_0 table0 chart0 x0 u0 t0 row0 turn0 closing0 parameter_setup static_ work a__b e0 dy_ parameters_ test";
     let long = [50, 53, 54, 60, 79, 100].map(|length| "n".repeat(length));
     let mixed = iter::once("z9_".repeat(33));
     let mut names: Vec<String> = known.split_whitespace().map(str::to_owned).collect();

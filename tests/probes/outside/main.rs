@@ -12,9 +12,9 @@ mod odd_names {
 }
 
 use generated::{chain::Chain, double_pendulum::DoublePendulum};
-use gyro_sim::{Error, Partition, Partitioned};
+use gyro_sim::{CorrectedDynamics, Error, Partition, Partitioned};
 
-fn run<M: Partition<Scalar = f64>>(mechanism: &M, corrections: u32) -> Result<(), Error> {
+fn run<M: Partition<Scalar = f64> + CorrectedDynamics>(mechanism: &M, corrections: u32) -> Result<(), Error> {
     let mut state = mechanism.start();
     let mut solver = Partitioned::new(mechanism, &state);
     for interval in 0..corrections {

@@ -1,9 +1,9 @@
 //! Mechanisms of which the type is forgotten, buffers being slices.
 
-use gyro_runner::motion::COLUMNS;
+use gyro_runner::motion::{COLUMNS, Maximal};
 use gyro_sim::{
-    Clearance, Description, Dual, Energy, Equations, Error, JointLayout, JointSpace, Mechanism, Partition,
-    Real,
+    Clearance, CorrectedDynamics, Description, Dual, Dynamics, Energy, Error, JointJacobian, JointLayout,
+    JointSpace, Kinematics, Mechanism, Partition, Projection, Real,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -135,7 +135,7 @@ fn listed<T: Copy>(buffer: impl AsRef<[T]>) -> Vec<T> {
 
 impl<T: Real + 'static, M> Erased<T> for M
 where
-    M: Partition<Scalar = T, Independent: 'static> + Equations + Clone + Debug + 'static,
+    M: Partition<Scalar = T, Independent: 'static> + Maximal + Clone + Debug + 'static,
 {
     fn cloned(&self) -> Box<dyn Erased<T>> {
         Box::new(self.clone())
@@ -148,8 +148,8 @@ where
             Term::Readings => listed(self.buffers().readings),
             Term::PhiQ => listed(self.terms().phi_q),
             Term::PhiPi => listed(self.terms().phi_pi),
-            Term::AppliedForce => listed(self.terms().velocities),
-            Term::Accelerations => listed(self.terms().accelerations),
+            Term::AppliedForce => listed(self.buffers().velocities),
+            Term::Accelerations => listed(self.acceleration_buffer()),
             Term::Outputs => listed(self.buffers().outputs),
         }
     }
@@ -169,22 +169,22 @@ where
             Term::Nu => through(self.buffers().rows, out, |nu| self.nu(t, y, nu)),
             Term::Gamma => through(self.buffers().rows, out, |gamma| self.gamma(t, y, gamma)),
             Term::AppliedForce => {
-                through(self.terms().velocities, out, |force| self.applied_force(t, y, force))
+                through(self.buffers().velocities, out, |force| self.applied_force(t, y, force))
             }
-            Term::Accelerations => through(self.terms().accelerations, out, |a| self.accelerations(t, y, a)),
+            Term::Accelerations => through(self.acceleration_buffer(), out, |a| self.accelerations(t, y, a)),
             Term::Outputs => through(self.buffers().outputs, out, |outputs| self.outputs(t, y, outputs)),
         }
     }
     fn multipliers(&self, t: T, y: &[T], accelerations: &[T], lambda: &mut [T]) {
         let y = &filled(self.start(), y);
-        let accelerations = &filled(self.terms().accelerations, accelerations);
+        let accelerations = &filled(self.acceleration_buffer(), accelerations);
         through(self.buffers().rows, lambda, |lambda| {
-            Equations::multipliers(self, t, y, accelerations, lambda)
+            Dynamics::multipliers(self, t, y, accelerations, lambda)
         });
     }
     fn project(&self, t: T, y: &[T], rows: &[T], motion: &mut [T]) {
         let (y, rows) = (&filled(self.start(), y), &filled(self.buffers().rows, rows));
-        through(self.terms().velocities, motion, |motion| Equations::project(self, t, y, rows, motion));
+        through(self.buffers().velocities, motion, |motion| Projection::project(self, t, y, rows, motion));
     }
     fn energy(&self, t: T, y: &[T]) -> Energy<T> {
         Mechanism::energy(self, t, &filled(self.start(), y))
@@ -217,10 +217,10 @@ where
         Partition::clearance(self, t, &filled(self.start(), y))
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
-        Equations::phi_q_pattern(self)
+        Kinematics::phi_q_pattern(self)
     }
     fn phi_pi_pattern(&self) -> &[(u16, u16)] {
-        Equations::phi_pi_pattern(self)
+        Kinematics::phi_pi_pattern(self)
     }
     fn description(&self) -> &Description<'_> {
         Mechanism::description(self)
@@ -232,7 +232,7 @@ where
 
 impl<T: Real + 'static, M> ErasedTree<T> for M
 where
-    M: JointSpace<Scalar = T, Jacobian: Numbers<T>, InputJacobian: Numbers<T>>,
+    M: JointJacobian<Scalar = T> + CorrectedDynamics,
 {
     fn joint_start(&self) -> Vec<T> {
         listed(JointSpace::joint_start(self))
@@ -241,14 +241,14 @@ where
         listed(self.joint_buffers().rates)
     }
     fn jacobian_buffer(&self) -> Vec<T> {
-        listed(self.joint_buffers().jacobian)
+        listed(self.jacobian_buffers().jacobian)
     }
     fn input_jacobian_buffer(&self) -> Vec<T> {
-        listed(self.joint_buffers().input_jacobian)
+        listed(self.jacobian_buffers().input_jacobian)
     }
     fn corrected_derivative(&self, t: T, y: &[T], dy: &mut [T]) {
         let y = &filled(self.start(), y);
-        through(self.start(), dy, |dy| Mechanism::corrected_derivative(self, t, y, dy));
+        through(self.start(), dy, |dy| CorrectedDynamics::corrected_derivative(self, t, y, dy));
     }
     fn joint_derivative(&self, t: T, x: &[T], dx: &mut [T]) {
         let buffer = JointSpace::joint_start(self);
@@ -256,15 +256,15 @@ where
         through(buffer, dx, |dx| JointSpace::joint_derivative(self, t, x, dx));
     }
     fn joint_jacobian(&self, t: T, x: &[T], dfdx: &mut [T], dfdt: &mut [T]) {
-        let (mut jacobian, buffer) = (self.joint_buffers().jacobian, JointSpace::joint_start(self));
+        let (mut jacobian, buffer) = (self.jacobian_buffers().jacobian, JointSpace::joint_start(self));
         let x = &filled(buffer.clone(), x);
-        through(buffer, dfdt, |dfdt| JointSpace::joint_jacobian(self, t, x, &mut jacobian, dfdt));
+        through(buffer, dfdt, |dfdt| JointJacobian::joint_jacobian(self, t, x, &mut jacobian, dfdt));
         dfdx.copy_from_slice(jacobian.as_ref());
     }
     fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]) {
         let x = &filled(JointSpace::joint_start(self), x);
-        let buffer = self.joint_buffers().input_jacobian;
-        through(buffer, out, |out| JointSpace::joint_input_jacobian(self, t, x, out));
+        let buffer = self.jacobian_buffers().input_jacobian;
+        through(buffer, out, |out| JointJacobian::joint_input_jacobian(self, t, x, out));
     }
     fn joint_layout(&self) -> &JointLayout<'_> {
         JointSpace::joint_layout(self)
@@ -298,7 +298,7 @@ where
 
 impl<T: Real + 'static, D> ErasedDuals<T> for D
 where
-    D: Mechanism<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
+    D: Dynamics<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
 {
     fn cloned(&self) -> Box<dyn ErasedDuals<T>> {
         Box::new(self.clone())
@@ -308,7 +308,7 @@ where
     }
     fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]) {
         let y = &filled(Mechanism::start(self), y);
-        through(Mechanism::start(self), dy, |dy| Mechanism::derivative(self, t, y, dy));
+        through(Mechanism::start(self), dy, |dy| Dynamics::derivative(self, t, y, dy));
     }
     fn set_input(&mut self, index: usize, value: Dual<T, COLUMNS>) -> bool {
         Mechanism::set_input(self, index, value)

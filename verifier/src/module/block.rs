@@ -283,9 +283,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);` or the like, after its buffer.
+    /// `gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);` or the like, after its buffer.
     fn compute_first(&mut self, before: Before, statement: &Stmt) -> Result<(), Refusal> {
-        let is_call = text(statement) == before.call;
+        // A long call is written in a list of lines, with a comma at the end.
+        let is_call = text(statement).replace(" ,)", ")") == before.call;
         for argument in before.arguments() {
             let entry = self.names.get_mut(argument).filter(|_| is_call);
             entry.ok_or_else(|| refused(statement))?.is_used = true;

@@ -17,24 +17,63 @@ use gyro_model::{Model, Spline};
 use mechanism::mechanism;
 use partition::partition;
 use pieces::{buffers, fillings, lines, list};
+use std::collections::BTreeSet;
 
 /// What the description leaves to choice.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Has {
+    /// The traits that the module implements, of those that it may leave out.
+    pub traits: BTreeSet<&'static str>,
     /// How the coordinate partition is chosen.
     pub choice: Choice,
-    /// The Jacobian of the joint form.
-    pub jacobian: bool,
-    /// A derivative that goes on from other accelerations, at states that satisfy the constraints.
-    pub corrected_derivative: bool,
-    /// A function of what depends on parameters alone.
+    /// How accelerations at corrected states are found.
+    pub corrected: Corrected,
+    /// Whether there is a function of what depends on parameters alone.
     pub parameter_setup: bool,
-    /// Outputs of a joint state.
-    pub joint_outputs: bool,
-    /// Their derivatives.
-    pub output_derivatives: bool,
-    /// How frames move with a joint state.
-    pub frames: bool,
+}
+
+/// How accelerations, and what goes with them, are found at states that satisfy the constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corrected {
+    /// Whether the derivative of the state goes on from these accelerations; it is that at any state otherwise.
+    pub has_derivative: bool,
+    /// Whether accelerations at any state come with multipliers that are cut off.
+    pub is_cut: bool,
+}
+
+/// The traits that a module may leave out, but for joint coordinates, which their layout shows.
+const TRAITS: [&str; 10] = [
+    "Partition",
+    "Kinematics",
+    "Dynamics",
+    "Projection",
+    "CorrectedDynamics",
+    "CorrectedSolution",
+    "JointJacobian",
+    "JointOutputs",
+    "OutputDerivatives",
+    "Frames",
+];
+
+impl Has {
+    /// What a module's text is to be compared with.
+    pub fn of(text: &str) -> Self {
+        let is_there = |name: &&str| text.contains(&format!("gyro_sim::{name} for "));
+        Self {
+            traits: TRAITS.into_iter().filter(is_there).collect(),
+            choice: if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting },
+            corrected: Corrected {
+                has_derivative: !text.contains("gyro_sim::Dynamics::derivative(self"),
+                is_cut: text.contains("out.copy_from_slice("),
+            },
+            parameter_setup: text.contains("fn parameter_setup("),
+        }
+    }
+
+    /// Whether the module implements a trait.
+    pub fn implements(&self, name: &str) -> bool {
+        self.traits.contains(name)
+    }
 }
 
 /// The expected text.
@@ -42,22 +81,29 @@ pub fn text(
     model: &Model,
     type_name: &str,
     tables: &[Spline],
-    has: Has,
+    has: &Has,
     joints: Option<&JointLayout>,
 ) -> String {
+    let of = |name: &str, text: String| if has.implements(name) { text } else { String::new() };
+    let corrected_dynamics = corrected_dynamics(model, type_name, joints.is_some(), has.corrected);
+    let of_joints = |text: fn(&Model, &str, &JointLayout) -> String| {
+        joints.map(|joints| text(model, type_name, joints)).unwrap_or_default()
+    };
     [
         constants(tables),
         definition(model, type_name, has.parameter_setup),
-        mechanism(model, type_name, joints.is_some() && has.corrected_derivative),
-        partition(model, type_name, has.choice, joints),
-        equations(model, type_name),
-        joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
-        if has.joint_outputs { joint_outputs(type_name) } else { String::new() },
-        joints
-            .filter(|_| has.output_derivatives)
-            .map(|joints| output_derivatives(model, type_name, joints))
-            .unwrap_or_default(),
-        joints.filter(|_| has.frames).map(|joints| frames(model, type_name, joints)).unwrap_or_default(),
+        mechanism(model, type_name),
+        of("Partition", partition(model, type_name, has.choice, joints)),
+        of("Kinematics", kinematics(type_name)),
+        of("Dynamics", dynamics(type_name)),
+        of("Projection", projection(type_name)),
+        of("CorrectedDynamics", corrected_dynamics),
+        of_joints(joint_space),
+        of("CorrectedSolution", of_joints(corrected_solution)),
+        of("JointJacobian", of_joints(joint_jacobian)),
+        of("JointOutputs", joint_outputs(type_name)),
+        of("OutputDerivatives", of_joints(output_derivatives)),
+        of("Frames", of_joints(frames)),
     ]
     .concat()
 }
@@ -69,42 +115,87 @@ pub fn type_name(name: &str) -> String {
     if ["Self", "T", "Parameters"].contains(&name.as_str()) { name + "_" } else { name }
 }
 
-fn equations(model: &Model, name: &str) -> String {
-    let velocities = (6 * model.coordinate_bodies().len()).to_string();
+fn kinematics(name: &str) -> String {
     let patterns =
         lines(["phi_q", "phi_pi"].map(|matrix| {
             format!("fn {matrix}_pattern(&self) -> &[(u16, u16)] {{ HOLE_{matrix}_pattern }}")
         }));
     format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::Equations for {name}<T> {{
-            type Velocities = [T; {velocities}];
+        "impl<T: gyro_sim::Scalar> gyro_sim::Kinematics for {name}<T> {{
             type PhiQ = [T; INT_phi_q];
             type PhiPi = [T; INT_phi_pi];
+            {} {patterns} {}
+        }}",
+        buffers("terms", "Terms", &[("phi_q", "INT_phi_q"), ("phi_pi", "INT_phi_pi")]),
+        fillings(&[("phi_q", "PhiQ"), ("phi_pi", "PhiPi"), ("nu", "Rows"), ("gamma", "Rows")]),
+    )
+}
+
+fn dynamics(name: &str) -> String {
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Dynamics for {name}<T> {{
             type Accelerations = [T; INT_accelerations];
-            {} {patterns} {} {}
+            fn acceleration_buffer(&self) -> Self::Accelerations {{ [T::constant(0.0); INT_accelerations] }}
+            {} {}
+            fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {{ HOLE_derivative }}
+        }}",
+        fillings(&[("accelerations", "Accelerations")]),
+        multipliers("multipliers", "Accelerations"),
+    )
+}
+
+fn projection(name: &str) -> String {
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Projection for {name}<T> {{
             fn project(
                 &self, ANY_t: T, ANY_y: &Self::State, ANY_rows: &Self::Rows, ANY_out: &mut Self::Velocities,
             ) {{ HOLE_project }}
-        }}",
-        buffers(
-            "terms",
-            "Terms",
-            &[
-                ("velocities", &velocities),
-                ("phi_q", "INT_phi_q"),
-                ("phi_pi", "INT_phi_pi"),
-                ("accelerations", "INT_accelerations"),
-            ],
+        }}"
+    )
+}
+
+/// What is not found by way of joint coordinates is what it is at any state.
+fn corrected_dynamics(model: &Model, name: &str, has_joints: bool, corrected: Corrected) -> String {
+    let n = 6 * model.coordinate_bodies().len();
+    let cut = match (has_joints, corrected.is_cut) {
+        (true, _) => None,
+        (_, false) => Some("gyro_sim::Dynamics::accelerations(self, t, y, out);".to_owned()),
+        (_, true) => Some(format!(
+            "let mut solved = [T::constant(0.0); INT_accelerations];
+            gyro_sim::Dynamics::accelerations(self, t, y, &mut solved);
+            out.copy_from_slice(&solved[..{n}]);"
+        )),
+    };
+    let accelerations = match cut {
+        None => fillings(&[("corrected_accelerations", "Velocities")]),
+        Some(cut) => format!(
+            "fn corrected_accelerations(&self, t: T, y: &Self::State, out: &mut Self::Velocities) {{ {cut} }}"
         ),
-        fillings(&[
-            ("phi_q", "PhiQ"),
-            ("phi_pi", "PhiPi"),
-            ("nu", "Rows"),
-            ("gamma", "Rows"),
-            ("applied_force", "Velocities"),
-            ("accelerations", "Accelerations"),
-        ]),
-        multipliers("multipliers", "Accelerations"),
+    };
+    let derivative = if has_joints && corrected.has_derivative {
+        "HOLE_corrected_derivative"
+    } else {
+        "gyro_sim::Dynamics::derivative(self, t, y, dy);"
+    };
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::CorrectedDynamics for {name}<T> {{
+            {accelerations}
+            fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {{ {derivative} }}
+        }}"
+    )
+}
+
+fn corrected_solution(model: &Model, name: &str, _: &JointLayout) -> String {
+    let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::CorrectedSolution for {name}<T> {{
+            type Solution = [T; {n_solution}];
+            fn solution_buffer(&self) -> Self::Solution {{ [T::constant(0.0); {n_solution}] }}
+            {} {} {}
+        }}",
+        fillings(&[("joint_accelerations_at", "Rates")]),
+        multipliers("corrected_multipliers", "Velocities"),
+        fillings(&[("corrected_solution", "Solution")]),
     )
 }
 
@@ -116,24 +207,8 @@ fn multipliers(name: &str, accelerations: &str) -> String {
     )
 }
 
-fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bool) -> String {
-    let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
+fn joint_space(_: &Model, name: &str, joints: &JointLayout) -> String {
     let (n_state, n_rates, n_closure) = (joints.n_state(), joints.n_rates, joints.closure_rows.len());
-    let sizes = [n_state * n_state, n_state * model.inputs.len()];
-    let [(jacobian, no_slopes), (input_jacobian, no_input_slopes)] = if has_jacobian {
-        sizes.map(|n| (format!("[T; {n}]"), format!("[T::constant(0.0); {n}]")))
-    } else {
-        sizes.map(|_| ("()".to_owned(), "()".to_owned()))
-    };
-    let jacobians = "fn joint_jacobian(
-            &self, ANY_t: T, ANY_x: &Self::Joints, dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints,
-        ) {
-            HOLE_joint_jacobian
-        }
-        fn joint_input_jacobian(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::InputJacobian) {
-            HOLE_joint_input_jacobian
-        }";
-    let jacobians = if has_jacobian { jacobians } else { "" };
     let layout = layout(joints);
     let (closure, no_closure) = match n_closure {
         0 => ("", "[]".to_owned()),
@@ -143,10 +218,7 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
         "impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for {name}<T> {{
             type Joints = [T; {n_state}];
             type Rates = [T; {n_rates}];
-            type Solution = [T; {n_solution}];
             type Closure = [T; {n_closure}];
-            type Jacobian = {jacobian};
-            type InputJacobian = {input_jacobian};
             fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {{
                 const LAYOUT: gyro_sim::JointLayout<'static> = {layout};
                 &LAYOUT
@@ -154,10 +226,7 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {{
                 gyro_sim::JointBuffers {{
                     rates: [T::constant(0.0); {n_rates}],
-                    solution: [T::constant(0.0); {n_solution}],
-                    closure: {no_closure},
-                    jacobian: {no_slopes},
-                    input_jacobian: {no_input_slopes}
+                    closure: {no_closure}
                 }}
             }}
             fn joint_start(&self) -> Self::Joints {{ HOLE_joint_start }}
@@ -167,15 +236,33 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout, has_jacobian: bo
             fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {{ HOLE_joint_derivative }}
             fn to_maximal(&self, ANY_t: T, ANY_x: &Self::Joints, y: &mut Self::State) {{ HOLE_to_maximal }}
             fn to_joints(&self, ANY_t: T, ANY_y: &Self::State, x: &mut Self::Joints) {{ HOLE_to_joints }}
-            {}
-            {}
-            {}
-            {jacobians}
             {closure}
         }}",
-        fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
-        multipliers("corrected_multipliers", "Velocities"),
-        fillings(&[("corrected_solution", "Solution")]),
+    )
+}
+
+fn joint_jacobian(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let n_state = joints.n_state();
+    let [by_state, by_inputs] = [n_state * n_state, n_state * model.inputs.len()];
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for {name}<T> {{
+            type Jacobian = [T; {by_state}];
+            type InputJacobian = [T; {by_inputs}];
+            {}
+            fn joint_jacobian(
+                &self, ANY_t: T, ANY_x: &Self::Joints, dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints,
+            ) {{
+                HOLE_joint_jacobian
+            }}
+            fn joint_input_jacobian(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::InputJacobian) {{
+                HOLE_joint_input_jacobian
+            }}
+        }}",
+        buffers(
+            "jacobian_buffers",
+            "JacobianBuffers",
+            &[("jacobian", &by_state.to_string()), ("input_jacobian", &by_inputs.to_string())],
+        ),
     )
 }
 

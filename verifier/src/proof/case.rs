@@ -151,6 +151,15 @@ impl<'a> Case<'a> {
         (accelerations, multipliers)
     }
 
+    /// The same, or any numbers if the module does not solve for them: nothing that it has depends on them then.
+    pub fn motion_at_hand(&self) -> (Vec<Term<'a>>, Vec<Term<'a>>) {
+        if self.module.implements("Dynamics") {
+            self.motion()
+        } else {
+            (self.motion.clone(), self.changes.clone())
+        }
+    }
+
     /// A point whose state is changed by a function of the partition.
     pub fn moved(&self, function: &str, point: &Point<Term<'a>>) -> Point<Term<'a>> {
         let values = self.run(function, point);

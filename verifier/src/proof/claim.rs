@@ -89,53 +89,56 @@ pub enum Claim {
     FrameBiases,
 }
 
+/// All claims, in the order in which they are proved.
+const ALL: [Claim; 35] = {
+    use Claim::*;
+    [
+        Phi,
+        PhiQ,
+        PhiPi,
+        Nu,
+        Gamma,
+        VelocityResidual,
+        AppliedForce,
+        Motion,
+        Projection,
+        Derivative,
+        Energy,
+        Readings,
+        Outputs,
+        ChartVectors,
+        NewtonStep,
+        SolveVelocities,
+        LoopClosure,
+        ClosureDistances,
+        ClosePositions,
+        CloseVelocities,
+        ToMaximal,
+        ToJoints,
+        JointAccelerations,
+        JointDerivative,
+        JointAccelerationsAt,
+        CorrectedAccelerations,
+        CorrectedDerivative,
+        CorrectedMultipliers,
+        CorrectedSolution,
+        JointJacobian,
+        JointInputJacobian,
+        JointOutputs,
+        OutputDerivatives,
+        FrameJacobians,
+        FrameBiases,
+    ]
+};
+
 impl Claim {
-    /// All claims about a module.
+    /// All claims about a module, by the functions that it has.
     pub fn all(module: &Module) -> Vec<Self> {
-        use Claim::*;
-        let mut claims = vec![
-            Phi,
-            PhiQ,
-            PhiPi,
-            Nu,
-            Gamma,
-            VelocityResidual,
-            AppliedForce,
-            Motion,
-            Projection,
-            Derivative,
-            Energy,
-            Readings,
-            Outputs,
-        ];
-        if module.n_charts.is_some() {
-            claims.extend([ChartVectors, NewtonStep, SolveVelocities]);
-        }
-        if let Some(joints) = &module.joints {
-            if !joints.closure_rows.is_empty() {
-                claims.extend([LoopClosure, ClosureDistances, ClosePositions, CloseVelocities]);
-            }
-            claims.extend([
-                ToMaximal,
-                ToJoints,
-                JointAccelerations,
-                JointDerivative,
-                JointAccelerationsAt,
-                CorrectedAccelerations,
-            ]);
-            claims
-                .extend(module.programs.contains_key("corrected_derivative").then_some(CorrectedDerivative));
-            claims.extend([CorrectedMultipliers, CorrectedSolution]);
-        }
-        let gives =
-            |function: &str| module.programs.get(function).is_some_and(|program| !program.results.is_empty());
-        claims.extend(gives("joint_jacobian").then_some(JointJacobian));
-        claims.extend(gives("joint_input_jacobian").then_some(JointInputJacobian));
-        claims.extend(gives("joint_outputs").then_some(JointOutputs));
-        claims.extend(module.programs.contains_key("outputs_by_state").then_some(OutputDerivatives));
-        if gives("frame_jacobians") {
-            claims.extend([FrameJacobians, FrameBiases]);
-        }
+        let is_there = |function: &&str| module.programs.contains_key(*function);
+        let is_about = |claim: &Self| claim.functions().iter().all(is_there);
+        let gives = |function: &str| !module.programs[function].results.is_empty();
+        let mut claims: Vec<Self> = ALL.into_iter().filter(is_about).collect();
+        claims.retain(|claim| *claim != Self::JointInputJacobian || gives("joint_input_jacobian"));
         claims
     }
 
@@ -290,7 +293,7 @@ impl Claim {
             Self::Projection => projection(case),
             Self::Derivative => derivative(case),
             Self::Outputs => {
-                let (accelerations, multipliers) = case.motion();
+                let (accelerations, multipliers) = case.motion_at_hand();
                 let values = textbook.outputs(&accelerations[..6 * case.n_bodies()], &multipliers);
                 Some(differences(&case.run_with("outputs", point, &accelerations), &values?))
             }

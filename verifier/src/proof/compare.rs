@@ -100,6 +100,9 @@ impl<const L: usize> Decider<'_, L> {
         let patterns = [("phi_q", &module.phi_q_pattern), ("phi_pi", &module.phi_pi_pattern)];
         let mut problems = Vec::new();
         for (matrix, pattern) in patterns {
+            if !module.programs.contains_key(matrix) {
+                continue;
+            }
             let is_zero = self.at_any_point(module, seed, |draw, atoms| {
                 let values = run(module, matrix, draw, &[], atoms)?;
                 Ok(values.iter().map(Field::is_zero).collect::<Vec<_>>())
@@ -148,7 +151,12 @@ fn suited<F: Field>(
     if is_on_constraints(function) {
         draw.point.state = run(module, "to_maximal", &draw, &[], atoms)?;
     }
-    let accelerations = run(module, source_of_accelerations(function), &draw, &[], atoms)?;
+    let source = source_of_accelerations(function);
+    let accelerations = if module.programs.contains_key(source) {
+        run(module, source, &draw, &[], atoms)?
+    } else {
+        Vec::new()
+    };
     Ok((draw, accelerations))
 }
 

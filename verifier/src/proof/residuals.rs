@@ -15,7 +15,7 @@ pub fn differences<F: Field>(a: &[F], b: &[F]) -> Vec<F> {
 /// Eqs. (14) and (16) for p of any length: an integrator's stages leave the sphere.
 pub(super) fn position_rates<'a>(case: &Case<'a>, function: &str) -> Option<Vec<Term<'a>>> {
     let (longer, n) = (stretched(&case.point, &case.factors), case.n_bodies());
-    let accelerations = vec![Term::zero(case.point.context); case.module.n_accelerations];
+    let accelerations = vec![Term::zero(case.point.context); case.module.n_accelerations.max(6 * n)];
     let found = case.run_with(function, &longer, &accelerations);
     Some(differences(found.get(..7 * n)?, &case.textbook(&longer)?.position_rates()))
 }

@@ -1,7 +1,7 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
 use gyro_mechanisms::{four_bar::FourBar, torsion::Torsion};
-use gyro_sim::{Equations, JointSpace, Partition};
+use gyro_sim::{CorrectedSolution, Dynamics, JointJacobian, Kinematics, Partition, Projection};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
 use gyro_verifier::module::{Module, source_of_accelerations};
@@ -35,7 +35,7 @@ fn literals(code: &str) -> String {
 
 fn check<M>(page: &str, mechanism: &M)
 where
-    M: Equations<Scalar = f64>,
+    M: Kinematics<Scalar = f64> + Dynamics + Projection,
 {
     let (page, module) = read(page);
     let mut random = ChaCha8Rng::seed_from_u64(9);
@@ -59,7 +59,7 @@ fn read(page: &str) -> (crate::support::Page, Module) {
 /// The functions of joint coordinates.
 fn check_joints<M>(page: &str, mechanism: &M)
 where
-    M: JointSpace<Scalar = f64, Jacobian: AsRef<[f64]>> + Partition,
+    M: JointJacobian<Scalar = f64> + CorrectedSolution + Partition,
 {
     let (page, module) = read(page);
     let numbers: Vec<f64> = constants((), &module);
@@ -84,7 +84,7 @@ where
         let mut dx = x.clone();
         mechanism.joint_derivative(t, &x, &mut dx);
         same("joint_derivative", dx.as_ref());
-        let (mut by_state, mut by_time) = (mechanism.joint_buffers().jacobian, x.clone());
+        let (mut by_state, mut by_time) = (mechanism.jacobian_buffers().jacobian, x.clone());
         mechanism.joint_jacobian(t, &x, &mut by_state, &mut by_time);
         same("joint_jacobian", &[by_state.as_ref(), by_time.as_ref()].concat());
         let mut joints = x.clone();
@@ -93,13 +93,13 @@ where
         let (mut maximal, mut dy) = (y.clone(), y.clone());
         mechanism.to_maximal(t, &x, &mut maximal);
         same("to_maximal", maximal.as_ref());
-        let mut accelerations = mechanism.terms().velocities;
+        let mut accelerations = mechanism.buffers().velocities;
         mechanism.corrected_accelerations(t, &y, &mut accelerations);
         same("corrected_accelerations", accelerations.as_ref());
         let mut lambda = mechanism.buffers().rows;
         mechanism.corrected_multipliers(t, &y, &accelerations, &mut lambda);
         same("corrected_multipliers", lambda.as_ref());
-        let mut solution = mechanism.joint_buffers().solution;
+        let mut solution = mechanism.solution_buffer();
         mechanism.corrected_solution(t, &y, &mut solution);
         same("corrected_solution", solution.as_ref());
         mechanism.corrected_derivative(t, &y, &mut dy);
@@ -121,11 +121,11 @@ fn assert_same(function: &str, interpreted: &[f64], compiled: &[f64]) {
 
 fn compare<M>(module: &Module, model: &gyro_model::Model, mechanism: &M, t: f64, y: &M::State)
 where
-    M: Equations<Scalar = f64>,
+    M: Kinematics<Scalar = f64> + Dynamics + Projection,
 {
     let point = point(model, t, y.as_ref());
     let numbers: Vec<f64> = constants((), module);
-    let mut accelerations = mechanism.terms().accelerations;
+    let mut accelerations = mechanism.acceleration_buffer();
     mechanism.accelerations(t, y, &mut accelerations);
     let mut changes = mechanism.buffers().rows;
     changes.as_mut().iter_mut().zip(y.as_ref()).for_each(|(change, y)| *change = *y);
@@ -152,7 +152,7 @@ where
     let mut lambda = mechanism.buffers().rows;
     mechanism.multipliers(t, y, &accelerations, &mut lambda);
     same("multipliers", lambda.as_ref());
-    let mut motion = mechanism.terms().velocities;
+    let mut motion = mechanism.buffers().velocities;
     mechanism.project(t, y, &changes, &mut motion);
     same("project", motion.as_ref());
     let energy = mechanism.energy(t, y);

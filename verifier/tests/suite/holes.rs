@@ -462,7 +462,12 @@ fn names_of_files_end_no_line() {
     let odd = page.replace("\"cam.csv\"", "\"c\\nfn\\r\\u2028\\u202eam*/.csv\"");
     assert_ne!(page, odd);
     let model = gyro_model::read_with("cam.toml", &odd, &mut |_| read("cam.csv")).expect("a good model file");
-    let module = gyro_codegen::generate_model("ca\nm\u{2028}\u{202e}.toml", &model).expect("a module");
+    let module = gyro_codegen::generate_functions(
+        "ca\nm\u{2028}\u{202e}.toml",
+        &model,
+        &gyro_codegen::Functions::all(),
+    )
+    .expect("a module");
     let (text, report) = with_proof(&model, &module.code, &module.constants, Depth::Quick);
     assert!(report.is_proved(), "{report}");
     assert!(text.lines().next().is_some_and(|line| line.ends_with("Do not edit.")));

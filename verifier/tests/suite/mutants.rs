@@ -205,8 +205,11 @@ fn edited(page: &Page) -> Vec<(String, String)> {
             "gyro_sim::JointSpace::joint_accelerations(self",
             "gyro_sim::JointSpace::joint_accelerations_at(self",
         ),
-        ("gyro_sim::JointSpace::corrected_accelerations(self", "gyro_sim::Equations::accelerations(self"),
-        ("gyro_sim::self.terms().velocities", "gyro_sim::self.joint_buffers().rates"),
+        (
+            "gyro_sim::CorrectedDynamics::corrected_accelerations(self",
+            "gyro_sim::Dynamics::accelerations(self",
+        ),
+        ("[T::constant(0.0); 18]", "[T::constant(0.0); 3]"),
         ("rates[0]", "rates[1]"),
         ("*dx = [u0", "*dx = [rates[0]"),
         ("x[0] = ", "x[1] = "),

@@ -56,7 +56,8 @@ second = { body = "plate" }
     let rows: String = (0..20_000).map(row).collect();
     let mut load = |_: &str| Ok(format!("t,x\n{rows}"));
     let model = gyro_model::read_with("shaken.toml", page, &mut load).expect("a good model file");
-    let module = gyro_codegen::generate_model("shaken.toml", &model).expect("a module");
+    let module = gyro_codegen::generate_functions("shaken.toml", &model, &gyro_codegen::Functions::all())
+        .expect("a module");
     let proved = |code: &str| verify(&model, code, &module.constants, Depth::Quick).is_proved();
     assert!(proved(&module.code));
     // The last digit of one number in the middle.

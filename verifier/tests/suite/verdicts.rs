@@ -40,7 +40,8 @@ fn stopped_chain(bodies: usize) -> Model {
 #[test]
 fn many_roots_hide_neither_proof_nor_fault() {
     let model = stopped_chain(8);
-    let module = gyro_codegen::generate_model("chain.toml", &model).expect("a module");
+    let module = gyro_codegen::generate_functions("chain.toml", &model, &gyro_codegen::Functions::all())
+        .expect("a module");
     let report = verify(&model, &module.code, &module.constants, Depth::Quick);
     assert!(report.is_proved(), "{report}");
     let mut module = Module::read(&model, &module.code, &module.constants).expect("the emitted subset");
@@ -60,7 +61,8 @@ fn a_module_without_the_work_is_proved() {
         gyro_model::read("chain.toml", &page_with_work("count_work = false\n")).expect("a good model file");
     assert!(counted.has_work() && !left_out.has_work());
     for (model, joint_state) in [(&counted, "[T; 3]"), (&left_out, "[T; 2]")] {
-        let module = gyro_codegen::generate_model("chain.toml", model).expect("a module");
+        let module = gyro_codegen::generate_functions("chain.toml", model, &gyro_codegen::Functions::all())
+            .expect("a module");
         assert!(module.code.contains(&format!("type Joints = {joint_state}")), "{}", module.code);
         let report = verify(model, &module.code, &module.constants, Depth::Quick);
         assert!(report.is_proved(), "{report}");
@@ -127,7 +129,8 @@ fn roots_of_parameters_do_not_exclude_each_other() {
         [("[5, 1, \"p\"]", "[0, 0, 1]"), ("[1, \"p\", 6]", "[0, 1, 0]"), ("[\"p\", 3, 7]", "[1, 0, 0]")]
     {
         let model = arm(axis, zero);
-        let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+        let module = gyro_codegen::generate_functions("arm.toml", &model, &gyro_codegen::Functions::all())
+            .expect("a module");
         let report = verify(&model, &module.code, &module.constants, Depth::Quick);
         assert!(report.is_proved(), "{axis}: {report}");
     }
@@ -140,7 +143,8 @@ fn frames_of_parameters_store_no_zeros() {
         [("[0, 0, \"p\"]", "[3, 0, 4]"), ("[\"p\", 0, 0]", "[1, 2, 0.5]"), ("[0, \"p\", \"p\"]", "[3, 1, 1]")]
     {
         let model = arm(axis, zero);
-        let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+        let module = gyro_codegen::generate_functions("arm.toml", &model, &gyro_codegen::Functions::all())
+            .expect("a module");
         let report = verify(&model, &module.code, &module.constants, Depth::Quick);
         assert!(report.is_proved(), "{axis}: {report}");
     }
@@ -303,7 +307,8 @@ value = 0.333333333333333
 "#;
     for page in [page, &driven, turned] {
         let model = gyro_model::read("arm.toml", page).unwrap_or_else(|problems| panic!("{problems}"));
-        let module = gyro_codegen::generate_model("arm.toml", &model).expect("a module");
+        let module = gyro_codegen::generate_functions("arm.toml", &model, &gyro_codegen::Functions::all())
+            .expect("a module");
         let report = verify(&model, &module.code, &module.constants, Depth::Quick);
         assert!(report.is_proved(), "{report}");
     }
@@ -313,7 +318,8 @@ value = 0.333333333333333
 #[test]
 fn roots_of_parameters_are_never_too_many() {
     let model = free_frames(2);
-    let module = gyro_codegen::generate_model("frames.toml", &model).expect("a module");
+    let module = gyro_codegen::generate_functions("frames.toml", &model, &gyro_codegen::Functions::all())
+        .expect("a module");
     let mut module = Module::read(&model, &module.code, &module.constants).expect("the emitted subset");
     let prime: Prime<9> = prime(&model, &module, 1).expect("room for all roots");
     let decider = Decider::new(&model, prime);

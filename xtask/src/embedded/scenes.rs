@@ -3,9 +3,10 @@
 
 use super::folder;
 use gyro_cli::failure::Failure;
+use gyro_cli::files;
+use gyro_cli::generate::{self, Asked};
 use gyro_cli::places::listing;
 use gyro_cli::programs::io_failure;
-use gyro_cli::{files, generate};
 use std::fs;
 
 /// What it runs besides the model files in `embedded/models` and the paper's scene, which `gyro-sim` has.
@@ -17,7 +18,7 @@ pub(crate) fn generate() -> Result<(), Failure> {
     pages.push(files::root().join("models").join(OF_THE_GALLERY));
     let generated = folder().join("scenes").join("generated");
     fs::create_dir_all(&generated).map_err(|e| io_failure(&generated, &e))?;
-    for module in generate::modules(&pages, None, false) {
+    for module in generate::modules(&pages, &|_| Asked::There, false) {
         let module = module?;
         files::write(&generated.join(&module.name).with_extension("rs"), &module.as_item())?;
     }

@@ -10,7 +10,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    /// Empty for mechanisms that are not trees.
+    /// Nothing unless it is asked for and joint coordinates describe the mechanism.
     pub fn joint_space(&self) -> Option<TokenStream> {
         let space = self.equations.joint_space.as_ref()?;
         let name = ident(self.type_name);
@@ -28,30 +28,7 @@ impl ModuleWriter<'_> {
         let derivative = self.joint_derivative(n_x, n_u);
         let to_maximal = self.to_maximal(n_x + n_u);
         let to_joints = self.to_joints(n_x + n_u);
-        let at = self.filling(
-            Kernel::JointAccelerationsAt,
-            "Writes u̇ at a state that satisfies the constraints",
-            "Rates",
-        );
-        let corrected = self.filling(
-            Kernel::CorrectedAccelerations,
-            "Writes (s̈, ẇ') at a state that satisfies the constraints",
-            "Velocities",
-        );
-        let multipliers = self.multipliers(Kernel::CorrectedMultipliers, "Velocities");
-        let solution = self.filling(
-            Kernel::CorrectedSolution,
-            "Writes (s̈, ẇ') and λ at a state that satisfies the constraints",
-            "Solution",
-        );
-        let n_solution = index(space.solution.len());
-        let sizes =
-            space.jacobian.as_ref().map(|j| [self.n_by_state(space), j.by_inputs.roots.len()].map(index));
-        let [(jacobian_type, zero_jacobian), (input_jacobian_type, zero_input_jacobian)] = match sizes {
-            Some(sizes) => sizes.map(|n| (quote! { [T; #n] }, quote! { [T::constant(0.0); #n] })),
-            None => [(); 2].map(|()| (quote! { () }, quote! { () })),
-        };
-        let (layout, jacobian) = (self.joint_layout(space), self.joint_jacobian());
+        let layout = self.joint_layout(space);
         let n_closure = index(space.closure_rows.len());
         let zero_closure = match space.closure_rows.len() {
             0 => quote! { [] },
@@ -62,19 +39,13 @@ impl ModuleWriter<'_> {
             impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for #name<T> {
                 type Joints = [T; #n_joints];
                 type Rates = [T; #n_rates];
-                type Solution = [T; #n_solution];
                 type Closure = [T; #n_closure];
-                type Jacobian = #jacobian_type;
-                type InputJacobian = #input_jacobian_type;
 
                 #layout
                 fn joint_buffers(&self) -> gyro_sim::JointBuffers<Self> {
                     gyro_sim::JointBuffers {
                         rates: [T::constant(0.0); #n_rates],
-                        solution: [T::constant(0.0); #n_solution],
                         closure: #zero_closure,
-                        jacobian: #zero_jacobian,
-                        input_jacobian: #zero_input_jacobian,
                     }
                 }
                 fn joint_start(&self) -> Self::Joints {
@@ -86,11 +57,6 @@ impl ModuleWriter<'_> {
                 #derivative
                 #to_maximal
                 #to_joints
-                #at
-                #corrected
-                #multipliers
-                #solution
-                #jacobian
                 #closure
             }
         })
@@ -185,11 +151,12 @@ impl ModuleWriter<'_> {
         n_joints * n_joints
     }
 
-    /// Empty for mechanisms that are not trees or are too large.
-    fn joint_jacobian(&self) -> Option<TokenStream> {
+    /// Nothing unless it is asked for and the mechanism is not too large.
+    pub fn joint_jacobian(&self) -> Option<TokenStream> {
         let space = self.equations.joint_space.as_ref()?;
-        space.jacobian.as_ref()?;
-        let n_by_state = self.n_by_state(space);
+        let by_inputs = space.jacobian.as_ref()?.by_inputs.roots.len();
+        let (name, n_by_state) = (ident(self.type_name), self.n_by_state(space));
+        let [n, n_by_inputs] = [n_by_state, by_inputs].map(index);
         let out = quote! { dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints };
         let what = "Writes ∂f/∂x and ∂f/∂t";
         let by_state = self.of_joints(Kernel::JointJacobian, what, &out, |values| {
@@ -209,8 +176,20 @@ impl ModuleWriter<'_> {
             self.of_joints(Kernel::JointInputJacobian, "Writes ∂f/∂(inputs)", &out, write)
         };
         Some(quote! {
-            #by_state
-            #by_inputs
+            impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for #name<T> {
+                type Jacobian = [T; #n];
+                type InputJacobian = [T; #n_by_inputs];
+
+                fn jacobian_buffers(&self) -> gyro_sim::JacobianBuffers<Self> {
+                    gyro_sim::JacobianBuffers {
+                        jacobian: [T::constant(0.0); #n],
+                        input_jacobian: [T::constant(0.0); #n_by_inputs],
+                    }
+                }
+
+                #by_state
+                #by_inputs
+            }
         })
     }
 

@@ -12,10 +12,11 @@ impl ModuleWriter<'_> {
     pub fn mechanism(&self, start: &Start) -> TokenStream {
         let name = ident(self.type_name);
         let e = self.equations;
-        let [n_rows, n_all, n_readings, n_outputs, n_state] =
-            [e.n_rows(), e.phi.len(), e.readings.len(), e.outputs.len(), e.n_state()].map(index);
+        let [n_rows, n_all, n_velocities] = [e.n_rows, e.phi.len(), e.n_velocities()].map(index);
+        let [n_readings, n_outputs, n_state] = [e.readings.len(), e.outputs.len(), e.n_state()].map(index);
         let phi = self.filling(Kernel::Phi, "Writes Φ", "Constraints");
         let residual = self.filling(Kernel::VelocityResidual, "Writes Φ_r s + Φ_π' w' − ν", "Rows");
+        let force = self.filling(Kernel::AppliedForce, "Writes (f, n' − w̃'J'w')", "Velocities");
         let energy = self.function(
             "Kinetic and potential energy",
             self.kernels.roots(Kernel::Energy),
@@ -30,15 +31,15 @@ impl ModuleWriter<'_> {
             },
         );
         let readings = self.filling(Kernel::ReadJoints, "Writes the joint readings", "Readings");
-        let (start, derivative, corrected) =
-            (self.start(start), self.derivative(), self.corrected_derivative());
-        let (description, outputs, set_input) = (self.description(), self.outputs(), self.set_input());
+        let (start, description) = (self.start(start), self.description());
+        let (outputs, set_input) = (self.outputs(), self.set_input());
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {
                 type Scalar = T;
                 type State = [T; #n_state];
                 type Rows = [T; #n_rows];
                 type Constraints = [T; #n_all];
+                type Velocities = [T; #n_velocities];
                 type Readings = [T; #n_readings];
                 type Outputs = [T; #n_outputs];
 
@@ -47,19 +48,33 @@ impl ModuleWriter<'_> {
                     gyro_sim::Buffers {
                         rows: [T::constant(0.0); #n_rows],
                         constraints: [T::constant(0.0); #n_all],
+                        velocities: [T::constant(0.0); #n_velocities],
                         readings: [T::constant(0.0); #n_readings],
                         outputs: [T::constant(0.0); #n_outputs],
                     }
                 }
                 #start
-                #derivative
-                #corrected
                 #phi
                 #residual
+                #force
                 #energy
                 #readings
                 #outputs
                 #set_input
+            }
+        }
+    }
+
+    fn start(&self, start: &Start) -> TokenStream {
+        let work = self.equations.model.has_work().then_some(0.0);
+        let turns = self.equations.model.turn_references();
+        let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
+        let start = start.q.iter().chain(&start.v).copied().chain(work).chain(turns);
+        let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
+        quote! {
+            fn start(&self) -> Self::State {
+                let k = T::constant;
+                [#(k(#start)),*]
             }
         }
     }

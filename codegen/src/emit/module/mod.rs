@@ -1,11 +1,11 @@
 //! The text of a generated module: the mechanism's type and its implementation of the run-time contract.
 
 mod definition;
-mod equations;
+mod dynamics;
 mod joint_space;
+mod kinematics;
 mod mechanism;
 mod observed;
-mod ode;
 mod partition;
 mod ports;
 mod tables;
@@ -63,7 +63,10 @@ impl ModuleWriter<'_> {
     fn tokens(&self, start: &Start) -> TokenStream {
         let (tables, definition, mechanism) =
             (self.tables_of_motions(), self.definition(), self.mechanism(start));
-        let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
+        let (partition, kinematics, dynamics) = (self.partition(), self.kinematics(), self.dynamics());
+        let (projection, joint_space) = (self.projection(), self.joint_space());
+        let (corrected_dynamics, corrected_solution) = (self.corrected_dynamics(), self.corrected_solution());
+        let joint_jacobian = self.joint_jacobian();
         let (joint_outputs, output_derivatives, frames) =
             (self.joint_outputs(), self.output_derivatives(), self.frames());
         quote! {
@@ -71,8 +74,13 @@ impl ModuleWriter<'_> {
             #definition
             #mechanism
             #partition
-            #equations
+            #kinematics
+            #dynamics
+            #projection
+            #corrected_dynamics
             #joint_space
+            #corrected_solution
+            #joint_jacobian
             #joint_outputs
             #output_derivatives
             #frames

@@ -4,13 +4,19 @@ use super::writer::ModuleWriter;
 use crate::emit::tokens::{Variables, ident, index};
 use crate::expr::graph::{ExprId, Node};
 use crate::expr::symbol::Symbol;
+use crate::groups::Group;
 use crate::kernels::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    pub fn partition(&self) -> TokenStream {
-        if self.equations.charts.is_some() { self.by_charts() } else { self.by_pivoting() }
+    /// Nothing unless it is asked for.
+    pub fn partition(&self) -> Option<TokenStream> {
+        let is_asked_for = self.equations.functions.has(Group::Partition);
+        is_asked_for.then(|| match self.equations.charts {
+            Some(_) => self.by_charts(),
+            None => self.by_pivoting(),
+        })
     }
 
     /// Full pivoting at run time.

@@ -46,7 +46,7 @@ impl ModuleWriter<'_> {
                 let n = index(self.equations.solved.roots.len());
                 let solved = quote! {
                     let mut accelerations = [T::constant(0.0); #n];
-                    gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
+                    gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);
                 };
                 (&quote! { t }, &ident("y"), solved)
             } else {

@@ -7,7 +7,7 @@ mod runs;
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_codegen::Module;
 use gyro_model::Model;
-use gyro_sim::{Equations, Mechanism, Partition};
+use gyro_sim::{CorrectedDynamics, Dynamics, Kinematics, Mechanism, Partition, Projection};
 use runs::{Ends, STEPS, maximal};
 use std::fmt::Write as _;
 use std::fs;
@@ -48,7 +48,7 @@ pub fn compare(seeds: std::ops::Range<u64>) -> Found {
 fn page(seed: u64) -> (u64, Model, Module) {
     let read = gyro_model::read_with("page.toml", &gyro_pages::page(seed), &mut gyro_pages::load);
     let model = read.unwrap_or_else(|problems| panic!("{problems}"));
-    let module = gyro_codegen::generate_model("page.toml", &model);
+    let module = gyro_codegen::generate_functions("page.toml", &model, &gyro_codegen::Functions::all());
     let module = module.unwrap_or_else(|error| panic!("{seed}: {error}"));
     (seed, model, module)
 }
@@ -115,7 +115,11 @@ struct Twin {
 }
 
 impl Twin {
-    fn of<M: Partition<Scalar = f64, State = Vec<f64>> + Equations>(form: M) -> Self {
+    fn of<
+        M: Partition<Scalar = f64, State = Vec<f64>> + Kinematics + Dynamics + CorrectedDynamics + Projection,
+    >(
+        form: M,
+    ) -> Self {
         let start = Mechanism::start(&form);
         let ends = STEPS.map(|steps| maximal(&form, &start, steps));
         let mut noise = vec![0.0_f64; ends[0].len()];

@@ -3,7 +3,7 @@
 
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_model::{Model, to_f64};
-use gyro_sim::{Equations, Mechanism};
+use gyro_sim::Dynamics;
 use gyro_verifier::atoms::{Atoms, Elementary};
 use gyro_verifier::field::{Field, Precision, Real};
 use gyro_verifier::interpreter::{self, Given};
@@ -47,7 +47,8 @@ impl Comparison {
 /// Generates, builds and compares; `None` where the model file is refused.
 pub fn compare(text: &str) -> Option<Comparison> {
     let model = gyro_model::read_with("page.toml", text, &mut gyro_pages::load).ok()?;
-    let module = gyro_codegen::generate_model("page.toml", &model).ok()?;
+    let module =
+        gyro_codegen::generate_functions("page.toml", &model, &gyro_codegen::Functions::all()).ok()?;
     let module = Module::read(&model, &module.code, &module.constants).ok()?;
     let generated = Generated::new(&model, &module, (), |x| x);
     let forms = Forms::of(&model);
@@ -91,18 +92,18 @@ impl Forms {
     }
 }
 
-fn accelerations<M: Equations<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
+fn accelerations<M: Dynamics<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
     Box::new(|t, y| {
-        let mut out = form.terms().accelerations;
+        let mut out = form.acceleration_buffer();
         form.accelerations(t, y, &mut out);
         out.as_ref()[..6 * form.description().bodies.len()].to_vec()
     })
 }
 
-fn derivative<M: Mechanism<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
+fn derivative<M: Dynamics<Scalar = f64, State = Vec<f64>>>(form: &M) -> Derivative<'_> {
     Box::new(|t, y| {
         let mut dy = form.start();
-        Mechanism::derivative(form, t, y, &mut dy);
+        Dynamics::derivative(form, t, y, &mut dy);
         dy
     })
 }

@@ -2,8 +2,9 @@
 //! example and into the program that it writes, so that both run the same.
 
 use gyro_sim::{
-    Baumgarte, ClosedForm, Corrected, Correction, Equations, Error, Exact, Joint, JointSpace, Kutta4,
-    MassWeighted, Mechanism, Ode, Partition, Partitioning, Solver, Uncorrected,
+    Baumgarte, ClosedForm, Corrected, CorrectedDynamics, Correction, Dynamics, Error, Exact, Joint,
+    JointSpace, Kinematics, Kutta4, MassWeighted, Mechanism, Ode, Partition, Partitioning, Projection,
+    Solver, Uncorrected,
 };
 
 /// Length of a run, s, and its steps; again with twice as many, to see how much the method is off by.
@@ -29,7 +30,11 @@ fn end<D: Ode<M, Scalar = f64>, M>(
 }
 
 /// In maximal coordinates, from a start that may be moved.
-pub fn maximal<M: Partition<Scalar = f64> + Equations>(mechanism: &M, start: &M::State, steps: u32) -> Ends {
+pub fn maximal<M: Partition<Scalar = f64> + Kinematics + Dynamics + CorrectedDynamics + Projection>(
+    mechanism: &M,
+    start: &M::State,
+    steps: u32,
+) -> Ends {
     let partition = || Partitioning::new(mechanism, 0.0, start);
     let runs = [
         ("direct", end(Exact, mechanism, Uncorrected, start, steps)),
@@ -42,7 +47,7 @@ pub fn maximal<M: Partition<Scalar = f64> + Equations>(mechanism: &M, start: &M:
 
 /// What trees offer besides.
 #[allow(dead_code, reason = "the assembled forms have no joint coordinates")]
-pub fn joint<M: Partition<Scalar = f64> + JointSpace>(mechanism: &M, steps: u32) -> Ends {
+pub fn joint<M: Partition<Scalar = f64> + JointSpace + CorrectedDynamics>(mechanism: &M, steps: u32) -> Ends {
     let start = mechanism.start();
     let in_joints = end(Joint, mechanism, Uncorrected, &mechanism.joint_start(), steps).map(|x| {
         let mut y = mechanism.start();

@@ -57,20 +57,17 @@ fn turn_references(model: &Model) -> String {
     list(places)
 }
 
-pub(super) fn mechanism(model: &Model, name: &str, has_corrected: bool) -> String {
-    let corrected = "fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        HOLE_corrected_derivative
-    }";
-    let corrected = if has_corrected { corrected } else { "" };
+pub(super) fn mechanism(model: &Model, name: &str) -> String {
     let (n, n_rows, n_outputs) = (model.coordinate_bodies().len(), model.rows().len(), columns(model).len());
-    let sizes = [n_rows, n_rows + n, n_readings(model), n_outputs].map(|n| n.to_string());
-    let [rows, constraints, readings, outputs] = &sizes;
+    let sizes = [n_rows, n_rows + n, 6 * n, n_readings(model), n_outputs].map(|n| n.to_string());
+    let [rows, constraints, velocities, readings, outputs] = &sizes;
     format!(
         "impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for {name}<T> {{
             type Scalar = T;
             type State = [T; {}];
             type Rows = [T; {rows}];
             type Constraints = [T; {constraints}];
+            type Velocities = [T; {velocities}];
             type Readings = [T; {readings}];
             type Outputs = [T; {outputs}];
             fn description(&self) -> &gyro_sim::Description<'_> {{
@@ -79,8 +76,6 @@ pub(super) fn mechanism(model: &Model, name: &str, has_corrected: bool) -> Strin
             }}
             {}
             fn start(&self) -> Self::State {{ HOLE_start }}
-            fn derivative(&self, ANY_t: T, ANY_y: &Self::State, dy: &mut Self::State) {{ HOLE_derivative }}
-            {corrected}
             {}
             fn energy(&self, ANY_t: T, ANY_y: &Self::State) -> gyro_sim::Energy<T> {{ HOLE_energy }}
             {}
@@ -91,9 +86,15 @@ pub(super) fn mechanism(model: &Model, name: &str, has_corrected: bool) -> Strin
         buffers(
             "buffers",
             "Buffers",
-            &[("rows", rows), ("constraints", constraints), ("readings", readings), ("outputs", outputs)],
+            &[
+                ("rows", rows),
+                ("constraints", constraints),
+                ("velocities", velocities),
+                ("readings", readings),
+                ("outputs", outputs),
+            ],
         ),
-        fillings(&[("phi", "Constraints"), ("velocity_residual", "Rows")]),
+        fillings(&[("phi", "Constraints"), ("velocity_residual", "Rows"), ("applied_force", "Velocities")]),
         fillings(&[("read_joints", "Readings"), ("outputs", "Outputs")]),
         setter("fn set_input", &model.inputs, ("self", "", "")),
     )
