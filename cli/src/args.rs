@@ -60,7 +60,7 @@ pub struct GenerateArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Functions of the module, by their names or by groups, separated by commas; a function comes with its group, and
-    /// a group with what it needs [default: the model file's, or all]
+    /// a group with what it needs [default: the model file's, or `jacobian`]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "models", long_help = functions_help())]
     pub(crate) functions: Option<Vec<String>>,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
@@ -72,7 +72,7 @@ pub struct GenerateArgs {
 fn functions_help() -> String {
     format!(
         "Functions of the module, by their names or by groups, separated by commas; a function comes with its group, and a \
-         group with what it needs [default: the model file's, or all]\n\n{}",
+         group with what it needs [default: the model file's, or `jacobian`]\n\n{}",
         gyro_codegen::Functions::help()
     )
 }

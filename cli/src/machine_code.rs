@@ -94,6 +94,29 @@ fn call(kernel: Kernel) -> Option<Call> {
         }
         Kernel::ClosePositions => ["close_positions", "x: &mut Joints", "x", ""],
         Kernel::CloseVelocities => ["close_velocities", "x: &mut Joints", "x", ""],
+        Kernel::InverseDynamics => {
+            ["inverse_dynamics", "x: &Joints, a: &Rates, out: &mut Rates", "x, a, out", ""]
+        }
+        Kernel::BiasForces => ["bias_forces", "x: &Joints, out: &mut Rates", "x, out", ""],
+        Kernel::GravityForces => ["gravity_forces", "x: &Joints, out: &mut Rates", "x, out", ""],
+        Kernel::MassMatrix => {
+            ["mass_matrix", "x: &Joints, out: &mut <Module as MassMatrix>::MassMatrix", "x, out", ""]
+        }
+        Kernel::MassFactor => {
+            ["mass_factor", "x: &Joints, out: &mut <Module as MassMatrix>::MassMatrix", "x, out", ""]
+        }
+        Kernel::InverseDerivatives => [
+            "inverse_derivatives",
+            "x: &Joints, a: &Rates, out: &mut <Module as DynamicsDerivatives>::InverseDerivatives",
+            "x, a, out",
+            "",
+        ],
+        Kernel::ForwardDerivatives => [
+            "forward_derivatives",
+            "x: &Joints, out: &mut <Module as DynamicsDerivatives>::ForwardDerivatives",
+            "x, out",
+            "",
+        ],
     };
     Some(Call { function, takes, passes, returns })
 }
@@ -106,7 +129,9 @@ pub fn library(type_name: &str, kernels: &[Kernel]) -> String {
 mod mechanism;
 
 #[allow(unused_imports)]
-use gyro_sim::{{Energy, Equations, Error, JointSpace, Mechanism, Partition}};
+use gyro_sim::{{
+    DynamicsDerivatives, Energy, Equations, Error, InverseDynamics, JointSpace, MassMatrix, Mechanism, Partition,
+}};
 
 pub type Module = mechanism::{type_name}<f64>;
 type State = <Module as Mechanism>::State;

@@ -64,8 +64,8 @@ impl Runs {
     /// The functions that they call.
     fn functions(self) -> Functions {
         match self {
-            Self::All => Functions::all(),
-            Self::Only(..) => Functions::all().without(Group::Jacobian),
+            Self::All => Functions::usual(),
+            Self::Only(..) => Functions::usual().without(Group::Jacobian),
         }
     }
 }

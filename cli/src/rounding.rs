@@ -263,7 +263,14 @@ where
         | Kernel::ClosePositions
         | Kernel::CloseVelocities
         | Kernel::JointJacobian
-        | Kernel::JointInputJacobian => return None,
+        | Kernel::JointInputJacobian
+        | Kernel::InverseDynamics
+        | Kernel::BiasForces
+        | Kernel::GravityForces
+        | Kernel::MassMatrix
+        | Kernel::MassFactor
+        | Kernel::InverseDerivatives
+        | Kernel::ForwardDerivatives => return None,
     })
 }
 

@@ -11,12 +11,28 @@ pub enum Group {
     Joint,
     /// The Jacobians of `JointSpace`, whose types are `()` in modules without them.
     Jacobian,
+    /// `InverseDynamics`.
+    Inverse,
+    /// `MassMatrix`.
+    MassMatrix,
+    /// `DynamicsDerivatives`.
+    Derivatives,
 }
 
 impl Group {
     /// All groups.
     pub fn all() -> impl Iterator<Item = Self> {
+        Self::usual().chain(Self::on_request())
+    }
+
+    /// Those of which modules consist unless something else is asked for.
+    fn usual() -> impl Iterator<Item = Self> {
         [Self::Maximal, Self::Joint, Self::Jacobian].into_iter()
+    }
+
+    /// Those that are there where they are asked for.
+    pub(crate) fn on_request() -> impl Iterator<Item = Self> {
+        [Self::Inverse, Self::MassMatrix, Self::Derivatives].into_iter()
     }
 
     /// Its name on the command line and in model files.
@@ -25,6 +41,9 @@ impl Group {
             Self::Maximal => "maximal",
             Self::Joint => "joint",
             Self::Jacobian => "jacobian",
+            Self::Inverse => "inverse",
+            Self::MassMatrix => "mass_matrix",
+            Self::Derivatives => "derivatives",
         }
     }
 
@@ -34,6 +53,11 @@ impl Group {
             Self::Maximal => "what every module has (traits Mechanism, Partition, Equations)",
             Self::Joint => "joint coordinates (trait JointSpace)",
             Self::Jacobian => "derivatives of the joint form, with `joint` (JointSpace::Jacobian)",
+            Self::Inverse => "forces for given accelerations, on request (trait InverseDynamics)",
+            Self::MassMatrix => "M and its factor, on request (trait MassMatrix)",
+            Self::Derivatives => {
+                "derivatives of forces and accelerations, on request (trait DynamicsDerivatives)"
+            }
         }
     }
 
@@ -42,7 +66,8 @@ impl Group {
         match self {
             Self::Maximal => vec![self],
             Self::Joint => vec![Self::Maximal, self],
-            Self::Jacobian => vec![Self::Maximal, Self::Joint, self],
+            Self::Jacobian | Self::Inverse | Self::MassMatrix => vec![Self::Maximal, Self::Joint, self],
+            Self::Derivatives => vec![Self::Maximal, Self::Joint, Self::Inverse, self],
         }
     }
 }
@@ -56,6 +81,11 @@ impl Functions {
     /// All that the generator knows of.
     pub fn all() -> Self {
         Self(Group::all().collect())
+    }
+
+    /// What a module has unless something else is asked for.
+    pub fn usual() -> Self {
+        Self(Group::usual().collect())
     }
 
     /// Some groups, each with what it needs. What solvers and observers of every mechanism need is always there.

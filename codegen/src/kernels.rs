@@ -6,7 +6,7 @@ use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
-use crate::joint_space::{Jacobian, JointSpace};
+use crate::joint_space::{Jacobian, JointSpace, OnRequest};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::parameter_setup;
 use std::collections::BTreeMap;
@@ -47,6 +47,13 @@ pub enum Kernel {
     ClosureDistances,
     ClosePositions,
     CloseVelocities,
+    InverseDynamics,
+    BiasForces,
+    GravityForces,
+    MassMatrix,
+    MassFactor,
+    InverseDerivatives,
+    ForwardDerivatives,
 }
 
 /// When a kernel exists, and where its expressions come from.
@@ -61,6 +68,8 @@ enum Source {
     JointSpace(fn(&JointSpace) -> Chosen),
     /// If it has few enough rates for the derivatives of the joint form.
     Jacobian(fn(&Jacobian) -> Chosen),
+    /// If its group is asked for and joint coordinates describe the mechanism without loops.
+    OnRequest(Group, fn(&OnRequest) -> Option<&Chosen>),
 }
 
 /// What is known of a kernel.
@@ -112,6 +121,13 @@ const TABLE: &[Row] = &[
     row(Kernel::ClosureDistances, "closure_distances", "squares of distances between the rows of the loops' Jacobian", Source::JointSpace(|s| s.distances.clone().into())),
     row(Kernel::ClosePositions, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
     row(Kernel::CloseVelocities, "close_velocities", "rates that keep loops closed", Source::JointSpace(|s| s.closing_rates.clone().into())),
+    row(Kernel::InverseDynamics, "inverse_dynamics", "τ = M u̇ + h of given u̇", Source::OnRequest(Group::Inverse, |r| r.inverse.as_ref())),
+    row(Kernel::BiasForces, "bias_forces", "h, that is τ at u̇ = 0", Source::OnRequest(Group::Inverse, |r| r.bias.as_ref())),
+    row(Kernel::GravityForces, "gravity_forces", "what of h is against gravity", Source::OnRequest(Group::Inverse, |r| r.gravity.as_ref())),
+    row(Kernel::MassMatrix, "mass_matrix", "M in joint coordinates, row by row", Source::OnRequest(Group::MassMatrix, |r| r.mass_matrix.as_ref())),
+    row(Kernel::MassFactor, "mass_factor", "D and L of M = Lᵀ D L", Source::OnRequest(Group::MassMatrix, |r| r.mass_factor.as_ref())),
+    row(Kernel::InverseDerivatives, "inverse_derivatives", "∂τ/∂(x, u), row by row", Source::OnRequest(Group::Derivatives, |r| r.inverse_derivatives.as_ref())),
+    row(Kernel::ForwardDerivatives, "forward_derivatives", "∂u̇/∂(x, u, τ), row by row", Source::OnRequest(Group::Derivatives, |r| r.forward_derivatives.as_ref())),
 ];
 
 const _: () = {
@@ -144,6 +160,7 @@ impl Kernel {
             Source::Parameters | Source::Equations(_) | Source::Charts(_) => Group::Maximal,
             Source::JointSpace(_) => Group::Joint,
             Source::Jacobian(_) => Group::Jacobian,
+            Source::OnRequest(group, _) => group,
         }
     }
 
@@ -160,6 +177,7 @@ impl Kernel {
             Source::Charts(of) => equations.charts.as_ref().map(of),
             Source::JointSpace(of) => joint_space.map(of),
             Source::Jacobian(of) => joint_space?.jacobian.as_ref().map(of),
+            Source::OnRequest(_, of) => of(&joint_space?.on_request).cloned(),
         }
     }
 }
@@ -215,7 +233,7 @@ mod tests {
     fn cost(page: &str, elimination: Elimination, wanted: &[Kernel]) -> usize {
         let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let start = model.assemble().expect("a start");
-        let mut equations = crate::equations(&model, (elimination, &Functions::all()), &start);
+        let mut equations = crate::equations(&model, (elimination, &Functions::usual()), &start);
         let mut kernels = Kernels::of(&equations);
         kernels.finish(&mut equations.graph, equations.passes);
         let of = |&kernel: &Kernel| Operations::count(&equations.graph, kernels.roots(kernel)).total();

@@ -163,8 +163,8 @@ pub enum Elimination {
     Saddle,
 }
 
-/// Writes the module of a model that was read already, with the functions that the model file asks for, or with all of
-/// them.
+/// Writes the module of a model that was read already, with the functions that the model file asks for, or with the
+/// usual ones.
 ///
 /// # Errors
 /// Why no consistent start exists, or which function is not known.
@@ -179,7 +179,7 @@ pub fn generate_model(file_name: &str, model: &Model) -> Result<Module, Error> {
 pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> Result<Module, Error> {
     let functions = match &model.functions {
         Some(names) => Functions::named(names.iter().map(String::as_str)).map_err(Error::Functions)?,
-        None => Functions::all(),
+        None => Functions::usual(),
     };
     write(file_name, model, (elimination, &functions))
 }

@@ -37,9 +37,9 @@ impl Functions {
         for group in Group::all() {
             let functions = Kernel::all().filter(|kernel| kernel.group() == group).map(Kernel::name);
             let functions = functions.collect::<Vec<_>>().join(", ");
-            lines.push(format!("{:9} {}: {functions}", group.name(), group.what()));
+            lines.push(format!("{:11} {}: {functions}", group.name(), group.what()));
         }
-        lines.push(format!("{ALL:9} all of them"));
+        lines.push(format!("{ALL:11} all of them"));
         lines.join("\n")
     }
 }
@@ -81,9 +81,10 @@ mod tests {
         }
         assert!(named(&["joint_jacobian"]).has(Group::Joint));
         assert_eq!(named(&["joint", "all"]), Functions::all());
-        assert_eq!(named(&["jacobian"]), Functions::all());
+        assert_eq!(named(&["jacobian"]), Functions::usual());
         assert_eq!(Functions::all().without(Group::Joint), named(&["phi", "outputs"]));
-        assert_eq!(Functions::all().without(Group::Jacobian), named(&["joint"]));
+        assert_eq!(Functions::usual().without(Group::Jacobian), named(&["joint"]));
+        assert!(named(&["inverse_derivatives"]).has(Group::Inverse));
     }
 
     #[test]
@@ -94,6 +95,10 @@ mod tests {
         assert!(words("jacobians").contains("did you mean `jacobian`?"));
         let found = words("xyz");
         assert!(!found.contains("did you mean"), "{found}");
-        assert!(found.contains("maximal, joint, jacobian, all") && found.contains("newton_step"), "{found}");
+        assert!(
+            found.contains("maximal, joint, jacobian, inverse, mass_matrix, derivatives, all")
+                && found.contains("newton_step"),
+            "{found}"
+        );
     }
 }

@@ -15,6 +15,9 @@
 //! | [`Equations`] | the equations of motion term by term | the same |
 //! | [`Partition`] | independent and dependent coordinates | the same |
 //! | [`JointSpace`] | joint coordinates | generated mechanisms that have them |
+//! | [`InverseDynamics`] | τ of given u̇, bias and gravity forces | those of which it is asked |
+//! | [`MassMatrix`] | M and its factor | the same |
+//! | [`DynamicsDerivatives`] | derivatives of forces and accelerations | the same |
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
 //! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
@@ -115,9 +118,9 @@ mod violation;
 
 pub use apart::apart;
 pub use contract::{
-    Buffers, Clearance, Coordinate, Corrected, Description, Energy, Equations, Exact, Joint, JointBuffers,
-    JointInfo, JointLayout, JointPlace, JointSpace, Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo,
-    System, Terms, set_turn_references,
+    Buffers, Clearance, Coordinate, Corrected, Description, DynamicsDerivatives, Energy, Equations, Exact,
+    InverseDynamics, Joint, JointBuffers, JointInfo, JointLayout, JointPlace, JointSpace, MassMatrix,
+    Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

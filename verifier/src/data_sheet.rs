@@ -67,6 +67,13 @@ const WORDS: &[Words] = &[
     says("closure_distances", "squares of distances between the rows of the loops' Jacobian", "Writes squares of distances between the rows of the loops' Jacobian"),
     says("close_positions", "one Newton step of joint coordinates that closes loops", "One Newton step of the joint coordinates towards closed loops"),
     says("close_velocities", "rates that keep loops closed", "Changes the rates such that loops stay closed"),
+    says("inverse_dynamics", "τ = M u̇ + h of given u̇", "Writes τ = M u̇ + h of given u̇"),
+    says("bias_forces", "h, that is τ at u̇ = 0", "Writes h"),
+    writes("inverse_derivatives", "∂τ/∂(x, u), row by row"),
+    writes("forward_derivatives", "∂u̇/∂(x, u, τ), row by row"),
+    says("mass_matrix", "M in joint coordinates, row by row", "Writes M in joint coordinates, row by row"),
+    writes("mass_factor", "D and L of M = Lᵀ D L"),
+    says("gravity_forces", "what of h is against gravity", "Writes what of h is against gravity"),
 ];
 
 /// What a module says of the function of this name; `None` if no module has such a function.
@@ -183,6 +190,8 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         let says_so = module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(unasked));
         if says_so { unasked } else { what }
     };
+    let says =
+        |what: &str| module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(what));
     let missing = [
         (
             module.joints.is_none(),
@@ -208,9 +217,20 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         (model.parameters.is_empty(), "parameters (all numbers are folded)"),
         (model.outputs.is_empty(), "outputs (the model file asks for none)"),
     ];
+    left_out.extend(unavailable(module).filter(|what| says(what)));
     left_out
         .extend(missing.into_iter().filter(|(is_missing, _)| *is_missing).map(|(_, what)| what.to_owned()));
     left_out
+}
+
+/// What can be missing though it was asked for: that it was, only the sheet knows.
+fn unavailable(module: &Module) -> impl Iterator<Item = String> {
+    let why = match &module.joints {
+        None => Some("without joint coordinates there are none"),
+        Some(joints) => (!joints.closure_rows.is_empty()).then_some("mechanisms with loops have none"),
+    };
+    let groups = ["inverse", "mass_matrix", "derivatives"].into_iter();
+    groups.filter_map(move |group| Some(format!("the functions of `{group}` ({})", why?)))
 }
 
 /// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`; what gives no numbers has no row.

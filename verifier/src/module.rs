@@ -17,7 +17,7 @@ use block::{Before, Form, Reader, Sizes};
 use gyro_model::{Model, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
-use skeleton::{Choice, Has};
+use skeleton::{Choice, Has, OnRequest};
 pub(crate) use skeleton::{n_state, type_name};
 use std::collections::BTreeMap;
 use syn::Block;
@@ -44,6 +44,8 @@ pub struct Module {
     pub start: Vec<f64>,
     /// The start in joint coordinates; nothing of mechanisms that have none.
     pub joint_start: Vec<f64>,
+    /// The order of the rates in which the factor of the mass matrix is triangular; nothing of modules without it.
+    pub mass_order: Vec<usize>,
     /// Where joint coordinates stand, if the module has them.
     pub joints: Option<JointLayout>,
     /// Number of accelerations and multipliers that `accelerations` gives.
@@ -60,7 +62,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 33] = [
+const FUNCTIONS: [(&str, Form); 40] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -94,6 +96,13 @@ const FUNCTIONS: [(&str, Form); 33] = [
     ("close_velocities", Form::JointStores),
     ("joint_jacobian", Form::Jacobian),
     ("joint_input_jacobian", Form::Filling),
+    ("inverse_dynamics", Form::Filling),
+    ("bias_forces", Form::Filling),
+    ("gravity_forces", Form::Filling),
+    ("mass_matrix", Form::Filling),
+    ("mass_factor", Form::Filling),
+    ("inverse_derivatives", Form::Filling),
+    ("forward_derivatives", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
@@ -150,7 +159,7 @@ pub fn is_on_constraints(function: &str) -> bool {
 /// The function that gives the accelerations, or rates, that another one reads.
 pub fn source_of_accelerations(function: &str) -> &'static str {
     match function {
-        "joint_derivative" => "joint_accelerations",
+        "joint_derivative" | "inverse_dynamics" | "inverse_derivatives" => "joint_accelerations",
         "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
         _ => "accelerations",
     }
@@ -182,6 +191,7 @@ impl Module {
             jacobian,
             corrected_derivative,
             parameter_setup: text.contains("fn parameter_setup("),
+            on_request: OnRequest::of(&text),
         };
         let joints = layout::read(model, &tokens)?;
         let name = type_name(&model.name);
@@ -216,7 +226,9 @@ impl Module {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
             let accelerations = match name {
                 "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
-                "joint_derivative" => joints.as_ref().map_or(0, |joints| joints.n_rates),
+                "joint_derivative" | "inverse_dynamics" | "inverse_derivatives" => {
+                    joints.as_ref().map_or(0, |joints| joints.n_rates)
+                }
                 _ => n_accelerations,
             };
             // What is set up does not read what is set up.
@@ -257,6 +269,12 @@ impl Module {
             start: block::start(&block(&matched.holes["start"])?)?,
             joint_start: match matched.holes.get("joint_start") {
                 Some(hole) => block::start(&block(hole)?)?,
+                None => Vec::new(),
+            },
+            mass_order: match matched.holes.get("mass_order") {
+                Some(hole) => {
+                    block::order(&block(hole)?, joints.as_ref().map_or(0, |joints| joints.n_rates))?
+                }
                 None => Vec::new(),
             },
             joints,
@@ -312,6 +330,13 @@ impl Module {
             ("closure_distances", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
+            ("inverse_dynamics", if has("inverse_dynamics") { n_rates } else { 0 }),
+            ("bias_forces", if has("bias_forces") { n_rates } else { 0 }),
+            ("gravity_forces", if has("gravity_forces") { n_rates } else { 0 }),
+            ("mass_matrix", if has("mass_matrix") { n_rates * n_rates } else { 0 }),
+            ("mass_factor", if has("mass_factor") { n_rates * n_rates } else { 0 }),
+            ("inverse_derivatives", if has("inverse_derivatives") { 2 * n_rates * n_rates } else { 0 }),
+            ("forward_derivatives", if has("forward_derivatives") { 3 * n_rates * n_rates } else { 0 }),
         ];
         let found = |name: &str| self.written.get(name).map_or(0, |program| program.results.len());
         let patterns = [

@@ -7,6 +7,7 @@ mod compare;
 mod decide;
 mod elimination;
 mod joints;
+mod on_request;
 mod partition;
 mod point;
 mod residuals;

@@ -51,6 +51,9 @@ pub struct Function {
     pub reductions: Vec<Reduction>,
 }
 
+/// How it is said of functions that they were asked for and cannot be.
+const UNAVAILABLE: &str = "the functions of";
+
 impl DataSheet {
     pub(crate) fn of(equations: &Equations, kernels: &Kernels) -> Self {
         let model = equations.model;
@@ -75,6 +78,11 @@ impl DataSheet {
     /// Rows of Φ: one normalisation for each body after the rows of joints, couplers and drivers.
     pub fn constraints(&self) -> usize {
         self.rows + self.bodies.len()
+    }
+
+    /// What was asked for and cannot be: which functions, and why.
+    pub fn unavailable(&self) -> impl Iterator<Item = &str> {
+        self.left_out.iter().map(String::as_str).filter(|what| what.starts_with(UNAVAILABLE))
     }
 
     /// Degrees of freedom.
@@ -205,6 +213,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
         let (owner, index) = (owner_name(model, redundant.row.owner), redundant.row.index + 1);
         format!("row {index} of {owner} (redundant)")
     }));
+    left_out.extend(Group::on_request().filter_map(|group| unavailable(equations, group)));
     match &equations.joint_space {
         Some(space) => {
             left_out.extend(space.jacobian.is_none().then(|| {
@@ -237,6 +246,19 @@ fn left_out(equations: &Equations) -> Vec<String> {
         left_out.push("outputs (the model file asks for none)".into());
     }
     left_out
+}
+
+/// Of functions that are asked for and that there cannot be: which ones, and why.
+fn unavailable(equations: &Equations, group: Group) -> Option<String> {
+    if !equations.functions.has(group) {
+        return None;
+    }
+    let why = match &equations.joint_space {
+        None => "without joint coordinates there are none",
+        Some(space) if space.closure_rows.is_empty() => return None,
+        Some(_) => "mechanisms with loops have none",
+    };
+    Some(format!("{UNAVAILABLE} `{}` ({why})", group.name()))
 }
 
 fn owner_name(model: &Model, owner: RowOwner) -> String {

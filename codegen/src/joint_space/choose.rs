@@ -4,6 +4,7 @@ use super::candidates::Candidates;
 use super::coordinates::Coordinates;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
+use super::on_request::OnRequest;
 use super::{forces, maps, motions, multipliers};
 use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
@@ -38,6 +39,8 @@ pub struct JointSpace {
     pub start: Vec<f64>,
     /// The derivatives of the joint form, unless the mechanism is too large.
     pub jacobian: Option<Jacobian>,
+    /// What is there only where it is asked for.
+    pub on_request: OnRequest,
     /// Bodies that are described in a frame that does not turn with them.
     pub invariant: Vec<usize>,
     /// The rows of the joints that close loops, by their places among all rows.
@@ -110,6 +113,7 @@ impl JointSpace {
             passes,
         };
         let jacobian = functions.has(Group::Jacobian).then(|| Jacobian::derive(system, &form)).flatten();
+        let on_request = OnRequest::derive(system, &coordinates, &candidates.balance, functions);
         let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
@@ -125,6 +129,7 @@ impl JointSpace {
             accelerations_at,
             corrected,
             jacobian,
+            on_request,
             maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),
             reduced,

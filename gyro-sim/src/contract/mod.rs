@@ -9,6 +9,7 @@ mod joint_space;
 mod mechanism;
 mod ode;
 mod partition;
+mod robot;
 
 pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
 pub use equations::{Equations, Terms};
@@ -16,6 +17,7 @@ pub use joint_space::{JointBuffers, JointLayout, JointPlace, JointSpace};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use ode::{Corrected, Exact, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
+pub use robot::{DynamicsDerivatives, InverseDynamics, MassMatrix};
 
 use core::fmt::Debug;
 

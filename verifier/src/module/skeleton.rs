@@ -5,10 +5,12 @@
 
 mod definition;
 mod mechanism;
+mod on_request;
 mod partition;
 mod pieces;
 
 pub use mechanism::{n_readings, n_state};
+pub use on_request::OnRequest;
 pub use partition::Choice;
 
 use crate::joints::{Freedom, JointLayout};
@@ -29,6 +31,8 @@ pub struct Has {
     pub corrected_derivative: bool,
     /// A function of what depends on parameters alone.
     pub parameter_setup: bool,
+    /// What is there only where it is asked for.
+    pub on_request: OnRequest,
 }
 
 /// The expected text.
@@ -46,6 +50,7 @@ pub fn text(
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
+        joints.map(|joints| has.on_request.text(type_name, joints)).unwrap_or_default(),
     ]
     .concat()
 }

@@ -4,7 +4,7 @@ use super::case::{Arguments, Case};
 use super::partition::dot;
 use super::point::stretched;
 use super::residuals::{differences, position_rates};
-use super::{closure, joints, partition};
+use super::{closure, joints, on_request, partition};
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
@@ -78,6 +78,20 @@ pub enum Claim {
     JointJacobian,
     /// `joint_input_jacobian` is ∂f/∂(inputs).
     JointInputJacobian,
+    /// `inverse_dynamics` gives the forces that any u̇ takes.
+    InverseDynamics,
+    /// `bias_forces` are those that u̇ = 0 takes.
+    BiasForces,
+    /// `gravity_forces` are those that rest takes against gravity.
+    GravityForces,
+    /// `mass_matrix` is M.
+    MassMatrix,
+    /// `mass_factor` is its factor.
+    MassFactor,
+    /// `inverse_derivatives` are those of `inverse_dynamics`.
+    InverseDerivatives,
+    /// `forward_derivatives` are those of `joint_accelerations`, and M⁻¹.
+    ForwardDerivatives,
 }
 
 impl Claim {
@@ -122,6 +136,16 @@ impl Claim {
             |function: &str| module.programs.get(function).is_some_and(|program| !program.results.is_empty());
         claims.extend(gives("joint_jacobian").then_some(JointJacobian));
         claims.extend(gives("joint_input_jacobian").then_some(JointInputJacobian));
+        let on_request = [
+            InverseDynamics,
+            BiasForces,
+            GravityForces,
+            MassMatrix,
+            MassFactor,
+            InverseDerivatives,
+            ForwardDerivatives,
+        ];
+        claims.extend(on_request.into_iter().filter(|claim| gives(claim.functions()[0])));
         claims
     }
 
@@ -159,6 +183,13 @@ impl Claim {
             Self::CloseVelocities => &["close_velocities"],
             Self::JointJacobian => &["joint_jacobian"],
             Self::JointInputJacobian => &["joint_input_jacobian"],
+            Self::InverseDynamics => &["inverse_dynamics"],
+            Self::BiasForces => &["bias_forces"],
+            Self::GravityForces => &["gravity_forces"],
+            Self::MassMatrix => &["mass_matrix"],
+            Self::MassFactor => &["mass_factor"],
+            Self::InverseDerivatives => &["inverse_derivatives"],
+            Self::ForwardDerivatives => &["forward_derivatives"],
         }
     }
 
@@ -196,6 +227,13 @@ impl Claim {
             Self::CloseVelocities => "loops stay closed; rates at which they do are kept",
             Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
             Self::JointInputJacobian => "`joint_derivative` by dual numbers, of the inputs",
+            Self::InverseDynamics => "Bᵀ(M v̇ − f) at any u̇",
+            Self::BiasForces => "Bᵀ(M v̇ − f) at u̇ = 0",
+            Self::GravityForces => "−Bᵀ(m g, 0)",
+            Self::MassMatrix => "Bᵀ diag(M, J') B",
+            Self::MassFactor => "Lᵀ D L = Bᵀ diag(M, J') B, L triangular in its order",
+            Self::InverseDerivatives => "`inverse_dynamics` by dual numbers, along the rates and of them",
+            Self::ForwardDerivatives => "`joint_accelerations` by dual numbers, likewise; M M⁻¹ = 1",
         }
     }
 
@@ -222,6 +260,13 @@ impl Claim {
             }
             Self::JointJacobian | Self::JointInputJacobian => {
                 "the derivatives of `joint_derivative` by dual numbers"
+            }
+            Self::InverseDerivatives | Self::ForwardDerivatives => {
+                "the derivatives of what is proved by dual numbers"
+            }
+            Self::MassMatrix | Self::MassFactor => "the kinetic energy of free motions",
+            Self::InverseDynamics | Self::BiasForces | Self::GravityForces => {
+                "virtual power on the constraints"
             }
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
         }
@@ -285,6 +330,13 @@ impl Claim {
             Self::CloseVelocities => closure::close_velocities(case),
             Self::JointJacobian => joints::jacobian(case),
             Self::JointInputJacobian => joints::input_jacobian(case),
+            Self::InverseDynamics => on_request::inverse_dynamics(case),
+            Self::BiasForces => on_request::bias_forces(case),
+            Self::GravityForces => on_request::gravity_forces(case),
+            Self::MassMatrix => on_request::mass_matrix(case),
+            Self::MassFactor => on_request::mass_factor(case),
+            Self::InverseDerivatives => on_request::inverse_derivatives(case),
+            Self::ForwardDerivatives => on_request::forward_derivatives(case),
         }
     }
 }

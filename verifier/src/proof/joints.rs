@@ -23,7 +23,7 @@ use crate::textbook::Reading;
 use gyro_model::{JointCoordinate, RowOwner};
 
 /// A joint state on its way.
-struct Motion<'c, 'a> {
+pub(super) struct Motion<'c, 'a> {
     case: &'c Case<'a>,
     layout: &'a JointLayout,
     /// Its maximal state.
@@ -38,8 +38,12 @@ struct Motion<'c, 'a> {
 
 impl<'c, 'a> Motion<'c, 'a> {
     fn new(case: &'c Case<'a>) -> Option<Self> {
+        Self::with(case, case.run("joint_accelerations", &case.point))
+    }
+
+    /// The same at other accelerations of the joints.
+    pub(super) fn with(case: &'c Case<'a>, rates_of_rates: Vec<Term<'a>>) -> Option<Self> {
         let layout = case.module.joints.as_ref()?;
-        let rates_of_rates = case.run("joint_accelerations", &case.point);
         let derivative = case.run_with("joint_derivative", &case.point, &rates_of_rates);
         let one = Term::one(case.point.context);
         let [state, maximal_rates] =
@@ -58,7 +62,7 @@ impl<'c, 'a> Motion<'c, 'a> {
     }
 
     /// B by columns.
-    fn free_motions(&self) -> Option<Vec<Vec<Term<'a>>>> {
+    pub(super) fn free_motions(&self) -> Option<Vec<Vec<Term<'a>>>> {
         let (case, start) = (self.case, self.layout.n_coordinates);
         let one = Term::one(case.point.context);
         let column = |rate: usize| {
@@ -71,7 +75,7 @@ impl<'c, 'a> Motion<'c, 'a> {
 
     /// What is left of `Bᵀ (M v̇ − f) = −Jᵀ λ` for any λ, with numbers that exist where the rows of J are independent;
     /// and λ.
-    fn balance(&self) -> Option<[Vec<Term<'a>>; 2]> {
+    pub(super) fn balance(&self) -> Option<[Vec<Term<'a>>; 2]> {
         let (case, context) = (self.case, self.case.point.context);
         let imbalance = case.textbook(&self.maximal)?.imbalance(self.accelerations())?;
         let along = |column: Vec<Term<'a>>| dot(&column, &imbalance);

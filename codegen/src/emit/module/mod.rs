@@ -5,6 +5,7 @@ mod equations;
 mod joint_space;
 mod mechanism;
 mod ode;
+mod on_request;
 mod partition;
 mod ports;
 mod tables;
@@ -63,6 +64,7 @@ impl ModuleWriter<'_> {
         let (tables, definition, mechanism) =
             (self.tables_of_motions(), self.definition(), self.mechanism(start));
         let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
+        let on_request = self.on_request();
         quote! {
             #tables
             #definition
@@ -70,6 +72,7 @@ impl ModuleWriter<'_> {
             #partition
             #equations
             #joint_space
+            #on_request
         }
     }
 }

@@ -72,15 +72,15 @@ impl Variables for ModuleWriter<'_> {
                 let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
                 bound(format!("u{place}"), "x", first + place)
             }
+            Symbol::RateOfRate(place) => bound(format!("a{place}"), "accelerations", place),
             Symbol::Sine(_)
             | Symbol::Cosine(_)
             | Symbol::Angle(_)
-            | Symbol::RateOfRate(_)
             | Symbol::Rotation { .. }
             | Symbol::Relative { .. }
             | Symbol::RotationRate { .. }
             | Symbol::RelativeRate { .. } => {
-                unreachable!("angles, rotations and rates' rates are expanded before they are written")
+                unreachable!("angles and rotations are expanded before they are written")
             }
         }
     }
