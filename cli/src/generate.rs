@@ -145,6 +145,9 @@ pub fn modules(
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
             .map_err(|e| Failure::Usage(format!("{}: {e}", page.display())))?;
         drop(spinner);
+        for what in module.data_sheet.unavailable() {
+            remarks::warn(&format!("{}: {what}", page.display()));
+        }
         proved(&model, module)
     };
     pages.par_iter().map(module).collect()

@@ -131,6 +131,29 @@ fn call(kernel: Kernel) -> Option<Call> {
         Kernel::FrameBiases => {
             ["frame_biases", "x: &Joints, out: &mut <Module as Frames>::FrameBiases", "x, out", ""]
         }
+        Kernel::InverseDynamics => {
+            ["inverse_dynamics", "x: &Joints, a: &Rates, out: &mut Rates", "x, a, out", ""]
+        }
+        Kernel::BiasForces => ["bias_forces", "x: &Joints, out: &mut Rates", "x, out", ""],
+        Kernel::GravityForces => ["gravity_forces", "x: &Joints, out: &mut Rates", "x, out", ""],
+        Kernel::MassMatrix => {
+            ["mass_matrix", "x: &Joints, out: &mut <Module as MassMatrix>::MassMatrix", "x, out", ""]
+        }
+        Kernel::MassFactor => {
+            ["mass_factor", "x: &Joints, out: &mut <Module as MassMatrix>::MassMatrix", "x, out", ""]
+        }
+        Kernel::InverseDerivatives => [
+            "inverse_derivatives",
+            "x: &Joints, a: &Rates, out: &mut <Module as DynamicsDerivatives>::InverseDerivatives",
+            "x, a, out",
+            "",
+        ],
+        Kernel::ForwardDerivatives => [
+            "forward_derivatives",
+            "x: &Joints, out: &mut <Module as DynamicsDerivatives>::ForwardDerivatives",
+            "x, out",
+            "",
+        ],
     };
     Some(Call { function, takes, passes, returns })
 }

@@ -266,7 +266,14 @@ where
         | Kernel::OutputsByInputs
         | Kernel::OutputsByParameters
         | Kernel::FrameJacobians
-        | Kernel::FrameBiases => return None,
+        | Kernel::FrameBiases
+        | Kernel::InverseDynamics
+        | Kernel::BiasForces
+        | Kernel::GravityForces
+        | Kernel::MassMatrix
+        | Kernel::MassFactor
+        | Kernel::InverseDerivatives
+        | Kernel::ForwardDerivatives => return None,
     })
 }
 

@@ -18,6 +18,9 @@ pub enum Group {
     JointOutputs,
     OutputDerivatives,
     Frames,
+    Inverse,
+    MassMatrix,
+    Derivatives,
 }
 
 /// What is known of a group.
@@ -50,6 +53,9 @@ const TABLE: &[Row] = &[
     Row { group: Group::JointOutputs, name: "joint_outputs", trait_name: "JointOutputs", needs: &[Group::Joint], is_usual: false, what: "outputs of a joint state" },
     Row { group: Group::OutputDerivatives, name: "output_derivatives", trait_name: "OutputDerivatives", needs: &[Group::Joint, Group::JointOutputs], is_usual: false, what: "derivatives of the outputs" },
     Row { group: Group::Frames, name: "frames", trait_name: "Frames", needs: &[Group::Joint], is_usual: false, what: "how outputs of kind `velocity` move with a joint state" },
+    Row { group: Group::Inverse, name: "inverse", trait_name: "InverseDynamics", needs: &[Group::Joint], is_usual: false, what: "forces for given accelerations" },
+    Row { group: Group::MassMatrix, name: "mass_matrix", trait_name: "MassMatrix", needs: &[Group::Joint], is_usual: false, what: "the mass matrix and its factor" },
+    Row { group: Group::Derivatives, name: "derivatives", trait_name: "DynamicsDerivatives", needs: &[Group::Joint, Group::Inverse], is_usual: false, what: "derivatives of forces and accelerations" },
 ];
 
 const _: () = {
@@ -64,6 +70,12 @@ impl Group {
     /// All groups.
     pub fn all() -> impl Iterator<Item = Self> {
         TABLE.iter().map(|row| row.group)
+    }
+
+    /// Those that only who asks for them calls.
+    pub(crate) fn on_request() -> impl Iterator<Item = Self> {
+        use Group::{Derivatives, Frames, Inverse, JointOutputs, MassMatrix, OutputDerivatives};
+        [JointOutputs, OutputDerivatives, Frames, Inverse, MassMatrix, Derivatives].into_iter()
     }
 
     /// Its name on the command line and in model files.
@@ -150,8 +162,9 @@ impl Functions {
             self.0.extend(Group::Reactions.with_needs());
         }
         if !facts.joint_coordinates {
-            let needs_joints = |group: &Group| group.with_needs().contains(&Group::Joint);
-            self.0.retain(|group| *group == Group::Corrected || !needs_joints(group));
+            [Group::Joint, Group::Jacobian, Group::Reactions].iter().for_each(|group| {
+                self.0.remove(group);
+            });
         }
         self
     }

@@ -6,7 +6,7 @@ use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
-use crate::joint_space::{Frames, Jacobian, JointSpace, OutputDerivatives};
+use crate::joint_space::{Frames, Jacobian, JointSpace, OnRequest, OutputDerivatives};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::parameter_setup;
 use std::collections::BTreeMap;
@@ -55,6 +55,13 @@ pub enum Kernel {
     OutputsByParameters,
     FrameJacobians,
     FrameBiases,
+    InverseDynamics,
+    BiasForces,
+    GravityForces,
+    MassMatrix,
+    MassFactor,
+    InverseDerivatives,
+    ForwardDerivatives,
 }
 
 /// When a kernel that is asked for exists, and where its expressions come from.
@@ -75,6 +82,8 @@ enum Source {
     OutputDerivatives(fn(&OutputDerivatives) -> Chosen),
     /// If the model file has frames, and they are asked for.
     Frames(fn(&Frames) -> Chosen),
+    /// If its group is asked for and joint coordinates describe the mechanism without loops.
+    OnRequest(fn(&OnRequest) -> Option<&Chosen>),
 }
 
 /// What is known of a kernel.
@@ -141,6 +150,13 @@ const TABLE: &[Row] = &[
     row(Kernel::OutputsByParameters, Group::OutputDerivatives, "outputs_by_parameters", "∂(outputs)/∂(parameters), u̇ being held", Source::OutputDerivatives(|o| o.by_parameters.clone())),
     row(Kernel::FrameJacobians, Group::Frames, "frame_jacobians", "∂(ṡ, w')/∂u of frames, row by row", Source::Frames(|f| f.jacobians.clone())),
     row(Kernel::FrameBiases, Group::Frames, "frame_biases", "(s̈, ẇ') of frames at u̇ = 0", Source::Frames(|f| f.biases.clone())),
+    row(Kernel::InverseDynamics, Group::Inverse, "inverse_dynamics", "τ = M u̇ + h of given u̇", Source::OnRequest(|r| r.inverse.as_ref())),
+    row(Kernel::BiasForces, Group::Inverse, "bias_forces", "h, that is τ at u̇ = 0", Source::OnRequest(|r| r.bias.as_ref())),
+    row(Kernel::GravityForces, Group::Inverse, "gravity_forces", "what of h is against gravity", Source::OnRequest(|r| r.gravity.as_ref())),
+    row(Kernel::MassMatrix, Group::MassMatrix, "mass_matrix", "M in joint coordinates, row by row", Source::OnRequest(|r| r.mass_matrix.as_ref())),
+    row(Kernel::MassFactor, Group::MassMatrix, "mass_factor", "D and L of M = Lᵀ D L", Source::OnRequest(|r| r.mass_factor.as_ref())),
+    row(Kernel::InverseDerivatives, Group::Derivatives, "inverse_derivatives", "∂τ/∂(x, u), row by row", Source::OnRequest(|r| r.inverse_derivatives.as_ref())),
+    row(Kernel::ForwardDerivatives, Group::Derivatives, "forward_derivatives", "∂u̇/∂(x, u, τ), row by row", Source::OnRequest(|r| r.forward_derivatives.as_ref())),
 ];
 
 const _: () = {
@@ -191,6 +207,7 @@ impl Kernel {
             Source::JointOutputs => joint_space?.outputs.clone(),
             Source::OutputDerivatives(of) => joint_space?.output_derivatives.as_ref().map(of),
             Source::Frames(of) => joint_space?.frames.as_ref().map(of),
+            Source::OnRequest(of) => of(&joint_space?.on_request).cloned(),
         }
     }
 }
@@ -245,7 +262,7 @@ mod tests {
     fn cost(page: &str, elimination: Elimination, wanted: &[Kernel]) -> usize {
         let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let start = model.assemble().expect("a start");
-        let mut equations = crate::equations(&model, (elimination, &Functions::all()), &start);
+        let mut equations = crate::equations(&model, (elimination, &Functions::usual()), &start);
         let mut kernels = Kernels::of(&equations);
         kernels.finish(&mut equations.graph, equations.passes);
         let of = |&kernel: &Kernel| Operations::count(&equations.graph, kernels.roots(kernel)).total();

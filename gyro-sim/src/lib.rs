@@ -18,6 +18,9 @@
 //! | [`Partition`], [`Projection`] | independent and dependent coordinates; the least change of a state | the same |
 //! | [`JointSpace`], [`JointJacobian`] | joint coordinates; their derivatives | generated mechanisms that have them |
 //! | [`CorrectedSolution`] | multipliers and rates' rates at corrected states | the same |
+//! | [`InverseDynamics`], [`MassMatrix`] | τ of given u̇, bias and gravity forces; M and its factor | the same, without loops |
+//! | [`DynamicsDerivatives`] | derivatives of forces and accelerations | the same |
+//! | [`JointOutputs`], [`OutputDerivatives`], [`Frames`] | what is observed of a joint state | the same, with loops |
 //!
 //! Of the traits below [`Mechanism`] a generated module has those that were asked for (`[generate] functions`).
 //!
@@ -121,10 +124,10 @@ mod violation;
 pub use apart::apart;
 pub use contract::{
     Buffers, Clearance, Coordinate, Corrected, CorrectedDynamics, CorrectedSolution, Description, Dynamics,
-    Energy, Exact, FrameBuffers, Frames, Jacobian, JacobianBuffers, Joint, JointBuffers, JointInfo,
-    JointJacobian, JointLayout, JointOutputs, JointPlace, JointSpace, Kinematics, Mechanism, Ode,
-    OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition, Projection, RowInfo, System, Terms,
-    set_turn_references,
+    DynamicsDerivatives, Energy, Exact, FrameBuffers, Frames, InverseDynamics, Jacobian, JacobianBuffers,
+    Joint, JointBuffers, JointInfo, JointJacobian, JointLayout, JointOutputs, JointPlace, JointSpace,
+    Kinematics, MassMatrix, Mechanism, Ode, OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition,
+    Projection, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

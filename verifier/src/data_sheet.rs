@@ -2,7 +2,7 @@
 //!
 //! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
 
-use crate::module::{Module, type_name};
+use crate::module::{Module, frames, type_name};
 use crate::program::{Node, Operations, Program};
 use crate::refusal::Refusal;
 use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
@@ -69,6 +69,13 @@ const WORDS: &[Words] = &[
     says("closure_distances", "squares of distances between the rows of the loops' Jacobian", "Writes squares of distances between the rows of the loops' Jacobian"),
     says("close_positions", "one Newton step of joint coordinates that closes loops", "One Newton step of the joint coordinates towards closed loops"),
     says("close_velocities", "rates that keep loops closed", "Changes the rates such that loops stay closed"),
+    says("inverse_dynamics", "τ = M u̇ + h of given u̇", "Writes τ = M u̇ + h of given u̇"),
+    says("bias_forces", "h, that is τ at u̇ = 0", "Writes h"),
+    writes("inverse_derivatives", "∂τ/∂(x, u), row by row"),
+    writes("forward_derivatives", "∂u̇/∂(x, u, τ), row by row"),
+    says("mass_matrix", "M in joint coordinates, row by row", "Writes M in joint coordinates, row by row"),
+    writes("mass_factor", "D and L of M = Lᵀ D L"),
+    says("gravity_forces", "what of h is against gravity", "Writes what of h is against gravity"),
 ];
 
 /// What a module says of the function of this name; `None` if no module has such a function.
@@ -188,6 +195,8 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         let says_so = module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(unasked));
         if says_so { unasked } else { what }
     };
+    let says =
+        |what: &str| module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(what));
     let missing = [
         (!has_joints, said("joint coordinates", "joint coordinates (functions = [\"joint\"] asks for them)")),
         (
@@ -225,9 +234,37 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         (model.parameters.is_empty(), "parameters (all numbers are folded)"),
         (model.outputs.is_empty(), "outputs (the model file asks for none)"),
     ];
+    left_out.extend(unavailable(model, module).into_iter().filter(|what| says(what)));
     left_out
         .extend(missing.into_iter().filter(|(is_missing, _)| *is_missing).map(|(_, what)| what.to_owned()));
     left_out
+}
+
+/// What can be missing though it was asked for: that it was, only the sheet knows.
+fn unavailable(model: &Model, module: &Module) -> Vec<String> {
+    const NONE: &str = "without joint coordinates there are none";
+    const NO_OUTPUTS: &str = "the model file asks for no outputs";
+    let has_loops = module.joints.as_ref().is_some_and(|joints| !joints.closure_rows.is_empty());
+    let of_outputs = [
+        (model.outputs.is_empty(), "joint_outputs", NO_OUTPUTS),
+        (model.outputs.is_empty(), "output_derivatives", NO_OUTPUTS),
+        (
+            !module.implements("OutputDerivatives") && !model.outputs.is_empty(),
+            "output_derivatives",
+            "they need third derivatives of tables",
+        ),
+        (frames(model).next().is_none(), "frames", "no output is of kind `velocity`"),
+    ];
+    let of_loops = ["inverse", "mass_matrix", "derivatives"]
+        .map(|group| (has_loops, group, "mechanisms with loops have none"));
+    let all: Vec<_> = of_outputs.into_iter().chain(of_loops).collect();
+    let lines = all.into_iter().filter_map(|(is_missing, group, why)| match module.joints {
+        None => Some((group, NONE)),
+        Some(_) => is_missing.then_some((group, why)),
+    });
+    let mut lines: Vec<_> = lines.map(|(group, why)| format!("the functions of `{group}` ({why})")).collect();
+    lines.dedup();
+    lines
 }
 
 /// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`; what gives no numbers has no row.

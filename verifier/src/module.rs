@@ -46,6 +46,8 @@ pub struct Module {
     pub joint_start: Vec<f64>,
     /// What it has of what the description leaves to choice.
     has: Has,
+    /// The order of the rates in which the factor of the mass matrix is triangular; nothing of modules without it.
+    pub mass_order: Vec<usize>,
     /// Where joint coordinates stand, if the module has them.
     pub joints: Option<JointLayout>,
     /// Number of accelerations and multipliers that `accelerations` gives, if the module has it.
@@ -62,7 +64,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 40] = [
+const FUNCTIONS: [(&str, Form); 47] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -103,6 +105,13 @@ const FUNCTIONS: [(&str, Form); 40] = [
     ("outputs_by_parameters", Form::Filling),
     ("frame_jacobians", Form::Filling),
     ("frame_biases", Form::Filling),
+    ("inverse_dynamics", Form::Filling),
+    ("bias_forces", Form::Filling),
+    ("gravity_forces", Form::Filling),
+    ("mass_matrix", Form::Filling),
+    ("mass_factor", Form::Filling),
+    ("inverse_derivatives", Form::Filling),
+    ("forward_derivatives", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
@@ -128,14 +137,21 @@ const BEFORE: [(&str, Before); 5] = [
             call: "gyro_sim :: CorrectedDynamics :: corrected_accelerations (self , t , y , & mut accelerations) ;",
         },
     ),
-    ("joint_derivative", RATES),
-    ("joint_outputs", RATES),
+    (
+        "joint_derivative",
+        Before {
+            buffer: "rates",
+            call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
+        },
+    ),
+    (
+        "joint_outputs",
+        Before {
+            buffer: "accelerations",
+            call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut accelerations) ;",
+        },
+    ),
 ];
-
-const RATES: Before = Before {
-    buffer: "rates",
-    call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
-};
 
 const ACCELERATIONS: Before = Before {
     buffer: "accelerations",
@@ -159,7 +175,9 @@ pub fn is_on_constraints(function: &str) -> bool {
 /// The function that gives the accelerations, or rates, that another one reads.
 pub fn source_of_accelerations(function: &str) -> &'static str {
     match function {
-        "joint_derivative" | "joint_outputs" => "joint_accelerations",
+        "joint_derivative" | "joint_outputs" | "inverse_dynamics" | "inverse_derivatives" => {
+            "joint_accelerations"
+        }
         function if function.starts_with("outputs_by_") => "joint_accelerations",
         "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
         _ => "accelerations",
@@ -272,6 +290,12 @@ impl Module {
                 None => Vec::new(),
             },
             has,
+            mass_order: match matched.holes.get("mass_order") {
+                Some(hole) => {
+                    block::order(&block(hole)?, joints.as_ref().map_or(0, |joints| joints.n_rates))?
+                }
+                None => Vec::new(),
+            },
             joints,
             written,
             programs,
@@ -336,6 +360,13 @@ impl Module {
             ("outputs_by_parameters", outputs * model.parameters.len()),
             ("frame_jacobians", 6 * frames(model).count() * n_rates),
             ("frame_biases", 6 * frames(model).count()),
+            ("inverse_dynamics", n_rates),
+            ("bias_forces", n_rates),
+            ("gravity_forces", n_rates),
+            ("mass_matrix", n_rates * n_rates),
+            ("mass_factor", n_rates * n_rates),
+            ("inverse_derivatives", 2 * n_rates * n_rates),
+            ("forward_derivatives", 3 * n_rates * n_rates),
         ];
         // What is not written was not to be there.
         let of_function = |(name, size)| Some((name, self.written.get(name)?.results.len(), size));

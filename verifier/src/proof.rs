@@ -8,6 +8,7 @@ mod decide;
 mod elimination;
 mod joints;
 mod observed;
+mod on_request;
 mod partition;
 mod point;
 mod residuals;

@@ -52,6 +52,9 @@ pub struct Function {
     pub reductions: Vec<Reduction>,
 }
 
+/// How it is said of functions that they were asked for and cannot be.
+const UNAVAILABLE: &str = "the functions of";
+
 impl DataSheet {
     pub(crate) fn of(equations: &Equations, kernels: &Kernels) -> Self {
         let model = equations.model;
@@ -76,6 +79,11 @@ impl DataSheet {
     /// Rows of Φ: one normalisation for each body after the rows of joints, couplers and drivers.
     pub fn constraints(&self) -> usize {
         self.rows + self.bodies.len()
+    }
+
+    /// What was asked for and cannot be: which functions, and why.
+    pub fn unavailable(&self) -> impl Iterator<Item = &str> {
+        self.left_out.iter().map(String::as_str).filter(|what| what.starts_with(UNAVAILABLE))
     }
 
     /// Degrees of freedom.
@@ -208,6 +216,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
         let (owner, index) = (owner_name(model, redundant.row.owner), redundant.row.index + 1);
         format!("row {index} of {owner} (redundant)")
     }));
+    left_out.extend(Group::on_request().filter_map(|group| unavailable(equations, group)));
     match &equations.joint_space {
         Some(space) => {
             left_out.extend(space.jacobian.is_none().then(|| {
@@ -223,12 +232,11 @@ fn left_out(equations: &Equations) -> Vec<String> {
         None => left_out.push("joint coordinates (functions = [\"joint\"] asks for them)".into()),
     }
     let unasked = Group::all().filter(|&group| !equations.functions.has(group));
+    let unasked = unasked.filter(|&group| Group::on_request().all(|other| other != group));
     left_out.extend(unasked.filter_map(|group| {
         let is_possible = match group {
             // Said above.
             Group::Joint | Group::Jacobian => false,
-            // Nobody misses what is not there for any solver.
-            Group::JointOutputs | Group::OutputDerivatives | Group::Frames => false,
             Group::Reactions => equations.joint_space.is_some(),
             _ => true,
         };
@@ -253,6 +261,30 @@ fn left_out(equations: &Equations) -> Vec<String> {
         left_out.push("outputs (the model file asks for none)".into());
     }
     left_out
+}
+
+/// Of functions that are asked for and that there cannot be: which ones, and why.
+fn unavailable(equations: &Equations, group: Group) -> Option<String> {
+    if !equations.functions.has(group) {
+        return None;
+    }
+    let why = match &equations.joint_space {
+        None => "without joint coordinates there are none",
+        Some(space) => match group {
+            Group::JointOutputs | Group::OutputDerivatives if equations.model.outputs.is_empty() => {
+                "the model file asks for no outputs"
+            }
+            Group::OutputDerivatives if space.output_derivatives.is_none() => {
+                "they need third derivatives of tables"
+            }
+            Group::Frames if space.frames.is_none() => "no output is of kind `velocity`",
+            Group::Inverse | Group::MassMatrix | Group::Derivatives if !space.closure_rows.is_empty() => {
+                "mechanisms with loops have none"
+            }
+            _ => return None,
+        },
+    };
+    Some(format!("{UNAVAILABLE} `{}` ({why})", group.name()))
 }
 
 fn owner_name(model: &Model, owner: RowOwner) -> String {

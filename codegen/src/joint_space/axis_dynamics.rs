@@ -17,7 +17,7 @@ use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
-use crate::expr::vector::{UNIT3, Vec3, ZERO3};
+use crate::expr::vector::ZERO3;
 use crate::solve::ldl::Elimination;
 use std::collections::BTreeMap;
 
@@ -29,18 +29,20 @@ const MAX_DEPTH: usize = 12;
 #[derive(Debug)]
 pub struct AxisTree {
     /// Root first.
-    segments: Vec<Segment>,
-    embedding: Embedding,
+    pub(super) segments: Vec<Segment>,
+    pub(super) embedding: Embedding,
 }
 
 #[derive(Debug)]
-struct Segment {
-    station: Station,
-    frame: Frame,
+pub(super) struct Segment {
+    pub station: Station,
+    pub frame: Frame,
     /// The components of its twist that are free, three displacements before three turns, and their rates.
-    free: Vec<(usize, usize)>,
+    pub free: Vec<(usize, usize)>,
     /// Base inertial parameters.
-    moments: MassMoments,
+    pub moments: MassMoments,
+    /// What acts on it besides gravity.
+    pub applied: SpatialVector,
     /// At constant rates.
     motion: Motion,
     /// What acts on it besides gravity, less what constant rates take.
@@ -50,7 +52,7 @@ struct Segment {
     /// The same load, less what it takes to turn at a constant rate.
     load_at_rest: SpatialVector,
     /// The force along each free component.
-    along: Vec<ExprId>,
+    pub along: Vec<ExprId>,
 }
 
 /// Where the accelerations that are found start.
@@ -70,6 +72,7 @@ impl AxisTree {
         let stations =
             coordinates.closure.rows.is_empty().then(|| stations(system, links, &turned)).flatten()?;
         let frames = frames(system, &stations);
+        let biases = embedding.biases();
         let moments = base_parameters(system, &stations, &frames);
         let mut segments: Vec<Segment> = Vec::new();
         for ((station, frame), moments) in stations.into_iter().zip(frames).zip(moments) {
@@ -77,18 +80,18 @@ impl AxisTree {
                 Some(parent) => segments[parent].motion,
                 None => of_ground(system, station.ground),
             };
-            let load = load(system, &station, &frame, loads);
+            let applied = load(system, &station, &frame, loads);
             let is_unknown = |&(_, rate): &(usize, usize)| !embedding.rates[rate].columns.is_empty();
             let free: Vec<_> = free(&station.freedom).into_iter().filter(is_unknown).collect();
             let along = along(system, &station, &free, &coordinates.along);
             let graph = &mut system.graph;
-            let motion = moving(graph, &station, (&frame, embedding), from);
+            let motion = moving(graph, &station, (&frame, &biases), from);
             let turning = Motion::new(graph, ZERO3, from.rho, ZERO3);
-            let forced = moving(graph, &station, (&frame, embedding), turning);
+            let forced = moving(graph, &station, (&frame, &biases), turning);
             let turning = Motion::new(graph, ZERO3, motion.rho, ZERO3);
             let [load, load_at_rest] = [motion, turning].map(|motion| {
                 let taken = moments.wrench(graph, &motion).negated(graph);
-                load.plus(graph, &taken)
+                applied.plus(graph, &taken)
             });
             let forced = SpatialVector { t: forced.t, rho: forced.rho_dot };
             segments.push(Segment {
@@ -96,6 +99,7 @@ impl AxisTree {
                 frame,
                 free,
                 moments,
+                applied,
                 motion,
                 load,
                 forced,
@@ -158,7 +162,8 @@ impl AxisTree {
 
     /// Through the mass matrix of composite bodies.
     fn by_mass_matrix(&self, system: &mut System) -> Vec<ExprId> {
-        let forces = self.forces(&mut system.graph);
+        let loads = self.segments.iter().map(|segment| segment.load).collect();
+        let forces = self.forces(&mut system.graph, loads);
         let matrix = self.mass_matrix(&mut system.graph);
         let mut elimination = Elimination::new(matrix, forces);
         let graph = &mut system.graph;
@@ -168,7 +173,7 @@ impl AxisTree {
     }
 
     /// Unknowns as they occur, root first.
-    fn order(&self) -> Vec<usize> {
+    pub(super) fn order(&self) -> Vec<usize> {
         let rates = self.segments.iter().flat_map(|segment| &segment.free).map(|&(_, rate)| rate);
         let mut order = Vec::new();
         for &(unknown, _) in rates.flat_map(|rate| &self.embedding.rates[rate].columns) {
@@ -234,9 +239,8 @@ impl AxisTree {
         taken
     }
 
-    /// What is left along each unknown for the rates to change.
-    fn forces(&self, graph: &mut Graph) -> Vec<ExprId> {
-        let mut loads: Vec<_> = self.segments.iter().map(|segment| segment.load).collect();
+    /// What loads and the forces along them leave along each unknown for the rates to change.
+    pub(super) fn forces(&self, graph: &mut Graph, mut loads: Vec<SpatialVector>) -> Vec<ExprId> {
         let mut forces = vec![Graph::ZERO; self.embedding.rates.len()];
         for (index, segment) in self.segments.iter().enumerate().rev() {
             for (&(component, rate), &along) in segment.free.iter().zip(&segment.along) {
@@ -250,7 +254,7 @@ impl AxisTree {
         self.embedding.projected(graph, &forces)
     }
 
-    fn mass_matrix(&self, graph: &mut Graph) -> BTreeMap<(usize, usize), ExprId> {
+    pub(super) fn mass_matrix(&self, graph: &mut Graph) -> BTreeMap<(usize, usize), ExprId> {
         let mut composite: Vec<_> = self.segments.iter().map(|segment| segment.moments).collect();
         let mut matrix = BTreeMap::new();
         for (index, segment) in self.segments.iter().enumerate().rev() {
@@ -415,7 +419,7 @@ fn along(system: &mut System, station: &Station, free: &[(usize, usize)], along:
 }
 
 /// Of a carrier without coordinates, in its frame.
-fn of_ground(system: &mut System, body: Option<usize>) -> Motion {
+pub(super) fn of_ground(system: &mut System, body: Option<usize>) -> Motion {
     let Some(body) = body else { return Motion::new(&mut system.graph, ZERO3, ZERO3, ZERO3) };
     let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[body]);
     let (linear, angular) = (time_derivative(system, &pose.s), time_derivative(system, &pose.w));
@@ -434,64 +438,59 @@ fn of_carrier(system: &mut System, segment: &Segment, start: Start) -> SpatialVe
     SpatialVector { t: ground.t, rho: ground.rho_dot }
 }
 
-/// How a station moves at constant rates, from how its carrier moves.
-fn moving(
+/// How a station moves if the rates of the tree accelerate so, from how its carrier moves.
+pub(super) fn moving(
     graph: &mut Graph,
     station: &Station,
-    (frame, embedding): (&Frame, &Embedding),
+    (frame, accelerations): (&Frame, &[ExprId]),
     from: Motion,
 ) -> Motion {
     let mut motion = from;
     for by in frame.moves[frame.joint..].iter().rev() {
         motion = motion.back(graph, by);
     }
-    motion = with_rates(graph, &station.freedom, embedding, motion);
+    motion = with_rates(graph, &station.freedom, accelerations, motion);
     for by in frame.moves[..frame.joint].iter().rev() {
         motion = motion.back(graph, by);
     }
     motion
 }
 
-/// With the motion of the joint itself, its rates being constant, but for what is given.
-fn with_rates(graph: &mut Graph, freedom: &Freedom, embedding: &Embedding, motion: Motion) -> Motion {
+/// With the motion of the joint itself; a body that nothing holds accelerates so in its own frame.
+fn with_rates(graph: &mut Graph, freedom: &Freedom, accelerations: &[ExprId], motion: Motion) -> Motion {
     let rate = |graph: &mut Graph, u: usize| graph.symbol(Symbol::Rate(u));
-    let mut given = ZERO3;
+    let three = |u: usize| [0, 1, 2].map(|k| accelerations[u + k]);
+    let (mut given, mut t) = (ZERO3, motion.t);
     let spin = match *freedom {
         Freedom::Rigid => return motion,
         Freedom::Slide(place) => {
             let speed = [Graph::ZERO, Graph::ZERO, rate(graph, place.u)];
             let (turned, two) = (graph.cross(&motion.rho, &speed), graph.integer(2));
             let mut relative = graph.scale_vec(two, &turned);
-            relative[2] = graph.add(relative[2], embedding.rates[place.u].bias);
+            relative[2] = graph.add(relative[2], accelerations[place.u]);
             return Motion { t: graph.add_vec(&motion.t, &relative), ..motion };
         }
         Freedom::Turn { place, .. } => {
-            given[2] = embedding.rates[place.u].bias;
+            given[2] = accelerations[place.u];
             [Graph::ZERO, Graph::ZERO, rate(graph, place.u)]
         }
-        Freedom::Ball(place) => [0, 1, 2].map(|k| rate(graph, place.u + k)),
-        Freedom::Whole { orientation, .. } => [0, 1, 2].map(|k| rate(graph, orientation.u + k)),
+        Freedom::Ball(place) => {
+            given = three(place.u);
+            [0, 1, 2].map(|k| rate(graph, place.u + k))
+        }
+        Freedom::Whole { position, orientation } => {
+            t = graph.add_vec(&t, &three(position.u));
+            given = three(orientation.u);
+            [0, 1, 2].map(|k| rate(graph, orientation.u + k))
+        }
     };
     let turning = graph.cross(&motion.rho, &spin);
     let turning = graph.add_vec(&turning, &given);
     let (rho, rho_dot) = (graph.add_vec(&motion.rho, &spin), graph.add_vec(&motion.rho_dot, &turning));
-    Motion::new(graph, motion.t, rho, rho_dot)
+    Motion::new(graph, t, rho, rho_dot)
 }
 
 /// A wrench on a station as one on its carrier.
-fn carried(graph: &mut Graph, frame: &Frame, wrench: SpatialVector) -> SpatialVector {
+pub(super) fn carried(graph: &mut Graph, frame: &Frame, wrench: SpatialVector) -> SpatialVector {
     frame.moves.iter().fold(wrench, |wrench, by| by.wrench(graph, &wrench))
-}
-
-impl MassMoments {
-    /// What a unit acceleration takes.
-    fn wrench_of(&self, graph: &mut Graph, component: usize) -> SpatialVector {
-        let unit: Vec3 = UNIT3[component % 3];
-        if component < 3 {
-            let (force, torque) = (graph.scale_vec(self.mass, &unit), graph.cross(&self.first, &unit));
-            return SpatialVector { t: force, rho: torque };
-        }
-        let inertia = self.inertia(graph);
-        SpatialVector { t: graph.cross(&unit, &self.first), rho: inertia[component - 3] }
-    }
 }

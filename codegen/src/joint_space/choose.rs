@@ -5,6 +5,7 @@ use super::coordinates::Coordinates;
 use super::jacobian::{Jacobian, JointForm};
 use super::layout::Layout;
 use super::observed::{self, Frames, OutputDerivatives};
+use super::on_request::OnRequest;
 use super::{forces, maps, motions, multipliers};
 use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
@@ -45,6 +46,8 @@ pub struct JointSpace {
     /// Their derivatives, unless a third derivative of a table would be needed.
     pub output_derivatives: Option<OutputDerivatives>,
     pub frames: Option<Frames>,
+    /// What is there only where it is asked for.
+    pub on_request: OnRequest,
     /// Bodies that are described in a frame that does not turn with them.
     pub invariant: Vec<usize>,
     /// The rows of the joints that close loops, by their places among all rows.
@@ -138,6 +141,7 @@ impl JointSpace {
             .filter(|_| functions.has(Group::OutputDerivatives))
             .and_then(|outputs| OutputDerivatives::derive(system, &coordinates, &outputs.roots));
         let frames = functions.has(Group::Frames).then(|| Frames::derive(system, &coordinates)).flatten();
+        let on_request = OnRequest::derive(system, &coordinates, &candidates.balance, functions);
         let [closure, distances, closer_coordinates, closing_rates] = coordinates.closing(system);
         Self {
             invariant: coordinates.invariant_bodies(),
@@ -156,6 +160,7 @@ impl JointSpace {
             outputs,
             output_derivatives,
             frames,
+            on_request,
             maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
             start: maps::joint_start(system, &coordinates.layout, &reduced, start),
             reduced,

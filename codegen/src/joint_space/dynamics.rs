@@ -95,6 +95,11 @@ impl JointDynamics {
         Self { unknowns, places, subspaces, excitation, embedding: embedding.clone(), rows }
     }
 
+    /// The unknowns as they occur, root first.
+    pub fn order(&self) -> &[usize] {
+        &self.places
+    }
+
     /// Whether an unknown moves several joints.
     fn shares_unknowns(&self) -> bool {
         self.unknowns.iter().flatten().count() > self.places.len()
@@ -253,7 +258,7 @@ impl JointDynamics {
 
     /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one unknown takes along each unknown nearer to the root,
     /// the inertia beyond it moving as one body.
-    fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
+    pub fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
         let mut bodies: Vec<_> =
             (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;

@@ -66,6 +66,11 @@ impl Embedding {
         self
     }
 
+    /// The accelerations of all rates of the tree if all unknowns are zero.
+    pub fn biases(&self) -> Vec<ExprId> {
+        self.rates.iter().map(|motion| motion.bias).collect()
+    }
+
     /// The accelerations of all rates of the tree.
     pub fn rates_of_rates(&self, graph: &mut Graph, unknowns: &[ExprId]) -> Vec<ExprId> {
         let rate = |motion: &RateMotion| {

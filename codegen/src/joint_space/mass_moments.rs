@@ -7,7 +7,7 @@
 use super::screw_moves::Move;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
-use crate::expr::vector::{Mat3, Vec3, ZERO3};
+use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3};
 
 /// Moments of the mass of a body about the origin of its frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +105,17 @@ impl MassMoments {
         });
         let carried = graph.cross(&self.first, &motion.t);
         SpatialVector { t: graph.add_vec(&even, &turning), rho: graph.add_vec(&carried, &torque) }
+    }
+
+    /// What a unit acceleration takes.
+    pub fn wrench_of(&self, graph: &mut Graph, component: usize) -> SpatialVector {
+        let unit: Vec3 = UNIT3[component % 3];
+        if component < 3 {
+            let (force, torque) = (graph.scale_vec(self.mass, &unit), graph.cross(&self.first, &unit));
+            return SpatialVector { t: force, rho: torque };
+        }
+        let inertia = self.inertia(graph);
+        SpatialVector { t: graph.cross(&unit, &self.first), rho: inertia[component - 3] }
     }
 }
 

@@ -5,16 +5,19 @@
 //! loops; `link_kinematics` says how a body moves on its carrier, `whole_angles` where it is, and `maps` leads to
 //! maximal coordinates and back. `closure` has the rows of joints that close loops, `loops` how rates keep these
 //! closed, and `embedding` how all rates of the tree follow fewer unknowns. `coordinates` has all that is derived of
-//! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for
-//! those of planar mechanisms, `axis_dynamics` for those of open trees, seen as `elementary_joints`: in `axis_frames`
-//! that suit them, between which `screw_moves` lead, from the base inertial parameters among their `mass_moments`,
-//! with an `articulated_inertia` or a mass matrix. These are the `candidates`, and `choose` takes the cheapest of
-//! those that are accurate, with what follows from it: `motions` of the bodies, `multipliers` and the `jacobian` of
-//! the joint form. `observed` is what outputs and frames are in joint coordinates.
+//! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for those
+//! of planar mechanisms, `axis_dynamics` for those of open trees, seen as `elementary_joints`: in `axis_frames` that
+//! suit them, between which `screw_moves` lead, from the base inertial parameters among their `mass_moments`, with an
+//! `articulated_inertia` or a mass matrix; `axis_inverse` finds forces there, `axis_derivatives` how they change.
+//! These are the `candidates`, and `choose` takes the cheapest of those that are accurate, with what follows from it:
+//! `motions` of the bodies, `multipliers` and the `jacobian` of the joint form; `on_request` has what controllers of
+//! robots ask for, derivatives as `slopes`.
 
 mod articulated_inertia;
+mod axis_derivatives;
 mod axis_dynamics;
 mod axis_frames;
+mod axis_inverse;
 mod candidates;
 mod choose;
 mod closure;
@@ -33,9 +36,11 @@ mod mass_moments;
 mod motions;
 mod multipliers;
 mod observed;
+mod on_request;
 mod planar;
 mod relation;
 mod screw_moves;
+mod slopes;
 mod whole_angles;
 
 pub use candidates::Candidates;
@@ -43,3 +48,4 @@ pub use choose::JointSpace;
 pub use coordinates::{Coordinates, obstacle};
 pub use jacobian::Jacobian;
 pub use observed::{Frames, OutputDerivatives};
+pub use on_request::OnRequest;

@@ -102,6 +102,14 @@ impl Elimination {
         }
     }
 
+    /// What was eliminated, each with an unknown that was left and the factor of its row: L of `Lᵀ D L`.
+    pub fn factors(&self) -> impl Iterator<Item = (usize, usize, ExprId)> {
+        let of_column = |column: &Column| {
+            column.below.iter().map(|&(i, factor)| (column.pivot, i, factor)).collect::<Vec<_>>()
+        };
+        self.columns.iter().flat_map(of_column)
+    }
+
     /// The solution of the first right-hand side.
     pub fn substitute_back(self, graph: &mut Graph) -> Vec<ExprId> {
         self.solutions(graph).swap_remove(0)

@@ -11,6 +11,7 @@ mod mechanism;
 mod observed;
 mod ode;
 mod partition;
+mod robot;
 
 pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
 pub use dynamics::{CorrectedDynamics, CorrectedSolution, Dynamics, Projection};
@@ -20,6 +21,7 @@ pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use observed::{FrameBuffers, Frames, JointOutputs, OutputDerivatives, OutputSlopes};
 pub use ode::{Corrected, Exact, Jacobian, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
+pub use robot::{DynamicsDerivatives, InverseDynamics, MassMatrix};
 
 use core::fmt::Debug;
 

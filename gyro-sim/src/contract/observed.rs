@@ -40,7 +40,7 @@ pub trait OutputDerivatives: JointOutputs {
         &self,
         t: Self::Scalar,
         x: &Self::Joints,
-        rates: &Self::Rates,
+        accelerations: &Self::Rates,
         out: &mut Self::ByState,
     );
     /// Writes ∂g/∂u̇.
@@ -48,7 +48,7 @@ pub trait OutputDerivatives: JointOutputs {
         &self,
         t: Self::Scalar,
         x: &Self::Joints,
-        rates: &Self::Rates,
+        accelerations: &Self::Rates,
         out: &mut Self::ByAccelerations,
     );
     /// Writes ∂g/∂(inputs).
@@ -56,7 +56,7 @@ pub trait OutputDerivatives: JointOutputs {
         &self,
         t: Self::Scalar,
         x: &Self::Joints,
-        rates: &Self::Rates,
+        accelerations: &Self::Rates,
         out: &mut Self::ByInputs,
     );
     /// Writes ∂g/∂(parameters).
@@ -64,7 +64,7 @@ pub trait OutputDerivatives: JointOutputs {
         &self,
         t: Self::Scalar,
         x: &Self::Joints,
-        rates: &Self::Rates,
+        accelerations: &Self::Rates,
         out: &mut Self::ByParameters,
     );
 }

@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
             "t" => Known::Time,
             "y" => Known::State,
             "x" => Known::Joints,
-            "accelerations" | "rates" => Known::Accelerations,
+            "accelerations" => Known::Accelerations,
             "rows" => Known::Changes,
             "charts" => Known::Charts,
             "out" => Known::Target,
@@ -426,6 +426,17 @@ pub fn start(block: &Block) -> Result<Vec<f64>, Refusal> {
         _ => Err(refused(element)),
     };
     array.elems.iter().map(value).collect()
+}
+
+/// The numbers below n, each once: `&[1, 0, 2]`.
+pub fn order(block: &Block, n: usize) -> Result<Vec<usize>, Refusal> {
+    let [Stmt::Expr(Expr::Reference(reference), None)] = block.stmts.as_slice() else {
+        return Err(Refusal::at(block.span(), "an order must be a list of places"));
+    };
+    let Expr::Array(array) = &*reference.expr else { return Err(refused(reference)) };
+    let order: Vec<usize> = array.elems.iter().map(integer).collect::<Result<_, _>>()?;
+    let is_permutation = order.len() == n && (0..n).all(|place| order.contains(&place));
+    if reference.mutability.is_none() && is_permutation { Ok(order) } else { Err(refused(reference)) }
 }
 
 /// The places of a pattern: `&[(0, 3), ...]`.

@@ -5,6 +5,7 @@
 
 mod definition;
 mod mechanism;
+mod on_request;
 mod partition;
 mod pieces;
 
@@ -42,7 +43,7 @@ pub struct Corrected {
 }
 
 /// The traits that a module may leave out, but for joint coordinates, which their layout shows.
-const TRAITS: [&str; 10] = [
+const TRAITS: [&str; 13] = [
     "Partition",
     "Kinematics",
     "Dynamics",
@@ -53,6 +54,9 @@ const TRAITS: [&str; 10] = [
     "JointOutputs",
     "OutputDerivatives",
     "Frames",
+    "InverseDynamics",
+    "MassMatrix",
+    "DynamicsDerivatives",
 ];
 
 impl Has {
@@ -104,6 +108,9 @@ pub fn text(
         of("JointOutputs", joint_outputs(type_name)),
         of("OutputDerivatives", of_joints(output_derivatives)),
         of("Frames", of_joints(frames)),
+        of("InverseDynamics", of_joints(|_, name, _| on_request::inverse_dynamics(name))),
+        of("MassMatrix", of_joints(|_, name, joints| on_request::mass_matrix(name, joints))),
+        of("DynamicsDerivatives", of_joints(|_, name, joints| on_request::derivatives(name, joints))),
     ]
     .concat()
 }
@@ -291,7 +298,7 @@ fn output_derivatives(model: &Model, name: &str, joints: &JointLayout) -> String
     let functions = lines(kinds.map(|(name, ty, _)| {
         format!(
             "fn outputs_by_{name}(
-                &self, ANY_t: T, ANY_x: &Self::Joints, ANY_rates: &Self::Rates, ANY_out: &mut Self::By{ty},
+                &self, ANY_t: T, ANY_x: &Self::Joints, ANY_accelerations: &Self::Rates, ANY_out: &mut Self::By{ty},
             ) {{ HOLE_outputs_by_{name} }}"
         )
     }));

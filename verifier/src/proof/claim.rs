@@ -4,7 +4,7 @@ use super::case::{Arguments, Case};
 use super::partition::dot;
 use super::point::stretched;
 use super::residuals::{differences, position_rates};
-use super::{closure, joints, observed, partition};
+use super::{closure, joints, observed, on_request, partition};
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
@@ -87,10 +87,24 @@ pub enum Claim {
     FrameJacobians,
     /// `frame_biases` is what accelerations of frames have beside `J u̇`.
     FrameBiases,
+    /// `inverse_dynamics` gives the forces that any u̇ takes.
+    InverseDynamics,
+    /// `bias_forces` are those that u̇ = 0 takes.
+    BiasForces,
+    /// `gravity_forces` are those that rest takes against gravity.
+    GravityForces,
+    /// `mass_matrix` is M.
+    MassMatrix,
+    /// `mass_factor` is its factor.
+    MassFactor,
+    /// `inverse_derivatives` are those of `inverse_dynamics`.
+    InverseDerivatives,
+    /// `forward_derivatives` are those of `joint_accelerations`, and M⁻¹.
+    ForwardDerivatives,
 }
 
 /// All claims, in the order in which they are proved.
-const ALL: [Claim; 35] = {
+const ALL: [Claim; 42] = {
     use Claim::*;
     [
         Phi,
@@ -128,6 +142,13 @@ const ALL: [Claim; 35] = {
         OutputDerivatives,
         FrameJacobians,
         FrameBiases,
+        InverseDynamics,
+        BiasForces,
+        GravityForces,
+        MassMatrix,
+        MassFactor,
+        InverseDerivatives,
+        ForwardDerivatives,
     ]
 };
 
@@ -185,6 +206,13 @@ impl Claim {
             ],
             Self::FrameJacobians => &["frame_jacobians"],
             Self::FrameBiases => &["frame_biases"],
+            Self::InverseDynamics => &["inverse_dynamics"],
+            Self::BiasForces => &["bias_forces"],
+            Self::GravityForces => &["gravity_forces"],
+            Self::MassMatrix => &["mass_matrix"],
+            Self::MassFactor => &["mass_factor"],
+            Self::InverseDerivatives => &["inverse_derivatives"],
+            Self::ForwardDerivatives => &["forward_derivatives"],
         }
     }
 
@@ -226,6 +254,13 @@ impl Claim {
             Self::OutputDerivatives => "`joint_outputs` by dual numbers, at any u̇",
             Self::FrameJacobians => "velocities at the state of (x, u) by the rates",
             Self::FrameBiases => "accelerations at the state of (x, u) for u̇ = 0",
+            Self::InverseDynamics => "Bᵀ(M v̇ − f) at any u̇",
+            Self::BiasForces => "Bᵀ(M v̇ − f) at u̇ = 0",
+            Self::GravityForces => "−Bᵀ(m g, 0)",
+            Self::MassMatrix => "Bᵀ diag(M, J') B",
+            Self::MassFactor => "Lᵀ D L = Bᵀ diag(M, J') B, L triangular in its order",
+            Self::InverseDerivatives => "`inverse_dynamics` by dual numbers, along the rates and of them",
+            Self::ForwardDerivatives => "`joint_accelerations` by dual numbers, likewise; M M⁻¹ = 1",
         }
     }
 
@@ -252,6 +287,13 @@ impl Claim {
             }
             Self::JointJacobian | Self::JointInputJacobian => {
                 "the derivatives of `joint_derivative` by dual numbers"
+            }
+            Self::InverseDerivatives | Self::ForwardDerivatives => {
+                "the derivatives of what is proved by dual numbers"
+            }
+            Self::MassMatrix | Self::MassFactor => "the kinetic energy of free motions",
+            Self::InverseDynamics | Self::BiasForces | Self::GravityForces => {
+                "virtual power on the constraints"
             }
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
             Self::OutputDerivatives => "the derivatives of `joint_outputs` by dual numbers",
@@ -323,6 +365,13 @@ impl Claim {
             Self::OutputDerivatives => observed::output_derivatives(case),
             Self::FrameJacobians => observed::frame_jacobians(case),
             Self::FrameBiases => observed::frame_biases(case),
+            Self::InverseDynamics => on_request::inverse_dynamics(case),
+            Self::BiasForces => on_request::bias_forces(case),
+            Self::GravityForces => on_request::gravity_forces(case),
+            Self::MassMatrix => on_request::mass_matrix(case),
+            Self::MassFactor => on_request::mass_factor(case),
+            Self::InverseDerivatives => on_request::inverse_derivatives(case),
+            Self::ForwardDerivatives => on_request::forward_derivatives(case),
         }
     }
 }

@@ -38,8 +38,12 @@ pub(super) struct Motion<'c, 'a> {
 
 impl<'c, 'a> Motion<'c, 'a> {
     pub fn new(case: &'c Case<'a>) -> Option<Self> {
+        Self::with(case, case.run("joint_accelerations", &case.point))
+    }
+
+    /// The same at other accelerations of the joints.
+    pub(super) fn with(case: &'c Case<'a>, rates_of_rates: Vec<Term<'a>>) -> Option<Self> {
         let layout = case.module.joints.as_ref()?;
-        let rates_of_rates = case.run("joint_accelerations", &case.point);
         let derivative = case.run_with("joint_derivative", &case.point, &rates_of_rates);
         let one = Term::one(case.point.context);
         let [state, maximal_rates] =
@@ -59,7 +63,7 @@ impl<'c, 'a> Motion<'c, 'a> {
 
     /// What is left of `Bᵀ (M v̇ − f) = −Jᵀ λ` for any λ, with numbers that exist where the rows of J are independent;
     /// and λ.
-    fn balance(&self) -> Option<[Vec<Term<'a>>; 2]> {
+    pub(super) fn balance(&self) -> Option<[Vec<Term<'a>>; 2]> {
         let (case, context) = (self.case, self.case.point.context);
         let imbalance = case.textbook(&self.maximal)?.imbalance(self.accelerations())?;
         let along = |column: Vec<Term<'a>>| dot(&column, &imbalance);

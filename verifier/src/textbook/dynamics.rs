@@ -40,6 +40,16 @@ impl<F: Field> Evaluation<'_, F> {
         Some(applied)
     }
 
+    /// `(m g, 0)` body after body.
+    pub fn weights(&self) -> Vec<F> {
+        let (gravity, zero) = (self.gravity(), &self.scope.zero);
+        let weight = |&body: &usize| {
+            let weight = gravity.times(&self.mass(body));
+            weight.0.into_iter().chain([(); 3].map(|()| zero.clone())).map(|x| x.value)
+        };
+        self.textbook.moving_bodies.iter().flat_map(weight).collect()
+    }
+
     /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')`, `−Σ m g·r` and the energy of springs.
     pub fn energy(&self) -> Option<[F; 2]> {
         let (mut twice_kinetic, mut potential) = (self.scope.zero.clone(), self.forces()?.potential);

@@ -6,6 +6,7 @@ mod joint_space;
 mod kinematics;
 mod mechanism;
 mod observed;
+mod on_request;
 mod partition;
 mod ports;
 mod tables;
@@ -69,6 +70,7 @@ impl ModuleWriter<'_> {
         let joint_jacobian = self.joint_jacobian();
         let (joint_outputs, output_derivatives, frames) =
             (self.joint_outputs(), self.output_derivatives(), self.frames());
+        let on_request = self.on_request();
         quote! {
             #tables
             #definition
@@ -84,6 +86,7 @@ impl ModuleWriter<'_> {
             #joint_outputs
             #output_derivatives
             #frames
+            #on_request
         }
     }
 }

@@ -22,8 +22,8 @@ impl ModuleWriter<'_> {
             let reads_rates = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::RateOfRate(_)));
             let (t, x, solved) = if reads_rates {
                 let solved = quote! {
-                    let mut rates = [T::constant(0.0); #n_rates];
-                    gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
+                    let mut accelerations = [T::constant(0.0); #n_rates];
+                    gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut accelerations);
                 };
                 (&quote! { t }, &ident("x"), solved)
             } else {
@@ -90,7 +90,7 @@ impl ModuleWriter<'_> {
             self.function(&format!("Writes {what}"), self.kernels.roots(kernel), |body, t, x| {
                 let (statements, values) = (&body.statements, &body.values);
                 let reads_rates = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::RateOfRate(_)));
-                let rates = ident(if reads_rates { "rates" } else { "_rates" });
+                let rates = ident(if reads_rates { "accelerations" } else { "_accelerations" });
                 quote! {
                     fn #function(&self, #t: T, #x: &Self::Joints, #rates: &Self::Rates, out: &mut Self::#ty) {
                         #statements

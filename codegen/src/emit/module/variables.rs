@@ -72,7 +72,7 @@ impl Variables for ModuleWriter<'_> {
                 let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
                 bound(format!("u{place}"), "x", first + place)
             }
-            Symbol::RateOfRate(place) => bound(format!("du{place}"), "rates", place),
+            Symbol::RateOfRate(place) => bound(format!("a{place}"), "accelerations", place),
             Symbol::Sine(_)
             | Symbol::Cosine(_)
             | Symbol::Angle(_)
