@@ -7,7 +7,7 @@ use gyro_model::{Model, Number, to_f64};
 use gyro_robots::legged::Legged;
 use gyro_robots::manipulator::Manipulator;
 use gyro_sim::{
-    DynamicsDerivatives, Equations, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism,
+    Dynamics, DynamicsDerivatives, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism,
 };
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
