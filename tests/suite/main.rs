@@ -5,6 +5,7 @@ mod all_joints;
 mod allocation;
 mod branches;
 mod build_script;
+mod bushing;
 mod carried_loops;
 mod closed_forms;
 mod closed_joint_space;

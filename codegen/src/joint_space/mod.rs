@@ -17,6 +17,7 @@ mod axis_dynamics;
 mod axis_frames;
 mod candidates;
 mod choose;
+mod closing_units;
 mod closure;
 mod coordinates;
 mod determined;
