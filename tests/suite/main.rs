@@ -17,6 +17,7 @@ mod forces;
 mod four_bar;
 mod gear_trains;
 mod generated_files;
+mod indices;
 mod integrators;
 mod joint_jacobian;
 mod joint_kinds;

@@ -4,6 +4,7 @@
 //! body may leave unread as `ANY_name`.
 
 mod definition;
+mod indices;
 mod mechanism;
 mod partition;
 mod pieces;
@@ -14,6 +15,7 @@ pub use partition::Choice;
 use crate::joints::{Freedom, JointLayout};
 use definition::{constants, definition};
 use gyro_model::{Model, Spline};
+use indices::indices;
 use mechanism::mechanism;
 use partition::partition;
 use pieces::{buffers, fillings, lines, list};
@@ -46,6 +48,7 @@ pub fn text(
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
+        indices(model, joints),
     ]
     .concat()
 }

@@ -2,6 +2,7 @@
 
 mod definition;
 mod equations;
+mod indices;
 mod joint_space;
 mod mechanism;
 mod ode;
@@ -63,6 +64,7 @@ impl ModuleWriter<'_> {
         let (tables, definition, mechanism) =
             (self.tables_of_motions(), self.definition(), self.mechanism(start));
         let (partition, equations, joint_space) = (self.partition(), self.equations(), self.joint_space());
+        let indices = self.indices();
         quote! {
             #tables
             #definition
@@ -70,6 +72,7 @@ impl ModuleWriter<'_> {
             #partition
             #equations
             #joint_space
+            #indices
         }
     }
 }
