@@ -139,7 +139,8 @@ pub struct InspectArgs {
   {program} import arm.urdf                    writes arm.toml beside it
   {program} import arm.urdf --out models/arm.toml
   {program} import quadruped.urdf --floating   its trunk floats
-  {program} import arm.urdf --motors --limits  with a motor for each joint, and its stops")]
+  {program} import arm.urdf --motors --limits  with a motor for each joint, and its stops
+  {program} import arm.urdf --wrenches hand    with a force and a torque on the link `hand`")]
 pub struct ImportArgs {
     /// Robot in the Unified Robot Description Format
     #[arg(value_name = "FILE.urdf")]
@@ -156,6 +157,10 @@ pub struct ImportArgs {
     /// Make stops of the joints' limits
     #[arg(long)]
     pub(crate) limits: bool,
+    /// Let a force and a torque act on these links: at the origin of the link's frame, global components, each an
+    /// input, LINK_force_x to LINK_torque_z
+    #[arg(long, value_name = "LINK", value_delimiter = ',')]
+    pub(crate) wrenches: Vec<String>,
     /// Overwrite a model file that an earlier import has written
     #[arg(long)]
     pub(crate) force: bool,

@@ -11,6 +11,7 @@ mod merge;
 mod names;
 mod page;
 mod robot;
+mod wrenches;
 
 use crate::args::ImportArgs;
 use crate::failure::Failure;
@@ -28,12 +29,14 @@ const MARK: &str = "# Written by cargo xtask import";
 
 /// What is made of a robot.
 #[derive(Clone, Copy, Debug)]
-struct Wishes {
+struct Wishes<'a> {
     root: Root,
     /// A motor with an input for each joint.
     motors: bool,
     /// Stops for joints with limits.
     limits: bool,
+    /// Links that a force and a torque act on.
+    wrenches: &'a [String],
 }
 
 /// Writes the model file and says what has no counterpart on it.
@@ -51,7 +54,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     write::check(&out, Known::Mark(MARK))?;
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let wishes = Wishes { root, motors: args.motors, limits: args.limits };
+    let wishes = Wishes { root, motors: args.motors, limits: args.limits, wrenches: &args.wrenches };
     let (page, mut remarks) = convert(&file, &shown, &text, wishes).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::ModelFile)?;
     write::write(&out, &page, Known::Mark(MARK))?;
@@ -62,10 +65,11 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
 }
 
 /// The model file of a robot and what is not on it; or every mistake of the file, a line for each.
-fn convert(file: &str, shown: &str, text: &str, wishes: Wishes) -> Result<(String, Vec<String>), String> {
+fn convert(file: &str, shown: &str, text: &str, wishes: Wishes<'_>) -> Result<(String, Vec<String>), String> {
     let joined = |problems: Vec<String>| capped(&problems);
     let robot = robot::read(file, text).map_err(joined)?;
     let merged = merge::merge(file, &robot, wishes.root).map_err(joined)?;
+    wrenches::check(file, &robot, &merged, wishes.wrenches).map_err(joined)?;
     let mut remarks = robot.remarks.clone();
     remarks.extend(merged.remarks.iter().cloned());
     let page = page::write(shown, &robot, (&merged, wishes), &mut remarks);

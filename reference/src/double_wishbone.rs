@@ -193,9 +193,9 @@ impl Mechanism<2, 2> for DoubleWishbone {
                     [200000.0, self.tyre_damping, 0.32],
                 ),
             ],
-            friction: Vec::new(),
             joints: vec![height, angle, upper_angle],
             balls: vec![[lower.axes, upright.axes], [upper.axes, upright.axes]],
+            ..Scene::default()
         }
     }
 }

@@ -100,10 +100,10 @@ impl Mechanism<2, 2> for GyroscopeFourBar {
                 body(1e-3, [1e-8, 2e-8, 2e-8], point(PIVOT), crank),
                 body(2e-3, [1e-8, 6e-7, 6e-7], add(pin, scale(Jet::from(0.5), way)), coupler),
             ],
-            struts: Vec::new(),
             friction: vec![(alpha, decimal(self.friction))],
             joints: vec![alpha, beta, phi, crank_angle, first, second],
             balls: vec![[coupler, inner]],
+            ..Scene::default()
         }
     }
 }

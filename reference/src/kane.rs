@@ -42,6 +42,8 @@ pub(crate) struct Strut {
 pub(crate) struct Scene {
     pub(crate) bodies: Vec<Placed>,
     pub(crate) struts: Vec<Strut>,
+    /// Coordinates with a spring that is free at zero, and its stiffness.
+    pub(crate) springs: Vec<(Jet, DoubleDouble)>,
     /// Coordinates with viscous friction, and its coefficient.
     pub(crate) friction: Vec<(Jet, DoubleDouble)>,
     /// The joint coordinates in the order of the model file.
@@ -146,6 +148,9 @@ fn applied(scene: &Scene, partial: &Scene) -> DoubleDouble {
         let (length, along) = (strut.length(), partial.length().rate);
         sum = sum - (strut.stiffness * (length.value - strut.free) + strut.damping * length.rate) * along;
     }
+    for ((coordinate, stiffness), (partial, _)) in scene.springs.iter().zip(&partial.springs) {
+        sum = sum - *stiffness * coordinate.value * partial.rate;
+    }
     for ((coordinate, coefficient), (partial, _)) in scene.friction.iter().zip(&partial.friction) {
         sum = sum - *coefficient * coordinate.rate * partial.rate;
     }
@@ -190,6 +195,9 @@ impl Scene {
         for strut in &self.struts {
             let stretch = strut.length().value - strut.free;
             sum = sum + (strut.stiffness * stretch * stretch).times(0.5);
+        }
+        for (coordinate, stiffness) in &self.springs {
+            sum = sum + (*stiffness * coordinate.value * coordinate.value).times(0.5);
         }
         sum
     }

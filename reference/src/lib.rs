@@ -18,6 +18,7 @@
 //! | [`SliderCrank`] | plane and spatial slider-cranks, reduced to the crank |
 //! | [`Peaucellier`] | the linkage that draws a straight line, reduced to its crank |
 //! | [`StewartPlatform`] | a plate on six legs that forces act along |
+//! | [`BushingFourBar`] | the same linkage, its coupler in halves that a stiff bushing joins |
 //! | [`CarriedFourBar`] | the same linkage on a carrier that is free in space |
 //! | [`GyroscopeFourBar`] | the gyroscope, its inner ring rocked from the base by a crank |
 //! | [`DoubleWishbone`] | a quarter of a car on a wheel suspension of two arms |
@@ -50,11 +51,13 @@
 
 mod base_motion;
 mod body;
+mod bushing;
 mod carried;
 mod carried_four_bar;
 mod chain;
 mod closed_forms;
 mod closing;
+mod collocation;
 mod decimal;
 mod double_double;
 mod double_wishbone;
@@ -91,6 +94,7 @@ mod vector;
 
 pub use base_motion::{BaseMotion, Sinusoid};
 pub use body::BodyState;
+pub use bushing::BushingFourBar;
 pub use carried::{Bead, BeadSample, FreeBody, RodPendulum, RodSample};
 pub use carried_four_bar::{CarriedFourBar, Constants};
 pub use chain::{Chain, ChainSample, InertialReading, Wrench};

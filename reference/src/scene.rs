@@ -5,9 +5,9 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 use crate::moving_base::{rolling, rolling_and_pitching, rolling_fast};
 use crate::vector::{dot, sub};
 use crate::{
-    AxisForce, Bar, BodyState, Chain, DoubleWishbone, FourBar, FourBarSample, Gyroscope, GyroscopeFourBar,
-    HeavyTop, OneAxis, Pendulum, PendulumSample, ReducedGyroscope, Sample, SliderCrank, SliderCrankSample,
-    StewartPlatform, StewartSample, TopSample,
+    AxisForce, Bar, BodyState, BushingFourBar, Chain, DoubleWishbone, FourBar, FourBarSample, Gyroscope,
+    GyroscopeFourBar, HeavyTop, OneAxis, Pendulum, PendulumSample, ReducedGyroscope, Sample, SliderCrank,
+    SliderCrankSample, StewartPlatform, StewartSample, TopSample,
 };
 
 /// Joint coordinates of a mechanism at one time.
@@ -50,6 +50,7 @@ enum Motion {
     FourBar(FourBar, Joints),
     /// In a plane.
     SliderCrank(SliderCrank),
+    Bushing(BushingFourBar),
     Stewart(Box<StewartPlatform>),
     Wishbone(DoubleWishbone),
     GyroscopeFourBar(GyroscopeFourBar),
@@ -75,6 +76,7 @@ pub fn scene(model_name: &str) -> Option<SceneReference> {
         "driven-gyroscope" => Motion::Carried(Box::new(rolling())),
         "double-wishbone" => Motion::Wishbone(DoubleWishbone::default()),
         "four-bar" => Motion::FourBar(FourBar::crank_rocker(), Joints::UniversalAndSpherical),
+        "four-bar-bushing" => Motion::Bushing(BushingFourBar::default()),
         "four-bar-in-line" => Motion::Parallelogram(thrown_parallelogram()),
         "four-bar-revolute" => Motion::FourBar(FourBar::crank_rocker(), Joints::Revolute),
         "gyroscope" | "gyroscope-maximal" | "gyroscope-misalignments" | "gyroscope-parameters" => {
@@ -135,6 +137,7 @@ impl SceneReference {
                 linkage.solve(times).iter().map(|sample| of_four_bar(sample, *joints)).collect()
             }
             Motion::SliderCrank(mechanism) => mechanism.solve(times).iter().map(of_slider_crank).collect(),
+            Motion::Bushing(linkage) => linkage.solve(times),
             Motion::Stewart(platform) => platform.solve(times).iter().map(of_stewart).collect(),
             Motion::Wishbone(wishbone) => wishbone.solve(times),
             Motion::GyroscopeFourBar(gyroscope) => gyroscope.solve(times),

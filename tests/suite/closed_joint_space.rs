@@ -2,18 +2,14 @@
 //! acceleration and one set of multipliers at states that [`CloseLoops`] has closed.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_mechanisms as shipped;
 use gyro_sim::{
     CloseLoops, Coordinate, CorrectedSolution, Dual, Dynamics, JointPlace, JointSpace, Mechanism,
 };
-use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Engine, Random, dense, is_open, model, pages};
+use gyro_sim_suite::{Engine, Random, dense, is_open, mechanism, model, pages};
 use nalgebra::DMatrix;
 
-/// States of a mechanism; of one with so many rows that the dense model takes milliseconds a state, fewer.
+/// States of a mechanism.
 const STATES: usize = 1000;
-const STATES_OF_LARGE: usize = 200;
-const LARGE: usize = 40;
 
 /// From one state to the next: rad, or sizes of the mechanism.
 const STRIDE: f64 = 0.2;
@@ -159,10 +155,8 @@ where
     assert!(!is_open(&model), "{page} is an open tree");
     let twin: Engine = dense(&model);
     let n_v = mechanism.buffers().velocities.as_ref().len();
-    let n_rows = mechanism.buffers().rows.as_ref().len();
-    let n_states = if n_rows > LARGE { STATES_OF_LARGE } else { STATES };
     let (mut worst, mut largest_condition) = ([0.0_f64; 4], 1.0_f64);
-    for _ in 0..n_states {
+    for _ in 0..STATES {
         let condition = walk.step();
         let (t, x) = (walk.t, &walk.x);
         let mut y = mechanism.start();
@@ -196,7 +190,7 @@ where
         largest_condition = largest_condition.max(condition);
     }
     println!(
-        "{page}: {n_states} states, {} turns back, condition up to {largest_condition:.1e}; u̇, (s̈, ẇ'), λ, both: \
+        "{page}: {STATES} states, {} turns back, condition up to {largest_condition:.1e}; u̇, (s̈, ẇ'), λ, both: \
          {} of what is allowed",
         walk.n_turned_back,
         worst.map(|worst| format!("{worst:.1e}")).join(", ")
@@ -206,138 +200,40 @@ where
 type Check = (&'static str, fn());
 
 /// Each mechanism is compiled for plain and for dual numbers.
-const CHECKED: [Check; 23] = [
-    ("all-joints", || {
-        check("all-joints", &own::all_joints::AllJoints::default(), &own::all_joints::AllJoints::default())
-    }),
-    ("cam", || check("cam", &own::cam::Cam::default(), &own::cam::Cam::default())),
-    ("carried-four-bar", || {
-        check(
-            "carried-four-bar",
-            &own::carried_four_bar::CarriedFourBar::default(),
-            &own::carried_four_bar::CarriedFourBar::default(),
-        )
-    }),
-    ("differential", || {
-        check(
-            "differential",
-            &own::differential::Differential::default(),
-            &own::differential::Differential::default(),
-        )
-    }),
-    ("double-wishbone", || {
-        check(
-            "double-wishbone",
-            &shipped::double_wishbone::DoubleWishbone::default(),
-            &shipped::double_wishbone::DoubleWishbone::default(),
-        )
-    }),
-    ("driven-four-bar", || {
-        check(
-            "driven-four-bar",
-            &own::driven_four_bar::DrivenFourBar::default(),
-            &own::driven_four_bar::DrivenFourBar::default(),
-        )
-    }),
-    ("driven-shaft", || {
-        check(
-            "driven-shaft",
-            &own::driven_shaft::DrivenShaft::default(),
-            &own::driven_shaft::DrivenShaft::default(),
-        )
-    }),
-    ("driven-stewart", || {
-        check(
-            "driven-stewart",
-            &own::driven_stewart::DrivenStewart::default(),
-            &own::driven_stewart::DrivenStewart::default(),
-        )
-    }),
-    ("four-bar-in-line", || {
-        check(
-            "four-bar-in-line",
-            &shipped::four_bar_in_line::FourBarInLine::default(),
-            &shipped::four_bar_in_line::FourBarInLine::default(),
-        )
-    }),
-    ("four-bar-revolute", || {
-        check(
-            "four-bar-revolute",
-            &shipped::four_bar_revolute::FourBarRevolute::default(),
-            &shipped::four_bar_revolute::FourBarRevolute::default(),
-        )
-    }),
-    ("friction-in-loops", || {
-        check(
-            "friction-in-loops",
-            &own::friction_in_loops::FrictionInLoops::default(),
-            &own::friction_in_loops::FrictionInLoops::default(),
-        )
-    }),
-    ("gear", || check("gear", &own::gear::Gear::default(), &own::gear::Gear::default())),
-    ("gear-pair", || {
-        check("gear-pair", &own::gear_pair::GearPair::default(), &own::gear_pair::GearPair::default())
-    }),
-    ("gyroscope-four-bar", || {
-        check(
-            "gyroscope-four-bar",
-            &shipped::gyroscope_four_bar::GyroscopeFourBar::default(),
-            &shipped::gyroscope_four_bar::GyroscopeFourBar::default(),
-        )
-    }),
-    ("parallelogram", || {
-        check(
-            "parallelogram",
-            &own::parallelogram::Parallelogram::default(),
-            &own::parallelogram::Parallelogram::default(),
-        )
-    }),
-    ("peaucellier", || {
-        check(
-            "peaucellier",
-            &own::peaucellier::Peaucellier::default(),
-            &own::peaucellier::Peaucellier::default(),
-        )
-    }),
-    ("planetary", || {
-        check("planetary", &own::planetary::Planetary::default(), &own::planetary::Planetary::default())
-    }),
-    ("rack-and-screw", || {
-        check(
-            "rack-and-screw",
-            &own::rack_and_screw::RackAndScrew::default(),
-            &own::rack_and_screw::RackAndScrew::default(),
-        )
-    }),
-    ("rod", || check("rod", &own::rod::Rod::default(), &own::rod::Rod::default())),
-    ("slider-crank", || {
-        check(
-            "slider-crank",
-            &shipped::slider_crank::SliderCrank::default(),
-            &shipped::slider_crank::SliderCrank::default(),
-        )
-    }),
-    ("spatial-slider-crank", || {
-        check(
-            "spatial-slider-crank",
-            &own::spatial_slider_crank::SpatialSliderCrank::default(),
-            &own::spatial_slider_crank::SpatialSliderCrank::default(),
-        )
-    }),
-    ("stewart-platform", || {
-        check(
-            "stewart-platform",
-            &shipped::stewart_platform::StewartPlatform::default(),
-            &shipped::stewart_platform::StewartPlatform::default(),
-        )
-    }),
-    ("two-four-bars", || {
-        check(
-            "two-four-bars",
-            &own::two_four_bars::TwoFourBars::default(),
-            &own::two_four_bars::TwoFourBars::default(),
-        )
-    }),
+macro_rules! checked {
+    ($($page:tt)*) => {
+        [$((
+            $page,
+            || check($page, &<mechanism!($page, f64)>::default(), &<mechanism!($page, Seeded)>::default()),
+        )),*]
+    };
+}
+
+const CHECKED: [Check; 24] = checked![
+    "all-joints"
+    "cam"
+    "carried-four-bar"
+    "differential"
+    "double-wishbone"
+    "driven-four-bar"
+    "driven-shaft"
+    "driven-stewart"
+    "four-bar-bushing"
+    "four-bar-in-line"
+    "four-bar-revolute"
+    "friction-in-loops"
+    "gear"
+    "gear-pair"
+    "gyroscope-four-bar"
+    "parallelogram"
+    "peaucellier"
+    "planetary"
+    "rack-and-screw"
+    "rod"
+    "slider-crank"
+    "spatial-slider-crank"
+    "stewart-platform"
+    "two-four-bars"
 ];
 
 #[test]

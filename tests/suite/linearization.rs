@@ -3,13 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_mechanisms as shipped;
 use gyro_reference::DoubleWishbone;
 use gyro_runner::Input;
 use gyro_runner::motion::{COLUMNS, Element, Maximal, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
 use gyro_sim::{CloseLoops, Dual, Dynamics, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
-use gyro_sim_suite::Random;
-use gyro_sim_suite::generated as own;
+use gyro_sim_suite::{Random, mechanism};
 
 /// Central differences of fourth order.
 fn slope(step: f64, f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
@@ -153,47 +151,28 @@ fn angles<M: JointSpace<Scalar = f64>>(mechanism: &M, x: &M::Joints) -> Vec<f64>
     angles
 }
 
-fn check_tree<M, D>(page: &str, mechanism: &M, duals: D)
-where
-    M: Maximal<Scalar = f64> + JointSpace + Clone + 'static,
-    D: JointSpace<Scalar = Dual<f64, COLUMNS>> + Dynamics + Clone + 'static,
-{
-    check(page, mechanism, &Tree(duals));
+macro_rules! check_in_duals {
+    ($($page:tt)*) => {
+        $(check(
+            $page,
+            &<mechanism!($page, f64)>::default(),
+            &Tree(<mechanism!($page, Dual<f64, COLUMNS>)>::default()),
+        );)*
+    };
 }
 
 #[test]
 fn linearisations_are_limits_of_differences() {
-    check_tree("motor", &own::motor::Motor::default(), own::motor::Motor::default());
-    check("motor", &own::motor::Motor::default(), &TreeWithJacobian(own::motor::Motor::default()));
-    check_tree("pendulum", &own::pendulum::Pendulum::default(), own::pendulum::Pendulum::default());
-    check_tree("carried", &own::carried::Carried::default(), own::carried::Carried::default());
-    check_tree(
-        "double-wishbone",
-        &shipped::double_wishbone::DoubleWishbone::default(),
-        shipped::double_wishbone::DoubleWishbone::default(),
-    );
-    check_tree(
-        "stewart-platform",
-        &shipped::stewart_platform::StewartPlatform::default(),
-        shipped::stewart_platform::StewartPlatform::default(),
-    );
-    check_tree(
-        "carried-four-bar",
-        &own::carried_four_bar::CarriedFourBar::default(),
-        own::carried_four_bar::CarriedFourBar::default(),
-    );
-    check_tree(
-        "driven-four-bar",
-        &own::driven_four_bar::DrivenFourBar::default(),
-        own::driven_four_bar::DrivenFourBar::default(),
-    );
+    type Motor<T> = mechanism!("motor", T);
+    check("motor", &Motor::<f64>::default(), &TreeWithJacobian(Motor::<Dual<f64, COLUMNS>>::default()));
+    check_in_duals!["motor" "pendulum" "carried" "double-wishbone" "stewart-platform" "carried-four-bar" "driven-four-bar"];
 }
 
 /// A and C of the wishbone against differences of its reference, which shares nothing with the generator. The start is
 /// no equilibrium, so A depends on which coordinates are independent: what it says of the reference's motion counts.
 #[test]
 fn the_wishbone_s_linearisation_is_that_of_its_reference() {
-    type Wishbone<T> = shipped::double_wishbone::DoubleWishbone<T>;
+    type Wishbone<T> = mechanism!("double-wishbone", T);
     let (mechanism, builder) = (Wishbone::<f64>::default(), Tree(Wishbone::<Dual<f64, COLUMNS>>::default()));
     let (y, reference) = (mechanism.start(), DoubleWishbone::default());
     let start = [reference.height, reference.angle, 0.0, 0.0];

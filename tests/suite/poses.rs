@@ -6,9 +6,11 @@ use gyro_mechanisms::four_bar_in_line::FourBarInLine;
 use gyro_model::Model;
 use gyro_reference::Pendulum;
 use gyro_runner::motion::{MotionBuilder, Projecting, WithDuals};
-use gyro_runner::{Approach, Coordinates, Correction, Failure, Integrator, Sample, Settings, Summary};
+use gyro_runner::{Approach, Coordinates, Correction, Failure, Grade, Integrator, Sample, Settings, Summary};
 use gyro_sim_suite::generated::two_four_bars::TwoFourBars;
-use gyro_sim_suite::{Duals, Engine, coordinate, dense, duals, generated, model, moved, start_of, worst};
+use gyro_sim_suite::{
+    Duals, Engine, coordinate, dense, duals, generated, judged, model, moved, start_of, worst,
+};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
@@ -223,6 +225,36 @@ fn joint_coordinates_pass_at_every_tolerance() {
             assert!(error < ADDED_UP * tolerance + ROUNDING, "{page}, {approach}: {error:e}");
             assert!(summary.statistics.leaps > 0, "{summary:?}");
         }
+    }
+}
+
+/// Two cells almost come to rest with all bars in line, where little is needed to go on otherwise. At a coarse
+/// tolerance the phase is lost, and the verdict says so.
+#[test]
+fn what_a_coarse_tolerance_loses_is_told() {
+    let model = model("two-four-bars");
+    let engine = Engine::of_tree(TwoFourBars::default());
+    let (builder, start) = (engine.builder(Duals::none()), start_of(&model));
+    let settings = Settings { t_end: 20.0, step: 1e-3, correct_every: None, sample_every: 0.4 };
+    for (integrator, tolerance) in [Integrator::Dop853, Integrator::Tsit5, Integrator::Rodas4]
+        .into_iter()
+        .flat_map(|integrator| [1e-2, 1e-3, 1e-4].map(|tolerance| (integrator, tolerance)))
+    {
+        let coordinates = Coordinates::Joint;
+        let approach = Approach { coordinates, ..approach(integrator, tolerance, Correction::Partition) };
+        let (samples, outcome) = moved(&engine, &*builder, (&settings, &approach), &start);
+        let Ok(summary) = outcome else { continue };
+        let times: Vec<f64> = samples.iter().map(|sample| sample.t).collect();
+        let expected = as_pendulum(2, 1.0).solve(&times);
+        let errors = samples.iter().zip(&expected).flat_map(|(sample, expected)| {
+            (0..3).map(|bar| (coordinate(sample, bar).0 - pivot_angle(expected.angle)).abs())
+        });
+        let error = errors.fold(0.0, f64::max);
+        let judgement = judged(&engine, &*builder, (&settings, &approach), &start, (&samples, &summary));
+        let judgement = judgement.expect("a companion");
+        println!("{approach}: off by {error:.1e}, {:?}, {:?}", judgement.grade, judgement.reasons);
+        assert!(error < 1e-2 || judgement.grade > Grade::Good, "{approach}: off by {error:e}, called good");
+        assert!(error < 1.0 || judgement.grade == Grade::Worthless, "{approach}: off by {error:e}");
     }
 }
 

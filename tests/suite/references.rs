@@ -81,8 +81,9 @@ fn every_shipped_page_with_joints_moves_as_its_reference() {
 
 #[test]
 fn loops_and_driven_joints_move_as_their_references_in_joint_coordinates() {
-    let engines: [(&str, Engine); 5] = [
+    let engines: [(&str, Engine); 6] = [
         ("double-wishbone", Engine::of_tree(shipped::double_wishbone::DoubleWishbone::default())),
+        ("four-bar-bushing", Engine::of_tree(shipped::four_bar_bushing::FourBarBushing::default())),
         ("four-bar-in-line", Engine::of_tree(shipped::four_bar_in_line::FourBarInLine::default())),
         ("four-bar-revolute", Engine::of_tree(shipped::four_bar_revolute::FourBarRevolute::default())),
         ("gyroscope-four-bar", Engine::of_tree(shipped::gyroscope_four_bar::GyroscopeFourBar::default())),

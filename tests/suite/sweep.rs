@@ -4,7 +4,6 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::estimate::{Deviation, deviations, estimate, expected};
-use gyro_mechanisms as shipped;
 use gyro_reference::JointRow;
 use gyro_runner::motion::{Linear, Motion, MotionBuilder, OperatingPoint};
 use gyro_runner::{
@@ -12,7 +11,7 @@ use gyro_runner::{
     Summary, differences, time_by,
 };
 use gyro_sim::{JointLayout, Real};
-use gyro_sim_suite::{Duals, Engine, duals, extreme, model, moved, start_of};
+use gyro_sim_suite::{Duals, Engine, duals, extreme, mechanism, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
@@ -27,7 +26,7 @@ struct Scene {
 }
 
 /// A few periods of the fastest motion; 500 to 4000 steps.
-const SCENES: [Scene; 14] = [
+const SCENES: [Scene; 15] = [
     Scene { page: "gyroscope", t_end: 0.1, step: 5e-5 },
     Scene { page: "gyroscope-fast", t_end: 2e-4, step: 1e-7 },
     Scene { page: "gyroscope-at-rest", t_end: 1.0, step: 5e-4 },
@@ -40,20 +39,25 @@ const SCENES: [Scene; 14] = [
     Scene { page: "gyroscope-rolling-base", t_end: 0.05, step: 2.5e-5 },
     Scene { page: "gyroscope-long", t_end: 0.1, step: 5e-5 },
     Scene { page: "four-bar", t_end: 0.1, step: 1e-4 },
+    Scene { page: "four-bar-bushing", t_end: 2e-3, step: 1e-6 },
     Scene { page: "four-bar-in-line", t_end: 0.5, step: 1e-3 },
     Scene { page: "slider-crank", t_end: 0.2, step: 2e-4 },
 ];
 
 /// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates.
 fn engines<T: Real + 'static>(page: &str) -> (Engine<T>, Duals<T>) {
+    macro_rules! of_loop {
+        ($page:tt) => {
+            (
+                Engine::of_tree(<mechanism!($page, T)>::default()),
+                Duals::new(<mechanism!($page, _)>::default()),
+            )
+        };
+    }
     match page {
-        "four-bar-in-line" => {
-            (Engine::of_tree(shipped::four_bar_in_line::FourBarInLine::default()), duals(page))
-        }
-        "slider-crank" => (
-            Engine::of_tree(shipped::slider_crank::SliderCrank::default()),
-            Duals::new(shipped::slider_crank::SliderCrank::default()),
-        ),
+        "four-bar-bushing" => of_loop!("four-bar-bushing"),
+        "four-bar-in-line" => of_loop!("four-bar-in-line"),
+        "slider-crank" => of_loop!("slider-crank"),
         _ => (extreme(page), duals(page)),
     }
 }

@@ -20,102 +20,100 @@ pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
     }
 }
 
-/// The generated mechanism of a model file.
-///
-/// # Panics
-/// If the model file has no generated mechanism here: every model file must have one.
-pub fn generated(page: &str) -> Engine {
-    match page {
-        "all-joints" => Engine::new(own::all_joints::AllJoints::default()),
-        "cam" => Engine::new(own::cam::Cam::default()),
-        "carried" => Engine::new(own::carried::Carried::default()),
-        "carried-block" => Engine::new(own::carried_block::CarriedBlock::default()),
-        "carried-four-bar" => Engine::new(own::carried_four_bar::CarriedFourBar::default()),
-        "compound-pendulum" => Engine::of_tree(shipped::compound_pendulum::CompoundPendulum::default()),
-        "cylindrical" => Engine::new(own::cylindrical::Cylindrical::default()),
-        "differential" => Engine::new(own::differential::Differential::default()),
-        "double-wishbone" => Engine::new(shipped::double_wishbone::DoubleWishbone::default()),
-        "driven-four-bar" => Engine::new(own::driven_four_bar::DrivenFourBar::default()),
-        "driven-gyroscope" => Engine::of_tree(shipped::driven_gyroscope::DrivenGyroscope::default()),
-        "driven-shaft" => Engine::new(own::driven_shaft::DrivenShaft::default()),
-        "driven-stewart" => Engine::new(own::driven_stewart::DrivenStewart::default()),
-        "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
-        "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
-        "four-bar-revolute" => Engine::new(shipped::four_bar_revolute::FourBarRevolute::default()),
-        "free-body" => Engine::of_tree(shipped::free_body::FreeBody::default()),
-        "friction-in-loops" => Engine::new(own::friction_in_loops::FrictionInLoops::default()),
-        "friction" => Engine::new(own::friction::Friction::default()),
-        "gear" => Engine::new(own::gear::Gear::default()),
-        "gear-pair" => Engine::new(own::gear_pair::GearPair::default()),
-        "gyroscope" => Engine::of_tree(shipped::gyroscope::Gyroscope::default()),
-        "gyroscope-at-rest" => Engine::of_tree(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
-        "gyroscope-bearings" => Engine::new(own::gyroscope_bearings::GyroscopeBearings::default()),
-        "gyroscope-combined-offsets" => {
-            Engine::of_tree(shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default())
+/// The type of each mechanism by its model file, `mechanism!("gear-pair", f64)`, and [`generated`].
+macro_rules! mechanisms {
+    ($d:tt $($page:tt $new:ident $from:ident::$module:ident::$name:ident,)*) => {
+        /// The generated type of a model file in some kind of numbers: `mechanism!("gear-pair", f64)`.
+        #[macro_export]
+        macro_rules! mechanism {
+            $(($page, $d scalar:ty) => { $crate::$from::$module::$name<$d scalar> };)*
         }
-        "gyroscope-coulomb" => Engine::of_tree(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
-        "gyroscope-fast" => Engine::of_tree(shipped::gyroscope_fast::GyroscopeFast::default()),
-        "gyroscope-four-bar" => Engine::new(shipped::gyroscope_four_bar::GyroscopeFourBar::default()),
-        "gyroscope-free-nutation" => {
-            Engine::of_tree(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
+
+        /// The generated mechanism of a model file.
+        ///
+        /// # Panics
+        /// If the model file has no generated mechanism here: every model file must have one.
+        pub fn generated(page: &str) -> Engine {
+            match page {
+                $($page => Engine::$new($from::$module::$name::<f64>::default()),)*
+                _ => panic!("{page}.toml has no line in tests/support/fixtures.rs: add it"),
+            }
         }
-        "gyroscope-gimbal-lock" => {
-            Engine::of_tree(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default())
-        }
-        "gyroscope-heavy-rotor" => {
-            Engine::of_tree(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default())
-        }
-        "gyroscope-light-rings" => {
-            Engine::of_tree(shipped::gyroscope_light_rings::GyroscopeLightRings::default())
-        }
-        "gyroscope-long" => Engine::of_tree(shipped::gyroscope_long::GyroscopeLong::default()),
-        "gyroscope-maximal" => Engine::of_tree(shipped::gyroscope_maximal::GyroscopeMaximal::default()),
-        "gyroscope-misalignments" => {
-            Engine::of_tree(shipped::gyroscope_misalignments::GyroscopeMisalignments::default())
-        }
-        "gyroscope-overdamped" => {
-            Engine::of_tree(shipped::gyroscope_overdamped::GyroscopeOverdamped::default())
-        }
-        "gyroscope-parameters" => {
-            Engine::of_tree(shipped::gyroscope_parameters::GyroscopeParameters::default())
-        }
-        "gyroscope-radial-imbalance" => {
-            Engine::of_tree(shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())
-        }
-        "gyroscope-rolling-base" => {
-            Engine::of_tree(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
-        }
-        "gyroscope-stiff" => Engine::of_tree(shipped::gyroscope_stiff::GyroscopeStiff::default()),
-        "gyroscope-viscous" => Engine::of_tree(shipped::gyroscope_viscous::GyroscopeViscous::default()),
-        "heavy-top" => Engine::of_tree(shipped::heavy_top::HeavyTop::default()),
-        "loads" => Engine::new(own::loads::Loads::default()),
-        "manipulator" => Engine::new(own::manipulator::Manipulator::default()),
-        "motor" => Engine::new(own::motor::Motor::default()),
-        "parallelogram" => Engine::new(own::parallelogram::Parallelogram::default()),
-        "peaucellier" => Engine::new(own::peaucellier::Peaucellier::default()),
-        "pendulum" => Engine::new(own::pendulum::Pendulum::default()),
-        "pitching-bearings" => Engine::new(own::pitching_bearings::PitchingBearings::default()),
-        "pitching-gyroscope" => Engine::of_tree(shipped::pitching_gyroscope::PitchingGyroscope::default()),
-        "planar" => Engine::new(own::planar::Planar::default()),
-        "planetary" => Engine::new(own::planetary::Planetary::default()),
-        "point-on-line" => Engine::new(own::point_on_line::PointOnLine::default()),
-        "prismatic" => Engine::new(own::prismatic::Prismatic::default()),
-        "rack-and-screw" => Engine::new(own::rack_and_screw::RackAndScrew::default()),
-        "rod" => Engine::new(own::rod::Rod::default()),
-        "screw" => Engine::new(own::screw::Screw::default()),
-        "slider-crank" => Engine::new(shipped::slider_crank::SliderCrank::default()),
-        "spatial-slider-crank" => Engine::new(own::spatial_slider_crank::SpatialSliderCrank::default()),
-        "spherical" => Engine::new(own::spherical::Spherical::default()),
-        "spinning-top" => Engine::of_tree(shipped::spinning_top::SpinningTop::default()),
-        "stewart-platform" => Engine::new(shipped::stewart_platform::StewartPlatform::default()),
-        "stops" => Engine::new(own::stops::Stops::default()),
-        "tether" => Engine::new(own::tether::Tether::default()),
-        "torsion" => Engine::of_tree(shipped::torsion::Torsion::default()),
-        "two-four-bars" => Engine::new(own::two_four_bars::TwoFourBars::default()),
-        "universal" => Engine::new(own::universal::Universal::default()),
-        "weld" => Engine::new(own::weld::Weld::default()),
-        _ => panic!("{page}.toml has no line in tests/support/fixtures.rs: add it"),
-    }
+    };
+}
+
+// Of trees those that have joint coordinates here.
+mechanisms! {
+    $
+    "all-joints" new own::all_joints::AllJoints,
+    "cam" new own::cam::Cam,
+    "carried" new own::carried::Carried,
+    "carried-block" new own::carried_block::CarriedBlock,
+    "carried-four-bar" new own::carried_four_bar::CarriedFourBar,
+    "compound-pendulum" of_tree shipped::compound_pendulum::CompoundPendulum,
+    "cylindrical" new own::cylindrical::Cylindrical,
+    "differential" new own::differential::Differential,
+    "double-wishbone" new shipped::double_wishbone::DoubleWishbone,
+    "driven-four-bar" new own::driven_four_bar::DrivenFourBar,
+    "driven-gyroscope" of_tree shipped::driven_gyroscope::DrivenGyroscope,
+    "driven-shaft" new own::driven_shaft::DrivenShaft,
+    "driven-stewart" new own::driven_stewart::DrivenStewart,
+    "four-bar" new shipped::four_bar::FourBar,
+    "four-bar-bushing" new shipped::four_bar_bushing::FourBarBushing,
+    "four-bar-in-line" new shipped::four_bar_in_line::FourBarInLine,
+    "four-bar-revolute" new shipped::four_bar_revolute::FourBarRevolute,
+    "free-body" of_tree shipped::free_body::FreeBody,
+    "friction" new own::friction::Friction,
+    "friction-in-loops" new own::friction_in_loops::FrictionInLoops,
+    "gear" new own::gear::Gear,
+    "gear-pair" new own::gear_pair::GearPair,
+    "gyroscope" of_tree shipped::gyroscope::Gyroscope,
+    "gyroscope-at-rest" of_tree shipped::gyroscope_at_rest::GyroscopeAtRest,
+    "gyroscope-bearings" new own::gyroscope_bearings::GyroscopeBearings,
+    "gyroscope-combined-offsets" of_tree shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets,
+    "gyroscope-coulomb" of_tree shipped::gyroscope_coulomb::GyroscopeCoulomb,
+    "gyroscope-fast" of_tree shipped::gyroscope_fast::GyroscopeFast,
+    "gyroscope-four-bar" new shipped::gyroscope_four_bar::GyroscopeFourBar,
+    "gyroscope-free-nutation" of_tree shipped::gyroscope_free_nutation::GyroscopeFreeNutation,
+    "gyroscope-gimbal-lock" of_tree shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock,
+    "gyroscope-heavy-rotor" of_tree shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor,
+    "gyroscope-light-rings" of_tree shipped::gyroscope_light_rings::GyroscopeLightRings,
+    "gyroscope-long" of_tree shipped::gyroscope_long::GyroscopeLong,
+    "gyroscope-maximal" of_tree shipped::gyroscope_maximal::GyroscopeMaximal,
+    "gyroscope-misalignments" of_tree shipped::gyroscope_misalignments::GyroscopeMisalignments,
+    "gyroscope-overdamped" of_tree shipped::gyroscope_overdamped::GyroscopeOverdamped,
+    "gyroscope-parameters" of_tree shipped::gyroscope_parameters::GyroscopeParameters,
+    "gyroscope-radial-imbalance" of_tree shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance,
+    "gyroscope-rolling-base" of_tree shipped::gyroscope_rolling_base::GyroscopeRollingBase,
+    "gyroscope-stiff" of_tree shipped::gyroscope_stiff::GyroscopeStiff,
+    "gyroscope-viscous" of_tree shipped::gyroscope_viscous::GyroscopeViscous,
+    "heavy-top" of_tree shipped::heavy_top::HeavyTop,
+    "loads" new own::loads::Loads,
+    "manipulator" new own::manipulator::Manipulator,
+    "motor" new own::motor::Motor,
+    "parallelogram" new own::parallelogram::Parallelogram,
+    "peaucellier" new own::peaucellier::Peaucellier,
+    "pendulum" new own::pendulum::Pendulum,
+    "pitching-bearings" new own::pitching_bearings::PitchingBearings,
+    "pitching-gyroscope" of_tree shipped::pitching_gyroscope::PitchingGyroscope,
+    "planar" new own::planar::Planar,
+    "planetary" new own::planetary::Planetary,
+    "point-on-line" new own::point_on_line::PointOnLine,
+    "prismatic" new own::prismatic::Prismatic,
+    "rack-and-screw" new own::rack_and_screw::RackAndScrew,
+    "rod" new own::rod::Rod,
+    "screw" new own::screw::Screw,
+    "slider-crank" new shipped::slider_crank::SliderCrank,
+    "spatial-slider-crank" new own::spatial_slider_crank::SpatialSliderCrank,
+    "spherical" new own::spherical::Spherical,
+    "spinning-top" of_tree shipped::spinning_top::SpinningTop,
+    "stewart-platform" new shipped::stewart_platform::StewartPlatform,
+    "stops" new own::stops::Stops,
+    "tether" new own::tether::Tether,
+    "torsion" of_tree shipped::torsion::Torsion,
+    "two-four-bars" new own::two_four_bars::TwoFourBars,
+    "universal" new own::universal::Universal,
+    "weld" new own::weld::Weld,
 }
 
 /// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them, but not

@@ -9,6 +9,9 @@ mod nested;
 mod random;
 mod runs;
 
+pub use generated as own;
+pub use gyro_mechanisms as shipped;
+
 pub use against::{along, body, check, check_pairs, cross, pair, reference_body, rotation, times, worst};
 pub use engine::{Choice, Duals, Engine};
 pub use fixtures::{
@@ -19,5 +22,5 @@ pub use matrix::{Matrix, difference, phi_pi, phi_q};
 pub use nested::{Said, cargo, say};
 pub use random::{Random, posed, state, state_at, violated_start};
 pub use runs::{
-    PAPER, Run, as_paged, coordinate, fed, moved, multipliers, output, played, simulate, start_of,
+    PAPER, Run, as_paged, coordinate, fed, judged, moved, multipliers, output, played, simulate, start_of,
 };

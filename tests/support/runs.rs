@@ -4,7 +4,8 @@ use crate::Engine;
 use gyro_model::{Joint, JointKind, Model};
 use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{
-    Approach, Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run, run_by,
+    Approach, Event, Failure, Input, JointSample, Judgement, Measure, Sample, Settings, Start, Summary,
+    balance, companions, judge, run, run_by,
 };
 use gyro_sim::{Dynamics, Mechanism, Real};
 
@@ -102,6 +103,30 @@ pub fn moved<T: Real + 'static>(
         Ok(())
     });
     (samples, outcome)
+}
+
+/// What a run is worth as the command line judges it: beside the first companion that comes to its end and whose own
+/// balance closes, else beside the first.
+pub fn judged(
+    mechanism: &Engine,
+    builder: &dyn MotionBuilder<Engine>,
+    (settings, approach): (&Settings, &Approach),
+    start: &Start,
+    (samples, summary): (&[Sample], &Summary),
+) -> Option<Judgement> {
+    let (tolerance, size) = (approach.tolerance, mechanism.size());
+    let measure = Measure { tolerance, size, is_balanced: true };
+    let mut doubtful = None;
+    for (settings, approach) in companions(settings, approach, false) {
+        let (others, outcome) = moved(mechanism, builder, (&settings, &approach), start);
+        let Ok(other) = outcome else { continue };
+        let judgement = judge((samples, summary), (&others, &other), &measure);
+        if balance(&other, true).is_empty() {
+            return Some(judgement);
+        }
+        doubtful = doubtful.or(Some(judgement));
+    }
+    doubtful
 }
 
 /// The settings that a model file asks for, with samples so far apart.

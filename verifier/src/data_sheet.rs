@@ -343,6 +343,7 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
         " Whether the mechanism can have these parameters, as the model file's rules decide.",
         " The assembled start, with all parameters at their defaults.",
         " Polynomials between them, from each point's own time.",
+        " Where numbers stand, by name; of several numbers the first.",
     ];
     let mut docs: Vec<String> = plain.map(str::to_owned).to_vec();
     if module.n_charts.is_some() {

@@ -5,7 +5,8 @@ use super::inertia::{rounded, tensor};
 use super::merge::{Body, Merged, Place, Root, Settled, on_grid};
 use super::names::{Names, snake_case};
 use super::robot::{Joint, Kind, Limit, Link, Robot};
-use super::{MARK, Wishes};
+use super::wrenches::Wrench;
+use super::{MARK, Wishes, wrenches};
 use crate::words;
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
@@ -35,7 +36,7 @@ const GRAVITY: f64 = 9.81;
 pub(super) fn write(
     file: &str,
     robot: &Robot,
-    (merged, wishes): (&Merged, Wishes),
+    (merged, wishes): (&Merged, Wishes<'_>),
     remarks: &mut Vec<String>,
 ) -> String {
     let (mut body_names, mut joint_names) = (Names::default(), Names::default());
@@ -55,12 +56,16 @@ pub(super) fn write(
     if !changed.is_empty() {
         remarks.push(format!("names: {}", words::listed(&changed)));
     }
-    let page = Page { robot, merged, bodies, joints, mimics, wishes };
+    let wrenches = wrenches::of(robot, merged, wishes.wrenches);
+    let page = Page { robot, merged, bodies, joints, mimics, wishes, wrenches };
     remarks.extend(page.remarks());
     let mut text = page.head(file, remarks);
     (0..merged.bodies.len()).for_each(|body| page.body(&mut text, body));
     for write in [Page::joint, Page::coupler, Page::friction, Page::motor, Page::stops] {
         page.moving_joints().for_each(|joint| write(&page, &mut text, joint));
+    }
+    for wrench in &page.wrenches {
+        wrench.load(&mut text, &page.bodies[wrench.body], &vector(&wrench.point));
     }
     text
 }
@@ -86,7 +91,8 @@ struct Page<'a> {
     joints: Vec<String>,
     /// Names of couplers, should the joints have them.
     mimics: Vec<String>,
-    wishes: Wishes,
+    wishes: Wishes<'a>,
+    wrenches: Vec<Wrench>,
 }
 
 impl Page<'_> {
@@ -151,13 +157,14 @@ impl Page<'_> {
         let has_stops = self.wishes.limits && self.moving_joints().any(|joint| self.limit(joint).is_some());
         let step = if has_stops { STOP_STEP } else { "1e-3" };
         let _ = write!(text, "[simulation]\nt_end = 1\nstep = {step}\n");
-        if self.motors().next().is_some() {
+        if self.motors().next().is_some() || !self.wrenches.is_empty() {
             text.push_str("\n[inputs]\n");
         }
         for joint in self.motors() {
             let unit = if self.robot.joints[joint].kind == Kind::Revolute { "N.m" } else { "N" };
             let _ = writeln!(text, "{}_motor = 0  # {unit}", self.joints[joint]);
         }
+        self.wrenches.iter().for_each(|wrench| wrench.inputs(&mut text));
         text
     }
 

@@ -2,8 +2,8 @@
 
 use super::*;
 
-const PLAIN: Wishes = Wishes { root: Root::Fixed, motors: false, limits: false };
-const FLOATING: Wishes = Wishes { root: Root::Floating, ..PLAIN };
+const PLAIN: Wishes<'_> = Wishes { root: Root::Fixed, motors: false, limits: false, wrenches: &[] };
+const FLOATING: Wishes<'_> = Wishes { root: Root::Floating, ..PLAIN };
 
 const LINKS: &str = r#"<robot name="r">
 <link name="base"/>
@@ -269,6 +269,40 @@ fn motors_and_stops_are_made_on_request() {
     assert!(
         remarks.contains(&"3 <limit>s left out: --limits makes stops of them".to_owned()),
         "{remarks:#?}"
+    );
+}
+
+/// A force and a torque on a link that is lumped into another one's body act where its frame is; links that are not
+/// there or do not move are named.
+#[test]
+fn wrenches_act_on_links_that_move() {
+    let rest = r#"<link name="Tool-Tip"/>
+<joint name="f" type="fixed"><parent link="arm"/><child link="Tool-Tip"/><origin xyz="0.5 0 0.25"/></joint>"#;
+    let robot = robot(&format!("{JOINT}{rest}"));
+    let convert = |wrenches: &[&str]| {
+        let wrenches: Vec<String> = wrenches.iter().map(|&name| name.to_owned()).collect();
+        convert("r.urdf", "r.urdf", &robot, Wishes { wrenches: &wrenches, ..PLAIN })
+    };
+    let (page, _) = convert(&["Tool-Tip"]).unwrap();
+    assert!(page.contains("[inputs]\ntool_tip_force_x = 0  # N\n"), "{page}");
+    let model = gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    assert_eq!(model.inputs.len(), 6);
+    let gyro_model::ForceKind::Load { point, force, torque, .. } = &model.forces[0].kind else {
+        panic!("{page}")
+    };
+    let inputs = force.iter().chain(torque).enumerate();
+    inputs
+        .for_each(|(k, number)| assert_eq!(*number, gyro_model::Number::Input { index: k, negated: false }));
+    let point = point.each_ref().map(|x| match x {
+        gyro_model::Number::Exact(x) => gyro_model::to_f64(x),
+        other => panic!("{other:?}"),
+    });
+    assert_eq!(point, [0.5, 0.0, 0.25], "{page}");
+    let said = convert(&["base", "hand"]).unwrap_err();
+    assert!(said.contains("--wrenches base: this link is fixed"), "{said}");
+    assert!(
+        said.contains("--wrenches hand: there is no such link; there are `base`, `arm`, `Tool-Tip`"),
+        "{said}"
     );
 }
 

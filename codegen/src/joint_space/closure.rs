@@ -16,7 +16,7 @@ use std::array::from_fn;
 use std::collections::BTreeSet;
 
 /// `Φ_c(t, x) = 0`, in terms of joint coordinates and of the sines and cosines of angles.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Closure {
     /// By their places among all rows.
     pub rows: Vec<usize>,

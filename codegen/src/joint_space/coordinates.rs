@@ -1,5 +1,6 @@
 //! Joint coordinates: what is derived before anything is solved.
 
+use super::closing_units;
 use super::closure::{self, Closure};
 use super::determined;
 use super::embedding::Embedding;
@@ -123,15 +124,22 @@ impl Coordinates {
         if closure.rows.is_empty() {
             return Default::default();
         }
+        let units = closing_units::units(system, layout, &self.by_rates);
+        let scaled = closing_units::in_units(&mut system.graph, closure, &units);
+        let loops_in_units = loops_of(system, &scaled);
         let graph = &mut system.graph;
+        let least = |graph: &mut Graph, missing: &[ExprId]| -> Vec<_> {
+            let changes = loops_in_units.changes(graph, &scaled, missing, layout.n_rates);
+            changes.into_iter().zip(&units).map(|(change, &unit)| graph.mul(change, unit)).collect()
+        };
         let opposite = |graph: &mut Graph, rows: &[ExprId]| -> Vec<_> {
             rows.iter().map(|&row| graph.neg(row)).collect()
         };
         let missing = opposite(graph, &closure.phi);
         let distances = loops.distances(graph, closure);
-        let shifts = loops.changes(graph, closure, &missing, layout.n_rates);
+        let shifts = least(graph, &missing);
         let missing = opposite(graph, &closure.residual);
-        let changes = loops.changes(graph, closure, &missing, layout.n_rates);
+        let changes = least(graph, &missing);
         let shifts = maps::coordinate_rates(system, layout, &shifts);
         let graph = &mut system.graph;
         let added = |graph: &mut Graph, symbol: Symbol, change: ExprId| {

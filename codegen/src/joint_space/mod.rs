@@ -20,6 +20,7 @@ mod axis_frames;
 mod axis_inverse;
 mod candidates;
 mod choose;
+mod closing_units;
 mod closure;
 mod coordinates;
 mod determined;

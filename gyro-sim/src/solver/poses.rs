@@ -215,8 +215,10 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         if self.approach.is_none() && length < self.next_step + self.next_step {
             self.approach = Some(Approach::default());
         }
+        let longest = length * T::constant(0.5 * APPROACH);
         let Some(approach) = &mut self.approach else { return Ok(false) };
-        approach.attempts += 1;
+        // Steps that the tolerance keeps short lead to no pose.
+        approach.attempts += u32::from(self.next_step > longest);
         let is_too_long = approach.attempts > LONGEST_APPROACH;
         self.weigh_state();
         if is_too_long || self.in_tolerances(self.rounding(pivot) * T::constant(NOISE)) > MOST_NOISE {
@@ -228,7 +230,6 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
             self.approach = None;
             return Ok(true);
         }
-        let longest = length * T::constant(0.5 * APPROACH);
         if self.next_step > longest {
             self.next_step = longest;
         }

@@ -211,7 +211,7 @@ where
     inputs.iter().enumerate().for_each(|(index, &value)| assert!(dense.set_input(index, value)));
     let accelerations =
         slope(|h| maximal(mechanism, t + h, &moved(mechanism, x, given, h))[7 * n..13 * n].to_vec());
-    let mut applied = dense.terms().velocities;
+    let mut applied = dense.buffers().velocities;
     let mut y = dense.start();
     y.copy_from_slice(&maximal(mechanism, t, x));
     dense.applied_force(t, &y, &mut applied);

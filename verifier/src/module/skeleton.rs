@@ -4,6 +4,7 @@
 //! body may leave unread as `ANY_name`.
 
 mod definition;
+mod indices;
 mod mechanism;
 mod on_request;
 mod partition;
@@ -15,6 +16,7 @@ pub use partition::Choice;
 use crate::joints::{Freedom, JointLayout};
 use definition::{constants, definition};
 use gyro_model::{Model, Spline};
+use indices::indices;
 use mechanism::mechanism;
 use partition::partition;
 use pieces::{buffers, fillings, lines, list};
@@ -111,6 +113,7 @@ pub fn text(
         of("InverseDynamics", of_joints(|_, name, _| on_request::inverse_dynamics(name))),
         of("MassMatrix", of_joints(|_, name, joints| on_request::mass_matrix(name, joints))),
         of("DynamicsDerivatives", of_joints(|_, name, joints| on_request::derivatives(name, joints))),
+        indices(model, joints),
     ]
     .concat()
 }

@@ -200,6 +200,11 @@ const FOREIGN: &[(&str, &str)] = &[
     ("type Rows", "#[cfg(all())] type Rows"),
     ("_ => return false", "#[cfg(any())] _ => return false"),
     ("0 => {", "#[cfg(any())] 0 => {"),
+    // Names of places: another place, another name, another joint's.
+    ("pub const GRAVITY: usize = 0;", "pub const GRAVITY: usize = 1;"),
+    ("pub const CRANK_PIVOT: usize = 0;", "pub const CRANK_PIVOT: usize = 1;"),
+    ("pub const ELBOW: usize", "pub const KNEE: usize"),
+    ("pub mod joint_rate", "pub mod joint_speed"),
     ("let t0", "#[cfg(any())] let t0"),
     ("*out = [", "#[cfg(any())] *out = ["),
     ("kinetic:", "#[cfg(any())] kinetic:"),

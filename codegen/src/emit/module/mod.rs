@@ -2,6 +2,7 @@
 
 mod definition;
 mod dynamics;
+mod indices;
 mod joint_space;
 mod kinematics;
 mod mechanism;
@@ -71,6 +72,7 @@ impl ModuleWriter<'_> {
         let (joint_outputs, output_derivatives, frames) =
             (self.joint_outputs(), self.output_derivatives(), self.frames());
         let on_request = self.on_request();
+        let indices = self.indices();
         quote! {
             #tables
             #definition
@@ -87,6 +89,7 @@ impl ModuleWriter<'_> {
             #output_derivatives
             #frames
             #on_request
+            #indices
         }
     }
 }
