@@ -26,6 +26,7 @@ pub mod progress;
 mod remarks;
 mod report;
 mod rounding;
+mod runs;
 mod scene;
 mod simulate;
 mod spectrum;

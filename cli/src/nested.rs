@@ -7,13 +7,14 @@
 use crate::args::Precision;
 use crate::failure::Failure;
 use crate::progress::{self, Spinner};
+use crate::runs::{Runs, main};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
 use crate::{files, machine_code, remarks};
-use gyro_codegen::{Functions, Group, Kernel, Module};
+use gyro_codegen::{Functions, Kernel, Module};
 use gyro_model::Model;
 use gyro_runner::protocol::{self, Reply, Request};
-use gyro_runner::{Approach, Coordinates, Correction, Event, Integrator, Summary, Timing};
+use gyro_runner::{Event, Summary, Timing};
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File, TryLockError};
 use std::hash::{Hash, Hasher};
@@ -22,10 +23,27 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// Generates, compiles and runs; `tell` hears of samples and progress.
+///
+/// A run that fails for a reason which a linearisation explains is made again by a program that has one, of which the
+/// reason is all that is heard: to most runs that program would be of no use.
 pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
-    let spinner = progress::deriving(&scene.page);
     let runs = Runs::of(scene);
-    let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &runs.functions())
+    let is_companion = scene.has_companions && !scene.approach.examine;
+    let words = match run(scene, runs, tell)? {
+        Answer::Done(summary, _) => return Ok(*summary),
+        Answer::Unexplained(words) => words,
+    };
+    if !is_companion {
+        run(scene, runs.map(Runs::examined), |_| ())?;
+    }
+    Err(Failure::Run(words))
+}
+
+/// Generates, compiles and runs with a program for these runs.
+fn run(scene: &Scene, runs: Option<Runs>, tell: impl FnMut(Event<'_>)) -> Result<Answer, Failure> {
+    let spinner = progress::deriving(&scene.page);
+    let functions = runs.map_or_else(Functions::all, Runs::functions);
+    let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &functions)
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
     let program = program(&scene.page, &module, scene.precision, runs)?;
@@ -36,46 +54,15 @@ pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Sum
         start: scene.start.clone(),
         measure_for: None,
     };
-    Ok(Session::open(&program, &[])?.ask(&request, tell)?.0)
+    Session::open(&program, &[])?.hear(&request, tell)
 }
 
-/// What a program can do: the less, the sooner it is compiled.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Runs {
-    /// Any run.
-    All,
-    /// Runs by explicit methods in these coordinates and with this correction, that are not linearised.
-    Only(Coordinates, Correction),
-}
-
-impl Runs {
-    /// What a scene asks for. Runs under error control and with a budget may fail for reasons that a linearisation
-    /// explains, and a run that is judged is compared with others.
-    fn of(scene: &Scene) -> Self {
-        let Approach { integrator, coordinates, correction, tolerance, budget, examine, .. } = scene.approach;
-        let has_others = examine || scene.has_companions;
-        let may_be_linearised = scene.offers.joint_space && (tolerance.is_some() || budget.is_some());
-        if integrator == Integrator::Rodas4 || has_others || may_be_linearised {
-            return Self::All;
-        }
-        Self::Only(coordinates, correction)
-    }
-
-    /// The functions that they call.
-    fn functions(self) -> Functions {
-        match self {
-            Self::All => Functions::usual(),
-            Self::Only(..) => Functions::usual().without(Group::Jacobian),
-        }
-    }
-}
-
-/// Compiles a module into a program that answers requests; returns where it is.
+/// Compiles a module into a program that answers requests of these runs, or of all; returns where it is.
 pub(crate) fn program(
     page: &Model,
     module: &Module,
     precision: Precision,
-    runs: Runs,
+    runs: Option<Runs>,
 ) -> Result<PathBuf, Failure> {
     let package = Package::program(module, precision, runs);
     if !package.is_there() {
@@ -114,7 +101,7 @@ struct Package {
 }
 
 impl Package {
-    fn program(module: &Module, precision: Precision, runs: Runs) -> Self {
+    fn program(module: &Module, precision: Precision, runs: Option<Runs>) -> Self {
         Self::new(module, ("main.rs", main(module, precision, runs)), &[])
     }
 
@@ -150,52 +137,6 @@ impl Package {
         let file = self.folder().join("src").join("mechanism.rs");
         self.mechanism.as_ref().is_some_and(|mechanism| crate::write::holds(&file, mechanism))
     }
-}
-
-/// The program's own lines: with what motions are begun is decided by what runs are to be made, and by what the module
-/// implements. Nothing is imported: a mechanism may have the name of anything.
-fn main(module: &Module, precision: Precision, runs: Runs) -> String {
-    let (type_name, precision) = (&module.type_name, precision.name());
-    let has = |text: String| module.code.contains(&text);
-    let joint_space = has(format!("gyro_sim::JointSpace for {type_name}"));
-    let only = |kind: &str| {
-        let of = "::gyro_runner::motion";
-        format!("{of}::Only {{ kind: {of}::{kind}, joint_space: {joint_space} }}")
-    };
-    let builder = match (runs, joint_space) {
-        (Runs::Only(Coordinates::Joint, _), _) => only("InJoints"),
-        (Runs::Only(_, Correction::Partition), _) => only("Partitioned"),
-        (Runs::Only(_, Correction::ClosedForm), _) => only("InClosedForm"),
-        (Runs::Only(_, Correction::MassWeighted), _) => only("Projected"),
-        (Runs::Only(_, Correction::Baumgarte(_)), _) => only("Stabilised"),
-        (Runs::Only(_, Correction::None), _) => only("Direct"),
-        (Runs::All, true) if has("fn joint_jacobian(".to_owned()) => in_duals("TreeWithJacobian", precision),
-        (Runs::All, true) => in_duals("Tree", precision),
-        (Runs::All, false) => in_duals("WithDuals", precision),
-    };
-    format!(
-        "#[allow(warnings, clippy::all)]
-mod mechanism;
-
-fn build<T: ::gyro_sim::Scalar>(parameters: &[f64]) -> mechanism::{type_name}<T> {{
-    let mut built = mechanism::{type_name}::<T>::default();
-    for (index, value) in parameters.iter().enumerate() {{
-        built.set_parameter(index, <T as ::gyro_sim::Scalar>::constant(*value));
-    }}
-    built
-}}
-
-fn main() -> ::std::process::ExitCode {{
-    ::gyro_runner::child::main(|parameters| (build::<{precision}>(parameters), {builder}))
-}}
-"
-    )
-}
-
-/// A builder with the mechanism in dual numbers.
-fn in_duals(builder: &str, precision: &str) -> String {
-    let dual = format!("::gyro_sim::Dual<{precision}, {{ ::gyro_runner::motion::COLUMNS }}>");
-    format!("::gyro_runner::motion::{builder}(build::<{dual}>(parameters))")
 }
 
 /// The program of the runtime-assembled model.
@@ -355,8 +296,16 @@ impl Session {
     pub(crate) fn ask(
         &mut self,
         request: &Request,
-        mut tell: impl FnMut(Event<'_>),
+        tell: impl FnMut(Event<'_>),
     ) -> Result<(Summary, Option<Timing>), Failure> {
+        match self.hear(request, tell)? {
+            Answer::Done(summary, timing) => Ok((*summary, timing)),
+            Answer::Unexplained(words) => Err(Failure::Run(words)),
+        }
+    }
+
+    /// The same; says whether more can be known of a failure.
+    fn hear(&mut self, request: &Request, mut tell: impl FnMut(Event<'_>)) -> Result<Answer, Failure> {
         let input = self.input.as_mut().expect("standard input is piped");
         protocol::write(input, request)
             .map_err(|e| Failure::Run(format!("{}: {e}", self.program.display())))?;
@@ -370,6 +319,15 @@ impl Session {
     }
 }
 
+/// How a program's replies end, unless the run fails for a reason that is known.
+#[derive(Debug)]
+enum Answer {
+    /// The figures of the run.
+    Done(Box<Summary>, Option<Timing>),
+    /// It failed, and a program that linearises can tell more.
+    Unexplained(String),
+}
+
 impl Drop for Session {
     fn drop(&mut self) {
         // Without input a program ends by itself; one in the middle of a run does not hear of that.
@@ -380,10 +338,7 @@ impl Drop for Session {
 }
 
 /// What the replies come to, if they do.
-fn listen(
-    output: &mut impl BufRead,
-    tell: &mut impl FnMut(Event<'_>),
-) -> Result<Option<(Summary, Option<Timing>)>, Failure> {
+fn listen(output: &mut impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result<Option<Answer>, Failure> {
     let mut timing = None;
     while let Some(reply) = protocol::read(output).map_err(|e| Failure::Run(format!("the program: {e}")))? {
         match reply {
@@ -393,7 +348,8 @@ fn listen(
             Reply::Progress(t) => tell(Event::Progress(t)),
             Reply::Forecast(forecast) => tell(Event::Forecast(forecast)),
             Reply::Timed(timed) => timing = Some(timed),
-            Reply::Done(summary) => return Ok(Some((summary, timing))),
+            Reply::Done(summary) => return Ok(Some(Answer::Done(Box::new(summary), timing))),
+            Reply::Unexplained(words) => return Ok(Some(Answer::Unexplained(words))),
             Reply::Failed(words) => return Err(Failure::Run(words)),
             Reply::Refused(words) => return Err(Failure::Usage(words)),
         }
@@ -405,9 +361,9 @@ fn listen(
 mod tests {
     use super::*;
     use gyro_codegen::DataSheet;
-    use gyro_runner::Sample;
+    use gyro_runner::{Coordinates, Correction, Sample};
 
-    type Heard = Result<Option<(Summary, Option<Timing>)>, Failure>;
+    type Heard = Result<Option<Answer>, Failure>;
 
     fn heard(text: &[u8]) -> (Heard, usize) {
         let mut n_samples = 0;
@@ -429,7 +385,10 @@ mod tests {
         let done = Reply::Done(Summary { steps: 10, ..Summary::default() });
         let (outcome, n_samples) =
             heard(&text(&[sample.clone(), Reply::Progress(0.5), sample.clone(), done]));
-        assert_eq!((outcome.unwrap().unwrap().0.steps, n_samples), (10, 2));
+        assert!(matches!(outcome, Ok(Some(Answer::Done(summary, None))) if summary.steps == 10));
+        assert_eq!(n_samples, 2);
+        let (outcome, _) = heard(&text(&[Reply::Unexplained("at t = 1 s".to_owned())]));
+        assert!(matches!(outcome, Ok(Some(Answer::Unexplained(words))) if words == "at t = 1 s"));
         let (outcome, n_samples) = heard(&text(&[sample.clone(), Reply::Failed("at t = 0.5 s".to_owned())]));
         assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));
         assert_eq!(n_samples, 1);
@@ -463,15 +422,15 @@ mod tests {
             data_sheet: DataSheet::default(),
         };
         let package = |code, precision, runs| Package::program(&module(code), precision, runs).name;
-        let name = |code, precision| package(code, precision, Runs::All);
+        let name = |code, precision| package(code, precision, None);
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("b", Precision::F64));
         assert_ne!(name("a", Precision::F64), name("a", Precision::F32));
         assert!(name("a", Precision::F64).starts_with("top-"));
-        let runs = Runs::Only(Coordinates::Maximal, Correction::None);
+        let runs = Some(Runs::with(Coordinates::Maximal, Correction::None));
         assert_ne!(name("a", Precision::F64), package("a", Precision::F64, runs));
         // A mechanism may have the name of whatever could be imported.
-        let text = main(&module("a"), Precision::F64, Runs::All);
+        let text = main(&module("a"), Precision::F64, None);
         assert!(text.lines().all(|line| !line.starts_with("use ")), "{text}");
     }
 }

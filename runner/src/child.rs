@@ -33,6 +33,7 @@ pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Sum
         let last = match outcome {
             Ok(summary) => Reply::Done(summary),
             Err(Failure::Refused(words)) => Reply::Refused(words),
+            Err(Failure::Unexplained(words)) => Reply::Unexplained(words),
             Err(failure) => Reply::Failed(failure.to_string()),
         };
         let told = write(&mut output, &last).and_then(|()| output.flush());

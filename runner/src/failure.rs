@@ -17,6 +17,8 @@ pub enum Failure {
         /// What to try.
         advice: Vec<Advice>,
     },
+    /// The run itself, of which a program that linearises can tell more: time, joint or body, and number.
+    Unexplained(String),
     /// The request could not be read.
     Input(io::Error),
     /// The samples could not be handed on.
@@ -32,7 +34,7 @@ impl From<io::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Refused(words) => f.write_str(words),
+            Self::Refused(words) | Self::Unexplained(words) => f.write_str(words),
             Self::Run { words, advice } => write!(f, "{words}{}", try_words(advice)),
             Self::Input(error) => write!(f, "the request cannot be read: {error}"),
             Self::Output(error) => write!(f, "samples cannot be written: {error}"),

@@ -44,6 +44,8 @@ pub enum Reply {
     Done(Summary),
     /// The run failed: the reason.
     Failed(String),
+    /// The same of a run that a program which linearises can tell more of.
+    Unexplained(String),
     /// The run cannot be made as requested: the reason.
     Refused(String),
 }

@@ -121,6 +121,9 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
             let plan = Plan { settings: &settings, approach, offers: &offers };
             // The steps' length is asked about only where stability may limit it.
             let asks = matches!(error, Error::Stiff { .. } | Error::TooManySteps { .. });
+            if asks && builder.leaves_to_explain() {
+                return Err(Failure::Unexplained(words));
+            }
             let linear = asks.then(|| run.linearised(builder, run.read_at)).flatten();
             let fastest = linear.as_ref().map(fastest_rate);
             Err(Failure::Run { words, advice: plan.after(&error, &run.summary.statistics, fastest) })

@@ -4,7 +4,7 @@ use super::curve::{Curve, Outcome, Point, Setting, Treatment};
 use super::truth::{INTERVALS, Truth};
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
-use crate::nested::{self, Runs, Session};
+use crate::nested::{self, Session};
 use crate::{files, scene};
 use gyro_codegen::Functions;
 use gyro_model::Model;
@@ -53,7 +53,7 @@ impl Lab {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let module = gyro_codegen::generate_functions(&files::shown(path), &model, &Functions::usual())
             .map_err(|e| Failure::Usage(e.to_string()))?;
-        let program = |precision| nested::program(&model, &module, precision, Runs::All);
+        let program = |precision| nested::program(&model, &module, precision, None);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
         let lab = Self::with_programs(model, path, name, programs, assembled)?;
         Ok(Self { has_joint_coordinates: module.code.contains("gyro_sim::JointSpace for"), ..lab })
@@ -78,7 +78,7 @@ impl Lab {
         let model = Model { name, ..model };
         let module = gyro_codegen::generate_functions("map.toml", &model, &Functions::usual())
             .map_err(|e| Failure::Usage(e.to_string()))?;
-        let program = nested::program(&model, &module, Precision::F64, Runs::All)?;
+        let program = nested::program(&model, &module, Precision::F64, None)?;
         let programs = [program.clone(), program];
         let lab = Self::with_programs(model, &self.path, self.name.clone(), programs, &self.assembled)?;
         Ok(Self { parameters, has_joint_coordinates: self.has_joint_coordinates, ..lab })

@@ -1,10 +1,10 @@
 //! What can be begun with which mechanism: the more it implements, the more there is.
 
-use super::contract::{COLUMNS, Linear, Maximal, Motion, MotionBuilder, OperatingPoint, in_f64};
+use super::contract::{COLUMNS, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
 use super::correction::{Boxed, keeping, partitioning};
 use super::independent::Closing;
 use super::lens::{Slopes, joint_duals, joints};
-use super::linearise::{by_inputs_of, linearised};
+use super::linearise::{by_duals, by_jacobian};
 use super::moving::{adaptive, explicit};
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator, When};
 use crate::failure::describe_in;
@@ -12,7 +12,7 @@ use crate::offers::Offers;
 use crate::pivots;
 use gyro_sim::{
     Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact,
-    Jacobian, Joint, JointJacobian, JointLayout, JointSpace, Partition, Real, Rodas4, Scalar, Watched,
+    Joint, JointJacobian, JointLayout, JointSpace, Partition, Real, Rodas4, Scalar, Watched,
 };
 
 /// For whatever can be partitioned.
@@ -126,18 +126,7 @@ where
     }
 
     fn linearise(&self, mechanism: &M, at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
-        linearised(mechanism, &self.0, at, |duals, t, x| {
-            let zero = M::Scalar::constant(0.0);
-            let (mut by_state, mut by_time) = (vec![zero; square(x.as_ref())], x.clone());
-            joint_duals(duals).jacobian(mechanism, t, x, &mut by_state, &mut by_time);
-            let by_inputs = by_inputs_of(duals, mechanism.description().inputs.len(), |duals| {
-                let (mut arguments, mut out) = (duals.joint_start(), duals.joint_start());
-                arguments.as_mut().iter_mut().zip(x.as_ref()).for_each(|(to, &from)| *to = Dual::new(from));
-                duals.joint_derivative(Dual::new(t), &arguments, &mut out);
-                out.as_ref().to_vec()
-            });
-            [in_f64(&by_state), by_inputs]
-        })
+        by_duals(mechanism, &self.0, at)
     }
 }
 
@@ -171,13 +160,7 @@ where
     }
 
     fn linearise(&self, mechanism: &M, at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
-        linearised(mechanism, &self.0, at, |_, t, x| {
-            let (mut by_time, buffers) = (x.clone(), mechanism.jacobian_buffers());
-            let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
-            mechanism.joint_jacobian(t, x, &mut by_state, &mut by_time);
-            mechanism.joint_input_jacobian(t, x, &mut by_inputs);
-            [in_f64(by_state.as_ref()), in_f64(by_inputs.as_ref())]
-        })
+        by_jacobian(mechanism, &self.0, at)
     }
 }
 
@@ -214,7 +197,7 @@ fn only_explicit(approach: &Approach) -> Result<(), String> {
     Ok(())
 }
 
-fn square<T>(state: &[T]) -> usize {
+pub(super) fn square<T>(state: &[T]) -> usize {
     state.len() * state.len()
 }
 
@@ -254,7 +237,12 @@ where
 }
 
 /// Rodas in maximal coordinates.
-fn implicit<M, D>(approach: &Approach, duals: D, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
+pub(super) fn implicit<M, D>(
+    approach: &Approach,
+    duals: D,
+    correction: Boxed<M>,
+    y: &M::State,
+) -> Box<dyn Motion<M>>
 where
     M: Partition<Scalar: Real> + Dynamics + 'static,
     D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + 'static,

@@ -61,6 +61,11 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     fn joint_layout<'a>(&self, _mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
         None
     }
+    /// Whether a builder that linearises can tell more of runs that fail: this one cannot, though the mechanism could
+    /// be.
+    fn leaves_to_explain(&self) -> bool {
+        false
+    }
     /// The linearisation of the joint form; `None` for what has no joint form, and where its loops cannot be closed.
     fn linearise(&self, _mechanism: &M, _at: &OperatingPoint<'_, M::State>) -> Option<Linear> {
         None

@@ -4,8 +4,8 @@ use super::contract::Maximal;
 use super::lens::Slopes;
 use crate::approach::{Approach, Correction as Keeping};
 use gyro_sim::{
-    Clearance, Correction, Error, Exact, MassWeighted, Mechanism, Ode, Partition, Partitioning, Real, Scalar,
-    Watched,
+    Clearance, Correction, Dynamics, Error, Exact, Kinematics, MassWeighted, Mechanism, Ode, Partition,
+    Partitioning, Projection, Real, Scalar, Watched,
 };
 
 /// Boxed corrections, so that integrators are not compiled anew for each.
@@ -31,7 +31,10 @@ impl<M: Mechanism + 'static, C: Correction<Slopes<M>, M>> Keeps<M> for C {
 /// The projection that the masses weigh. `keeping` is asked for it with exact equations alone.
 struct Weighted<M: Mechanism>(MassWeighted<M>);
 
-impl<M: Maximal + 'static> Correction<Slopes<M>, M> for Weighted<M> {
+impl<M> Correction<Slopes<M>, M> for Weighted<M>
+where
+    M: Partition<Scalar: Real> + Kinematics + Projection + Dynamics + 'static,
+{
     fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
         self.0.correct(mechanism, t, y)
     }
@@ -68,16 +71,27 @@ pub(super) fn keeping<M>(mechanism: &M, approach: &Approach, y: &M::State) -> Re
 where
     M: Maximal + 'static,
 {
-    Ok(Boxed(match approach.correction {
-        Keeping::Partition => return Ok(partitioning(mechanism, y)),
-        Keeping::MassWeighted => Box::new(Weighted(MassWeighted::new(mechanism))),
-        Keeping::None | Keeping::Baumgarte(_) => Box::new(Watched::new(mechanism)),
-        Keeping::ClosedForm => {
-            return Err("the closed form is for generated code with joint coordinates".to_owned());
-        }
-    }))
+    match approach.correction {
+        Keeping::Partition => Ok(partitioning(mechanism, y)),
+        Keeping::MassWeighted => Ok(weighted(mechanism)),
+        Keeping::None | Keeping::Baumgarte(_) => Ok(watched(mechanism)),
+        Keeping::ClosedForm => Err("the closed form is for generated code with joint coordinates".to_owned()),
+    }
 }
 
 pub(super) fn partitioning<M: Partition<Scalar: Real> + 'static>(mechanism: &M, y: &M::State) -> Boxed<M> {
     Boxed(Box::new(Partitioning::new(mechanism, Scalar::constant(0.0), y)))
+}
+
+/// The projection that the masses weigh.
+pub(super) fn weighted<M>(mechanism: &M) -> Boxed<M>
+where
+    M: Partition<Scalar: Real> + Kinematics + Projection + Dynamics + 'static,
+{
+    Boxed(Box::new(Weighted(MassWeighted::new(mechanism))))
+}
+
+/// No correction.
+pub(super) fn watched<M: Partition<Scalar: Real> + 'static>(mechanism: &M) -> Boxed<M> {
+    Boxed(Box::new(Watched::new(mechanism)))
 }

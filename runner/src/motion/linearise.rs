@@ -2,13 +2,13 @@
 
 use super::contract::{COLUMNS, Element, Linear, OperatingPoint, in_f64, rows};
 use super::independent::{Closing, reduced};
-use super::lens::joints_near;
+use super::lens::{joint_duals, joints_near};
 use crate::input::set;
-use gyro_sim::{CloseLoops, Dual, JointSpace, Mechanism, Real, Scalar};
+use gyro_sim::{CloseLoops, Dual, Jacobian, JointJacobian, JointSpace, Mechanism, Real, Scalar};
 
 /// The linearisation in all joint coordinates, or with loops in independent ones; `None` where the loops cannot be
 /// closed. `jacobians` gives A and B of all coordinates.
-pub(super) fn linearised<M, D>(
+fn linearised<M, D>(
     mechanism: &M,
     duals: &D,
     at: &OperatingPoint<'_, M::State>,
@@ -52,6 +52,41 @@ where
     Some(reduced(mechanism, &duals, x.as_ref(), &all))
 }
 
+/// The same with A and B in dual numbers.
+pub(super) fn by_duals<M, D>(mechanism: &M, duals: &D, at: &OperatingPoint<'_, M::State>) -> Option<Linear>
+where
+    M: JointSpace<Scalar: Real>,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone,
+{
+    linearised(mechanism, duals, at, |duals, t, x| {
+        let zero = M::Scalar::constant(0.0);
+        let (mut by_state, mut by_time) = (vec![zero; x.as_ref().len() * x.as_ref().len()], x.clone());
+        joint_duals(duals).jacobian(mechanism, t, x, &mut by_state, &mut by_time);
+        let by_inputs = by_inputs_of(duals, mechanism.description().inputs.len(), |duals| {
+            let (mut arguments, mut out) = (duals.joint_start(), duals.joint_start());
+            arguments.as_mut().iter_mut().zip(x.as_ref()).for_each(|(to, &from)| *to = Dual::new(from));
+            duals.joint_derivative(Dual::new(t), &arguments, &mut out);
+            out.as_ref().to_vec()
+        });
+        [in_f64(&by_state), by_inputs]
+    })
+}
+
+/// The same with A and B as they are generated.
+pub(super) fn by_jacobian<M, D>(mechanism: &M, duals: &D, at: &OperatingPoint<'_, M::State>) -> Option<Linear>
+where
+    M: JointJacobian<Scalar: Real>,
+    D: Closing<Scalar = Dual<M::Scalar, COLUMNS>> + Clone,
+{
+    linearised(mechanism, duals, at, |_, t, x| {
+        let (mut by_time, buffers) = (x.clone(), mechanism.jacobian_buffers());
+        let (mut by_state, mut by_inputs) = (buffers.jacobian, buffers.input_jacobian);
+        mechanism.joint_jacobian(t, x, &mut by_state, &mut by_time);
+        mechanism.joint_input_jacobian(t, x, &mut by_inputs);
+        [in_f64(by_state.as_ref()), in_f64(by_inputs.as_ref())]
+    })
+}
+
 /// C and D.
 fn of_outputs<T: Real, D>(duals: &D, n_inputs: usize, t: T, x: &[T]) -> [Vec<f64>; 2]
 where
@@ -83,11 +118,7 @@ fn jacobian<T: Real>(n: usize, f: impl Fn(&[[T; COLUMNS]]) -> Vec<Dual<T, COLUMN
 }
 
 /// The Jacobian of a function by the inputs, row by row. What an input is set to does not matter: it enters linearly.
-pub(super) fn by_inputs_of<T: Real, D>(
-    duals: &D,
-    n_inputs: usize,
-    f: impl Fn(&D) -> Vec<Dual<T, COLUMNS>>,
-) -> Vec<f64>
+fn by_inputs_of<T: Real, D>(duals: &D, n_inputs: usize, f: impl Fn(&D) -> Vec<Dual<T, COLUMNS>>) -> Vec<f64>
 where
     D: Mechanism<Scalar = Dual<T, COLUMNS>> + Clone,
 {

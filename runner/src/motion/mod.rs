@@ -6,10 +6,15 @@ mod correction;
 mod independent;
 mod lens;
 mod linearise;
+mod linearising;
 mod moving;
 mod single;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
 pub use contract::{COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
 pub use independent::Closing;
-pub use single::{Direct, InClosedForm, InJoints, Kind, Only, Partitioned, Projected, Stabilised};
+pub use linearising::{ByDuals, ByJacobian, Examined, Linearise, Nothing};
+pub use single::{
+    Direct, Implicit, ImplicitInJoints, ImplicitInJointsByDuals, InClosedForm, InJoints, Kind, Only,
+    Partitioned, Projected, Stabilised,
+};

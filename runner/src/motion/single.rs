@@ -1,16 +1,16 @@
 //! Builders for runs of one kind. A program that makes no others is compiled in a fraction of the time: it holds no
 //! other equations, no other correction and no dual numbers.
 
-use super::builders::in_joints;
-use super::contract::{Maximal, Motion, MotionBuilder};
-use super::correction::{Boxed, keeping, partitioning};
-use super::lens::Slopes;
-use super::moving::explicit;
+use super::builders::{implicit, in_joints, square};
+use super::contract::{COLUMNS, Motion, MotionBuilder};
+use super::correction::{Boxed, partitioning, watched, weighted};
+use super::lens::{Slopes, joint_duals};
+use super::moving::{adaptive, explicit};
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
 use crate::offers::Offers;
 use gyro_sim::{
-    Baumgarte, ClosedForm, Corrected, CorrectedDynamics, Dynamics, Exact, Joint, JointLayout, JointSpace,
-    Partition, Real, Scalar, Watched,
+    Baumgarte, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact, Joint, JointJacobian,
+    JointLayout, JointSpace, Kinematics, Partition, Projection, Real, Rodas4, Scalar,
 };
 
 /// For runs of one kind.
@@ -22,8 +22,11 @@ pub struct Only<K> {
     pub joint_space: bool,
 }
 
-/// A kind of run: by explicit methods, and not linearised.
+/// A kind of run.
 pub trait Kind<M: Partition<Scalar: Real>> {
+    /// Whether it is by implicit methods.
+    const IS_IMPLICIT: bool = false;
+
     /// Whether an approach is of this kind.
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool;
     /// A motion from a maximal state at time zero, or the reason why there is none.
@@ -39,8 +42,8 @@ pub trait Kind<M: Partition<Scalar: Real>> {
 
 impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        let is_explicit = approach.integrator != Integrator::Rodas4;
-        if !is_explicit || !self.kind.makes(approach.coordinates, approach.correction) {
+        let is_implicit = approach.integrator == Integrator::Rodas4;
+        if is_implicit != K::IS_IMPLICIT || !self.kind.makes(approach.coordinates, approach.correction) {
             return Err(format!("this program was compiled for other runs than {approach}"));
         }
         self.kind.begin(mechanism, approach, y)
@@ -53,6 +56,10 @@ impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
 
     fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
         self.kind.joint_layout(mechanism)
+    }
+
+    fn leaves_to_explain(&self) -> bool {
+        self.joint_space
     }
 }
 
@@ -80,7 +87,7 @@ impl<M: Partition<Scalar: Real> + Dynamics + 'static> Kind<M> for Direct {
     }
 
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        Ok(explicit(Slopes::of(Exact), Boxed(Box::new(Watched::new(mechanism))), approach, y))
+        Ok(explicit(Slopes::of(Exact), watched(mechanism), approach, y))
     }
 }
 
@@ -106,13 +113,16 @@ where
 #[derive(Clone, Copy, Debug)]
 pub struct Projected;
 
-impl<M: Maximal + 'static> Kind<M> for Projected {
+impl<M> Kind<M> for Projected
+where
+    M: Partition<Scalar: Real> + Kinematics + Projection + Dynamics + 'static,
+{
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && correction == Keeping::MassWeighted
     }
 
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        Ok(explicit(Slopes::of(Exact), keeping(mechanism, approach, y)?, approach, y))
+        Ok(explicit(Slopes::of(Exact), weighted(mechanism), approach, y))
     }
 }
 
@@ -120,7 +130,7 @@ impl<M: Maximal + 'static> Kind<M> for Projected {
 #[derive(Clone, Copy, Debug)]
 pub struct Stabilised;
 
-impl<M: Maximal + 'static> Kind<M> for Stabilised {
+impl<M: Partition<Scalar: Real> + Projection + Dynamics + 'static> Kind<M> for Stabilised {
     fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
         coordinates == Coordinates::Maximal && matches!(correction, Keeping::Baumgarte(_))
     }
@@ -128,7 +138,31 @@ impl<M: Maximal + 'static> Kind<M> for Stabilised {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         let Keeping::Baumgarte(rate) = approach.correction else { unreachable!("it is of this kind") };
         let slopes = Slopes::of(Baumgarte { rate: M::Scalar::constant(rate) });
-        Ok(explicit(slopes, Boxed(Box::new(Watched::new(mechanism))), approach, y))
+        Ok(explicit(slopes, watched(mechanism), approach, y))
+    }
+}
+
+/// Maximal coordinates by implicit methods, in dual numbers; of the corrections the partition or none.
+#[derive(Clone, Copy, Debug)]
+pub struct Implicit<D>(pub D);
+
+impl<M, D> Kind<M> for Implicit<D>
+where
+    M: Partition<Scalar: Real> + Dynamics + 'static,
+    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    const IS_IMPLICIT: bool = true;
+
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        coordinates == Coordinates::Maximal && matches!(correction, Keeping::Partition | Keeping::None)
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let correction = match approach.correction {
+            Keeping::Partition => partitioning(mechanism, y),
+            _ => watched(mechanism),
+        };
+        Ok(implicit(approach, self.0.clone(), correction, y))
     }
 }
 
@@ -144,6 +178,54 @@ impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InJoints {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         Ok(explicit(Joint, closing, &approach, &x))
+    }
+
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        Some(mechanism.joint_layout())
+    }
+}
+
+/// Joint coordinates by implicit methods, with the generated Jacobian.
+#[derive(Clone, Copy, Debug)]
+pub struct ImplicitInJoints;
+
+impl<M: Partition<Scalar: Real> + JointJacobian + 'static> Kind<M> for ImplicitInJoints {
+    const IS_IMPLICIT: bool = true;
+
+    fn makes(&self, coordinates: Coordinates, _: Keeping) -> bool {
+        coordinates == Coordinates::Joint
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        let method = Rodas4::new(&x, mechanism.jacobian_buffers().jacobian);
+        Ok(adaptive(Joint, method, closing, &approach, &x))
+    }
+
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        Some(mechanism.joint_layout())
+    }
+}
+
+/// Joint coordinates by implicit methods, with a Jacobian by dual numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct ImplicitInJointsByDuals<D>(pub D);
+
+impl<M, D> Kind<M> for ImplicitInJointsByDuals<D>
+where
+    M: Partition<Scalar: Real> + JointSpace + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    const IS_IMPLICIT: bool = true;
+
+    fn makes(&self, coordinates: Coordinates, _: Keeping) -> bool {
+        coordinates == Coordinates::Joint
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
+        Ok(adaptive(joint_duals(&self.0), method, closing, &approach, &x))
     }
 
     fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
