@@ -113,15 +113,15 @@ pub enum Asked {
     Here(Vec<String>),
     /// In the model file; the usual ones if it does not say.
     There,
-    /// In the model file; all if it does not say.
-    ThereOrAll,
+    /// In the model file; what solvers call if it does not say.
+    ThereOrSolvers,
 }
 
 /// The model files of this project are read, tested and measured whole.
 fn functions(args: &GenerateArgs, places: &[Place], page: &Path) -> Asked {
     match &args.functions {
         Some(names) => Asked::Here(names.clone()),
-        None if place_of(places, page).is_some() => Asked::ThereOrAll,
+        None if place_of(places, page).is_some() => Asked::ThereOrSolvers,
         None => Asked::There,
     }
 }
@@ -138,7 +138,7 @@ pub fn modules(
         model.functions = match functions(page) {
             Asked::Here(names) => Some(names),
             Asked::There => model.functions,
-            Asked::ThereOrAll => model.functions.or_else(|| Some(vec!["all".to_owned()])),
+            Asked::ThereOrSolvers => model.functions.or_else(|| Some(vec!["solvers".to_owned()])),
         };
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
         let spinner = progress::deriving(&model);

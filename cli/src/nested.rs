@@ -42,7 +42,7 @@ pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Sum
 /// Generates, compiles and runs with a program for these runs.
 fn run(scene: &Scene, runs: Option<Runs>, tell: impl FnMut(Event<'_>)) -> Result<Answer, Failure> {
     let spinner = progress::deriving(&scene.page);
-    let functions = runs.map_or_else(Functions::all, Runs::functions);
+    let functions = runs.map_or_else(Functions::of_solvers, Runs::functions);
     let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &functions)
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);

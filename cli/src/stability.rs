@@ -120,7 +120,7 @@ struct Subject {
 impl Subject {
     fn new(model: &Model) -> Result<Self, Failure> {
         let model = freed(model);
-        let generated = gyro_codegen::generate_functions("model.toml", &model, &Functions::all())
+        let generated = gyro_codegen::generate_functions("model.toml", &model, &Functions::of_solvers())
             .map_err(|e| Failure::Usage(e.to_string()))?;
         let module = Module::read(&model, &generated.code, &generated.constants)
             .map_err(|refusal| Failure::Run(refusal.to_string()))?;

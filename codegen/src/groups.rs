@@ -132,6 +132,11 @@ impl Functions {
         Self::of(Group::all().filter(|group| group.row().is_usual))
     }
 
+    /// What solvers, their corrections and linearisations call.
+    pub fn of_solvers() -> Self {
+        Self::of(Group::all().filter(|&group| Group::on_request().all(|other| other != group)))
+    }
+
     /// Some groups, each with what it needs. What solvers and observers of every mechanism need is always there.
     pub fn of(groups: impl IntoIterator<Item = Group>) -> Self {
         let groups = groups.into_iter().chain([Group::Mechanism]);

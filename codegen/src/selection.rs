@@ -14,15 +14,22 @@ pub struct UnknownFunction {
 /// The word for all groups.
 const ALL: &str = "all";
 
+/// The word for those that solvers call.
+const SOLVERS: &str = "solvers";
+
 impl Functions {
-    /// Groups by their names or by those of functions, each with what it needs; `all` stands for all of them. What
-    /// solvers and observers of every mechanism need is always there.
+    /// Groups by their names or by those of functions, each with what it needs; `all` stands for all of them,
+    /// `solvers` for [`Functions::of_solvers`]. What solvers and observers of every mechanism need is always there.
     ///
     /// # Errors
     /// The first name that is not known.
     pub fn named<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Self, UnknownFunction> {
         let of_name = |name: &str| {
-            let of_group = Group::all().filter(|group| name == ALL || group.name() == name);
+            let of_solvers = Self::of_solvers();
+            let is_meant = |group: Group| {
+                name == ALL || name == SOLVERS && of_solvers.has(group) || group.name() == name
+            };
+            let of_group = Group::all().filter(|&group| is_meant(group));
             let of_function = Kernel::all().filter(|kernel| kernel.name() == name).map(Kernel::group);
             let groups: Vec<Group> = of_group.chain(of_function).collect();
             if groups.is_empty() { Err(UnknownFunction { name: name.to_owned() }) } else { Ok(groups) }
@@ -38,16 +45,17 @@ impl Functions {
             let functions = Kernel::all().filter(|kernel| kernel.group() == group).map(Kernel::name);
             let functions = functions.collect::<Vec<_>>().join(", ");
             let (name, what, of) = (group.name(), group.what(), group.trait_name());
-            lines.push(format!("{name:10} {what} (trait {of}): {functions}"));
+            lines.push(format!("{name:18} {what} (trait {of}): {functions}"));
         }
-        lines.push(format!("{ALL:10} all of them"));
+        lines.push(format!("{SOLVERS:18} what solvers, their corrections and linearisations call"));
+        lines.push(format!("{ALL:18} all of them"));
         lines.join("\n")
     }
 }
 
 impl fmt::Display for UnknownFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let groups: Vec<&str> = Group::all().map(Group::name).chain([ALL]).collect();
+        let groups: Vec<&str> = Group::all().map(Group::name).chain([SOLVERS, ALL]).collect();
         let functions: Vec<&str> = Kernel::all().map(Kernel::name).collect();
         write!(f, "unknown function `{}`", self.name)?;
         let known = groups.iter().chain(&functions);
@@ -103,6 +111,6 @@ mod tests {
         assert!(words("jacobians").contains("did you mean `jacobian`?"));
         let found = words("xyz");
         assert!(!found.contains("did you mean"), "{found}");
-        assert!(found.contains("joint, jacobian, all") && found.contains("newton_step"), "{found}");
+        assert!(found.contains("derivatives, solvers, all") && found.contains("newton_step"), "{found}");
     }
 }

@@ -26,7 +26,8 @@
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
 //! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
-//!   types. [`Mechanism::buffers`], [`Kinematics::terms`], [`JointSpace::joint_buffers`] and others return them, zeroed.
+//!   types. [`Mechanism::buffers`], [`Kinematics::terms`], [`JointSpace::joint_buffers`] and others return them,
+//!   zeroed.
 //! * **Equations.** The equations are a value without content, and the mechanism stays the caller's: its inputs and
 //!   parameters may change between two calls. [`Exact`] holds at any state, [`Corrected`] takes fewer operations near
 //!   the constraints, [`Joint`] integrates joint coordinates, which satisfy all of them by construction but those of

@@ -5,7 +5,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_reference::{BushingFourBar, JointRow};
-use gyro_sim::{CloseLoops, Control, Joint, JointSpace, Rodas4, Solver};
+use gyro_sim::{CloseLoops, Control, Joint, JointJacobian, JointSpace, Rodas4, Solver};
 use gyro_sim_suite::mechanism;
 
 type Linkage = mechanism!("four-bar-bushing", f64);
@@ -24,7 +24,7 @@ fn run(tolerance: f64, expected: &JointRow) -> (f64, u64) {
     let linkage = Linkage::default();
     let (mut x, mut loops) = (linkage.joint_start(), CloseLoops::new(&linkage));
     loops.correct(&linkage, 0.0, &mut x).unwrap();
-    let method = Rodas4::new(&x, linkage.joint_buffers().jacobian);
+    let method = Rodas4::new(&x, linkage.jacobian_buffers().jacobian);
     let control = Control { relative: tolerance, absolute: tolerance, ..Control::default() };
     let mut solver = Solver::with_correction(Joint, method, loops, 0.0, &x).with_control(control);
     solver.advance_to(&linkage, T_END).unwrap_or_else(|error| panic!("{tolerance:e}: {error:?}"));

@@ -5,8 +5,8 @@
 
 use gyro_reference::DoubleWishbone;
 use gyro_runner::Input;
-use gyro_runner::motion::{COLUMNS, Element, Maximal, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
-use gyro_sim::{CloseLoops, Dual, Dynamics, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
+use gyro_runner::motion::{COLUMNS, Element, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
+use gyro_sim::{CloseLoops, Dual, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
 use gyro_sim_suite::{Random, mechanism};
 
 /// Central differences of fourth order.

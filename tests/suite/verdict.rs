@@ -357,7 +357,7 @@ impl Trial {
             let advice = match failure {
                 Failure::Run { ref advice, .. } => advice.first().cloned(),
                 Failure::Refused(words) => return self.tally.wrong.push(format!("{what}: refused: {words}")),
-                Failure::Input(_) | Failure::Output(_) => None,
+                Failure::Input(_) | Failure::Output(_) | Failure::Unexplained(_) => None,
             };
             let Some(advice) = advice else { return };
             case = self.followed(&case, what, &advice);

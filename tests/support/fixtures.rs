@@ -269,9 +269,9 @@ pub fn model(name: &str) -> Model {
     model.unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 
-/// The generated module of a model file, with all functions.
+/// The generated module of a model file, with the functions that solvers call.
 pub fn module(name: &str) -> Module {
-    let module = gyro_codegen::generate_functions(&file_name(name), &model(name), &Functions::all());
+    let module = gyro_codegen::generate_functions(&file_name(name), &model(name), &Functions::of_solvers());
     module.unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -51,7 +51,7 @@ impl Lab {
     pub(crate) fn new(path: &Path, assembled: &Path) -> Result<Self, Failure> {
         let model = scene::read_counting_work(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let module = gyro_codegen::generate_functions(&files::shown(path), &model, &Functions::usual())
+        let module = gyro_codegen::generate_functions(&files::shown(path), &model, &Functions::of_solvers())
             .map_err(|e| Failure::Usage(e.to_string()))?;
         let program = |precision| nested::program(&model, &module, precision, None);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
@@ -76,7 +76,7 @@ impl Lab {
     pub(crate) fn variant(&self, model: Model, parameters: Vec<f64>) -> Result<Self, Failure> {
         let name = format!("{}_map", self.model.name);
         let model = Model { name, ..model };
-        let module = gyro_codegen::generate_functions("map.toml", &model, &Functions::usual())
+        let module = gyro_codegen::generate_functions("map.toml", &model, &Functions::of_solvers())
             .map_err(|e| Failure::Usage(e.to_string()))?;
         let program = nested::program(&model, &module, Precision::F64, None)?;
         let programs = [program.clone(), program];

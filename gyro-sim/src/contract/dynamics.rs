@@ -26,8 +26,8 @@ pub trait Dynamics: Mechanism {
 }
 
 /// The equations of motion for states that were corrected a few steps ago: violations of the constraints are then of
-/// the order of the integrator's error, and so is the error of these functions. Mechanisms in joint coordinates need far
-/// fewer operations for them; others hand on to [`Dynamics`].
+/// the order of the integrator's error, and so is the error of these functions. Mechanisms in joint coordinates need
+/// far fewer operations for them; others hand on to [`Dynamics`].
 pub trait CorrectedDynamics: Mechanism {
     /// Writes (s̈, ẇ') at a state that satisfies the constraints.
     fn corrected_accelerations(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Velocities);

@@ -61,8 +61,12 @@ fn generate_one(page: &Path, out: &Path) -> Result<String, String> {
     let name = page.to_string_lossy();
     let model = gyro_model::read_with(&name, &read(page)?, &mut load);
     let model = model.map_err(|e| format!("{}: {e}", page.display()))?;
-    let module = gyro_codegen::generate_functions(&name, &model, &Functions::all());
-    let module = module.map_err(|e| format!("{}: {e}", page.display()))?;
+    let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", page.display());
+    let functions = match &model.functions {
+        Some(names) => Functions::named(names.iter().map(String::as_str)).map_err(|e| failed(&e))?,
+        None => Functions::of_solvers(),
+    };
+    let module = gyro_codegen::generate_functions(&name, &model, &functions).map_err(|e| failed(&e))?;
     let path = out.join(&module.name).with_extension("rs");
     renew(&path, &module.code)?;
     Ok(format!("#[path = {path:?}]\npub mod {};\n", module.name))

@@ -11,8 +11,8 @@ use crate::failure::describe_in;
 use crate::offers::Offers;
 use crate::pivots;
 use gyro_sim::{
-    Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact,
-    Joint, JointJacobian, JointLayout, JointSpace, Partition, Real, Rodas4, Scalar, Watched,
+    Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact, Joint,
+    JointJacobian, JointLayout, JointSpace, Partition, Real, Rodas4, Scalar, Watched,
 };
 
 /// For whatever can be partitioned.

@@ -39,8 +39,11 @@ fn page(name: &str) -> Model {
 /// What the generator writes with a fault; `None` if it writes nothing.
 fn written(model: &Model, fault: usize) -> Option<gyro_mutants::Module> {
     switch_on(fault);
-    let module =
-        catch_unwind(AssertUnwindSafe(|| generate_functions("mutant", model, &Functions::all()).ok()));
+    let asked = match &model.functions {
+        Some(names) => Functions::named(names.iter().map(String::as_str)).expect("known names"),
+        None => Functions::of_solvers(),
+    };
+    let module = catch_unwind(AssertUnwindSafe(|| generate_functions("mutant", model, &asked).ok()));
     switch_on(0);
     module.ok().flatten()
 }

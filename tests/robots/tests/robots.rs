@@ -6,9 +6,7 @@ use gyro_assembled::Dense;
 use gyro_model::{Model, Number, to_f64};
 use gyro_robots::legged::Legged;
 use gyro_robots::manipulator::Manipulator;
-use gyro_sim::{
-    Dynamics, DynamicsDerivatives, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism,
-};
+use gyro_sim::{DynamicsDerivatives, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
