@@ -172,6 +172,8 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/loops.rs", "linkage", "let difference = «graph.sub_vec(&left, &right)»;", "graph.add_vec(&left, &right)"),
     fault("joint_space/loops.rs", "linkage", "let least = «graph.cross(&difference, motion)»;", "graph.cross(motion, &difference)"),
     fault("joint_space/loops.rs", "linkage", "let duals = [«graph.cross(second, motion)»,", "graph.cross(motion, second)"),
+    fault("joint_space/closing_units.rs", "four-bar-bushing", "*entry = «graph.mul(*entry, unit)»", "*entry"),
+    fault("joint_space/coordinates.rs", "four-bar-bushing", "map(|(change, &unit)| «graph.mul(change, unit)»)", "change"),
     fault("joint_space/loops.rs", "ties", "let part = «graph.mul(entry, weight)»;", "weight"),
     fault("joint_space/loops.rs", "ties", "«graph.dot_slices(&closure.jacobian[row], &closure.jacobian[other])»);", "Graph::ONE"),
     // Angles that add up.
