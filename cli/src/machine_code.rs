@@ -117,6 +117,12 @@ fn call(kernel: Kernel) -> Option<Call> {
             "x, out",
             "",
         ],
+        Kernel::Regressor => [
+            "regressor",
+            "x: &Joints, a: &Rates, out: &mut <Module as Regressor>::Regressor",
+            "x, a, out",
+            "",
+        ],
     };
     Some(Call { function, takes, passes, returns })
 }
@@ -131,6 +137,7 @@ mod mechanism;
 #[allow(unused_imports)]
 use gyro_sim::{{
     DynamicsDerivatives, Energy, Equations, Error, InverseDynamics, JointSpace, MassMatrix, Mechanism, Partition,
+    Regressor,
 }};
 
 pub type Module = mechanism::{type_name}<f64>;

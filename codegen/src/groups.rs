@@ -17,6 +17,8 @@ pub enum Group {
     MassMatrix,
     /// `DynamicsDerivatives`.
     Derivatives,
+    /// `Regressor`.
+    Regressor,
 }
 
 impl Group {
@@ -32,7 +34,7 @@ impl Group {
 
     /// Those that are there where they are asked for.
     pub(crate) fn on_request() -> impl Iterator<Item = Self> {
-        [Self::Inverse, Self::MassMatrix, Self::Derivatives].into_iter()
+        [Self::Inverse, Self::MassMatrix, Self::Derivatives, Self::Regressor].into_iter()
     }
 
     /// Its name on the command line and in model files.
@@ -44,6 +46,7 @@ impl Group {
             Self::Inverse => "inverse",
             Self::MassMatrix => "mass_matrix",
             Self::Derivatives => "derivatives",
+            Self::Regressor => "regressor",
         }
     }
 
@@ -55,6 +58,7 @@ impl Group {
             Self::Jacobian => "derivatives of the joint form, with `joint` (JointSpace::Jacobian)",
             Self::Inverse => "forces for given accelerations, on request (trait InverseDynamics)",
             Self::MassMatrix => "M and its factor, on request (trait MassMatrix)",
+            Self::Regressor => "forces as a product with inertial parameters, on request (trait Regressor)",
             Self::Derivatives => {
                 "derivatives of forces and accelerations, on request (trait DynamicsDerivatives)"
             }
@@ -66,7 +70,9 @@ impl Group {
         match self {
             Self::Maximal => vec![self],
             Self::Joint => vec![Self::Maximal, self],
-            Self::Jacobian | Self::Inverse | Self::MassMatrix => vec![Self::Maximal, Self::Joint, self],
+            Self::Jacobian | Self::Inverse | Self::MassMatrix | Self::Regressor => {
+                vec![Self::Maximal, Self::Joint, self]
+            }
             Self::Derivatives => vec![Self::Maximal, Self::Joint, Self::Inverse, self],
         }
     }

@@ -54,6 +54,7 @@ pub enum Kernel {
     MassFactor,
     InverseDerivatives,
     ForwardDerivatives,
+    Regressor,
 }
 
 /// When a kernel exists, and where its expressions come from.
@@ -128,6 +129,7 @@ const TABLE: &[Row] = &[
     row(Kernel::MassFactor, "mass_factor", "D and L of M = Lᵀ D L", Source::OnRequest(Group::MassMatrix, |r| r.mass_factor.as_ref())),
     row(Kernel::InverseDerivatives, "inverse_derivatives", "∂τ/∂(x, u), row by row", Source::OnRequest(Group::Derivatives, |r| r.inverse_derivatives.as_ref())),
     row(Kernel::ForwardDerivatives, "forward_derivatives", "∂u̇/∂(x, u, τ), row by row", Source::OnRequest(Group::Derivatives, |r| r.forward_derivatives.as_ref())),
+    row(Kernel::Regressor, "regressor", "Y of what inertia and gravity take, Y θ, row by row", Source::OnRequest(Group::Regressor, |r| r.regressor.as_ref())),
 ];
 
 const _: () = {

@@ -96,7 +96,7 @@ mod tests {
         let found = words("xyz");
         assert!(!found.contains("did you mean"), "{found}");
         assert!(
-            found.contains("maximal, joint, jacobian, inverse, mass_matrix, derivatives, all")
+            found.contains("maximal, joint, jacobian, inverse, mass_matrix, derivatives, regressor, all")
                 && found.contains("newton_step"),
             "{found}"
         );

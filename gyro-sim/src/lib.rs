@@ -18,6 +18,7 @@
 //! | [`InverseDynamics`] | τ of given u̇, bias and gravity forces | those of which it is asked |
 //! | [`MassMatrix`] | M and its factor | the same |
 //! | [`DynamicsDerivatives`] | derivatives of forces and accelerations | the same |
+//! | [`Regressor`] | forces by inertial parameters | the same |
 //!
 //! * **Description.** [`Mechanism::description`] returns names, rows and sizes as one constant ([`Description`]).
 //! * **Buffers.** Nothing is allocated: results are written to buffers of the caller's, whose sizes are part of their
@@ -120,7 +121,7 @@ pub use apart::apart;
 pub use contract::{
     Buffers, Clearance, Coordinate, Corrected, Description, DynamicsDerivatives, Energy, Equations, Exact,
     InverseDynamics, Joint, JointBuffers, JointInfo, JointLayout, JointPlace, JointSpace, MassMatrix,
-    Mechanism, Ode, OutputInfo, Owner, Partition, RowInfo, System, Terms, set_turn_references,
+    Mechanism, Ode, OutputInfo, Owner, Partition, Regressor, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

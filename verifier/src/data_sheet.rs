@@ -71,6 +71,7 @@ const WORDS: &[Words] = &[
     says("bias_forces", "h, that is τ at u̇ = 0", "Writes h"),
     writes("inverse_derivatives", "∂τ/∂(x, u), row by row"),
     writes("forward_derivatives", "∂u̇/∂(x, u, τ), row by row"),
+    writes("regressor", "Y of what inertia and gravity take, Y θ, row by row"),
     says("mass_matrix", "M in joint coordinates, row by row", "Writes M in joint coordinates, row by row"),
     writes("mass_factor", "D and L of M = Lᵀ D L"),
     says("gravity_forces", "what of h is against gravity", "Writes what of h is against gravity"),
@@ -229,7 +230,7 @@ fn unavailable(module: &Module) -> impl Iterator<Item = String> {
         None => Some("without joint coordinates there are none"),
         Some(joints) => (!joints.closure_rows.is_empty()).then_some("mechanisms with loops have none"),
     };
-    let groups = ["inverse", "mass_matrix", "derivatives"].into_iter();
+    let groups = ["inverse", "mass_matrix", "derivatives", "regressor"].into_iter();
     groups.filter_map(move |group| Some(format!("the functions of `{group}` ({})", why?)))
 }
 

@@ -62,7 +62,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 40] = [
+const FUNCTIONS: [(&str, Form); 41] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -103,7 +103,11 @@ const FUNCTIONS: [(&str, Form); 40] = [
     ("mass_factor", Form::Filling),
     ("inverse_derivatives", Form::Filling),
     ("forward_derivatives", Form::Filling),
+    ("regressor", Form::Filling),
 ];
+
+/// Functions of given u̇.
+const OF_ACCELERATIONS: [&str; 3] = ["inverse_dynamics", "inverse_derivatives", "regressor"];
 
 /// What functions write, where it is not `out`.
 const TARGETS: [(&str, &str); 8] = [
@@ -159,7 +163,8 @@ pub fn is_on_constraints(function: &str) -> bool {
 /// The function that gives the accelerations, or rates, that another one reads.
 pub fn source_of_accelerations(function: &str) -> &'static str {
     match function {
-        "joint_derivative" | "inverse_dynamics" | "inverse_derivatives" => "joint_accelerations",
+        function if OF_ACCELERATIONS.contains(&function) => "joint_accelerations",
+        "joint_derivative" => "joint_accelerations",
         "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
         _ => "accelerations",
     }
@@ -226,7 +231,7 @@ impl Module {
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
             let accelerations = match name {
                 "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
-                "joint_derivative" | "inverse_dynamics" | "inverse_derivatives" => {
+                function if function == "joint_derivative" || OF_ACCELERATIONS.contains(&function) => {
                     joints.as_ref().map_or(0, |joints| joints.n_rates)
                 }
                 _ => n_accelerations,
@@ -337,6 +342,7 @@ impl Module {
             ("mass_factor", if has("mass_factor") { n_rates * n_rates } else { 0 }),
             ("inverse_derivatives", if has("inverse_derivatives") { 2 * n_rates * n_rates } else { 0 }),
             ("forward_derivatives", if has("forward_derivatives") { 3 * n_rates * n_rates } else { 0 }),
+            ("regressor", if has("regressor") { 10 * n * n_rates } else { 0 }),
         ];
         let found = |name: &str| self.written.get(name).map_or(0, |program| program.results.len());
         let patterns = [

@@ -17,7 +17,7 @@ pub use joint_space::{JointBuffers, JointLayout, JointPlace, JointSpace};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use ode::{Corrected, Exact, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
-pub use robot::{DynamicsDerivatives, InverseDynamics, MassMatrix};
+pub use robot::{DynamicsDerivatives, InverseDynamics, MassMatrix, Regressor};
 
 use core::fmt::Debug;
 

@@ -50,7 +50,7 @@ pub fn text(
         partition(model, type_name, has.choice, joints),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints, has.jacobian)).unwrap_or_default(),
-        joints.map(|joints| has.on_request.text(type_name, joints)).unwrap_or_default(),
+        joints.map(|joints| has.on_request.text(model, type_name, joints)).unwrap_or_default(),
     ]
     .concat()
 }

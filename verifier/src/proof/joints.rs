@@ -56,8 +56,13 @@ impl<'c, 'a> Motion<'c, 'a> {
         Some(Self { case, layout, maximal, rates_of_rates, derivative, maximal_rates })
     }
 
+    /// The maximal state.
+    pub(super) fn maximal(&self) -> &Point<Term<'a>> {
+        &self.maximal
+    }
+
     /// (s̈, ẇ') body after body.
-    fn accelerations(&self) -> &[Term<'a>] {
+    pub(super) fn accelerations(&self) -> &[Term<'a>] {
         velocities(self.case, &self.maximal_rates)
     }
 

@@ -1,6 +1,7 @@
 //! What modules have where it is asked for.
 
 use crate::joints::JointLayout;
+use gyro_model::Model;
 
 /// The traits.
 #[derive(Clone, Copy, Debug)]
@@ -8,6 +9,7 @@ pub struct OnRequest {
     pub inverse: bool,
     pub mass_matrix: bool,
     pub derivatives: bool,
+    pub regressor: bool,
 }
 
 impl OnRequest {
@@ -18,11 +20,12 @@ impl OnRequest {
             inverse: has("InverseDynamics"),
             mass_matrix: has("MassMatrix"),
             derivatives: has("DynamicsDerivatives"),
+            regressor: has("Regressor"),
         }
     }
 
     /// The expected text.
-    pub fn text(self, name: &str, joints: &JointLayout) -> String {
+    pub fn text(self, model: &Model, name: &str, joints: &JointLayout) -> String {
         let inverse = [
             of_accelerations("inverse_dynamics", "Rates"),
             of_joints("bias_forces", "Rates"),
@@ -49,10 +52,19 @@ impl OnRequest {
             self::of_accelerations("inverse_derivatives", "InverseDerivatives"),
             of_joints("forward_derivatives", "ForwardDerivatives"),
         ];
+        let n_parameters = 10 * joints.n_rates * model.coordinate_bodies().len();
+        let regressor = [
+            format!(
+                "type Regressor = [T; {n_parameters}];
+                fn regressor_buffer(&self) -> Self::Regressor {{ [T::constant(0.0); {n_parameters}] }}"
+            ),
+            self::of_accelerations("regressor", "Regressor"),
+        ];
         let traits = [
             (self.inverse, "InverseDynamics", inverse.concat()),
             (self.mass_matrix, "MassMatrix", mass_matrix.concat()),
             (self.derivatives, "DynamicsDerivatives", derivatives.concat()),
+            (self.regressor, "Regressor", regressor.concat()),
         ];
         let written = traits.into_iter().filter(|(is_there, ..)| *is_there);
         written.map(|(_, of, items)| implementation(of, name, &items)).collect()
