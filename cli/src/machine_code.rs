@@ -154,6 +154,12 @@ fn call(kernel: Kernel) -> Option<Call> {
             "x, out",
             "",
         ],
+        Kernel::Regressor => [
+            "regressor",
+            "x: &Joints, a: &Rates, out: &mut <Module as Regressor>::Regressor",
+            "x, a, out",
+            "",
+        ],
     };
     Some(Call { function, takes, passes, returns })
 }

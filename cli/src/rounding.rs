@@ -273,7 +273,8 @@ where
         | Kernel::MassMatrix
         | Kernel::MassFactor
         | Kernel::InverseDerivatives
-        | Kernel::ForwardDerivatives => return None,
+        | Kernel::ForwardDerivatives
+        | Kernel::Regressor => return None,
     })
 }
 

@@ -21,6 +21,7 @@ pub enum Group {
     Inverse,
     MassMatrix,
     Derivatives,
+    Regressor,
 }
 
 /// What is known of a group.
@@ -56,6 +57,7 @@ const TABLE: &[Row] = &[
     Row { group: Group::Inverse, name: "inverse", trait_name: "InverseDynamics", needs: &[Group::Joint], is_usual: false, what: "forces for given accelerations" },
     Row { group: Group::MassMatrix, name: "mass_matrix", trait_name: "MassMatrix", needs: &[Group::Joint], is_usual: false, what: "the mass matrix and its factor" },
     Row { group: Group::Derivatives, name: "derivatives", trait_name: "DynamicsDerivatives", needs: &[Group::Joint, Group::Inverse], is_usual: false, what: "derivatives of forces and accelerations" },
+    Row { group: Group::Regressor, name: "regressor", trait_name: "Regressor", needs: &[Group::Joint], is_usual: false, what: "forces as a product with inertial parameters" },
 ];
 
 const _: () = {
@@ -74,8 +76,8 @@ impl Group {
 
     /// Those that only who asks for them calls.
     pub(crate) fn on_request() -> impl Iterator<Item = Self> {
-        use Group::{Derivatives, Frames, Inverse, JointOutputs, MassMatrix, OutputDerivatives};
-        [JointOutputs, OutputDerivatives, Frames, Inverse, MassMatrix, Derivatives].into_iter()
+        use Group::{Derivatives, Frames, Inverse, JointOutputs, MassMatrix, OutputDerivatives, Regressor};
+        [JointOutputs, OutputDerivatives, Frames, Inverse, MassMatrix, Derivatives, Regressor].into_iter()
     }
 
     /// Its name on the command line and in model files.

@@ -62,6 +62,7 @@ pub enum Kernel {
     MassFactor,
     InverseDerivatives,
     ForwardDerivatives,
+    Regressor,
 }
 
 /// When a kernel that is asked for exists, and where its expressions come from.
@@ -157,6 +158,7 @@ const TABLE: &[Row] = &[
     row(Kernel::MassFactor, Group::MassMatrix, "mass_factor", "D and L of M = Lᵀ D L", Source::OnRequest(|r| r.mass_factor.as_ref())),
     row(Kernel::InverseDerivatives, Group::Derivatives, "inverse_derivatives", "∂τ/∂(x, u), row by row", Source::OnRequest(|r| r.inverse_derivatives.as_ref())),
     row(Kernel::ForwardDerivatives, Group::Derivatives, "forward_derivatives", "∂u̇/∂(x, u, τ), row by row", Source::OnRequest(|r| r.forward_derivatives.as_ref())),
+    row(Kernel::Regressor, Group::Regressor, "regressor", "Y of what inertia and gravity take, Y θ, row by row", Source::OnRequest(|r| r.regressor.as_ref())),
 ];
 
 const _: () = {

@@ -111,6 +111,9 @@ mod tests {
         assert!(words("jacobians").contains("did you mean `jacobian`?"));
         let found = words("xyz");
         assert!(!found.contains("did you mean"), "{found}");
-        assert!(found.contains("derivatives, solvers, all") && found.contains("newton_step"), "{found}");
+        assert!(
+            found.contains("derivatives, regressor, solvers, all") && found.contains("newton_step"),
+            "{found}"
+        );
     }
 }

@@ -19,7 +19,7 @@
 //! | [`JointSpace`], [`JointJacobian`] | joint coordinates; their derivatives | generated mechanisms that have them |
 //! | [`CorrectedSolution`] | multipliers and rates' rates at corrected states | the same |
 //! | [`InverseDynamics`], [`MassMatrix`] | τ of given u̇, bias and gravity forces; M and its factor | the same, without loops |
-//! | [`DynamicsDerivatives`] | derivatives of forces and accelerations | the same |
+//! | [`DynamicsDerivatives`], [`Regressor`] | derivatives of forces and accelerations; forces by inertial parameters | the same |
 //! | [`JointOutputs`], [`OutputDerivatives`], [`Frames`] | what is observed of a joint state | the same, with loops |
 //!
 //! Of the traits below [`Mechanism`] a generated module has those that were asked for (`[generate] functions`).
@@ -128,7 +128,7 @@ pub use contract::{
     DynamicsDerivatives, Energy, Exact, FrameBuffers, Frames, InverseDynamics, Jacobian, JacobianBuffers,
     Joint, JointBuffers, JointInfo, JointJacobian, JointLayout, JointOutputs, JointPlace, JointSpace,
     Kinematics, MassMatrix, Mechanism, Ode, OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition,
-    Projection, RowInfo, System, Terms, set_turn_references,
+    Projection, Regressor, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

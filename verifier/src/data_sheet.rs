@@ -73,6 +73,7 @@ const WORDS: &[Words] = &[
     says("bias_forces", "h, that is τ at u̇ = 0", "Writes h"),
     writes("inverse_derivatives", "∂τ/∂(x, u), row by row"),
     writes("forward_derivatives", "∂u̇/∂(x, u, τ), row by row"),
+    writes("regressor", "Y of what inertia and gravity take, Y θ, row by row"),
     says("mass_matrix", "M in joint coordinates, row by row", "Writes M in joint coordinates, row by row"),
     writes("mass_factor", "D and L of M = Lᵀ D L"),
     says("gravity_forces", "what of h is against gravity", "Writes what of h is against gravity"),
@@ -255,7 +256,7 @@ fn unavailable(model: &Model, module: &Module) -> Vec<String> {
         ),
         (frames(model).next().is_none(), "frames", "no output is of kind `velocity`"),
     ];
-    let of_loops = ["inverse", "mass_matrix", "derivatives"]
+    let of_loops = ["inverse", "mass_matrix", "derivatives", "regressor"]
         .map(|group| (has_loops, group, "mechanisms with loops have none"));
     let all: Vec<_> = of_outputs.into_iter().chain(of_loops).collect();
     let lines = all.into_iter().filter_map(|(is_missing, group, why)| match module.joints {

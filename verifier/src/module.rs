@@ -64,7 +64,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 47] = [
+const FUNCTIONS: [(&str, Form); 48] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -112,6 +112,7 @@ const FUNCTIONS: [(&str, Form); 47] = [
     ("mass_factor", Form::Filling),
     ("inverse_derivatives", Form::Filling),
     ("forward_derivatives", Form::Filling),
+    ("regressor", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
@@ -175,7 +176,7 @@ pub fn is_on_constraints(function: &str) -> bool {
 /// The function that gives the accelerations, or rates, that another one reads.
 pub fn source_of_accelerations(function: &str) -> &'static str {
     match function {
-        "joint_derivative" | "joint_outputs" | "inverse_dynamics" | "inverse_derivatives" => {
+        "joint_derivative" | "joint_outputs" | "inverse_dynamics" | "inverse_derivatives" | "regressor" => {
             "joint_accelerations"
         }
         function if function.starts_with("outputs_by_") => "joint_accelerations",
@@ -367,6 +368,7 @@ impl Module {
             ("mass_factor", n_rates * n_rates),
             ("inverse_derivatives", 2 * n_rates * n_rates),
             ("forward_derivatives", 3 * n_rates * n_rates),
+            ("regressor", 10 * n * n_rates),
         ];
         // What is not written was not to be there.
         let of_function = |(name, size)| Some((name, self.written.get(name)?.results.len(), size));

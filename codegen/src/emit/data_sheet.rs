@@ -278,7 +278,9 @@ fn unavailable(equations: &Equations, group: Group) -> Option<String> {
                 "they need third derivatives of tables"
             }
             Group::Frames if space.frames.is_none() => "no output is of kind `velocity`",
-            Group::Inverse | Group::MassMatrix | Group::Derivatives if !space.closure_rows.is_empty() => {
+            Group::Inverse | Group::MassMatrix | Group::Derivatives | Group::Regressor
+                if !space.closure_rows.is_empty() =>
+            {
                 "mechanisms with loops have none"
             }
             _ => return None,

@@ -66,9 +66,10 @@ enum Start {
 
 impl AxisTree {
     /// `None` for a tree with loops, or with joints that are not made of turns and displacements.
-    pub fn new(system: &mut System, coordinates: &Coordinates, loads: &[Load]) -> Option<Self> {
-        let (embedding, links) = (&coordinates.embedding, coordinates.layout.links.as_slice());
-        let turned = |x: usize| !coordinates.invariant.contains(&x);
+    /// The angles of `invariant`, by their places in x, do not turn frames.
+    pub fn new(system: &mut System, coordinates: &Coordinates, invariant: &[usize]) -> Option<Self> {
+        let Coordinates { embedding, layout, loads, .. } = coordinates;
+        let (links, turned) = (layout.links.as_slice(), |x: usize| !invariant.contains(&x));
         let stations =
             coordinates.closure.rows.is_empty().then(|| stations(system, links, &turned)).flatten()?;
         let frames = frames(system, &stations);

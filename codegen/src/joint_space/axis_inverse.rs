@@ -114,7 +114,7 @@ impl AxisTree {
 
     /// Numbers for each unknown, those of displacements of a body that nothing holds from its own frame to the global
     /// one.
-    fn to_global(&self, graph: &mut Graph, local: &[ExprId]) -> Vec<ExprId> {
+    pub(super) fn to_global(&self, graph: &mut Graph, local: &[ExprId]) -> Vec<ExprId> {
         let mut all = local.to_vec();
         for (position, rotation) in self.wholes(graph) {
             let global = graph.mat_vec(&rotation, &[0, 1, 2].map(|k| local[position.u + k]));

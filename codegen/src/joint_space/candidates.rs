@@ -51,7 +51,7 @@ impl Candidates {
             eliminated.push((planar::PLANAR, found));
         }
         let n_in_bodies = eliminated.len();
-        if let Some(tree) = AxisTree::new(system, coordinates, loads) {
+        if let Some(tree) = AxisTree::new(system, coordinates, &coordinates.invariant) {
             eliminated.extend(tree.forms(system));
         }
         let written = expanded(system, &coordinates.in_joints, &eliminated);

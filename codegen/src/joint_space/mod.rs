@@ -11,7 +11,8 @@
 //! `articulated_inertia` or a mass matrix; `axis_inverse` finds forces there, `axis_derivatives` how they change.
 //! These are the `candidates`, and `choose` takes the cheapest of those that are accurate, with what follows from it:
 //! `motions` of the bodies, `multipliers` and the `jacobian` of the joint form; `on_request` has what controllers of
-//! robots ask for, derivatives as `slopes`.
+//! robots ask for, derivatives as `slopes`,
+//! and the `regressor`.
 
 mod articulated_inertia;
 mod axis_derivatives;
@@ -39,6 +40,7 @@ mod multipliers;
 mod observed;
 mod on_request;
 mod planar;
+mod regressor;
 mod relation;
 mod screw_moves;
 mod slopes;

@@ -32,10 +32,12 @@ pub struct OnRequest {
     pub inverse_derivatives: Option<Chosen>,
     /// n × 3n.
     pub forward_derivatives: Option<Chosen>,
+    /// n × ten for each body.
+    pub regressor: Option<Chosen>,
 }
 
 /// As the data sheet calls what is derived in these frames.
-const IN_BODIES: &str = "in the bodies' frames";
+pub(super) const IN_BODIES: &str = "in the bodies' frames";
 pub(super) const IN_JOINTS: &str = "in joint frames";
 
 /// Of a symmetric matrix, without zeros.
@@ -57,17 +59,17 @@ impl OnRequest {
         balance: &JointDynamics,
         functions: &Functions,
     ) -> Self {
-        let groups = [Group::Inverse, Group::MassMatrix, Group::Derivatives];
+        let groups = [Group::Inverse, Group::MassMatrix, Group::Derivatives, Group::Regressor];
         let is_asked = groups.into_iter().any(|group| functions.has(group));
         if !is_asked || !coordinates.closure.rows.is_empty() {
             return Self::default();
         }
-        let tree = AxisTree::new(system, coordinates, &coordinates.loads);
+        let tree = AxisTree::new(system, coordinates, &coordinates.invariant);
         let parts = Parts { coordinates, balance, tree, passes: FinalPasses::of(false) };
         let mut found = Self::default();
+        let n = coordinates.layout.n_rates;
+        let given: Vec<_> = (0..n).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
         if functions.has(Group::Inverse) {
-            let n = coordinates.layout.n_rates;
-            let given: Vec<_> = (0..n).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
             found.inverse = Some(parts.inverse(system, &given));
             found.bias = Some(parts.inverse(system, &vec![Graph::ZERO; n]));
             found.gravity = Some(parts.gravity(system));
@@ -77,9 +79,10 @@ impl OnRequest {
             found.mass_matrix = Some(parts.mass_matrix(system));
             found.mass_factor = Some(parts.mass_factor(system, &found.mass_order));
         }
+        if functions.has(Group::Regressor) {
+            found.regressor = Some(parts.regressor(system, &given));
+        }
         if functions.has(Group::Derivatives) {
-            let n = coordinates.layout.n_rates;
-            let given: Vec<_> = (0..n).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
             found.inverse_derivatives = Some(parts.inverse_slopes(system, &given));
             found.forward_derivatives = Some(parts.forward_slopes(system, &parts.order()));
         }

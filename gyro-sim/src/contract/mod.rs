@@ -21,7 +21,7 @@ pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use observed::{FrameBuffers, Frames, JointOutputs, OutputDerivatives, OutputSlopes};
 pub use ode::{Corrected, Exact, Jacobian, Joint, Ode, System};
 pub use partition::{Clearance, Partition};
-pub use robot::{DynamicsDerivatives, InverseDynamics, MassMatrix};
+pub use robot::{DynamicsDerivatives, InverseDynamics, MassMatrix, Regressor};
 
 use core::fmt::Debug;
 

@@ -111,3 +111,28 @@ pub trait DynamicsDerivatives: InverseDynamics {
     /// along the rates, which are M⁻¹.
     fn forward_derivatives(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::ForwardDerivatives);
 }
+
+/// Forces as a product with the inertial parameters of the bodies, for their identification.
+///
+/// θ has ten numbers for each body, bodies in the order of [`Description::bodies`](super::Description): the mass m
+/// (kg), the first moment `∫ r dm` (x, y, z; kg m) and the moments of inertia (xx, yy, zz, xy, xz, yz; kg m²), both
+/// about the origin of the body's frame and in that frame. The origin is where the model file has the mass centre: its
+/// own values are `(m, 0, 0, 0, J')`; the moment xy is the entry of the inertia matrix, as in model files.
+///
+/// `Y θ` is what inertia and gravity take of τ. What else acts does not depend on θ: the difference of
+/// [`InverseDynamics::inverse_dynamics`] and `Y θ`, θ being that of the model, is the same for all θ.
+pub trait Regressor: JointSpace {
+    /// n × 10 N for n rates and N bodies, row by row.
+    type Regressor: Storage<Self::Scalar>;
+
+    /// A buffer, zeroed.
+    fn regressor_buffer(&self) -> Self::Regressor;
+    /// Writes Y for given u̇.
+    fn regressor(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        accelerations: &Self::Rates,
+        out: &mut Self::Regressor,
+    );
+}

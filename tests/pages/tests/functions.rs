@@ -76,3 +76,22 @@ fn what_is_not_asked_for_is_left_out_and_nothing_else_changes() {
     let found: Vec<String> = SEEDS.flat_map(problems).collect();
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
+
+/// What is there on request is right whatever the mechanism; of some there is nothing.
+#[test]
+fn what_is_asked_for_is_proved_where_it_can_be() {
+    let mut n_there = 0;
+    for seed in SEEDS {
+        let text = gyro_pages::page(seed);
+        let model = gyro_model::read_with("page.toml", &text, &mut gyro_pages::load).expect("a model file");
+        let functions = Functions::named(["inverse", "mass_matrix", "derivatives", "regressor"]);
+        let functions = functions.expect("known names");
+        let module = gyro_codegen::generate_functions("page.toml", &model, &functions).expect("a module");
+        let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+        assert!(report.is_proved(), "model file {seed}: {report}");
+        let is_there = module.code.contains("gyro_sim::DynamicsDerivatives for");
+        assert_eq!(is_there, module.data_sheet.unavailable().next().is_none(), "model file {seed}");
+        n_there += usize::from(is_there);
+    }
+    assert!((1..SEEDS.count()).contains(&n_there), "{n_there} of {} have them", SEEDS.count());
+}

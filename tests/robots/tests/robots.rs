@@ -6,7 +6,9 @@ use gyro_assembled::Dense;
 use gyro_model::{Model, Number, to_f64};
 use gyro_robots::legged::Legged;
 use gyro_robots::manipulator::Manipulator;
-use gyro_sim::{DynamicsDerivatives, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism};
+use gyro_sim::{
+    DynamicsDerivatives, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism, Regressor,
+};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -367,4 +369,68 @@ fn check_derivatives<M: DynamicsDerivatives<Scalar = f64> + MassMatrix>(name: &s
 fn derivatives_are_limits_of_differences_with_finite_rotations() {
     check_derivatives("legged", &Legged::default());
     check_derivatives("manipulator", &Manipulator::default());
+}
+
+fn regressor<M: Regressor<Scalar = f64>>(
+    mechanism: &M,
+    t: f64,
+    x: &M::Joints,
+    given: &M::Rates,
+) -> DMatrix<f64> {
+    let (n, bodies) = (mechanism.joint_layout().n_rates(), mechanism.description().bodies.len());
+    let mut out = mechanism.regressor_buffer();
+    mechanism.regressor(t, x, given, &mut out);
+    DMatrix::from_row_slice(n, 10 * bodies, out.as_ref())
+}
+
+/// θ of a model file.
+fn parameters(model: &Model) -> DVector<f64> {
+    let matrix = diagonal(model);
+    let of_body = |body: usize| {
+        let entry = |row: usize, column: usize| matrix[(6 * body + row, 6 * body + column)];
+        let inertia =
+            [(3, 3), (4, 4), (5, 5), (3, 4), (3, 5), (4, 5)].map(|(row, column)| entry(row, column));
+        [entry(0, 0), 0.0, 0.0, 0.0].into_iter().chain(inertia)
+    };
+    DVector::from_vec((0..matrix.nrows() / 6).flat_map(of_body).collect())
+}
+
+/// Without dissipation forces at two motions through one position differ by what inertia takes, for springs give the
+/// same.
+#[test]
+fn forces_are_a_product_with_inertial_parameters() {
+    let (mechanism, model, mut random) = (Legged::<f64>::default(), model("legged"), Random::new(7));
+    let (theta, mut worst) = (parameters(&model), 0.0_f64);
+    for _ in 0..STATES {
+        let (x, mut y) = (state(&mechanism, &mut random), state(&mechanism, &mut random));
+        let n_x = mechanism.joint_layout().n_coordinates();
+        y.as_mut()[..n_x].copy_from_slice(&x[..n_x]);
+        let [a, b] = [x, y].map(|x| {
+            let given = rates(&mechanism, &mut random);
+            let tau = DVector::from_vec(inverse(&mechanism, 0.0, &x, &given));
+            (tau, regressor(&mechanism, 0.0, &x, &given))
+        });
+        worst = worst.max(difference(((b.1 - a.1) * &theta).as_slice(), (b.0 - a.0).as_slice()));
+    }
+    println!("legged: {worst:.1e}");
+    assert!(worst <= ROUNDING, "{worst:e}");
+}
+
+/// A heavier payload takes what its column says.
+#[test]
+fn a_column_is_what_a_parameter_changes() {
+    let (light, mut heavy) = (Manipulator::<f64>::default(), Manipulator::<f64>::default());
+    let mut values = *heavy.parameters();
+    values.payload += 1.0;
+    heavy.set_parameters(values);
+    let hand = light.description().bodies.iter().position(|body| *body == "hand").expect("it has one");
+    let (mut random, mut worst) = (Random::new(8), 0.0_f64);
+    for _ in 0..STATES {
+        let (t, x, given) = (random.signed(), state(&light, &mut random), rates(&light, &mut random));
+        let [a, b] = [&light, &heavy].map(|m| DVector::from_vec(inverse(m, t, &x, &given)));
+        let column = regressor(&light, t, &x, &given).column(10 * hand).into_owned();
+        worst = worst.max(difference((b - a).as_slice(), column.as_slice()));
+    }
+    println!("manipulator: {worst:.1e}");
+    assert!(worst <= ROUNDING, "{worst:e}");
 }

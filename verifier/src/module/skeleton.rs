@@ -45,7 +45,7 @@ pub struct Corrected {
 }
 
 /// The traits that a module may leave out, but for joint coordinates, which their layout shows.
-const TRAITS: [&str; 13] = [
+const TRAITS: [&str; 14] = [
     "Partition",
     "Kinematics",
     "Dynamics",
@@ -59,6 +59,7 @@ const TRAITS: [&str; 13] = [
     "InverseDynamics",
     "MassMatrix",
     "DynamicsDerivatives",
+    "Regressor",
 ];
 
 impl Has {
@@ -113,6 +114,7 @@ pub fn text(
         of("InverseDynamics", of_joints(|_, name, _| on_request::inverse_dynamics(name))),
         of("MassMatrix", of_joints(|_, name, joints| on_request::mass_matrix(name, joints))),
         of("DynamicsDerivatives", of_joints(|_, name, joints| on_request::derivatives(name, joints))),
+        of("Regressor", of_joints(on_request::regressor)),
         indices(model, joints),
     ]
     .concat()

@@ -101,10 +101,12 @@ pub enum Claim {
     InverseDerivatives,
     /// `forward_derivatives` are those of `joint_accelerations`, and M⁻¹.
     ForwardDerivatives,
+    /// `regressor` gives the forces that inertia and gravity take of a unit of each inertial parameter.
+    Regressor,
 }
 
 /// All claims, in the order in which they are proved.
-const ALL: [Claim; 42] = {
+const ALL: [Claim; 43] = {
     use Claim::*;
     [
         Phi,
@@ -149,6 +151,7 @@ const ALL: [Claim; 42] = {
         MassFactor,
         InverseDerivatives,
         ForwardDerivatives,
+        Regressor,
     ]
 };
 
@@ -213,6 +216,7 @@ impl Claim {
             Self::MassFactor => &["mass_factor"],
             Self::InverseDerivatives => &["inverse_derivatives"],
             Self::ForwardDerivatives => &["forward_derivatives"],
+            Self::Regressor => &["regressor"],
         }
     }
 
@@ -260,6 +264,7 @@ impl Claim {
             Self::MassMatrix => "Bᵀ diag(M, J') B",
             Self::MassFactor => "Lᵀ D L = Bᵀ diag(M, J') B, L triangular in its order",
             Self::InverseDerivatives => "`inverse_dynamics` by dual numbers, along the rates and of them",
+            Self::Regressor => "Bᵀ(M v̇ − f) of bodies with unit parameters",
             Self::ForwardDerivatives => "`joint_accelerations` by dual numbers, likewise; M M⁻¹ = 1",
         }
     }
@@ -292,7 +297,7 @@ impl Claim {
                 "the derivatives of what is proved by dual numbers"
             }
             Self::MassMatrix | Self::MassFactor => "the kinetic energy of free motions",
-            Self::InverseDynamics | Self::BiasForces | Self::GravityForces => {
+            Self::InverseDynamics | Self::BiasForces | Self::GravityForces | Self::Regressor => {
                 "virtual power on the constraints"
             }
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
@@ -372,6 +377,7 @@ impl Claim {
             Self::MassFactor => on_request::mass_factor(case),
             Self::InverseDerivatives => on_request::inverse_derivatives(case),
             Self::ForwardDerivatives => on_request::forward_derivatives(case),
+            Self::Regressor => on_request::regressor(case),
         }
     }
 }

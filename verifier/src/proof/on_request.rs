@@ -174,3 +174,74 @@ pub fn forward_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     }
     Some(residuals)
 }
+
+/// A vector.
+type Three<'a> = [Term<'a>; 3];
+
+fn cross<'a>(a: &Three<'a>, b: &Three<'a>) -> Three<'a> {
+    [0, 1, 2].map(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        a[i].mul(&b[j]).sub(&a[j].mul(&b[i]))
+    })
+}
+
+fn plus<'a>(a: &Three<'a>, b: &Three<'a>) -> Three<'a> {
+    [0, 1, 2].map(|k| a[k].add(&b[k]))
+}
+
+/// `m v`, the columns of m being given.
+fn combined<'a>(columns: &[Three<'a>; 3], v: &Three<'a>) -> Three<'a> {
+    let [a, b, c] = [0, 1, 2].map(|column| columns[column].map(|entry| entry.mul(&v[column])));
+    plus(&plus(&a, &b), &c)
+}
+
+/// The columns of A(p), eq. (3): `v + 2 e₀ e × v + 2 e × (e × v)` of the unit vectors v.
+fn axes<'a>(one: &Term<'a>, p: &[Term<'a>]) -> [Three<'a>; 3] {
+    let (zero, two, e) = (one.sub(one), one.add(one), [p[1], p[2], p[3]]);
+    [0, 1, 2].map(|k| {
+        let v = [0, 1, 2].map(|l| if k == l { *one } else { zero });
+        let turned = cross(&e, &v);
+        let (once, twice) = (turned.map(|x| x.mul(&p[0]).mul(&two)), cross(&e, &turned).map(|x| x.mul(&two)));
+        plus(&v, &plus(&once, &twice))
+    })
+}
+
+/// Forces on a point mass at the origin, on one at r to first order in r, and torques of moments of inertia, at the
+/// accelerations of any u̇.
+pub fn regressor<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let given = any_accelerations(case)?;
+    let found = case.run_with("regressor", &case.point, &given);
+    let motion = Motion::with(case, given)?;
+    let columns = free_motions(case)?;
+    let one = Term::one(case.point.context);
+    let zero = one.sub(&one);
+    let gravity = case.model.gravity.each_ref().map(|g| case.point.number(g));
+    let mut expected = vec![Vec::new(); columns.len()];
+    for body in 0..case.n_bodies() {
+        let three = |values: &[Term<'a>], first: usize| [0, 1, 2].map(|k| values[first + k]);
+        let felt = three(motion.accelerations(), 6 * body);
+        let felt = [0, 1, 2].map(|k| felt[k].sub(&gravity[k]));
+        let spin_rate = three(motion.accelerations(), 6 * body + 3);
+        let spin = three(motion.maximal.velocity(case.model, body), 3);
+        let a = axes(&one, &motion.maximal.position(body)[3..]);
+        let local = a.each_ref().map(|axis| dot(axis, &felt));
+        let units = [0, 1, 2].map(|k| [0, 1, 2].map(|l| if k == l { one } else { zero }));
+        let mut wrenches = vec![[felt, [zero; 3]]];
+        wrenches.extend(units.iter().map(|r| {
+            let swept = plus(&cross(&spin_rate, r), &cross(&spin, &cross(&spin, r)));
+            [combined(&a, &swept), cross(r, &local)]
+        }));
+        wrenches.extend([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(row, column)| {
+            let mut inertia = [[zero; 3]; 3];
+            (inertia[row][column], inertia[column][row]) = (one, one);
+            let gyroscopic = cross(&spin, &combined(&inertia, &spin));
+            [[zero; 3], plus(&combined(&inertia, &spin_rate), &gyroscopic)]
+        }));
+        for (row, column) in expected.iter_mut().zip(&columns) {
+            row.extend(
+                wrenches.iter().map(|wrench| dot(&column[6 * body..6 * body + 6], wrench.as_flattened())),
+            );
+        }
+    }
+    Some(equal(case, &found, &expected.concat()))
+}

@@ -87,10 +87,28 @@ impl ModuleWriter<'_> {
                 }
             }
         });
+        let regressor = asked.regressor.as_ref().map(|regressor| {
+            let n = index(regressor.roots.len());
+            let regressor = self.of_accelerations(
+                Kernel::Regressor,
+                "Writes Y of what inertia and gravity take, Y θ, row by row",
+                &quote! { Self::Regressor },
+            );
+            quote! {
+                impl<T: gyro_sim::Scalar> gyro_sim::Regressor for #name<T> {
+                    type Regressor = [T; #n];
+                    fn regressor_buffer(&self) -> Self::Regressor {
+                        [T::constant(0.0); #n]
+                    }
+                    #regressor
+                }
+            }
+        });
         Some(quote! {
             #inverse
             #mass
             #derivatives
+            #regressor
         })
     }
 

@@ -1,6 +1,7 @@
 //! What modules have where it is asked for.
 
 use crate::joints::JointLayout;
+use gyro_model::Model;
 
 pub fn inverse_dynamics(name: &str) -> String {
     let functions = [
@@ -39,6 +40,18 @@ pub fn derivatives(name: &str, joints: &JointLayout) -> String {
         of_joints("forward_derivatives", "ForwardDerivatives"),
     ];
     implementation("DynamicsDerivatives", name, &items.concat())
+}
+
+pub fn regressor(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let n = 10 * joints.n_rates * model.coordinate_bodies().len();
+    let items = [
+        format!(
+            "type Regressor = [T; {n}];
+            fn regressor_buffer(&self) -> Self::Regressor {{ [T::constant(0.0); {n}] }}"
+        ),
+        of_accelerations("regressor", "Regressor"),
+    ];
+    implementation("Regressor", name, &items.concat())
 }
 
 fn implementation(of: &str, name: &str, items: &str) -> String {
