@@ -5927,3 +5927,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
         _out: &mut Self::InputJacobian,
     ) {}
 }
+/// Where numbers stand, by name; of several numbers the first.
+#[allow(dead_code, missing_docs)]
+pub mod index {
+    pub mod joint {
+        pub const ALPHA: usize = 0;
+        pub const BETA: usize = 1;
+        pub const PHI: usize = 2;
+    }
+    pub mod joint_rate {
+        pub const ALPHA: usize = 3;
+        pub const BETA: usize = 4;
+        pub const PHI: usize = 5;
+    }
+}

@@ -4864,3 +4864,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for FourBar<T> {
         _out: &mut Self::InputJacobian,
     ) {}
 }
+/// Where numbers stand, by name; of several numbers the first.
+#[allow(dead_code, missing_docs)]
+pub mod index {
+    pub mod joint {
+        pub const CRANK_PIVOT: usize = 0;
+        pub const ROCKER_PIVOT: usize = 1;
+        pub mod first_angle {
+            pub const ELBOW: usize = 2;
+        }
+    }
+    pub mod joint_rate {
+        pub const CRANK_PIVOT: usize = 3;
+        pub const ROCKER_PIVOT: usize = 4;
+        pub mod first_angle {
+            pub const ELBOW: usize = 5;
+        }
+    }
+}

@@ -1059,3 +1059,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
         _out: &mut Self::InputJacobian,
     ) {}
 }
+/// Where numbers stand, by name; of several numbers the first.
+#[allow(dead_code, missing_docs)]
+pub mod index {
+    pub mod joint {
+        pub mod orientation {
+            pub const TIP: usize = 0;
+        }
+    }
+    pub mod joint_rate {
+        pub mod orientation {
+            pub const TIP: usize = 4;
+        }
+    }
+}
