@@ -55,6 +55,9 @@ fn print(kernels: &mut [Kernel<'_>], rounds: usize, slice: (Duration, Clock)) ->
 fn generate() -> std::io::Result<()> {
     let mut page = String::new();
     stdin().read_to_string(&mut page)?;
-    let module = gyro_codegen::generate("model.toml", &page).map_err(std::io::Error::other)?;
+    let model = gyro_model::read("model.toml", &page).map_err(std::io::Error::other)?;
+    let all = gyro_codegen::Functions::all();
+    let module =
+        gyro_codegen::generate_functions("model.toml", &model, &all).map_err(std::io::Error::other)?;
     stdout().write_all(module.code.as_bytes())
 }

@@ -13,7 +13,7 @@ const SEED: u64 = 1;
 fn main() -> Result<(), Box<dyn Error>> {
     for path in std::env::args().skip(1) {
         let model = gyro_model::read(&path, &std::fs::read_to_string(&path)?).map_err(|e| e.to_string())?;
-        let emitted = gyro_codegen::generate_model(&path, &model)?;
+        let emitted = gyro_codegen::generate_functions(&path, &model, &gyro_codegen::Functions::all())?;
         let module = Module::read(&model, &emitted.code, &emitted.constants)?;
         let prime = prime::<18>(&model, &module, SEED).map_err(|bits| format!("roots take {bits} bits"))?;
         let decider = Decider::new(&model, prime);

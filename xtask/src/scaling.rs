@@ -244,7 +244,7 @@ pub fn buffer() -> Accelerations {{ Module::default().acceleration_buffer() }}
 fn program(sizes: &[usize]) -> String {
     let mut text = "use gyro_assembled::{Careful, Recursive};
 use gyro_benches::{Clock, Kernel, interleaved};
-use gyro_sim::{Mechanism, CorrectedDynamics, Dynamics, Kinematics, Projection};
+use gyro_sim::{Dynamics, Mechanism};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -273,7 +273,7 @@ fn main() {
     }
 }
 
-fn assembled<M: Equations<Scalar = f64, State = Vec<f64>> + 'static>(assembled: M, expected: &[f64]) -> Kernel<'static> {
+fn assembled<M: Dynamics<Scalar = f64, State = Vec<f64>> + 'static>(assembled: M, expected: &[f64]) -> Kernel<'static> {
     let (y, mut out) = (assembled.start(), assembled.acceleration_buffer());
     assembled.accelerations(0.0, &y, &mut out);
     let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));

@@ -46,6 +46,7 @@ pub fn generate_text(name: &str, text: &str) -> Page {
 }
 
 fn generate_model(name: String, model: Model) -> Page {
-    let module = gyro_codegen::generate_model(&name, &model).expect("a module");
+    let module =
+        gyro_codegen::generate_functions(&name, &model, &gyro_codegen::Functions::all()).expect("a module");
     Page { name, model, code: module.code, constants: module.constants }
 }
