@@ -3,6 +3,7 @@
 mod block;
 mod expression;
 mod layout;
+mod loops;
 mod matching;
 mod plain;
 mod skeleton;
