@@ -1,6 +1,6 @@
 //! Where the operands of a loop come from, and the arrays that hand numbers from one part of a function to another.
 
-use super::loops::Loops;
+use super::loops::{Direction, Loops};
 use super::orbits::{Orbit, Orbits};
 use super::terms::{Kind, Place, Terms};
 use std::collections::BTreeMap;
@@ -25,8 +25,10 @@ pub struct Column {
     pub orbit: Option<Orbit>,
     /// Rows that are filled outside of loops.
     pub rows: BTreeMap<i64, Place>,
-    /// The first loop that reads it; none if none does.
-    pub reader: Option<usize>,
+    /// The first loop that reads each of them.
+    pub readers: BTreeMap<i64, usize>,
+    /// The loop that a column is for that no loop computes.
+    pub reader: usize,
 }
 
 #[derive(Debug)]
@@ -122,7 +124,12 @@ impl Filling<'_> {
                     rows.clone().all(|(row, term)| self.loops.member(self.orbits, of, row) == term);
                 return is_local.then_some(Source::Local(of));
             }
-            if rows.clone().all(|row| fits(&row)) {
+            // What a loop reads of itself comes before.
+            let is_before = match own.direction {
+                Direction::Forward => offset < 0,
+                Direction::Backward => offset > 0,
+            };
+            if (is_before || computed != index) && rows.clone().all(|row| fits(&row)) {
                 let straight = rows
                     .filter(|(row, _)| *row < range.first || *row > range.last)
                     .collect::<BTreeMap<_, _>>();
@@ -154,16 +161,19 @@ impl Filling<'_> {
     fn column(&mut self, reader: usize, orbit: Option<Orbit>, rows: BTreeMap<i64, Place>) -> usize {
         let agrees = |column: &Column| {
             column.orbit == orbit
-                && (orbit.is_some() || column.reader == Some(reader))
+                && (orbit.is_some() || column.reader == reader)
                 && rows.iter().all(|(row, term)| column.rows.get(row).is_none_or(|known| known == term))
         };
         let at = self.columns.iter().position(agrees).unwrap_or_else(|| {
-            self.columns.push(Column { orbit, rows: BTreeMap::new(), reader: None });
+            self.columns.push(Column { orbit, rows: BTreeMap::new(), readers: BTreeMap::new(), reader });
             self.columns.len() - 1
         });
         let column = &mut self.columns[at];
+        for (&row, _) in &rows {
+            let first = column.readers.entry(row).or_insert(reader);
+            *first = reader.min(*first);
+        }
         column.rows.extend(rows);
-        column.reader = Some(column.reader.map_or(reader, |known| known.min(reader)));
         at
     }
 
@@ -185,7 +195,12 @@ impl Filling<'_> {
         same.for_each(|&term| need(term));
         for orbit in needed {
             if !self.columns.iter().any(|column| column.orbit == Some(orbit)) {
-                self.columns.push(Column { orbit: Some(orbit), rows: BTreeMap::new(), reader: None });
+                self.columns.push(Column {
+                    orbit: Some(orbit),
+                    rows: BTreeMap::new(),
+                    readers: BTreeMap::new(),
+                    reader: 0,
+                });
             }
         }
     }

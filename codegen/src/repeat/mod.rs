@@ -35,8 +35,12 @@ const LEAST_OPERATIONS: usize = 3000;
 /// Parts that are worth a loop.
 const LEAST_PARTS: usize = 4;
 
-/// Steps from term to term by which colours are compared; the way that leaves the shortest text is taken.
-const STEPS: [usize; 3] = [2, 1, 3];
+/// Steps from term to term by which colours are compared, and after how many variables of one colour a part repeats; the
+/// way that leaves the shortest text is taken.
+const WAYS: [(usize, usize); 5] = [(2, 1), (1, 1), (3, 1), (2, 2), (2, 3)];
+
+/// A text that is so many times shorter is short enough to try no other way.
+const SHORT: usize = 5;
 
 /// A kernel with loops, if it is long and loops make its text shorter by half. `element` says in which argument a
 /// variable is, and where.
@@ -64,29 +68,31 @@ fn rolled_from(
         Node::Symbol(symbol) => element(*symbol),
         _ => None,
     };
-    let ways = STEPS.into_iter().filter_map(|n_steps| {
-        let start = std::time::Instant::now();
-        let d = |w: &str| if std::env::var("ROLL").is_ok() { eprintln!("DBG {n_operations} {n_steps} {w} {:.2?}", start.elapsed()) };
-        let shift = Shift::find(graph, &terms, n_steps);
-        let orbits = Orbits::of(&terms, &shift, LEAST_PARTS);
-        let loops = Loops::plan(&terms, &orbits)?;
-        d("loops");
-        let columns = Columns::of(&terms, &orbits, &loops, &element)?;
-        d("columns");
-        let signs = Signs::solve(&terms, &orbits, &loops, &columns)?;
-        d("signs");
-        let rolling = Rolling {
-            source: graph,
-            terms: &terms,
-            orbits: &orbits,
-            loops: &loops,
-            columns: &columns,
-            signs: &signs,
-        };
-        let rolled = rolling.rolled(roots);
-        (2 * rolled.n_written() < n_operations).then_some(rolled)
-    });
-    ways.min_by_key(Rolled::n_written)
+    let mut shortest: Option<Rolled> = None;
+    for way in WAYS {
+        let least = shortest.as_ref().map_or(n_operations.div_ceil(2), Rolled::n_written);
+        if SHORT * least < n_operations {
+            break;
+        }
+        let found = in_one_way(graph, &terms, (roots, &element), way);
+        shortest = found.filter(|rolled| rolled.n_written() < least).or(shortest);
+    }
+    shortest
+}
+
+fn in_one_way(
+    graph: &Graph,
+    terms: &Terms,
+    (roots, element): (&[ExprId], &dyn Fn(Place) -> Option<Element>),
+    way: (usize, usize),
+) -> Option<Rolled> {
+    let shift = Shift::find(graph, terms, way);
+    let orbits = &Orbits::of(terms, &shift, LEAST_PARTS);
+    let loops = &Loops::plan(terms, orbits)?;
+    let columns = &Columns::of(terms, orbits, loops, element)?;
+    let signs = &Signs::solve(terms, orbits, loops, columns)?;
+    let rolling = Rolling { source: graph, terms, orbits, loops, columns, signs };
+    Some(rolling.rolled(roots))
 }
 
 #[cfg(test)]

@@ -144,7 +144,7 @@ impl Rolling<'_> {
         for (place, column) in self.columns.all.iter().enumerate() {
             let array = match column.orbit.and_then(|orbit| self.loops.of_orbit(self.orbits, orbit)) {
                 Some(index) => index,
-                None => n + column.reader.unwrap_or(0),
+                None => n + column.reader,
             };
             let array = &mut arrays[array];
             array.columns.push(place);
@@ -208,10 +208,7 @@ impl Rolling<'_> {
     ) -> Vec<([usize; 3], ExprId)> {
         let mut stores = Vec::new();
         for (place, column) in self.columns.all.iter().enumerate() {
-            if column.reader != Some(index) {
-                continue;
-            }
-            for (&row, &term) in &column.rows {
+            for (&row, &term) in column.rows.iter().filter(|(row, _)| column.readers[row] == index) {
                 let value = values[&self.terms.all[term].id];
                 let is_opposite = self.signs.of_row.get(&(place, row)).copied().unwrap_or(false);
                 let value = if is_opposite { graph.neg(value) } else { value };

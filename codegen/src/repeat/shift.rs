@@ -21,8 +21,8 @@ struct Search<'t> {
 }
 
 impl Shift {
-    /// Starts from variables of one colour, in their order.
-    pub fn find(graph: &Graph, terms: &Terms, n_steps: usize) -> Self {
+    /// Starts from variables of one colour, in their order: to each corresponds the one so many places after it.
+    pub fn find(graph: &Graph, terms: &Terms, (n_steps, stride): (usize, usize)) -> Self {
         let n = terms.all.len();
         let shift = Self { next: vec![None; n], previous: vec![None; n] };
         let mut search = Search { terms, colours: colours(terms, n_steps), shift, queue: Vec::new() };
@@ -35,7 +35,7 @@ impl Shift {
         }
         for mut class in classes.into_values() {
             class.sort_unstable();
-            class.windows(2).for_each(|pair| search.pair(pair[0].1, pair[1].1));
+            class.windows(stride + 1).for_each(|members| search.pair(members[0].1, members[stride].1));
         }
         search.spread(true);
         search.spread(false);

@@ -39,6 +39,7 @@ impl Signs {
         let mut of_row: HashMap<(usize, i64), Form> = HashMap::default();
         let mut of_operand: HashMap<(Orbit, usize), Form> = HashMap::default();
         for index in 0..loops.all.len() {
+            equations.compress();
             for (k, part) in loops.parts(index).into_iter().enumerate() {
                 let is_first = k == 0;
                 let members = loops.all[index].orbits.iter();
@@ -49,11 +50,11 @@ impl Signs {
                     let mut given = Vec::new();
                     for (operand, source) in orbits.operands[term].iter().zip(&columns.sources[&orbit]) {
                         let mut form = match source {
-                            Source::Local(_) => of_term[&operand.term].clone(),
+                            Source::Local(_) => of_term.get(&operand.term)?.clone(),
                             Source::Row { column, offset } => {
                                 let row = part + offset;
                                 if columns.is_computed(loops, orbits, *column, row) {
-                                    of_term[&operand.term].clone()
+                                    of_term.get(&operand.term)?.clone()
                                 } else {
                                     let fresh = || equations.unknown();
                                     of_row.entry((*column, row)).or_insert_with(fresh).clone()
@@ -139,6 +140,16 @@ impl Equations {
             }
         }
         (left, rest.1)
+    }
+
+    /// Writes what is solved for in terms of what is not.
+    fn compress(&mut self) {
+        let mut unknowns: Vec<usize> = self.solved.keys().copied().collect();
+        unknowns.sort_unstable_by(|a, b| b.cmp(a));
+        for unknown in unknowns {
+            let form = self.reduced(&self.solved[&unknown]);
+            self.solved.insert(unknown, form);
+        }
     }
 
     /// The oldest unknown yields: what comes later is then in terms of what is near.
