@@ -169,7 +169,7 @@ impl Filling<'_> {
             self.columns.len() - 1
         });
         let column = &mut self.columns[at];
-        for (&row, _) in &rows {
+        for &row in rows.keys() {
             let first = column.readers.entry(row).or_insert(reader);
             *first = reader.min(*first);
         }

@@ -103,9 +103,9 @@ impl Planning<'_> {
             n_components += 1;
         }
         for _ in 0..SWEEPS {
-            for orbit in 0..n {
+            for (orbit, beside) in beside.iter().enumerate() {
                 let mut votes: BTreeMap<i64, usize> = BTreeMap::new();
-                for &(other, offset) in &beside[orbit] {
+                for &(other, offset) in beside {
                     *votes.entry(self.times[other] + offset).or_default() += 1;
                 }
                 let own = self.times[orbit];

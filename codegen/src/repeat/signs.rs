@@ -111,7 +111,8 @@ fn plus(one: &Form, other: &Form) -> Form {
     loop {
         match (a.peek(), b.peek()) {
             (Some(x), Some(y)) if x == y => {
-                (a.next(), b.next());
+                a.next();
+                b.next();
             }
             (Some(x), Some(y)) if x < y => sum.extend(a.next()),
             (Some(_), None) => sum.extend(a.next()),
