@@ -1,5 +1,6 @@
 //! An emitted module, read back: each function as a program.
 
+mod arrays;
 mod block;
 mod expression;
 mod layout;

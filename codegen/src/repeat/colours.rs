@@ -1,5 +1,5 @@
-//! Colours of terms: terms have one colour if they are alike as far as some steps around them reach, constants, signs and
-//! indices of variables left out.
+//! Colours of terms: terms have one colour if they are alike as far as some steps around them reach, constants, signs
+//! and indices of variables left out.
 
 use super::terms::{Place, Terms};
 use rustc_hash::FxHasher;

@@ -35,8 +35,8 @@ const LEAST_OPERATIONS: usize = 3000;
 /// Parts that are worth a loop.
 const LEAST_PARTS: usize = 4;
 
-/// Steps from term to term by which colours are compared, and after how many variables of one colour a part repeats; the
-/// way that leaves the shortest text is taken.
+/// Steps from term to term by which colours are compared, and after how many variables of one colour a part repeats;
+/// the way that leaves the shortest text is taken.
 const WAYS: [(usize, usize); 5] = [(2, 1), (1, 1), (3, 1), (2, 2), (2, 3)];
 
 /// A text that is so many times shorter is short enough to try no other way.

@@ -1,5 +1,6 @@
-//! The expressions of a kernel as terms: signs belong to the operands of a term, and the constant factor of a product or
-//! the constant of a sum is part of the term. Terms that differ in constants, signs and variables alone are then alike.
+//! The expressions of a kernel as terms: signs belong to the operands of a term, and the constant factor of a product
+//! or the constant of a sum is part of the term. Terms that differ in constants, signs and variables alone are then
+//! alike.
 
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Uses;

@@ -1,6 +1,6 @@
 //! Function bodies of the emitted subset.
 
-use super::loops::{Array, Table};
+use super::arrays::{Array, Table};
 use super::syntax::{decimal, integer, is_name, refused, text};
 use crate::constants::Occurrence;
 use crate::program::{Id, Node, Program, Source};

@@ -1,6 +1,7 @@
 //! Loops of the emitted subset. They are run as they are read, so that a program is what is computed, operation by
 //! operation, and everything that is proved of a program is proved of its loops.
 
+use super::arrays::{Array, Table, uses};
 use super::block::{Known, Reader};
 use super::syntax::{decimal, integer, refused, text};
 use crate::constants::Occurrence;
@@ -10,31 +11,6 @@ use crate::refusal::Refusal;
 use std::collections::HashSet;
 use syn::spanned::Spanned;
 use syn::{BinOp, Expr, ExprArray, ExprForLoop, ExprIndex, Item, ItemConst, Local, Pat, RangeLimits, Stmt};
-
-/// `let mut kept0 = [[T::constant(0.0); 3]; 12];`: what is stored in it.
-#[derive(Debug)]
-pub struct Array {
-    rows: Vec<Vec<Option<Id>>>,
-    column: Vec<Use>,
-}
-
-/// `const PARTS_0: [[f64; 3]; 12] = [...];`: the places of its literals among the module's.
-#[derive(Debug)]
-pub struct Table {
-    rows: Vec<Vec<usize>>,
-    column: Vec<Use>,
-}
-
-#[derive(Clone, Debug)]
-struct Use {
-    name: String,
-    line: usize,
-    is_read: bool,
-}
-
-fn uses(name: &str, line: usize, count: usize) -> Vec<Use> {
-    (0..count).map(|k| Use { name: format!("{name}[..][{k}]"), line, is_read: false }).collect()
-}
 
 impl Reader<'_> {
     /// Reads a statement of what loops need; whether it was one.
