@@ -45,6 +45,7 @@ mod expr;
 mod groups;
 mod joint_space;
 mod kernels;
+mod repeat;
 mod selection;
 mod simplify;
 mod solve;

@@ -1,8 +1,10 @@
 //! An emitted module, read back: each function as a program.
 
+mod arrays;
 mod block;
 mod expression;
 mod layout;
+mod loops;
 mod matching;
 mod plain;
 mod skeleton;

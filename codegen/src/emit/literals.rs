@@ -39,6 +39,12 @@ impl Literals {
         quote! { k(#place) }
     }
 
+    /// The same in a table, which has literals alone.
+    pub fn tabulated(&self, constant: &Constant) -> TokenStream {
+        let stand_in = self.stand_in(constant);
+        quote! { tabulated #stand_in }
+    }
+
     /// The complete text with its literals, and the text that says what each of them stands for.
     pub fn write(self, text: TokenStream) -> (TokenStream, String) {
         let mut written =
@@ -56,18 +62,32 @@ struct Written<'a> {
 
 impl Written<'_> {
     fn literals(&mut self, text: TokenStream) -> TokenStream {
-        let mut is_literal = false;
-        let tokens = text.into_iter().map(|token| {
-            let follows =
-                std::mem::replace(&mut is_literal, matches!(&token, TokenTree::Ident(name) if name == "k"));
-            let TokenTree::Group(group) = token else { return token };
-            let inner = match stood_for(&group).filter(|_| follows) {
-                Some(place) => self.literal(place),
-                None => self.literals(group.stream()),
+        let (mut is_literal, mut is_tabulated) = (false, false);
+        let mut written = TokenStream::new();
+        for token in text {
+            let is = |name: &str| matches!(&token, TokenTree::Ident(found) if found == name);
+            if is("tabulated") || is_tabulated && is("k") {
+                (is_tabulated, is_literal) = (true, is("k"));
+                continue;
+            }
+            let follows = std::mem::replace(&mut is_literal, is("k"));
+            let TokenTree::Group(group) = token else {
+                written.extend([token]);
+                continue;
             };
-            Group::new(group.delimiter(), inner).into()
-        });
-        tokens.collect()
+            match stood_for(&group).filter(|_| follows) {
+                Some(place) if std::mem::take(&mut is_tabulated) => written.extend(self.literal(place)),
+                Some(place) => {
+                    let literal = self.literal(place);
+                    written.extend([TokenTree::from(Group::new(group.delimiter(), literal))]);
+                }
+                None => {
+                    let inner = self.literals(group.stream());
+                    written.extend([TokenTree::from(Group::new(group.delimiter(), inner))]);
+                }
+            }
+        }
+        written
     }
 
     fn literal(&mut self, place: usize) -> TokenStream {

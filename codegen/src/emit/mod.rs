@@ -2,5 +2,6 @@
 
 pub mod data_sheet;
 pub mod literals;
+pub mod loops;
 pub mod module;
 pub mod tokens;

@@ -26,6 +26,8 @@ pub struct Body {
 pub trait Variables {
     /// Name of a variable and the expression that reads it; `None` for the expression where it needs no binding.
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>);
+    /// The array that a variable is an element of, and where, if it is.
+    fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)>;
 }
 
 /// Statements in one block: rustc opens a scope for each `let` and recurses over them, so long functions are cut into
@@ -50,19 +52,13 @@ enum Binding {
 /// Writes the program that computes `roots`, with stand-ins for its literals.
 pub fn body(graph: &Graph, variables: &impl Variables, literals: &Literals, roots: &[ExprId]) -> Body {
     let program = Program::new(graph, roots);
-    let names =
-        program.temporaries.iter().enumerate().map(|(n, &id)| (id, ident(&format!("t{n}")))).collect();
-    let writer =
-        Writer { graph, variables, literals, program: &program, names, has_literals: Cell::new(false) };
-    let symbols: BTreeSet<_> = program.uses.order.iter().filter_map(|&id| writer.as_symbol(id)).collect();
-    let bindings = symbols.iter().filter_map(|&symbol| match variables.variable(symbol) {
-        (name, Some(source)) => Some(quote! { let #name = #source; }),
-        (_, None) => None,
-    });
-    let values: Vec<_> = roots.iter().map(|&root| writer.expression(root, Binding::Sum)).collect();
+    let writer = Writer::new(graph, variables, literals, (&program, "t"));
+    let symbols = writer.symbols();
+    let bindings = writer.bindings(&symbols);
+    let values = writer.values(roots);
     let temporaries = writer.temporaries(roots);
-    let literal = writer.has_literals.get().then(|| quote! { let k = T::constant; });
-    let statements = quote! { #literal #(#bindings)* #temporaries };
+    let literal = writer.literal_binding();
+    let statements = quote! { #literal #bindings #temporaries };
     Body { statements, values, symbols }
 }
 
@@ -79,7 +75,8 @@ fn fused(x: &TokenStream, y: &TokenStream, added: &TokenStream) -> (TokenStream,
     (quote! { T::fused(#x, #y, #added) }, Binding::Call)
 }
 
-struct Writer<'a, V> {
+/// Writes expressions of a graph.
+pub struct Writer<'a, V> {
     graph: &'a Graph,
     variables: &'a V,
     literals: &'a Literals,
@@ -88,40 +85,92 @@ struct Writer<'a, V> {
     has_literals: Cell<bool>,
 }
 
-impl<V: Variables> Writer<'_, V> {
+impl<'a, V: Variables> Writer<'a, V> {
+    /// Names of shared expressions begin with the given letter.
+    pub fn new(
+        graph: &'a Graph,
+        variables: &'a V,
+        literals: &'a Literals,
+        (program, letter): (&'a Program, &str),
+    ) -> Self {
+        let named = program.temporaries.iter().enumerate();
+        let names = named.map(|(n, &id)| (id, ident(&format!("{letter}{n}")))).collect();
+        Self { graph, variables, literals, program, names, has_literals: Cell::new(false) }
+    }
+
+    /// The variables that the program reads.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        self.program.uses.order.iter().filter_map(|&id| self.as_symbol(id)).collect()
+    }
+
+    /// Binds variables to their names.
+    pub fn bindings(&self, symbols: &BTreeSet<Symbol>) -> TokenStream {
+        let bindings = symbols.iter().filter_map(|&symbol| match self.variables.variable(symbol) {
+            (name, Some(source)) => Some(quote! { let #name = #source; }),
+            (_, None) => None,
+        });
+        bindings.collect()
+    }
+
+    /// Values as they stand at the end of an assignment.
+    pub fn values(&self, roots: &[ExprId]) -> Vec<TokenStream> {
+        roots.iter().map(|&root| self.expression(root, Binding::Sum)).collect()
+    }
+
+    /// What literals are made by, if there are any in what was written.
+    pub fn literal_binding(&self) -> Option<TokenStream> {
+        self.has_literals.get().then(|| quote! { let k = T::constant; })
+    }
+
+    pub fn has_literals(&self) -> bool {
+        self.has_literals.get()
+    }
+
     fn as_symbol(&self, id: ExprId) -> Option<Symbol> {
         if let Node::Symbol(symbol) = self.graph.node(id) { Some(*symbol) } else { None }
     }
 
     fn temporaries(&self, roots: &[ExprId]) -> TokenStream {
-        let temporaries = &self.program.temporaries;
-        if temporaries.len() <= CHUNK {
-            return temporaries.iter().map(|&id| self.binding(id)).collect();
-        }
-        let is_long = temporaries.len() > LONG;
+        self.parts(std::slice::from_ref(&self.program.temporaries), roots).into_iter().collect()
+    }
+
+    /// Binds shared expressions, those of each part by themselves. Roots may be read after any part.
+    pub fn parts(&self, parts: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<TokenStream> {
+        let n_temporaries = self.program.temporaries.len();
+        let is_long = n_temporaries > LONG;
         let size = if is_long { PART } else { CHUNK };
-        let last_use = self.last_uses(roots);
-        let chunks = temporaries.chunks(size).enumerate().map(|(n, chunk)| {
-            let end = (n + 1) * size;
-            let live: Vec<_> =
-                chunk.iter().filter(|id| last_use[id] >= end).map(|id| &self.names[id]).collect();
-            let bindings = chunk.iter().map(|&id| self.binding(id));
-            let block = quote! { { #(#bindings)* (#(#live,)*) } };
-            let block = if is_long {
-                quote! { gyro_sim::apart(move || #block) }
-            } else {
-                block
-            };
-            quote! { let (#(#live,)*) = #block; }
-        });
-        chunks.collect()
+        let order: Vec<ExprId> = parts.concat();
+        let last_use = if n_temporaries > CHUNK { self.last_uses(&order, roots) } else { HashMap::default() };
+        let mut end = 0;
+        let mut written = Vec::new();
+        for part in parts {
+            if part.len() <= CHUNK {
+                end += part.len();
+                written.push(part.iter().map(|&id| self.binding(id)).collect());
+                continue;
+            }
+            let chunks = part.chunks(size).map(|chunk| {
+                end += chunk.len();
+                let live: Vec<_> =
+                    chunk.iter().filter(|id| last_use[id] >= end).map(|id| &self.names[id]).collect();
+                let bindings = chunk.iter().map(|&id| self.binding(id));
+                let block = quote! { { #(#bindings)* (#(#live,)*) } };
+                let block = if is_long {
+                    quote! { gyro_sim::apart(move || #block) }
+                } else {
+                    block
+                };
+                quote! { let (#(#live,)*) = #block; }
+            });
+            written.push(chunks.collect());
+        }
+        written
     }
 
     /// For each temporary the position of the last one that reads it; beyond all for a root.
-    fn last_uses(&self, roots: &[ExprId]) -> HashMap<ExprId, usize> {
-        let temporaries = &self.program.temporaries;
+    fn last_uses(&self, order: &[ExprId], roots: &[ExprId]) -> HashMap<ExprId, usize> {
         let mut last = HashMap::default();
-        for (position, &id) in temporaries.iter().enumerate() {
+        for (position, &id) in order.iter().enumerate() {
             for operand in self.graph.node(id).operands() {
                 self.mark(operand, position, &mut last);
             }
@@ -276,6 +325,10 @@ mod tests {
             let Symbol::Coordinate(k) = symbol else { unreachable!("there are no others") };
             let name = ident(&format!("x{k}"));
             (quote! { #name }, None)
+        }
+
+        fn element(&self, _: Symbol) -> Option<(&'static str, usize)> {
+            None
         }
     }
 

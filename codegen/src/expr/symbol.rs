@@ -52,4 +52,8 @@ pub enum Symbol {
     RotationRate { moving_body: usize, row: usize, column: usize },
     /// Entry of (A_iᵀ A_j)˙.
     RelativeRate { joint: usize, row: usize, column: usize },
+    /// Element of an array that a loop fills: see `repeat`.
+    Entry { array: usize, row: usize, column: usize },
+    /// What the body of a loop reads, by its place among that.
+    Local(usize),
 }

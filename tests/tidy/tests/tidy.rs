@@ -30,7 +30,7 @@ const CRATES: [&str; 13] = [
 const LINES: usize = 500;
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
-const STAGES: [&str; 10] = [
+const STAGES: [&str; 11] = [
     "groups",
     "expr",
     "simplify",
@@ -40,6 +40,7 @@ const STAGES: [&str; 10] = [
     "equations",
     "kernels",
     "selection",
+    "repeat",
     "emit",
 ];
 

@@ -1,5 +1,6 @@
 //! Function bodies of the emitted subset.
 
+use super::arrays::{Array, Table};
 use super::syntax::{decimal, integer, is_name, refused, text};
 use crate::constants::Occurrence;
 use crate::program::{Id, Node, Program, Source};
@@ -33,6 +34,12 @@ pub enum Known {
     Curve { table: usize, time: Id },
     /// What is to be written.
     Target,
+    /// An array that hands numbers to and from loops, by its place in the reader.
+    Array(usize),
+    /// A table of constants.
+    Table(usize),
+    /// The round of a loop.
+    Part(usize),
 }
 
 /// How long the arrays are that a function reads.
@@ -83,7 +90,13 @@ pub struct Reader<'a> {
     pub program: Program,
     names: HashMap<String, Name>,
     /// Names that were bound, in order, but for those of blocks that were left.
-    bound: Vec<String>,
+    pub bound: Vec<String>,
+    pub arrays: Vec<Array>,
+    pub tables: Vec<Table>,
+    /// Literals by their line and column: those of a loop are read again in each round.
+    pub literals: HashMap<(usize, usize), usize>,
+    /// Entries of arrays and rounds of loops.
+    pub n_run: usize,
 }
 
 #[derive(Debug)]
@@ -100,8 +113,19 @@ impl<'a> Reader<'a> {
         sizes: Sizes,
         before: Option<Before>,
     ) -> Self {
-        let (program, names, bound) = (Program::default(), HashMap::new(), Vec::new());
-        Self { model, occurrences, sizes, before, program, names, bound }
+        Self {
+            model,
+            occurrences,
+            sizes,
+            before,
+            program: Program::default(),
+            names: HashMap::new(),
+            bound: Vec::new(),
+            arrays: Vec::new(),
+            tables: Vec::new(),
+            literals: HashMap::new(),
+            n_run: 0,
+        }
     }
 
     /// Makes an argument known; one with an underscore is not to be used.
@@ -155,7 +179,14 @@ impl<'a> Reader<'a> {
     /// Reads the whole body.
     pub fn body(mut self, block: &Block, form: Form) -> Result<Program, Refusal> {
         let mut statements = block.stmts.as_slice();
-        while let [Stmt::Local(local), rest @ ..] = statements {
+        while let [statement, rest @ ..] = statements {
+            let Stmt::Local(local) = statement else {
+                if !self.loop_statement(statement)? {
+                    break;
+                }
+                statements = rest;
+                continue;
+            };
             statements = rest;
             if let Some(before) = self.before.filter(|before| before.starts(local, self.sizes.accelerations))
             {
@@ -167,14 +198,16 @@ impl<'a> Reader<'a> {
             }
         }
         self.results(statements, block, form)?;
+        let unread = self.unread();
         let mut unused: Vec<_> =
             self.names.into_iter().filter(|(_, n)| !n.is_used && n.known != Known::Target).collect();
         unused.sort_by_key(|(_, name)| name.line);
         self.program.unused = unused.into_iter().map(|(name, entry)| (name, entry.line)).collect();
+        self.program.unused.extend(unread);
         Ok(self.program)
     }
 
-    fn bind(&mut self, name: String, known: Known, span: Span) -> Result<(), Refusal> {
+    pub fn bind(&mut self, name: String, known: Known, span: Span) -> Result<(), Refusal> {
         let entry = Name { known, line: span.start().line, is_used: false };
         self.bound.push(name.clone());
         match self.names.insert(name.clone(), entry) {
@@ -183,16 +216,18 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn binding(&mut self, local: &Local) -> Result<(), Refusal> {
+    pub fn binding(&mut self, local: &Local) -> Result<(), Refusal> {
         let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none() && local.attrs.is_empty())
         else {
             return Err(refused(local));
         };
         match &local.pat {
-            Pat::Ident(name)
-                if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() =>
-            {
+            Pat::Ident(name) if name.by_ref.is_none() && name.subpat.is_none() => {
+                let is_array = name.mutability.is_some();
                 let name = name.ident.to_string();
+                if is_array {
+                    return self.array(name, local, &init.expr);
+                }
                 let known = self.initial(&init.expr)?;
                 self.bind(name, known, local.span())
             }
@@ -226,8 +261,10 @@ impl<'a> Reader<'a> {
     /// `y[3]`, `x[3]`, `charts[0][1]`.
     fn argument_element(&mut self, array: &Expr, index: &Expr) -> Result<Option<Source>, Refusal> {
         if let Expr::Index(inner) = array {
-            if self.known(&inner.expr)? != Known::Charts {
-                return Err(refused(array));
+            match self.known(&inner.expr)? {
+                Known::Charts => {}
+                Known::Array(_) => return Ok(None),
+                _ => return Err(refused(array)),
             }
             let (chart, k) = (integer(&inner.index)?, integer(index)?);
             let exists = chart < self.sizes.charts && k < 4;
@@ -243,7 +280,7 @@ impl<'a> Reader<'a> {
             Known::Joints => (self.sizes.joints, Source::Joint),
             _ => return Ok(None),
         };
-        let place = integer(index)?;
+        let place = self.place(index)?;
         if place < size { Ok(Some(source(place))) } else { Err(refused(index)) }
     }
 
@@ -274,7 +311,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Forgets the names of a block that are not handed on.
-    fn leave(&mut self, mut inside: HashSet<String>, handed: &[String]) {
+    pub fn leave(&mut self, mut inside: HashSet<String>, handed: &[String]) {
         handed.iter().for_each(|name| _ = inside.remove(name));
         for name in inside {
             if let Some(entry) = self.names.remove(&name).filter(|entry| !entry.is_used) {

@@ -1,7 +1,7 @@
 //! Expressions of the emitted subset.
 
 use super::block::{Known, Reader};
-use super::syntax::{decimal, integer, refused, text};
+use super::syntax::{decimal, refused, text};
 use crate::constants::Occurrence;
 use crate::program::{Function, Id, Node, Source};
 use crate::refusal::Refusal;
@@ -62,9 +62,14 @@ impl Reader<'_> {
         if !matches!(self.known(&call.func)?, Known::Literals) || call.args.len() != 1 {
             return Err(refused(call));
         }
-        let literal = decimal(&call.args[0])?;
-        let occurrence = self.occurrences.len();
-        self.occurrences.push(Occurrence { literal, at: call.span().start() });
+        if let Expr::Index(entry) = &call.args[0] {
+            return self.tabulated(entry);
+        }
+        let (literal, at) = (decimal(&call.args[0])?, call.span().start());
+        let occurrence = *self.literals.entry((at.line, at.column)).or_insert_with(|| {
+            self.occurrences.push(Occurrence { literal, at });
+            self.occurrences.len() - 1
+        });
         Ok(self.push(Node::Constant(occurrence), call.span()))
     }
 
@@ -82,9 +87,12 @@ impl Reader<'_> {
         Ok(self.push(Node::Call(function, receiver), call.method.span()))
     }
 
-    /// `table0[1]`, `accelerations[2]`, `self.derived[3]`.
+    /// `table0[1]`, `accelerations[2]`, `self.derived[3]`, `kept0[i + 1][2]`.
     fn element(&mut self, index: &ExprIndex) -> Result<Id, Refusal> {
-        let place = integer(&index.index)?;
+        if matches!(&*index.expr, Expr::Index(_)) {
+            return self.kept(index);
+        }
+        let place = self.place(&index.index)?;
         if matches!(&*index.expr, Expr::Field(_)) {
             if text(&index.expr) != "self . derived" || place >= self.sizes.derived {
                 return Err(refused(index));

@@ -10,7 +10,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::fmt::Write;
 use syn::spanned::Spanned;
-use syn::{Block, Expr, Local, Pat, Stmt};
+use syn::{Block, Expr, Item, Local, Pat, Stmt};
 
 /// Refuses a body with anything in it that has no meaning to the reader, by the statement that has it.
 pub fn check(block: &Block) -> Result<(), Refusal> {
@@ -58,6 +58,14 @@ fn write_statement(statement: &Stmt, text: &mut String) -> Result<(), Refusal> {
         Stmt::Expr(expression, semicolon) => {
             write_expression(expression, text)?;
             *text += if semicolon.is_some() { "; " } else { "" };
+            Ok(())
+        }
+        // A table of constants, whose type the reader looks at.
+        Stmt::Item(Item::Const(table)) => {
+            write!(text, "const {} : {}= ", table.ident, tokens(table.ty.to_token_stream()))
+                .expect("a string takes all text");
+            write_expression(&table.expr, text)?;
+            *text += "; ";
             Ok(())
         }
         other => Err(refused(other)),
@@ -169,6 +177,20 @@ fn write_expression(expression: &Expr, text: &mut String) -> Result<(), Refusal>
             *text += "{ ";
             block.block.stmts.iter().try_for_each(|statement| write_statement(statement, text))?;
             *text += "} ";
+        }
+        Expr::ForLoop(repeated) => {
+            let Pat::Ident(name) = &*repeated.pat else { return Err(refused(repeated)) };
+            write!(text, "for {} in ", name.ident).expect("a string takes all text");
+            write(&repeated.expr, text)?;
+            *text += "{ ";
+            repeated.body.stmts.iter().try_for_each(|statement| write_statement(statement, text))?;
+            *text += "} ";
+        }
+        Expr::Range(range) => {
+            let (Some(start), Some(end)) = (&range.start, &range.end) else { return Err(refused(range)) };
+            write(start, text)?;
+            *text += &tokens(range.limits.to_token_stream());
+            write(end, text)?;
         }
         // Of a block that is compiled apart.
         Expr::Closure(closure) => {

@@ -10,27 +10,18 @@ use quote::quote;
 impl Variables for ModuleWriter<'_> {
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
         const AXES: [&str; 3] = ["x", "y", "z"];
-        let positions = 7 * self.equations.n_moving_bodies();
         let body = |moving_body: usize| &self.equations.model.bodies[self.moving_bodies()[moving_body]].name;
-        let bound = |name: String, buffer: &str, at: usize| {
+        let bound = |name: String| {
+            let (buffer, at) = self.element(symbol).expect("it is an element of an argument");
             let (name, buffer, at) = (ident(&name), ident(buffer), index(at));
             (quote! { #name }, Some(quote! { #buffer[#at] }))
         };
-        let velocity = |moving_body: usize, k: usize| positions + 6 * moving_body + k;
         match symbol {
             Symbol::Time => (quote! { t }, None),
-            Symbol::Position { moving_body, k } => {
-                bound(format!("{}_r{}", body(moving_body), AXES[k]), "y", 7 * moving_body + k)
-            }
-            Symbol::Euler { moving_body, k } => {
-                bound(format!("{}_e{k}", body(moving_body)), "y", 7 * moving_body + 3 + k)
-            }
-            Symbol::Velocity { moving_body, k } => {
-                bound(format!("{}_s{}", body(moving_body), AXES[k]), "y", velocity(moving_body, k))
-            }
-            Symbol::Spin { moving_body, k } => {
-                bound(format!("{}_w{}", body(moving_body), AXES[k]), "y", velocity(moving_body, k + 3))
-            }
+            Symbol::Position { moving_body, k } => bound(format!("{}_r{}", body(moving_body), AXES[k])),
+            Symbol::Euler { moving_body, k } => bound(format!("{}_e{k}", body(moving_body))),
+            Symbol::Velocity { moving_body, k } => bound(format!("{}_s{}", body(moving_body), AXES[k])),
+            Symbol::Spin { moving_body, k } => bound(format!("{}_w{}", body(moving_body), AXES[k])),
             Symbol::Chart { chart, k } => {
                 let (name, chart, k) = (ident(&format!("chart{chart}_{k}")), index(chart), index(k));
                 (quote! { #name }, Some(quote! { charts[#chart][#k] }))
@@ -47,32 +38,21 @@ impl Variables for ModuleWriter<'_> {
                 let name = ident(&self.equations.model.inputs[input].name);
                 (quote! { self.#name }, None)
             }
-            Symbol::Turn(turn) => {
-                let work = usize::from(self.equations.power.is_some());
-                bound(format!("turn{turn}"), "y", 13 * self.equations.n_moving_bodies() + work + turn)
-            }
+            Symbol::Turn(turn) => bound(format!("turn{turn}")),
             Symbol::Table { table, order } => {
                 let (name, order) = (ident(&format!("table{table}")), index(order));
                 (quote! { #name[#order] }, None)
             }
             Symbol::Acceleration { moving_body, k } => {
                 let kind = if k < 3 { "ds" } else { "dw" };
-                bound(
-                    format!("{}_{kind}{}", body(moving_body), AXES[k % 3]),
-                    "accelerations",
-                    6 * moving_body + k,
-                )
+                bound(format!("{}_{kind}{}", body(moving_body), AXES[k % 3]))
             }
-            Symbol::LoopMultiplier(row) => {
-                bound(format!("closing{row}"), "accelerations", self.equations.n_velocities() + row)
-            }
-            Symbol::Change(row) => bound(format!("row{row}"), "rows", row),
-            Symbol::Coordinate(place) => bound(format!("x{place}"), "x", place),
-            Symbol::Rate(place) => {
-                let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
-                bound(format!("u{place}"), "x", first + place)
-            }
-            Symbol::RateOfRate(place) => bound(format!("a{place}"), "accelerations", place),
+            Symbol::RateOfRate(place) => bound(format!("a{place}")),
+            Symbol::LoopMultiplier(row) => bound(format!("closing{row}")),
+            Symbol::Change(row) => bound(format!("row{row}")),
+            Symbol::Coordinate(place) => bound(format!("x{place}")),
+            Symbol::Rate(place) => bound(format!("u{place}")),
+            Symbol::Entry { .. } | Symbol::Local(_) => unreachable!("loops know what these are"),
             Symbol::Sine(_)
             | Symbol::Cosine(_)
             | Symbol::Angle(_)
@@ -82,6 +62,30 @@ impl Variables for ModuleWriter<'_> {
             | Symbol::RelativeRate { .. } => {
                 unreachable!("angles and rotations are expanded before they are written")
             }
+        }
+    }
+
+    fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)> {
+        let n_bodies = self.equations.n_moving_bodies();
+        match symbol {
+            Symbol::Position { moving_body, k } => Some(("y", 7 * moving_body + k)),
+            Symbol::Euler { moving_body, k } => Some(("y", 7 * moving_body + 3 + k)),
+            Symbol::Velocity { moving_body, k } => Some(("y", 7 * n_bodies + 6 * moving_body + k)),
+            Symbol::Spin { moving_body, k } => Some(("y", 7 * n_bodies + 6 * moving_body + 3 + k)),
+            Symbol::Turn(turn) => {
+                let work = usize::from(self.equations.power.is_some());
+                Some(("y", 13 * n_bodies + work + turn))
+            }
+            Symbol::Acceleration { moving_body, k } => Some(("accelerations", 6 * moving_body + k)),
+            Symbol::LoopMultiplier(row) => Some(("accelerations", self.equations.n_velocities() + row)),
+            Symbol::Change(row) => Some(("rows", row)),
+            Symbol::RateOfRate(place) => Some(("accelerations", place)),
+            Symbol::Coordinate(place) => Some(("x", place)),
+            Symbol::Rate(place) => {
+                let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
+                Some(("x", first + place))
+            }
+            _ => None,
         }
     }
 }

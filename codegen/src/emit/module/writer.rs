@@ -3,12 +3,14 @@
 use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
-use crate::emit::tokens::{self, Body, ident};
+use crate::emit::loops;
+use crate::emit::tokens::{self, Body, Variables, ident};
 use crate::equations::Equations;
 use crate::expr::graph::ExprId;
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use crate::kernels::{Kernel, Kernels};
+use crate::repeat;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
@@ -42,7 +44,11 @@ impl ModuleWriter<'_> {
     }
 
     pub fn body(&self, roots: &[ExprId]) -> Body {
-        let mut body = tokens::body(&self.equations.graph, self, &self.literals, roots);
+        let graph = &self.equations.graph;
+        let mut body = match repeat::rolled(graph, roots, &|symbol| self.element(symbol)) {
+            Some(rolled) => loops::body(self, &self.literals, &rolled),
+            None => tokens::body(graph, self, &self.literals, roots),
+        };
         let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
         let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
         body.statements = quote! { #(#tables)* #statements };

@@ -1,0 +1,37 @@
+//! Colours of terms: terms have one colour if they are alike as far as some steps around them reach, constants, signs
+//! and indices of variables left out.
+
+use super::terms::{Place, Terms};
+use rustc_hash::FxHasher;
+use std::hash::{Hash, Hasher};
+
+/// Colours by this many steps from operands and users.
+pub fn colours(terms: &Terms, n_steps: usize) -> Vec<u64> {
+    let mut colours: Vec<u64> = terms.all.iter().map(|term| hash(&(term.kind, term.is_root))).collect();
+    for _ in 0..n_steps {
+        colours = (0..terms.all.len()).map(|place| refined(terms, &colours, place)).collect();
+    }
+    colours
+}
+
+fn refined(terms: &Terms, colours: &[u64], place: Place) -> u64 {
+    let term = &terms.all[place];
+    let mut operands: Vec<u64> = term.operands.iter().map(|operand| colours[operand.term]).collect();
+    if term.kind.is_commutative() {
+        operands.sort_unstable();
+    }
+    let as_operand = |&user: &Place| {
+        let user_term = &terms.all[user];
+        let is_first = user_term.operands[0].term == place;
+        (colours[user], !user_term.kind.is_commutative() && is_first)
+    };
+    let mut users: Vec<_> = term.users.iter().map(as_operand).collect();
+    users.sort_unstable();
+    hash(&(colours[place], operands, users))
+}
+
+fn hash(value: &impl Hash) -> u64 {
+    let mut hasher = FxHasher::default();
+    value.hash(&mut hasher);
+    hasher.finish()
+}

@@ -1,0 +1,440 @@
+//! Which orbits are computed in which loop, when, and for which parts.
+
+use super::orbits::{Orbit, Orbits, signed};
+use super::terms::{Place, Terms};
+use rustc_hash::FxHashSet as HashSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Operations that the loops of connected orbits have to save to be worth their arrays.
+const LEAST_SAVED: i64 = 200;
+
+/// How often times are put to the vote.
+const SWEEPS: usize = 10;
+
+/// In which order a loop goes through the parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    Forward,
+    Backward,
+}
+
+/// Orbits that are computed together, one member of each for each part.
+#[derive(Debug)]
+pub struct Loop {
+    pub direction: Direction,
+    pub orbits: Vec<Orbit>,
+    /// The first and the last part.
+    pub first: i64,
+    pub last: i64,
+}
+
+/// All loops of a kernel, in the order in which they run.
+#[derive(Debug)]
+pub struct Loops {
+    pub all: Vec<Loop>,
+    /// To which part the first member of each orbit belongs.
+    pub times: Vec<i64>,
+    /// Loop and part of each term that is computed in a loop.
+    pub of_term: Vec<Option<(usize, i64)>>,
+}
+
+/// What is put in order: an orbit or a term that belongs to none.
+type Unit = usize;
+
+struct Planning<'t> {
+    terms: &'t Terms,
+    orbits: &'t Orbits,
+    edges: Vec<Vec<(Orbit, i64)>>,
+    times: Vec<i64>,
+    /// Which orbits are still to be computed in loops.
+    is_looped: Vec<bool>,
+    /// The connected part of the graph of orbits that each belongs to.
+    component: Vec<usize>,
+    /// First and last time of each component, once they are chosen.
+    ranges: Vec<Option<(i64, i64)>>,
+}
+
+impl Loops {
+    /// `None` if there are none.
+    pub fn plan(terms: &Terms, orbits: &Orbits) -> Option<Self> {
+        let n = orbits.members.len();
+        let edges = (0..n).map(|orbit| orbits.main_edges(orbit)).collect();
+        let (times, is_looped, component) = (vec![0; n], vec![true; n], vec![0; n]);
+        let mut planning = Planning { terms, orbits, edges, times, is_looped, component, ranges: Vec::new() };
+        planning.align();
+        planning.levels()?;
+        planning.trim();
+        let all = planning.levels()?;
+        planning.checked(all)
+    }
+}
+
+impl Planning<'_> {
+    /// Gives the orbits of a component times such that most operands are of the same time as their users.
+    fn align(&mut self) {
+        let n = self.orbits.members.len();
+        let mut beside: Vec<Vec<(Orbit, i64)>> = vec![Vec::new(); n];
+        for (user, edges) in self.edges.iter().enumerate() {
+            for &(operand, distance) in edges {
+                // Of the same time if the user's first member comes so much earlier.
+                beside[user].push((operand, -distance));
+                beside[operand].push((user, distance));
+            }
+        }
+        let mut known = vec![false; n];
+        let mut n_components = 0;
+        let mut by_length: Vec<Orbit> = (0..n).collect();
+        by_length.sort_by_key(|&orbit| std::cmp::Reverse(self.orbits.members[orbit].len()));
+        for start in by_length {
+            if known[start] {
+                continue;
+            }
+            let mut queue = std::collections::VecDeque::from([start]);
+            known[start] = true;
+            while let Some(orbit) = queue.pop_front() {
+                self.component[orbit] = n_components;
+                for &(other, offset) in &beside[orbit] {
+                    if !std::mem::replace(&mut known[other], true) {
+                        self.times[other] = self.times[orbit] - offset;
+                        queue.push_back(other);
+                    }
+                }
+            }
+            n_components += 1;
+        }
+        for _ in 0..SWEEPS {
+            for (orbit, beside) in beside.iter().enumerate() {
+                let mut votes: BTreeMap<i64, usize> = BTreeMap::new();
+                for &(other, offset) in beside {
+                    *votes.entry(self.times[other] + offset).or_default() += 1;
+                }
+                let own = self.times[orbit];
+                let most = votes.iter().max_by_key(|&(&time, &count)| (count, time == own));
+                if let Some((&time, _)) = most {
+                    self.times[orbit] = time;
+                }
+            }
+        }
+        self.ranges = vec![None; n_components];
+    }
+
+    fn span(&self, orbit: Orbit) -> (i64, i64) {
+        let first = self.times[orbit];
+        (first, first + signed(self.orbits.members[orbit].len()) - 1)
+    }
+
+    /// Each component has the times that all its long orbits have; what is short is left out.
+    fn trim(&mut self) {
+        for component in 0..self.ranges.len() {
+            let own: Vec<Orbit> = (0..self.times.len()).filter(|&o| self.component[o] == component).collect();
+            let length = |orbit: Orbit| self.orbits.members[orbit].len();
+            let longest = own.iter().map(|&orbit| length(orbit)).max().unwrap_or(0);
+            let long = || own.iter().copied().filter(|&orbit| 2 * length(orbit) > longest);
+            let first = long().map(|orbit| self.span(orbit).0).max().unwrap_or(0);
+            let last = long().map(|orbit| self.span(orbit).1).min().unwrap_or(0);
+            let (first, last) = self.even(&own, (first, last));
+            self.ranges[component] = Some((first, last));
+            let n_saved = (last - first) * signed(own.len());
+            for orbit in own {
+                let (a, b) = self.span(orbit);
+                self.is_looped[orbit] = a <= first && b >= last && last > first && n_saved > LEAST_SAVED;
+            }
+        }
+    }
+
+    /// The longest run of times at which all operands come from where they come from at most times.
+    fn even(&self, own: &[Orbit], (mut first, mut last): (i64, i64)) -> (i64, i64) {
+        loop {
+            let has_all = |&&orbit: &&Orbit| self.span(orbit).0 <= first && self.span(orbit).1 >= last;
+            let odd: BTreeSet<i64> =
+                own.iter().filter(has_all).flat_map(|&orbit| self.odd_times(orbit, (first, last))).collect();
+            let ends: Vec<i64> = [first - 1].into_iter().chain(odd).chain([last + 1]).collect();
+            let Some(longest) = ends.windows(2).max_by_key(|pair| pair[1] - pair[0]) else { break };
+            let run = (longest[0] + 1, longest[1] - 1);
+            if run == (first, last) || run.0 > run.1 {
+                return run;
+            }
+            (first, last) = run;
+        }
+        (first, last)
+    }
+
+    /// The times at which an operand of an orbit does not come from where it comes from at most times.
+    fn odd_times(&self, orbit: Orbit, (first, last): (i64, i64)) -> Vec<i64> {
+        let mut odd = Vec::new();
+        let n_operands = self.orbits.operands[self.orbits.members[orbit][0]].len();
+        for slot in 0..n_operands {
+            // The orbit of an operand within these times, and how much earlier it is.
+            let source = |time: i64| {
+                let k = usize::try_from(time - self.times[orbit]).expect("it has all times");
+                let operand = self.orbits.operands[self.orbits.members[orbit][k]][slot].term;
+                let (of, place) = self.orbits.of_term[operand]?;
+                let at = self.times[of] + signed(place);
+                let is_within = self.span(of).0 <= first && self.span(of).1 >= last;
+                let is_inside = is_within && self.component[of] == self.component[orbit];
+                (is_inside && at >= first && at <= last).then_some((of, time - at))
+            };
+            let mut votes: BTreeMap<Option<(Orbit, i64)>, usize> = BTreeMap::new();
+            (first..=last).for_each(|time| *votes.entry(source(time)).or_default() += 1);
+            let most = votes.iter().max_by_key(|(_, count)| **count).and_then(|(key, _)| *key);
+            odd.extend((first..=last).filter(|&time| {
+                let is_beyond =
+                    most.is_some_and(|(_, distance)| time - distance < first || time - distance > last);
+                let found = source(time);
+                found != most && !(is_beyond && found.is_none())
+            }));
+        }
+        odd
+    }
+
+    /// Whether a term is computed in a loop, were all of them in one, and in which orbit.
+    fn looped(&self, term: Place) -> Option<Orbit> {
+        let (orbit, k) = self.orbits.of_term[term]?;
+        let time = self.times[orbit] + signed(k);
+        let Some((first, last)) = self.ranges[self.component[orbit]] else { return Some(orbit) };
+        (self.is_looped[orbit] && time >= first && time <= last).then_some(orbit)
+    }
+
+    fn unit(&self, term: Place) -> Unit {
+        self.looped(term).unwrap_or(self.times.len() + term)
+    }
+
+    /// Puts orbits into loops: each as early as what it needs allows. Before ranges are chosen, only orbits count.
+    fn levels(&mut self) -> Option<Vec<Loop>> {
+        let operands = self.operands_of_units();
+        let n_orbits = self.times.len();
+        let mut level = vec![0_usize; operands.len()];
+        let mut loops: BTreeMap<(usize, usize), Draft> = BTreeMap::new();
+        for group in strongly_connected(&operands) {
+            let is_cycle = group.len() > 1 || operands[group[0]].contains(&group[0]);
+            if group[0] >= n_orbits || group.len() > 1 && group.iter().any(|&unit| unit >= n_orbits) {
+                if is_cycle {
+                    return None;
+                }
+                let after = |&operand: &Unit| level[operand] + usize::from(operand < n_orbits);
+                level[group[0]] = operands[group[0]].iter().map(after).max().unwrap_or(0);
+                continue;
+            }
+            let component = self.component[group[0]];
+            let direction = if is_cycle { Some(self.direction(&group)?) } else { None };
+            let least = |unit: &Unit| {
+                let is_elsewhere = *unit < n_orbits && self.component[*unit] != component;
+                level[*unit] + usize::from(is_elsewhere)
+            };
+            let before = group.iter().flat_map(|&unit| &operands[unit]).filter(|unit| !group.contains(unit));
+            let mut at = before.map(least).max().unwrap_or(0);
+            let conflicts =
+                |draft: &Draft| direction.is_some_and(|d| draft.direction.is_some_and(|e| d != e));
+            while loops.get(&(component, at)).is_some_and(conflicts) {
+                at += 1;
+            }
+            let draft = loops.entry((component, at)).or_default();
+            draft.direction = draft.direction.or(direction);
+            self.shift(&group, draft);
+            draft.orbits.extend(&group);
+            group.iter().for_each(|&unit| level[unit] = at);
+        }
+        let mut drafts: Vec<_> = loops.into_iter().collect();
+        drafts.sort_by_key(|&((component, level), _)| (level, component));
+        Some(
+            drafts
+                .into_iter()
+                .filter_map(|((component, _), draft)| self.finished(component, draft))
+                .collect(),
+        )
+    }
+
+    fn operands_of_units(&self) -> Vec<Vec<Unit>> {
+        let mut operands: Vec<Vec<Unit>> = vec![Vec::new(); self.times.len() + self.terms.all.len()];
+        let n_orbits = self.times.len();
+        if self.ranges.iter().all(Option::is_none) {
+            for (of, edges) in operands.iter_mut().zip(&self.edges) {
+                of.extend(edges.iter().map(|&(operand, _)| operand));
+            }
+            operands.truncate(n_orbits);
+            return operands;
+        }
+        for term in 0..self.terms.all.len() {
+            let of = &mut operands[self.unit(term)];
+            of.extend(self.orbits.operands[term].iter().map(|operand| self.unit(operand.term)));
+        }
+        operands.iter_mut().for_each(|of| {
+            of.sort_unstable();
+            of.dedup();
+        });
+        operands
+    }
+
+    /// In which order a cycle of orbits has to be computed, its times made fit.
+    fn direction(&mut self, group: &[Orbit]) -> Option<Direction> {
+        let given = self.times.clone();
+        for direction in [Direction::Forward, Direction::Backward] {
+            if self.relax(group, direction) {
+                return Some(direction);
+            }
+            self.times.clone_from(&given);
+        }
+        None
+    }
+
+    /// Moves orbits such that no operand comes after its user; whether that is possible.
+    fn relax(&mut self, group: &[Orbit], direction: Direction) -> bool {
+        let is_member: HashSet<Orbit> = group.iter().copied().collect();
+        for _ in 0..=group.len() {
+            let mut is_changed = false;
+            for &user in group {
+                for &(operand, distance) in &self.edges[user] {
+                    let least = self.times[operand] - distance;
+                    let is_late = match direction {
+                        Direction::Forward => self.times[user] < least,
+                        Direction::Backward => self.times[user] > least,
+                    };
+                    if is_member.contains(&operand) && is_late {
+                        self.times[user] = least;
+                        is_changed = true;
+                    }
+                }
+            }
+            if !is_changed {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Moves a group as a whole such that it does not come before what it needs of its loop.
+    fn shift(&mut self, group: &[Orbit], draft: &mut Draft) {
+        let mut late = Vec::new();
+        for &user in group {
+            for &(operand, distance) in &self.edges[user] {
+                if draft.orbits.contains(&operand) {
+                    late.push(distance + self.times[user] - self.times[operand]);
+                }
+            }
+        }
+        if draft.direction.is_none() && late.iter().any(|&late| late != 0) {
+            let is_forward = late.iter().sum::<i64>() >= 0;
+            draft.direction = Some(if is_forward { Direction::Forward } else { Direction::Backward });
+        }
+        let by = match draft.direction {
+            Some(Direction::Backward) => -late.iter().copied().max().unwrap_or(0).max(0),
+            _ => -late.iter().copied().min().unwrap_or(0).min(0),
+        };
+        group.iter().for_each(|&orbit| self.times[orbit] += by);
+    }
+
+    fn finished(&self, component: usize, Draft { direction, orbits }: Draft) -> Option<Loop> {
+        let (first, last) = self.ranges[component]?;
+        let orbits: Vec<_> = orbits.into_iter().filter(|&orbit| self.is_looped[orbit]).collect();
+        let has_all = |&orbit: &Orbit| self.span(orbit).0 <= first && self.span(orbit).1 >= last;
+        let direction = direction.unwrap_or(Direction::Forward);
+        (!orbits.is_empty() && orbits.iter().all(has_all)).then_some(Loop { direction, orbits, first, last })
+    }
+
+    /// Puts the loops in order, if there is one.
+    fn checked(self, all: Vec<Loop>) -> Option<Loops> {
+        let mut of_term = vec![None; self.terms.all.len()];
+        for (index, found) in all.iter().enumerate() {
+            for &orbit in &found.orbits {
+                for part in found.first..=found.last {
+                    let k = usize::try_from(part - self.times[orbit]).expect("each orbit has this part");
+                    of_term[self.orbits.members[orbit][k]] = Some((index, part));
+                }
+            }
+        }
+        let unit = |term: Place| of_term[term].map_or(all.len() + term, |(index, _)| index);
+        let mut operands: Vec<Vec<Unit>> = vec![Vec::new(); all.len() + of_term.len()];
+        for (term, of) in self.orbits.operands.iter().enumerate() {
+            let own = unit(term);
+            operands[own].extend(of.iter().map(|operand| unit(operand.term)).filter(|&other| other != own));
+        }
+        let mut order = Vec::new();
+        for group in strongly_connected(&operands) {
+            if group.len() > 1 {
+                return None;
+            }
+            order.extend(group.into_iter().filter(|&unit| unit < all.len()));
+        }
+        if order.is_empty() {
+            return None;
+        }
+        let rank: Vec<usize> =
+            (0..all.len()).map(|k| order.iter().position(|&o| o == k).expect("all are there")).collect();
+        let mut ordered: Vec<_> = rank.iter().zip(all).collect();
+        ordered.sort_by_key(|(rank, _)| **rank);
+        of_term.iter_mut().flatten().for_each(|(index, _)| *index = rank[*index]);
+        let all = ordered.into_iter().map(|(_, found)| found).collect();
+        Some(Loops { all, times: self.times, of_term })
+    }
+}
+
+/// A loop that grows.
+#[derive(Default)]
+struct Draft {
+    direction: Option<Direction>,
+    orbits: Vec<Orbit>,
+}
+
+/// Groups of what depends on each other in a circle, operands before their users (R. Tarjan (1972)).
+fn strongly_connected(operands: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    const UNSEEN: usize = usize::MAX;
+    let n = operands.len();
+    let (mut index, mut low) = (vec![UNSEEN; n], vec![0; n]);
+    let (mut is_open, mut open, mut groups) = (vec![false; n], Vec::new(), Vec::new());
+    let mut n_seen = 0;
+    for start in 0..n {
+        if index[start] != UNSEEN {
+            continue;
+        }
+        let mut path = vec![(start, 0)];
+        while let Some((at, next)) = path.pop() {
+            if next == 0 {
+                (index[at], low[at]) = (n_seen, n_seen);
+                n_seen += 1;
+                open.push(at);
+                is_open[at] = true;
+            }
+            if let Some(&operand) = operands[at].get(next) {
+                path.push((at, next + 1));
+                if index[operand] == UNSEEN {
+                    path.push((operand, 0));
+                } else if is_open[operand] {
+                    low[at] = low[at].min(index[operand]);
+                }
+                continue;
+            }
+            if let Some(&(user, _)) = path.last() {
+                low[user] = low[user].min(low[at]);
+            }
+            if low[at] == index[at] {
+                let from = open.iter().rposition(|&other| other == at).expect("it is open");
+                let group: Vec<usize> = open.drain(from..).collect();
+                group.iter().for_each(|&other| is_open[other] = false);
+                groups.push(group);
+            }
+        }
+    }
+    groups
+}
+
+impl Loops {
+    /// The member of an orbit for a part.
+    pub fn member(&self, orbits: &Orbits, orbit: Orbit, part: i64) -> Place {
+        let k = usize::try_from(part - self.times[orbit]).expect("each orbit has the parts of its loop");
+        orbits.members[orbit][k]
+    }
+
+    /// The loop that computes an orbit.
+    pub fn of_orbit(&self, orbits: &Orbits, orbit: Orbit) -> Option<usize> {
+        orbits.members[orbit].iter().find_map(|&term| self.of_term[term]).map(|(index, _)| index)
+    }
+
+    /// The parts of a loop in the order in which it goes through them.
+    pub fn parts(&self, index: usize) -> Vec<i64> {
+        let Loop { direction, first, last, .. } = self.all[index];
+        match direction {
+            Direction::Forward => (first..=last).collect(),
+            Direction::Backward => (first..=last).rev().collect(),
+        }
+    }
+}

@@ -1,0 +1,420 @@
+//! A kernel with loops, as expressions: those of the loops' bodies and those outside of them.
+
+use super::columns::{Columns, Source};
+use super::loops::{Direction, Loops};
+use super::orbits::{Orbit, Orbits};
+use super::signs::Signs;
+use super::terms::{Kind, Place, Terms};
+use crate::expr::constant::Constant;
+use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::schedule::Operations;
+use crate::expr::symbol::Symbol;
+use rustc_hash::FxHashMap as HashMap;
+
+/// A number that a loop's body reads: what [`Symbol::Local`] stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Local {
+    /// An entry of the loop's table in the row of its part.
+    Factor(usize),
+    /// A row of an array, so many after the part's place.
+    Row { array: usize, offset: usize, column: usize },
+    /// An element of an argument, so many apart from part to part.
+    Element { first: Symbol, stride: usize },
+    /// A number that is computed before, the same for all parts.
+    Fixed(usize),
+}
+
+/// A loop.
+#[derive(Debug)]
+pub struct Repeat {
+    pub direction: Direction,
+    /// How many parts there are.
+    pub count: usize,
+    /// Constants: a row for each part.
+    pub table: Vec<Vec<Constant>>,
+    /// What its symbols stand for.
+    pub locals: Vec<Local>,
+    /// The body's expressions.
+    pub graph: Graph,
+    /// What it computes for each part, in terms of these: a row of its array.
+    pub values: Vec<ExprId>,
+    /// The array that these are stored in, so many rows after the part's place.
+    pub array: usize,
+    pub offset: usize,
+    /// Operations of the body.
+    pub n_operations: usize,
+}
+
+/// What is done before a loop: numbers that its body reads.
+#[derive(Debug, Default)]
+pub struct Before {
+    /// Numbers that are the same for all parts, as expressions outside of loops, from this number on.
+    pub fixed: Vec<ExprId>,
+    /// Array, row and column, and what is stored there.
+    pub stores: Vec<([usize; 3], ExprId)>,
+}
+
+/// Rows and columns of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    pub rows: usize,
+    pub columns: usize,
+}
+
+/// A kernel with loops.
+#[derive(Debug)]
+pub struct Rolled {
+    /// Expressions outside of loops.
+    pub graph: Graph,
+    pub arrays: Vec<Shape>,
+    /// The loops in order, and what is done before each.
+    pub loops: Vec<(Before, Repeat)>,
+    pub roots: Vec<ExprId>,
+}
+
+impl Rolled {
+    /// All that is computed outside of loops.
+    pub fn outside_roots(&self) -> Vec<ExprId> {
+        let before = self.loops.iter().flat_map(|(before, _)| before.roots());
+        before.chain(self.roots.iter().copied()).collect()
+    }
+
+    /// How many operations its text has.
+    pub fn n_written(&self) -> usize {
+        let inside: usize = self.loops.iter().map(|(_, repeat)| repeat.n_operations).sum();
+        Operations::count(&self.graph, &self.outside_roots()).total() + inside
+    }
+}
+
+impl Before {
+    /// What is computed for it.
+    pub fn roots(&self) -> Vec<ExprId> {
+        self.fixed.iter().copied().chain(self.stores.iter().map(|(_, value)| *value)).collect()
+    }
+}
+
+/// An array while it is filled: columns, and its first and last row.
+#[derive(Debug, Default)]
+struct Array {
+    columns: Vec<usize>,
+    first: i64,
+    last: i64,
+}
+
+pub struct Rolling<'t> {
+    pub source: &'t Graph,
+    pub terms: &'t Terms,
+    pub orbits: &'t Orbits,
+    pub loops: &'t Loops,
+    pub columns: &'t Columns,
+    pub signs: &'t Signs,
+}
+
+impl Rolling<'_> {
+    pub fn rolled(&self, roots: &[ExprId]) -> Rolled {
+        let arrays = self.arrays();
+        let (mut graph, mut values) = (Graph::new(), HashMap::default());
+        self.outside(&mut graph, &arrays, roots, &mut values);
+        let mut fixed: Vec<ExprId> = Vec::new();
+        let loops = (0..self.loops.all.len()).map(|index| {
+            let first_fixed = fixed.len();
+            let repeat = self.repeat(index, &arrays, &values, &mut fixed);
+            let stores = self.stores(index, &mut graph, &arrays, &values);
+            (Before { fixed: fixed[first_fixed..].to_vec(), stores }, repeat)
+        });
+        let loops = loops.collect();
+        let roots = roots.iter().map(|root| values[root]).collect();
+        let shape = |array: &Array| Shape {
+            rows: usize::try_from(array.last - array.first + 1).unwrap_or(0),
+            columns: array.columns.len(),
+        };
+        Rolled { graph, arrays: arrays.iter().map(shape).collect(), loops, roots }
+    }
+
+    /// One array for each loop that computes it, then one for each loop that reads what is gathered for it.
+    fn arrays(&self) -> Vec<Array> {
+        let n = self.loops.all.len();
+        let mut arrays: Vec<Array> = Vec::new();
+        arrays.resize_with(2 * n, Array::default);
+        for (index, found) in self.loops.all.iter().enumerate() {
+            for at in [index, n + index] {
+                (arrays[at].first, arrays[at].last) = (found.first, found.last);
+            }
+        }
+        for (place, column) in self.columns.all.iter().enumerate() {
+            let array = match column.orbit.and_then(|orbit| self.loops.of_orbit(self.orbits, orbit)) {
+                Some(index) => index,
+                None => n + column.reader,
+            };
+            let array = &mut arrays[array];
+            array.columns.push(place);
+            array.first = column.rows.keys().fold(array.first, |first, &row| first.min(row));
+            array.last = column.rows.keys().fold(array.last, |last, &row| last.max(row));
+        }
+        arrays
+    }
+
+    /// Array, row and column of a column's row.
+    fn place(&self, arrays: &[Array], column: usize, row: i64) -> [usize; 3] {
+        let array = arrays.iter().position(|array| array.columns.contains(&column)).expect("all have one");
+        let at = arrays[array].columns.iter().position(|&c| c == column).expect("it is there");
+        [array, usize::try_from(row - arrays[array].first).expect("no row is before the first"), at]
+    }
+
+    /// What is computed outside of loops, loops' results being read from arrays.
+    fn outside(
+        &self,
+        graph: &mut Graph,
+        arrays: &[Array],
+        roots: &[ExprId],
+        values: &mut HashMap<ExprId, ExprId>,
+    ) {
+        let computed: HashMap<ExprId, Place> = (self.terms.all.iter().enumerate())
+            .filter(|(place, _)| self.loops.of_term[*place].is_some())
+            .map(|(place, term)| (term.id, place))
+            .collect();
+        for id in self.source.reachable(roots) {
+            let value = match computed.get(&id) {
+                Some(&term) => {
+                    let ((orbit, _), (_, part)) = (
+                        self.orbits.of_term[term].expect("it is computed in a loop"),
+                        self.loops.of_term[term].expect("it is computed in a loop"),
+                    );
+                    // Nothing outside reads what has no column.
+                    let Some(column) = self.columns.of_orbit(orbit) else { continue };
+                    let [array, row, column] = self.place(arrays, column, part);
+                    let entry = graph.symbol(Symbol::Entry { array, row, column });
+                    if self.signs.of_term[&term] { graph.neg(entry) } else { entry }
+                }
+                None => {
+                    let node = self.source.node(id);
+                    if node.operands().any(|operand| !values.contains_key(&operand)) {
+                        continue;
+                    }
+                    let node = node.with_operands(|operand| values[&operand]);
+                    built(graph, node)
+                }
+            };
+            values.insert(id, value);
+        }
+    }
+
+    fn stores(
+        &self,
+        index: usize,
+        graph: &mut Graph,
+        arrays: &[Array],
+        values: &HashMap<ExprId, ExprId>,
+    ) -> Vec<([usize; 3], ExprId)> {
+        let mut stores = Vec::new();
+        for (place, column) in self.columns.all.iter().enumerate() {
+            for (&row, &term) in column.rows.iter().filter(|(row, _)| column.readers[row] == index) {
+                let value = values[&self.terms.all[term].id];
+                let is_opposite = self.signs.of_row.get(&(place, row)).copied().unwrap_or(false);
+                let value = if is_opposite { graph.neg(value) } else { value };
+                stores.push((self.place(arrays, place, row), value));
+            }
+        }
+        stores.sort_by_key(|(place, _)| *place);
+        stores
+    }
+
+    fn repeat(
+        &self,
+        index: usize,
+        arrays: &[Array],
+        values: &HashMap<ExprId, ExprId>,
+        fixed: &mut Vec<ExprId>,
+    ) -> Repeat {
+        let found = &self.loops.all[index];
+        let mut body = Body {
+            rolling: self,
+            index,
+            arrays,
+            graph: Graph::new(),
+            locals: Vec::new(),
+            table: vec![Vec::new(); usize::try_from(found.last - found.first + 1).unwrap_or(0)],
+            fixed,
+            outside: values,
+        };
+        let mut order: Vec<(Place, Orbit)> = found
+            .orbits
+            .iter()
+            .map(|&orbit| (self.loops.member(self.orbits, orbit, found.first), orbit))
+            .collect();
+        order.sort_unstable();
+        let mut of_orbit: HashMap<Orbit, ExprId> = HashMap::default();
+        for (_, orbit) in order {
+            let value = body.value(orbit, &of_orbit);
+            of_orbit.insert(orbit, value);
+        }
+        let Body { graph, locals, table, .. } = body;
+        let array = &arrays[index];
+        let stored =
+            array.columns.iter().map(|&column| self.columns.all[column].orbit.expect("its loop fills it"));
+        let values = stored.map(|orbit| of_orbit[&orbit]).collect();
+        let offset = usize::try_from(found.first - array.first).expect("no row is before the first");
+        Repeat {
+            direction: found.direction,
+            count: table.len(),
+            table,
+            locals,
+            graph,
+            values,
+            array: index,
+            offset,
+            n_operations: found.orbits.len(),
+        }
+    }
+}
+
+struct Body<'r, 't> {
+    rolling: &'r Rolling<'t>,
+    index: usize,
+    arrays: &'r [Array],
+    graph: Graph,
+    locals: Vec<Local>,
+    table: Vec<Vec<Constant>>,
+    fixed: &'r mut Vec<ExprId>,
+    outside: &'r HashMap<ExprId, ExprId>,
+}
+
+impl Body<'_, '_> {
+    fn local(&mut self, local: Local) -> ExprId {
+        let at = self.locals.iter().position(|known| *known == local).unwrap_or_else(|| {
+            self.locals.push(local);
+            self.locals.len() - 1
+        });
+        self.graph.symbol(Symbol::Local(at))
+    }
+
+    /// Constants of all parts: themselves if they are the same.
+    fn factor(&mut self, constants: Vec<Constant>) -> ExprId {
+        if constants.iter().all(|constant| *constant == constants[0]) {
+            return self.graph.constant(constants[0].clone());
+        }
+        let n = self.table[0].len();
+        let column =
+            (0..n).find(|&column| self.table.iter().zip(&constants).all(|(row, c)| row[column] == *c));
+        let column = column.unwrap_or_else(|| {
+            self.table.iter_mut().zip(constants).for_each(|(row, constant)| row.push(constant));
+            n
+        });
+        self.local(Local::Factor(column))
+    }
+
+    fn operand(&mut self, source: &Source, of_orbit: &HashMap<Orbit, ExprId>) -> ExprId {
+        let Rolling { terms, loops, source: graph, .. } = self.rolling;
+        let symbol = |term: Place| match graph.node(terms.all[term].id) {
+            Node::Symbol(symbol) => Some(*symbol),
+            _ => None,
+        };
+        match *source {
+            Source::Local(orbit) => of_orbit[&orbit],
+            Source::Element { first, stride } => {
+                let first = symbol(first).expect("it is a variable");
+                self.local(Local::Element { first, stride })
+            }
+            Source::Same(term) => match symbol(term) {
+                Some(symbol) => self.graph.symbol(symbol),
+                None => {
+                    let value = self.outside[&terms.all[term].id];
+                    let at = self.fixed.iter().position(|&known| known == value).unwrap_or_else(|| {
+                        self.fixed.push(value);
+                        self.fixed.len() - 1
+                    });
+                    self.local(Local::Fixed(at))
+                }
+            },
+            Source::Row { column, offset } => {
+                let row = loops.all[self.index].first + offset;
+                let [array, offset, column] = self.rolling.place(self.arrays, column, row);
+                self.local(Local::Row { array, offset, column })
+            }
+        }
+    }
+
+    fn value(&mut self, orbit: Orbit, of_orbit: &HashMap<Orbit, ExprId>) -> ExprId {
+        let Rolling { terms, orbits, signs, columns, .. } = self.rolling;
+        let sources = &columns.sources[&orbit];
+        let operands: Vec<ExprId> = sources.iter().map(|source| self.operand(source, of_orbit)).collect();
+        let is_opposite = |slot: usize| signs.of_operand.get(&(orbit, slot)).copied().unwrap_or(false);
+        let kind = terms.all[orbits.members[orbit][0]].kind;
+        let operands: Vec<ExprId> = (operands.into_iter().enumerate())
+            .map(|(slot, x)| if is_opposite(slot) { self.graph.neg(x) } else { x })
+            .collect();
+        let node = match (kind, &operands[..]) {
+            (Kind::Sum, &[a, b]) => Node::Add(a, b),
+            (Kind::Product, &[a, b]) => Node::Mul(a, b),
+            (Kind::Quotient, &[a, b]) => {
+                let inverse = self.graph.recip(b);
+                Node::Mul(a, inverse)
+            }
+            (Kind::Scaled | Kind::Shifted, &[x]) => {
+                let constants = self.constants(orbit, kind);
+                let constant = self.factor(constants);
+                if kind == Kind::Scaled { Node::Mul(constant, x) } else { Node::Add(constant, x) }
+            }
+            (Kind::Reciprocal, &[x]) => Node::Recip(x),
+            (Kind::Root, &[x]) => Node::Sqrt(x),
+            (Kind::Sine, &[x]) => Node::Sin(x),
+            (Kind::Cosine, &[x]) => Node::Cos(x),
+            (Kind::HyperbolicTangent, &[x]) => Node::Tanh(x),
+            (Kind::Angle, &[y, x]) => Node::Atan2(y, x),
+            _ => unreachable!("variables and constants are not computed"),
+        };
+        built(&mut self.graph, node)
+    }
+
+    /// The constant of each part, with the sign that makes up for those of the operand and of the result.
+    fn constants(&self, orbit: Orbit, kind: Kind) -> Vec<Constant> {
+        let Rolling { terms, orbits, signs, columns, loops, source: graph, .. } = self.rolling;
+        let found = &loops.all[self.index];
+        let constant = |part: i64| {
+            let term = loops.member(orbits, orbit, part);
+            let constant = terms.all[term].constant.and_then(|id| graph.as_constant(id));
+            let constant = constant.expect("its kind has a constant");
+            let operand = orbits.operands[term][0];
+            let of_operand = operand.is_negative
+                ^ match &columns.sources[&orbit][0] {
+                    Source::Local(_) => signs.of_term[&operand.term],
+                    Source::Row { column, offset } => {
+                        let row = part + offset;
+                        if columns.is_computed(loops, orbits, *column, row) {
+                            signs.of_term[&operand.term]
+                        } else {
+                            signs.of_row[&(*column, row)]
+                        }
+                    }
+                    Source::Element { .. } | Source::Same(_) => false,
+                };
+            let of_operand = kind == Kind::Scaled && of_operand;
+            if signs.of_term[&term] ^ of_operand { constant.neg() } else { constant.clone() }
+        };
+        (found.first..=found.last).map(constant).collect()
+    }
+}
+
+/// An expression whose operands may have signs, otherwise as it is.
+fn built(graph: &mut Graph, node: Node) -> ExprId {
+    match node {
+        Node::Add(a, b) => {
+            let sign = |id: ExprId| if let Node::Neg(x) = graph.node(id) { (true, *x) } else { (false, id) };
+            let ((negative_a, x), (negative_b, y)) = (sign(a), sign(b));
+            match (negative_a, negative_b) {
+                (false, _) => graph.intern(Node::Add(a, b)),
+                (true, false) => graph.intern(Node::Add(b, a)),
+                (true, true) => {
+                    let sum = graph.intern(Node::Add(x, y));
+                    graph.neg(sum)
+                }
+            }
+        }
+        Node::Mul(a, b) => {
+            let ((negative_a, a), (negative_b, b)) = (graph.split_sign(a), graph.split_sign(b));
+            let product = graph.intern(Node::Mul(a, b));
+            if negative_a == negative_b { product } else { graph.neg(product) }
+        }
+        node => graph.rebuilt(node),
+    }
+}

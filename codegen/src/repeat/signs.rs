@@ -1,0 +1,166 @@
+//! Signs: of which terms a loop computes the opposite, so that one formula serves all parts. Rounding is symmetric, so
+//! opposites have the same digits.
+//!
+//! Each unknown is zero or one; a sum asks that two of its terms have the same signs for all parts, and a product has
+//! those of its factors. The equations are linear in integers modulo two.
+
+use super::columns::{Columns, Source};
+use super::loops::Loops;
+use super::orbits::{Orbit, Orbits};
+use super::terms::{Kind, Place, Terms};
+use rustc_hash::FxHashMap as HashMap;
+
+/// A sum of unknowns, in ascending order, and one if the second part is true, modulo two.
+type Form = (Vec<usize>, bool);
+
+#[derive(Default)]
+struct Equations {
+    /// What unknowns are, in terms of others.
+    solved: HashMap<usize, Form>,
+    n_unknowns: usize,
+}
+
+/// The signs of a kernel's loops: true for opposites.
+#[derive(Debug)]
+pub struct Signs {
+    /// Of terms that are computed in loops.
+    pub of_term: HashMap<Place, bool>,
+    /// Of rows that are filled outside of loops.
+    pub of_row: HashMap<(usize, i64), bool>,
+    /// Of the operands of orbits where they are not part of a product.
+    pub of_operand: HashMap<(Orbit, usize), bool>,
+}
+
+impl Signs {
+    /// `None` if no formula serves all parts.
+    pub fn solve(terms: &Terms, orbits: &Orbits, loops: &Loops, columns: &Columns) -> Option<Self> {
+        let mut equations = Equations::default();
+        let mut of_term: HashMap<Place, Form> = HashMap::default();
+        let mut of_row: HashMap<(usize, i64), Form> = HashMap::default();
+        let mut of_operand: HashMap<(Orbit, usize), Form> = HashMap::default();
+        for index in 0..loops.all.len() {
+            equations.compress();
+            for (k, part) in loops.parts(index).into_iter().enumerate() {
+                let is_first = k == 0;
+                let members = loops.all[index].orbits.iter();
+                let mut members: Vec<(Place, Orbit)> =
+                    members.map(|&orbit| (loops.member(orbits, orbit, part), orbit)).collect();
+                members.sort_unstable();
+                for (term, orbit) in members {
+                    let mut given = Vec::new();
+                    for (operand, source) in orbits.operands[term].iter().zip(&columns.sources[&orbit]) {
+                        let mut form = match source {
+                            Source::Local(_) => of_term.get(&operand.term)?.clone(),
+                            Source::Row { column, offset } => {
+                                let row = part + offset;
+                                if columns.is_computed(loops, orbits, *column, row) {
+                                    of_term.get(&operand.term)?.clone()
+                                } else {
+                                    let fresh = || equations.unknown();
+                                    of_row.entry((*column, row)).or_insert_with(fresh).clone()
+                                }
+                            }
+                            Source::Element { .. } | Source::Same(_) => (Vec::new(), false),
+                        };
+                        form.1 ^= operand.is_negative;
+                        given.push(equations.reduced(&form));
+                    }
+                    // What the first part has, all have: an orbit and its opposite serve equally well.
+                    let mut operand = |slot: usize| {
+                        of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone()).clone()
+                    };
+                    let form = match terms.all[term].kind {
+                        Kind::Sum => {
+                            let [one, other] = [0, 1].map(|slot| plus(&operand(slot), &given[slot]));
+                            equations.equate(&one, &other)?;
+                            one
+                        }
+                        Kind::Shifted => plus(&operand(0), &given[0]),
+                        Kind::Product | Kind::Quotient => plus(&given[0], &given[1]),
+                        Kind::Scaled if is_first => (Vec::new(), false),
+                        Kind::Scaled => equations.unknown(),
+                        Kind::Reciprocal | Kind::Sine | Kind::HyperbolicTangent => given[0].clone(),
+                        Kind::Cosine => (Vec::new(), false),
+                        Kind::Root => {
+                            equations.equate(&operand(0), &given[0])?;
+                            (Vec::new(), false)
+                        }
+                        Kind::Angle => {
+                            equations.equate(&operand(1), &given[1])?;
+                            given[0].clone()
+                        }
+                        Kind::Variable { .. } | Kind::Constant => return None,
+                    };
+                    let form = equations.reduced(&form);
+                    of_term.insert(term, form);
+                }
+            }
+        }
+        let value = |form: &Form| equations.reduced(form).1;
+        Some(Self {
+            of_term: of_term.iter().map(|(&key, form)| (key, value(form))).collect(),
+            of_row: of_row.iter().map(|(&key, form)| (key, value(form))).collect(),
+            of_operand: of_operand.iter().map(|(&key, form)| (key, value(form))).collect(),
+        })
+    }
+}
+
+fn plus(one: &Form, other: &Form) -> Form {
+    let (mut a, mut b) = (one.0.iter().peekable(), other.0.iter().peekable());
+    let mut sum = Vec::new();
+    loop {
+        match (a.peek(), b.peek()) {
+            (Some(x), Some(y)) if x == y => {
+                a.next();
+                b.next();
+            }
+            (Some(x), Some(y)) if x < y => sum.extend(a.next()),
+            (Some(_), None) => sum.extend(a.next()),
+            (_, Some(_)) => sum.extend(b.next()),
+            (None, None) => return (sum, one.1 ^ other.1),
+        }
+    }
+}
+
+impl Equations {
+    fn unknown(&mut self) -> Form {
+        self.n_unknowns += 1;
+        (vec![self.n_unknowns], false)
+    }
+
+    /// In terms of what is not solved for. What is left of these is zero.
+    fn reduced(&self, form: &Form) -> Form {
+        let (mut rest, mut left) = (form.clone(), Vec::new());
+        while let Some(&unknown) = rest.0.first() {
+            match self.solved.get(&unknown) {
+                Some(known) => {
+                    rest.0.remove(0);
+                    rest = plus(&rest, known);
+                }
+                None => left.push(rest.0.remove(0)),
+            }
+        }
+        (left, rest.1)
+    }
+
+    /// Writes what is solved for in terms of what is not.
+    fn compress(&mut self) {
+        let mut unknowns: Vec<usize> = self.solved.keys().copied().collect();
+        unknowns.sort_unstable_by(|a, b| b.cmp(a));
+        for unknown in unknowns {
+            let form = self.reduced(&self.solved[&unknown]);
+            self.solved.insert(unknown, form);
+        }
+    }
+
+    /// The oldest unknown yields: what comes later is then in terms of what is near.
+    fn equate(&mut self, one: &Form, other: &Form) -> Option<()> {
+        let mut form = self.reduced(&plus(one, other));
+        if form.0.is_empty() {
+            return (!form.1).then_some(());
+        }
+        let unknown = form.0.remove(0);
+        self.solved.insert(unknown, form);
+        Some(())
+    }
+}
