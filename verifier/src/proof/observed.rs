@@ -25,8 +25,8 @@ pub fn output_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
     let (one, rates) = (Term::one(case.point.context), &case.motion[..layout.n_rates]);
     let given = || Arguments { accelerations: rates, ..case.given(&case.point) };
-    let kinds: [(&str, fn(usize) -> Source, usize); 4] = [
-        ("outputs_by_state", Source::Joint, layout.n_coordinates + layout.n_rates),
+    let kinds = [
+        ("outputs_by_state", Source::Joint as fn(usize) -> Source, layout.n_coordinates + layout.n_rates),
         ("outputs_by_accelerations", Source::Acceleration, layout.n_rates),
         ("outputs_by_inputs", Source::Input, case.model.inputs.len()),
         ("outputs_by_parameters", Source::Parameter, case.model.parameters.len()),
