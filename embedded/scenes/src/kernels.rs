@@ -5,7 +5,10 @@ use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use crate::runs::{CHAIN, PAPER, STEPS, Settings, time};
 use crate::{Minimal, Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{Corrected, CorrectedDynamics, Dynamics, Direct, Error, Joint, JointSpace, Ode, Partition, Partitioned, Real, Rk4, Scalar};
+use gyro_sim::{
+    Corrected, CorrectedDynamics, Direct, Dynamics, Error, Joint, JointSpace, Ode, Partition, Partitioned,
+    Real, Rk4, Scalar,
+};
 
 /// A piece of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

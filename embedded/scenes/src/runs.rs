@@ -6,8 +6,9 @@ use crate::mechanisms::gimbal::{Gimbal, Parameters};
 use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
-use gyro_sim::{CorrectedDynamics, 
-    Direct, Error, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned, Real, Scalar, Turns,
+use gyro_sim::{
+    CorrectedDynamics, Direct, Error, Joint, JointCoordinate, JointSpace, Mechanism, Partition, Partitioned,
+    Real, Scalar, Turns,
 };
 
 /// A number whose bits can be looked at.
