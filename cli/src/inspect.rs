@@ -35,7 +35,8 @@ struct Element {
 
 /// Generates the model and its variants and prints what came of it.
 pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
-    let model = scene::read(&args.model)?;
+    let mut model = scene::read(&args.model)?;
+    model.functions.get_or_insert_with(|| vec!["solvers".to_owned()]);
     let page = files::shown(&args.model);
     remarks::report_redundant(&model, &args.model.display().to_string(), false)?;
     let spinner = Spinner::new(format!("generating {} and its variants", model.name));

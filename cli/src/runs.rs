@@ -62,7 +62,7 @@ impl Runs {
     /// With what motions are begun.
     fn builder(self, module: &Module, precision: &str) -> String {
         let of = "::gyro_runner::motion";
-        let has_jacobian = module.code.contains("gyro_sim::JointJacobian for ");
+        let has_jacobian = module.implements("JointJacobian");
         let kind = match (self.coordinates, self.correction, self.is_implicit) {
             (Coordinates::Joint, _, true) if has_jacobian => format!("{of}::ImplicitInJoints"),
             (Coordinates::Joint, _, true) => in_duals("ImplicitInJointsByDuals", precision),
@@ -90,8 +90,7 @@ impl Runs {
 
 /// The builder of a program for all runs.
 fn builder_of_all(module: &Module, precision: &str) -> String {
-    let has = |name: &str| module.code.contains(&format!("gyro_sim::{name} for "));
-    match (has("JointSpace"), has("JointJacobian")) {
+    match (module.implements("JointSpace"), module.implements("JointJacobian")) {
         (true, true) => in_duals("TreeWithJacobian", precision),
         (true, false) => in_duals("Tree", precision),
         (false, _) => in_duals("WithDuals", precision),

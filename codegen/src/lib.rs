@@ -90,6 +90,15 @@ pub struct Module {
 }
 
 impl Module {
+    /// Whether the mechanism implements a trait of the run time.
+    pub fn implements(&self, name: &str) -> bool {
+        // A long name of the mechanism stands on a line of its own.
+        let of = format!("gyro_sim::{name}");
+        self.code
+            .match_indices(&of)
+            .any(|(at, _)| self.code[at + of.len()..].trim_start().starts_with("for "))
+    }
+
     /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a
     /// module).
     pub fn as_item(&self) -> String {

@@ -209,7 +209,7 @@ macro_rules! checked {
     };
 }
 
-const CHECKED: [Check; 24] = checked![
+const CHECKED: [Check; 25] = checked![
     "all-joints"
     "cam"
     "carried-four-bar"
@@ -225,6 +225,7 @@ const CHECKED: [Check; 24] = checked![
     "gear"
     "gear-pair"
     "gyroscope-four-bar"
+    "manipulator"
     "parallelogram"
     "peaucellier"
     "planetary"

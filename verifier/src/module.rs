@@ -4,6 +4,7 @@ mod arrays;
 mod block;
 mod expression;
 mod layout;
+mod lists;
 mod loops;
 mod matching;
 mod plain;
@@ -192,6 +193,12 @@ pub(crate) fn frames(model: &Model) -> impl Iterator<Item = &Output> {
     model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity { .. }))
 }
 
+/// Whether a function is told accelerations that need not be those of the equations of motion.
+pub fn takes_any_accelerations(function: &str) -> bool {
+    ["inverse_dynamics", "inverse_derivatives", "regressor"].contains(&function)
+        || function.starts_with("outputs_by_")
+}
+
 fn of_function<T: Copy>(table: &[(&str, T)], function: &str) -> Option<T> {
     table.iter().find(|(name, _)| *name == function).map(|(_, value)| *value)
 }
@@ -278,7 +285,7 @@ impl Module {
             None => written.clone(),
         };
         let pattern = |name: &str| match matched.holes.get(name) {
-            Some(hole) => block::pattern(&block(hole)?),
+            Some(hole) => lists::pattern(&block(hole)?),
             None => Ok(Vec::new()),
         };
         let module = Self {
@@ -287,15 +294,15 @@ impl Module {
             docs: matched.holes.iter().map(|(name, hole)| (name.clone(), hole.doc.clone())).collect(),
             phi_q_pattern: pattern("phi_q_pattern")?,
             phi_pi_pattern: pattern("phi_pi_pattern")?,
-            start: block::start(&block(&matched.holes["start"])?)?,
+            start: lists::start(&block(&matched.holes["start"])?)?,
             joint_start: match matched.holes.get("joint_start") {
-                Some(hole) => block::start(&block(hole)?)?,
+                Some(hole) => lists::start(&block(hole)?)?,
                 None => Vec::new(),
             },
             has,
             mass_order: match matched.holes.get("mass_order") {
                 Some(hole) => {
-                    block::order(&block(hole)?, joints.as_ref().map_or(0, |joints| joints.n_rates))?
+                    lists::order(&block(hole)?, joints.as_ref().map_or(0, |joints| joints.n_rates))?
                 }
                 None => Vec::new(),
             },

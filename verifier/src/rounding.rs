@@ -15,7 +15,7 @@ use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision, Real};
 use crate::interpreter::{self, Given};
 use crate::joints::JointLayout;
-use crate::module::{Module, is_on_constraints, source_of_accelerations};
+use crate::module::{Module, is_on_constraints, source_of_accelerations, takes_any_accelerations};
 use crate::point::Point;
 use crate::states;
 use gyro_model::Model;
@@ -267,7 +267,11 @@ fn results<F: Field>(
         interpreter::run(module, &module.programs[function], constants, atoms, &given).ok()
     };
     let result = |function: &String| {
-        let accelerations = run(source_of_accelerations(function), &[])?;
+        let mut accelerations = run(source_of_accelerations(function), &[])?;
+        if takes_any_accelerations(function) {
+            // At those of the equations of motion no force is left.
+            accelerations.iter_mut().for_each(|x| *x = x.add(x));
+        }
         Some((function.clone(), run(function, &accelerations)?))
     };
     module.programs.keys().map(result).collect()

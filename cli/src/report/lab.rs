@@ -56,7 +56,7 @@ impl Lab {
         let program = |precision| nested::program(&model, &module, precision, None);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
         let lab = Self::with_programs(model, path, name, programs, assembled)?;
-        Ok(Self { has_joint_coordinates: module.code.contains("gyro_sim::JointSpace for"), ..lab })
+        Ok(Self { has_joint_coordinates: module.implements("JointSpace"), ..lab })
     }
 
     /// The same scene, to be changed.

@@ -28,8 +28,8 @@ pub struct Frames {
     pub biases: Chosen,
 }
 
-/// The derivatives of the outputs as functions of time, joint state, rates' rates, inputs and parameters: of each number a
-/// row.
+/// The derivatives of the outputs as functions of time, joint state, rates' rates, inputs and parameters: of each
+/// number a row.
 #[derive(Debug)]
 pub struct OutputDerivatives {
     /// By (x, u).

@@ -14,12 +14,12 @@ pub trait JointOutputs: JointSpace {
 
 /// Derivatives of the outputs, without a limit on their number.
 ///
-/// The outputs are functions `g(t, x, u, u̇; inputs, parameters)`: what stands here are their partial derivatives at any
-/// u̇, row by row, a row for each number of [`Mechanism::Outputs`](crate::Mechanism::Outputs). With u̇ as the equations
-/// of motion have it, `C = ∂g/∂(x, u) + ∂g/∂u̇ · ∂u̇/∂(x, u)`, and likewise for inputs and parameters.
+/// The outputs are functions `g(t, x, u, u̇; inputs, parameters)`: what stands here are their partial derivatives at
+/// any u̇, row by row, a row for each number of [`Mechanism::Outputs`](crate::Mechanism::Outputs). With u̇ as the
+/// equations of motion have it, `C = ∂g/∂(x, u) + ∂g/∂u̇ · ∂u̇/∂(x, u)`, and likewise for inputs and parameters.
 ///
-/// They are the derivatives of the emitted function as it stands, in directions too in which the state cannot change (of
-/// Euler parameters, across their unit sphere).
+/// They are the derivatives of the emitted function as it stands, in directions too in which the state cannot change
+/// (of Euler parameters, across their unit sphere).
 ///
 /// Implemented where it is asked for: `functions = ["output_derivatives"]` in the model file, or
 /// `--functions`; not where a third derivative of a table would be needed.

@@ -62,7 +62,7 @@ fn differences(full: &Module, module: &Module) -> Vec<String> {
 fn traits(full: &Module, module: &Module, functions: &Functions) -> Vec<String> {
     let differs = |group: Group| {
         let name = group.trait_name();
-        let has = |module: &Module| module.code.contains(&format!("gyro_sim::{name} for"));
+        let has = |module: &Module| module.implements(name);
         let is_called = module.code.contains(&format!("gyro_sim::{name}::"));
         let expected = (functions.has(group) || is_called) && has(full);
         let is_told = functions.has(Group::JointOutputs) && Functions::of([Group::Reactions]).has(group);
@@ -89,7 +89,7 @@ fn what_is_asked_for_is_proved_where_it_can_be() {
         let module = gyro_codegen::generate_functions("page.toml", &model, &functions).expect("a module");
         let report = verify(&model, &module.code, &module.constants, Depth::Quick);
         assert!(report.is_proved(), "model file {seed}: {report}");
-        let is_there = module.code.contains("gyro_sim::DynamicsDerivatives for");
+        let is_there = module.implements("DynamicsDerivatives");
         assert_eq!(is_there, module.data_sheet.unavailable().next().is_none(), "model file {seed}");
         n_there += usize::from(is_there);
     }

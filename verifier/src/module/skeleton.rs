@@ -65,7 +65,11 @@ const TRAITS: [&str; 14] = [
 impl Has {
     /// What a module's text is to be compared with.
     pub fn of(text: &str) -> Self {
-        let is_there = |name: &&str| text.contains(&format!("gyro_sim::{name} for "));
+        // A long name stands on a line of its own.
+        let is_there = |name: &&str| {
+            let of = format!("gyro_sim::{name}");
+            text.match_indices(&of).any(|(at, _)| text[at + of.len()..].trim_start().starts_with("for "))
+        };
         Self {
             traits: TRAITS.into_iter().filter(is_there).collect(),
             choice: if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting },

@@ -6,7 +6,7 @@ use crate::atoms::{Atoms, Elementary};
 use crate::field::{Field, Precision};
 use crate::interpreter::{self, DivisionByZero, Given};
 use crate::joints::JointLayout;
-use crate::module::{Module, is_on_constraints, source_of_accelerations};
+use crate::module::{Module, is_on_constraints, source_of_accelerations, takes_any_accelerations};
 use crate::program::Node;
 use crate::seed::Seed;
 use std::collections::HashMap;
@@ -152,7 +152,10 @@ fn suited<F: Field>(
         draw.point.state = run(module, "to_maximal", &draw, &[], atoms)?;
     }
     let source = source_of_accelerations(function);
-    let accelerations = if module.programs.contains_key(source) {
+    let accelerations = if takes_any_accelerations(function) {
+        let n_rates = module.joints.as_ref().map_or(0, |joints| joints.n_rates);
+        draw.motion[..n_rates].to_vec()
+    } else if module.programs.contains_key(source) {
         run(module, source, &draw, &[], atoms)?
     } else {
         Vec::new()

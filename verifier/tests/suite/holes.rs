@@ -397,11 +397,13 @@ fn words_are_proved_too() {
             if !is_of_words {
                 continue;
             }
+            // That something was asked for in vain is known to the sheet alone.
+            let is_in_vain = line.starts_with("//! * left out: the functions of ");
             for changed in [format!("{line} Not."), with_another_digit(line), String::new()] {
                 let is_documented = changed.is_empty()
                     && line.trim_start().starts_with("///")
                     && !line.contains(" operations (");
-                if changed == *line || is_documented {
+                if changed == *line || is_documented || changed.is_empty() && is_in_vain {
                     continue;
                 }
                 let mut lines = lines.clone();
