@@ -69,7 +69,7 @@ use solve::Solution;
 use solve::forward_dynamics::ForwardDynamics;
 use solve::partition::Partition;
 
-use gyro_model::{AssemblyError, Diagnostics, Model, Output, OutputKind, Start, Support};
+use gyro_model::{AssemblyError, Diagnostics, Model, Output, OutputKind, Start};
 use std::fmt;
 
 /// A generated module.
@@ -252,7 +252,7 @@ fn equations<'m>(
 /// What the mechanism makes of groups of functions.
 fn facts(system: &System) -> Facts {
     let model = system.model;
-    let is_driven = !model.drivers.is_empty() || model.bodies.iter().any(|b| b.support == Support::Driven);
+    let is_driven = model.is_driven();
     let tells_motion = |output: &Output| match output.kind {
         OutputKind::Acceleration { .. }
         | OutputKind::Inertial { .. }

@@ -10,10 +10,21 @@ use crate::program::Source;
 use crate::tape::Term;
 use gyro_model::{Number, OutputKind};
 
-/// At the accelerations and multipliers that are proved there.
+/// At the accelerations and multipliers that are proved there. What tells of multipliers is refuted without these.
 pub fn outputs<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let motion = Motion::new(case)?;
-    let lambda = case.run_with("corrected_multipliers", &motion.maximal, motion.accelerations());
+    let tells_multipliers = case.model.outputs.iter().any(|output| match output.kind {
+        OutputKind::Reaction { .. } | OutputKind::Driver { .. } => true,
+        OutputKind::Power => case.model.is_driven(),
+        _ => false,
+    });
+    let lambda = if case.module.programs.contains_key("corrected_multipliers") {
+        case.run_with("corrected_multipliers", &motion.maximal, motion.accelerations())
+    } else if tells_multipliers {
+        return Some(vec![Term::one(case.point.context)]);
+    } else {
+        vec![Term::zero(case.point.context); case.model.rows().len()]
+    };
     let textbook = case.textbook(&motion.maximal)?;
     let expected = textbook.outputs(motion.accelerations(), &lambda)?;
     let found = case.run_with("joint_outputs", &case.point, &motion.rates_of_rates);
