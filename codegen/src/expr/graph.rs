@@ -167,17 +167,15 @@ impl Graph {
     }
 
     pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        match (a, b) {
+            (Self::ZERO, x) | (x, Self::ZERO) => return x,
+            _ => {}
+        }
         let ((has_factor_a, rest_a), (has_factor_b, rest_b)) = (self.rest(a), self.rest(b));
-        if rest_a != rest_b && !(has_factor_a && has_factor_b) && a != Self::ZERO && b != Self::ZERO {
+        if rest_a != rest_b && !(has_factor_a && has_factor_b) {
             return self.add_terms(a, b);
         }
         let ((ca, xa), (cb, xb)) = (self.split(a), self.split(b));
-        if ca.is_zero() {
-            return b;
-        }
-        if cb.is_zero() {
-            return a;
-        }
         if xa == xb
             && let Some(sum) = ca.add(&cb)
         {
@@ -200,6 +198,11 @@ impl Graph {
 
     /// A constant factor of one operand stays with it: it is usually shared, as a column of a factorisation is.
     pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        match (a, b) {
+            (Self::ZERO, _) | (_, Self::ZERO) => return Self::ZERO,
+            (Self::ONE, x) | (x, Self::ONE) => return x,
+            _ => {}
+        }
         if let Some(product) = self.reduced_product(self.rest(a).1, self.rest(b).1) {
             let (ca, cb) = (self.split(a).0, self.split(b).0);
             return self.scale(&ca.mul(&cb), product);

@@ -17,7 +17,8 @@ struct Search<'t> {
     terms: &'t Terms,
     colours: Vec<u64>,
     shift: Shift,
-    queue: Vec<(Place, Place)>,
+    /// Terms around which something has changed since they were looked at.
+    is_open: Vec<bool>,
 }
 
 impl Shift {
@@ -25,7 +26,7 @@ impl Shift {
     pub fn find(graph: &Graph, terms: &Terms, (n_steps, stride): (usize, usize)) -> Self {
         let n = terms.all.len();
         let shift = Self { next: vec![None; n], previous: vec![None; n] };
-        let mut search = Search { terms, colours: colours(terms, n_steps), shift, queue: Vec::new() };
+        let mut search = Search { terms, colours: colours(terms, n_steps), shift, is_open: vec![true; n] };
         let mut classes: BTreeMap<(Kind, u64), Vec<(usize, Place)>> = BTreeMap::new();
         for (place, term) in terms.all.iter().enumerate() {
             if let Node::Symbol(symbol) = graph.node(term.id) {
@@ -50,21 +51,36 @@ impl Search<'_> {
         if one != other && is_free && self.terms.all[one].kind == self.terms.all[other].kind {
             next[one] = Some(other);
             previous[other] = Some(one);
-            self.queue.push((one, other));
+            self.open_around(one, other);
         }
     }
 
+    /// What looks at a new pair is to look again: the pair, what shares a user with its first term, and terms whose
+    /// operands or users, or those of the terms that correspond to them, are in the pair.
+    fn open_around(&mut self, one: Place, other: Place) {
+        let Self { terms, shift, is_open, .. } = self;
+        let operands = |place: Place| terms.all[place].operands.iter().map(|operand| operand.term);
+        is_open[one] = true;
+        for user in terms.all[one].users.iter().copied() {
+            is_open[user] = true;
+            operands(user).for_each(|beside| is_open[beside] = true);
+        }
+        operands(one).for_each(|operand| is_open[operand] = true);
+        let beside_other = terms.all[other].users.iter().copied().chain(operands(other));
+        beside_other.filter_map(|place| shift.previous[place]).for_each(|place| is_open[place] = true);
+    }
+
     fn spread(&mut self, by_colour: bool) {
-        loop {
-            self.queue.clear();
+        self.is_open.fill(true);
+        while self.is_open.contains(&true) {
             for one in 0..self.terms.all.len() {
+                if !std::mem::replace(&mut self.is_open[one], false) {
+                    continue;
+                }
                 if let Some(other) = self.shift.next[one] {
                     self.operands(one, other, by_colour);
                     self.users(one, other, by_colour);
                 }
-            }
-            if self.queue.is_empty() {
-                return;
             }
         }
     }

@@ -15,9 +15,8 @@ type Form = (Vec<usize>, bool);
 
 #[derive(Default)]
 struct Equations {
-    /// What unknowns are, in terms of others.
-    solved: HashMap<usize, Form>,
-    n_unknowns: usize,
+    /// What each unknown is in terms of later ones, once that is known.
+    solved: Vec<Option<Form>>,
 }
 
 /// The signs of a kernel's loops: true for opposites.
@@ -96,7 +95,8 @@ impl Signs {
                 }
             }
         }
-        let value = |form: &Form| equations.reduced(form).1;
+        let values = equations.values();
+        let value = |form: &Form| sum(&values, form);
         Some(Self {
             of_term: of_term.iter().map(|(&key, form)| (key, value(form))).collect(),
             of_row: of_row.iter().map(|(&key, form)| (key, value(form))).collect(),
@@ -122,35 +122,48 @@ fn plus(one: &Form, other: &Form) -> Form {
     }
 }
 
+/// A form's value, given those of unknowns.
+fn sum(values: &[bool], (unknowns, one): &Form) -> bool {
+    unknowns.iter().fold(*one, |sum, &unknown| sum ^ values[unknown])
+}
+
 impl Equations {
     fn unknown(&mut self) -> Form {
-        self.n_unknowns += 1;
-        (vec![self.n_unknowns], false)
+        self.solved.push(None);
+        (vec![self.solved.len() - 1], false)
     }
 
-    /// In terms of what is not solved for. What is left of these is zero.
+    /// In terms of what is not solved for.
     fn reduced(&self, form: &Form) -> Form {
-        let (mut rest, mut left) = (form.clone(), Vec::new());
-        while let Some(&unknown) = rest.0.first() {
-            match self.solved.get(&unknown) {
-                Some(known) => {
-                    rest.0.remove(0);
-                    rest = plus(&rest, known);
-                }
-                None => left.push(rest.0.remove(0)),
-            }
+        let mut form = form.clone();
+        let mut from = 0;
+        while let Some(at) = form.0[from..].iter().position(|&unknown| self.solved[unknown].is_some()) {
+            from += at;
+            let known = self.solved[form.0.remove(from)].as_ref().expect("it is solved for");
+            let (before, after) = form.0.split_at(from);
+            // What an unknown is made of comes after it.
+            let (after, one) = plus(&(after.to_vec(), form.1), known);
+            form = ([before, &after].concat(), one);
         }
-        (left, rest.1)
+        form
     }
 
     /// Writes what is solved for in terms of what is not.
     fn compress(&mut self) {
-        let mut unknowns: Vec<usize> = self.solved.keys().copied().collect();
-        unknowns.sort_unstable_by(|a, b| b.cmp(a));
-        for unknown in unknowns {
-            let form = self.reduced(&self.solved[&unknown]);
-            self.solved.insert(unknown, form);
+        for unknown in (0..self.solved.len()).rev() {
+            if let Some(form) = &self.solved[unknown] {
+                self.solved[unknown] = Some(self.reduced(form));
+            }
         }
+    }
+
+    /// The values of all unknowns; those that are not solved for are zero.
+    fn values(&self) -> Vec<bool> {
+        let mut values = vec![false; self.solved.len()];
+        for (unknown, form) in self.solved.iter().enumerate().rev() {
+            values[unknown] = form.as_ref().is_some_and(|form| sum(&values, form));
+        }
+        values
     }
 
     /// The oldest unknown yields: what comes later is then in terms of what is near.
@@ -160,7 +173,7 @@ impl Equations {
             return (!form.1).then_some(());
         }
         let unknown = form.0.remove(0);
-        self.solved.insert(unknown, form);
+        self.solved[unknown] = Some(form);
         Some(())
     }
 }
