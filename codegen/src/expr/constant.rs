@@ -10,10 +10,15 @@ use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 use gyro_model::Rational;
 use std::fmt;
+use std::rc::Rc;
+
+/// A constant; copies share their digits, so that an expression which has one is as small as any.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Constant(Rc<Exact>);
 
 /// `coefficient · √radicand`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Constant {
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct Exact {
     coefficient: RBig,
     /// At least one; free of the squares of small primes, so that equal constants are equal in this form too.
     radicand: UBig,
@@ -27,27 +32,27 @@ impl Constant {
     pub fn rational(coefficient: Rational) -> Self {
         let numerator = IBig::from_le_bytes(&coefficient.numer().to_signed_bytes_le());
         let denominator = UBig::from_le_bytes(&coefficient.denom().magnitude().to_bytes_le());
-        Self { coefficient: RBig::from_parts(numerator, denominator), radicand: UBig::ONE }
+        Self::of(RBig::from_parts(numerator, denominator), UBig::ONE)
     }
 
     pub fn integer(value: i64) -> Self {
-        Self { coefficient: IBig::from(value).into(), radicand: UBig::ONE }
+        Self::of(IBig::from(value).into(), UBig::ONE)
     }
 
     pub fn is_zero(&self) -> bool {
-        self.coefficient.is_zero()
+        self.0.coefficient.is_zero()
     }
 
     pub fn is_one(&self) -> bool {
-        self.coefficient.is_one() && self.radicand.is_one()
+        self.0.coefficient.is_one() && self.0.radicand.is_one()
     }
 
     pub fn is_negative(&self) -> bool {
-        self.coefficient.sign() == Sign::Negative
+        self.0.coefficient.sign() == Sign::Negative
     }
 
     pub fn neg(&self) -> Self {
-        Self { coefficient: -self.coefficient.clone(), radicand: self.radicand.clone() }
+        Self::of(-self.0.coefficient.clone(), self.0.radicand.clone())
     }
 
     pub fn abs(&self) -> Self {
@@ -62,8 +67,8 @@ impl Constant {
         if other.is_zero() {
             return Some(self.clone());
         }
-        (self.radicand == other.radicand)
-            .then(|| Self::new(&self.coefficient + &other.coefficient, self.radicand.clone()))
+        (self.0.radicand == other.0.radicand)
+            .then(|| Self::new(&self.0.coefficient + &other.0.coefficient, self.0.radicand.clone()))
     }
 
     pub fn mul(&self, other: &Self) -> Self {
@@ -74,13 +79,13 @@ impl Constant {
         if other.is_one() {
             return self.clone();
         }
-        let coefficient = &self.coefficient * &other.coefficient;
-        if self.radicand.is_one() || other.radicand.is_one() {
-            return Self::new(coefficient, &self.radicand * &other.radicand);
+        let coefficient = &self.0.coefficient * &other.0.coefficient;
+        if self.0.radicand.is_one() || other.0.radicand.is_one() {
+            return Self::new(coefficient, &self.0.radicand * &other.0.radicand);
         }
         // What the rest is made of is apart, and neither has small squares.
-        let common = (&self.radicand).gcd(&other.radicand);
-        let rest = (&self.radicand / &common) * (&other.radicand / &common);
+        let common = (&self.0.radicand).gcd(&other.0.radicand);
+        let rest = (&self.0.radicand / &common) * (&other.0.radicand / &common);
         let (root, rest) = whole_root(rest);
         Self::new(coefficient * common * root, rest)
     }
@@ -88,36 +93,40 @@ impl Constant {
     /// `1 / (a √b) = √b / (a b)`; `None` for zero.
     pub fn recip(&self) -> Option<Self> {
         (!self.is_zero()).then(|| {
-            let inverse = RBig::ONE / (&self.coefficient * &self.radicand);
-            Self::new(inverse, self.radicand.clone())
+            let inverse = RBig::ONE / (&self.0.coefficient * &self.0.radicand);
+            Self::new(inverse, self.0.radicand.clone())
         })
     }
 
     /// Square root of a rational that is not negative; `None` otherwise.
     pub fn sqrt(&self) -> Option<Self> {
-        if self.is_negative() || !self.radicand.is_one() {
+        if self.is_negative() || !self.0.radicand.is_one() {
             return None;
         }
-        let (numerator, denominator) = self.coefficient.clone().into_parts();
+        let (numerator, denominator) = self.0.coefficient.clone().into_parts();
         let (_, numerator) = numerator.into_parts();
         Some(Self::root(numerator * &denominator, denominator))
     }
 
     /// The nearest `f64`: a root is taken to 128 bits before the one rounding.
     pub fn to_f64(&self) -> f64 {
-        if self.radicand.is_one() {
-            return self.coefficient.to_f64().value();
+        if self.0.radicand.is_one() {
+            return self.0.coefficient.to_f64().value();
         }
-        let (numerator, denominator) = (self.coefficient.numerator(), self.coefficient.denominator());
-        let (square, divisor) = (numerator.sqr() * &self.radicand, denominator.sqr());
+        let (numerator, denominator) = (self.0.coefficient.numerator(), self.0.coefficient.denominator());
+        let (square, divisor) = (numerator.sqr() * &self.0.radicand, denominator.sqr());
         let half = (divisor.bit_len().saturating_sub(square.bit_len()) / 2) + 129;
         let root = ((square << (2 * half)) / divisor).sqrt();
         let nearest = RBig::from_parts(root.into(), UBig::ONE << half).to_f64().value();
         if self.is_negative() { -nearest } else { nearest }
     }
 
+    fn of(coefficient: RBig, radicand: UBig) -> Self {
+        Self(Rc::new(Exact { coefficient, radicand }))
+    }
+
     fn new(coefficient: RBig, radicand: UBig) -> Self {
-        if coefficient.is_zero() { Self::integer(0) } else { Self { coefficient, radicand } }
+        if coefficient.is_zero() { Self::integer(0) } else { Self::of(coefficient, radicand) }
     }
 
     /// `√n / divisor`.
@@ -149,8 +158,8 @@ fn whole_root(n: UBig) -> (UBig, UBig) {
 /// `1/2*sqrt(2)`, `-3/10`.
 impl fmt::Display for Constant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.coefficient)?;
-        if self.radicand.is_one() { Ok(()) } else { write!(f, "*sqrt({})", self.radicand) }
+        write!(f, "{}", self.0.coefficient)?;
+        if self.0.radicand.is_one() { Ok(()) } else { write!(f, "*sqrt({})", self.0.radicand) }
     }
 }
 

@@ -66,7 +66,10 @@ impl Signs {
                     }
                     // What the first part has, all have: an orbit and its opposite serve equally well.
                     let mut operand = |slot: usize| {
-                        of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone()).clone()
+                        let form =
+                            of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone());
+                        *form = equations.reduced(form);
+                        form.clone()
                     };
                     let form = match terms.all[term].kind {
                         Kind::Sum => {
@@ -81,11 +84,13 @@ impl Signs {
                         Kind::Reciprocal | Kind::Sine | Kind::HyperbolicTangent => given[0].clone(),
                         Kind::Cosine => (Vec::new(), false),
                         Kind::Root => {
-                            equations.equate(&operand(0), &given[0])?;
+                            let first = operand(0);
+                            equations.equate(&first, &given[0])?;
                             (Vec::new(), false)
                         }
                         Kind::Angle => {
-                            equations.equate(&operand(1), &given[1])?;
+                            let first = operand(1);
+                            equations.equate(&first, &given[1])?;
                             given[0].clone()
                         }
                         Kind::Variable { .. } | Kind::Constant => return None,
