@@ -1,5 +1,6 @@
 //! The command line's arguments.
 
+mod show;
 mod simulate;
 
 use clap::{Args, Parser, Subcommand};
@@ -7,6 +8,7 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+pub(crate) use show::{Change, ShowArgs};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
 /// The exit codes of every command.
@@ -30,6 +32,7 @@ pub struct Cli {
 pub enum Command {
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
+    Show(ShowArgs),
     Inspect(InspectArgs),
     Import(ImportArgs),
     Verify(VerifyArgs),
@@ -235,7 +238,7 @@ mod tests {
             "--json",
         ])
         .unwrap();
-        assert_eq!((args.engine, args.precision, args.json), (Engine::Dense, Precision::F32, true));
+        assert_eq!((args.engine(), args.precision, args.json), (Engine::Dense, Precision::F32, true));
         assert_eq!((args.t_end, args.step), (Some(2.0), Some(1e-3)));
         assert_eq!((args.correct_every, args.every), (Some(5e-3), Some(0.5)));
         assert_eq!(args.method, Some(MethodName::Direct));

@@ -28,6 +28,7 @@ mod report;
 mod rounding;
 mod runs;
 mod scene;
+mod show;
 mod simulate;
 mod spectrum;
 mod stability;
@@ -52,6 +53,7 @@ impl Command {
         match self {
             Self::Generate(args) => generate::generate(args),
             Self::Simulate(args) => simulate::simulate(args),
+            Self::Show(args) => show::show(args),
             Self::Inspect(args) => inspect::inspect(args),
             Self::Import(args) => urdf::import(args),
             Self::Verify(args) => verify::verify_models(args),

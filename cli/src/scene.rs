@@ -60,7 +60,7 @@ impl Scene {
             model,
             start,
             moved,
-            engine: args.engine,
+            engine: args.engine(),
             precision: args.precision,
             has_companions: args.verify,
         })
@@ -105,7 +105,7 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Fa
     if args.coordinates != Coordinates::Joint {
         return Ok(());
     }
-    let words = match (args.engine, gyro_codegen::lacks_joint_coordinates(model)) {
+    let words = match (args.engine(), gyro_codegen::lacks_joint_coordinates(model)) {
         (_, Some(what)) => {
             format!("joint coordinates are for mechanisms that have them, and `{}` has {what}", model.name)
         }
@@ -134,7 +134,7 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
 
 /// What the engine and the model allow.
 fn offers(model: &Model, args: &SimulateArgs) -> Offers {
-    let is_generated = args.engine == Engine::Generated;
+    let is_generated = args.engine() == Engine::Generated;
     let joint_space = is_generated && gyro_codegen::lacks_joint_coordinates(model).is_none();
     let epsilon = match args.precision {
         Precision::F32 => f64::from(f32::EPSILON),

@@ -50,7 +50,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
 }
 
 /// Whoever closes the pipe has read enough; any other loss of output is a failure.
-fn say(text: &str) -> Result<(), Failure> {
+pub(crate) fn say(text: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -61,7 +61,7 @@ fn say(text: &str) -> Result<(), Failure> {
 }
 
 /// Runs a scene; what there is up to a failure is kept in the outcome.
-fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
+pub(crate) fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     let mut progress = Progress::new(scene.settings.t_end);
     let Outcome { samples, linear, stopped, .. } = outcome;
     let mut tell = |event: Event<'_>| match event {

@@ -27,9 +27,9 @@ pub struct SimulateArgs {
     /// Model file, anywhere on disk
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
-    /// Engine that computes the motion
-    #[arg(long, value_enum, default_value_t = Engine::Generated)]
-    pub(crate) engine: Engine,
+    /// Engine that computes the motion [default: generated]
+    #[arg(long, value_enum)]
+    pub(crate) engine: Option<Engine>,
     /// Length of the run
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) t_end: Option<f64>,
@@ -121,6 +121,13 @@ pub(crate) enum MethodName {
 pub(crate) enum Precision {
     F32,
     F64,
+}
+
+impl SimulateArgs {
+    /// The engine that was asked for.
+    pub(crate) fn engine(&self) -> Engine {
+        self.engine.unwrap_or(Engine::Generated)
+    }
 }
 
 impl Engine {

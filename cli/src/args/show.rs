@@ -1,0 +1,59 @@
+//! The arguments of `show`.
+
+use super::{Engine, SimulateArgs};
+use clap::{Args, ValueEnum};
+use gyro_model::{Rational, parse_decimal};
+
+/// Show a model moving, in a browser
+///
+/// Simulates the model and writes one HTML page in which it moves: a picture that can be turned, plots, numbers. The
+/// page needs no network. Options of the run are those of `simulate`; unless one of them asks for generated code, the
+/// run is made by the runtime-assembled model, which starts at once.
+#[derive(Clone, Debug, Args)]
+#[command(
+    args_override_self = true,
+    mut_arg("out", |arg| arg.value_name("FILE.html").help("Where to write the page [default: out/NAME/NAME.html]")),
+    mut_arg("engine", |arg| arg.help("Engine that computes the motion [default: the one that answers first]")),
+    mut_arg("json", |arg| arg.hide(true)),
+    mut_arg("verify", |arg| arg.hide(true)),
+    mut_arg("linearize", |arg| arg.hide(true)),
+    after_help = "Examples:
+  {program} show models/gyroscope.toml
+  {program} show models/slider-crank.toml --t-end 3 --out crank.html --open
+  {program} show my-gimbal.toml --compare rotor_mass=0.1
+  {program} show models/four-bar.toml --compare generated --reactions"
+)]
+pub struct ShowArgs {
+    #[command(flatten)]
+    pub(crate) simulate: SimulateArgs,
+    /// Show a second run over the first, and what it has otherwise: PARAMETER=VALUE, or an engine; several are
+    /// separated by commas
+    #[arg(long, value_name = "CHANGES", value_parser = change, value_delimiter = ',')]
+    pub(crate) compare: Vec<Change>,
+    /// Compute the reactions of all joints, to be shown as arrows and plots
+    #[arg(long)]
+    pub(crate) reactions: bool,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub(crate) open: bool,
+}
+
+/// What a second run has otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Change {
+    /// Another engine.
+    Engine(Engine),
+    /// Another value of a parameter.
+    Set(String, Rational),
+}
+
+fn change(text: &str) -> Result<Change, String> {
+    let Some((name, value)) = text.split_once('=') else {
+        return Engine::from_str(text.trim(), false).map(Change::Engine).map_err(|_| {
+            "PARAMETER=VALUE or an engine was expected, such as rotor_mass=0.08 or generated".to_owned()
+        });
+    };
+    let exact = parse_decimal(value)
+        .ok_or_else(|| format!("`{}` is not a decimal number, such as -0.08 or 8e-2", value.trim()))?;
+    Ok(Change::Set(name.trim().to_owned(), exact))
+}

@@ -1,0 +1,171 @@
+//! `cargo xtask show`: a page in which a model moves.
+
+mod describe;
+
+use crate::args::{Change, Engine, ShowArgs, SimulateArgs};
+use crate::failure::Failure;
+use crate::scene::Scene;
+use crate::verdict::Outcome;
+use crate::write::{self, Known};
+use crate::{simulate, words};
+use gyro_assembled::Recursive;
+use gyro_model::{Model, Output, OutputKind};
+use gyro_runner::{Coordinates, Correction, Integrator, Sample};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Simulates a model and writes a page in which it moves.
+pub(crate) fn show(args: &ShowArgs) -> Result<(), Failure> {
+    refuse_other_results(&args.simulate)?;
+    let first = Scene::new(&with_engine(&args.simulate)?)?;
+    let path = args.simulate.out.clone().unwrap_or_else(|| {
+        let name = &first.model.name;
+        Path::new("out").join(name).join(format!("{name}.html"))
+    });
+    // A place that cannot be used is found out before the run.
+    write::check(&path, Known::Mark(gyro_show::MARK))?;
+    let mut scenes = vec![first];
+    if !args.compare.is_empty() {
+        scenes.push(Scene::new(&changed(&args.simulate, &args.compare)?)?);
+    }
+    let names = names(&scenes, &args.compare);
+    let mut shown = Vec::new();
+    let mut n_samples = 0;
+    let mut incomplete = None;
+    for (mut scene, name) in scenes.into_iter().zip(names) {
+        if args.reactions {
+            add_reactions(&mut scene);
+        }
+        let (samples, failure) = samples(&mut scene)?;
+        incomplete = incomplete.or(failure);
+        n_samples += samples.len();
+        shown.push(describe::scene(&scene, name, &samples));
+    }
+    let html = gyro_show::page(&shown[0].mechanism.name.clone(), &shown);
+    write::write(&path, &html, Known::Mark(gyro_show::MARK))?;
+    let size = html.len().div_ceil(1000);
+    let samples = words::count(n_samples as u64, "sample");
+    simulate::say(&format!(
+        "wrote {} ({size} kB, {samples}): open it in a browser, from disk\n",
+        path.display()
+    ))?;
+    if let Some(words) = incomplete {
+        return Err(Failure::Run(format!("{words}\nThe page shows the run up to there.")));
+    }
+    if args.open { open(&path) } else { Ok(()) }
+}
+
+/// Options of `simulate` that ask for something else than a motion.
+fn refuse_other_results(args: &SimulateArgs) -> Result<(), Failure> {
+    let asked = [("--json", args.json), ("--verify", args.verify), ("--linearize", args.linearize.is_some())];
+    match asked.iter().find(|(_, is_asked)| *is_asked) {
+        Some((option, _)) => Err(Failure::Usage(format!("{option} is an option of simulate, not of show"))),
+        None => Ok(()),
+    }
+}
+
+/// The engine that answers first, unless one is asked for.
+fn with_engine(args: &SimulateArgs) -> Result<SimulateArgs, Failure> {
+    if args.engine.is_some() {
+        return Ok(args.clone());
+    }
+    let needs_code = args.coordinates == Coordinates::Joint
+        || args.correction == Some(Correction::ClosedForm)
+        || args.integrator == Integrator::Rodas4;
+    let engine =
+        if needs_code { Engine::Generated } else { quickest(&crate::scene::read(&args.model)?, args) };
+    Ok(SimulateArgs { engine: Some(engine), ..args.clone() })
+}
+
+/// Time that generating and compiling takes, s: what the runtime-assembled model has to answer in.
+const COMPILING: f64 = 15.0;
+
+/// Time that a step takes, s, by the number of bodies n: in this program, which is hardly optimised, of the recursion
+/// times n, of the dense form times n cubed. Measured with a gyroscope and a slider-crank.
+const STEP: (f64, f64) = (5e-6, 8e-6);
+
+/// By how long a run with fixed steps takes; under error control steps are few.
+fn quickest(model: &Model, args: &SimulateArgs) -> Engine {
+    let length = args.t_end.unwrap_or(model.simulation.t_end);
+    let steps = args.tolerance.map_or(length / args.step.unwrap_or(model.simulation.step), |_| 0.0);
+    #[expect(clippy::cast_precision_loss, reason = "a count")]
+    let n = model.coordinate_bodies().len() as f64;
+    let is_tree = Recursive::<f64>::supports(model).is_ok();
+    let seconds = steps * if is_tree { STEP.0 * n } else { STEP.1 * n.powi(3) };
+    match is_tree {
+        _ if seconds > COMPILING => Engine::Generated,
+        true => Engine::Recursive,
+        false => Engine::Assembled,
+    }
+}
+
+/// The options of the second run: what is changed replaces what the first run has.
+fn changed(args: &SimulateArgs, changes: &[Change]) -> Result<SimulateArgs, Failure> {
+    let mut args = with_engine(args)?;
+    for change in changes {
+        match change {
+            Change::Engine(engine) => args.engine = Some(*engine),
+            Change::Set(name, value) => {
+                args.set.retain(|(set, _)| set != name);
+                args.set.push((name.clone(), value.clone()));
+            }
+        }
+    }
+    Ok(args)
+}
+
+/// By what the runs differ.
+fn names(scenes: &[Scene], changes: &[Change]) -> Vec<String> {
+    let name = |scene: &Scene| {
+        let differences = changes.iter().map(|change| match change {
+            Change::Engine(_) => scene.engine.name().to_owned(),
+            Change::Set(name, _) => {
+                let parameter = scene.model.parameters.iter().find(|p| p.name == *name);
+                let value = parameter.map_or(f64::NAN, |p| gyro_model::to_f64(&p.value));
+                format!("{name} = {value}")
+            }
+        });
+        let differences: Vec<String> = differences.collect();
+        if differences.is_empty() { scene.engine.name().to_owned() } else { differences.join(", ") }
+    };
+    scenes.iter().map(name).collect()
+}
+
+/// Asks for the reaction of each joint that has none among the outputs, in what is run and in what code is made of.
+fn add_reactions(scene: &mut Scene) {
+    let add = |model: &mut Model| {
+        for joint in 0..model.joints.len() {
+            let is_it =
+                |output: &Output| matches!(output.kind, OutputKind::Reaction { joint: j } if j == joint);
+            if !model.outputs.iter().any(is_it) {
+                let name = format!("reaction_of_{}", model.joints[joint].name);
+                model.outputs.push(Output { name, kind: OutputKind::Reaction { joint } });
+            }
+        }
+    };
+    add(&mut scene.model);
+    add(&mut scene.page);
+}
+
+/// Runs a scene with all its bodies observed, free ones first as tables expect; beside the samples why it ended early.
+fn samples(scene: &mut Scene) -> Result<(Vec<Sample>, Option<String>), Failure> {
+    scene.start.observed_bodies =
+        describe::observed(&scene.model).into_iter().map(|(slot, _)| slot).collect();
+    let mut outcome = Outcome::default();
+    match simulate::run(scene, &mut outcome) {
+        Ok(()) => Ok((outcome.samples, None)),
+        Err(Failure::Run(words)) if outcome.samples.len() > 1 => Ok((outcome.samples, Some(words))),
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Opens a page as a double click would.
+fn open(path: &PathBuf) -> Result<(), Failure> {
+    let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
+    let mut command = if cfg!(windows) { Command::new("explorer") } else { Command::new(opener) };
+    let opened = command.arg(path).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    match opened {
+        Ok(status) if status.success() || cfg!(windows) => Ok(()),
+        _ => Err(Failure::Run("--open: no browser could be opened; the page is written".to_owned())),
+    }
+}

@@ -1,0 +1,228 @@
+//! A model and its samples as the page wants them: plain data.
+
+use crate::columns::{self, orientation, scalar};
+use crate::scene::Scene;
+use gyro_model::{Body, ForceKind, JointEnd, LoadFrame, Model, OutputKind, Support, Vector};
+use gyro_runner::{Sample, energy_error};
+use gyro_show::{Column, Reaction, Run, Scale};
+
+/// Slot and index of each body with coordinates, those first that [`crate::scene::observed`] has.
+pub(crate) fn observed(model: &Model) -> Vec<(usize, usize)> {
+    let all = model.coordinate_bodies().into_iter().enumerate();
+    let (mut free, others): (Vec<_>, Vec<_>) =
+        all.partition(|&(_, b)| model.bodies[b].support == Support::Free);
+    free.extend(others);
+    free
+}
+
+/// What the page shows of a run.
+pub(crate) fn scene(scene: &Scene, name: String, samples: &[Sample]) -> gyro_show::Scene {
+    gyro_show::Scene { name, mechanism: mechanism(&scene.model), run: run(scene, samples) }
+}
+
+fn mechanism(model: &Model) -> gyro_show::Mechanism {
+    gyro_show::Mechanism {
+        name: model.name.clone(),
+        gravity: model.values(&model.gravity),
+        bodies: model.bodies.iter().map(|body| described(model, body)).collect(),
+        joints: model
+            .joints
+            .iter()
+            .map(|joint| gyro_show::Joint {
+                name: joint.name.clone(),
+                kind: format!("{:?}", joint.kind),
+                ends: [&joint.first, &joint.second].map(|end| joint_end(model, end)),
+                lead: model.value(&joint.lead),
+            })
+            .collect(),
+        links: links(model),
+        springs: springs(model),
+        loads: loads(model),
+    }
+}
+
+fn described(model: &Model, body: &Body) -> gyro_show::Body {
+    gyro_show::Body {
+        name: body.name.clone(),
+        support: match body.support {
+            Support::Moving | Support::Free => gyro_show::Support::Moving,
+            Support::Fixed | Support::Constrained => gyro_show::Support::Fixed,
+            Support::Driven => gyro_show::Support::Driven,
+        },
+        mass: model.value(&body.mass),
+        inertia: model.values(&body.inertia),
+        shapes: Vec::new(),
+    }
+}
+
+/// With unit vectors, the zero direction without its part along the axis.
+fn joint_end(model: &Model, end: &JointEnd) -> gyro_show::JointEnd {
+    let axis = unit(model.values(&end.axis), [0.0, 0.0, 1.0]);
+    let zero = model.values(&end.zero);
+    let along: f64 = axis.iter().zip(&zero).map(|(a, z)| a * z).sum();
+    let across = std::array::from_fn(|k| zero[k] - along * axis[k]);
+    let zero = unit(across, [1.0, 0.0, 0.0]);
+    gyro_show::JointEnd { body: end.body, point: model.values(&end.point), axis, zero }
+}
+
+fn unit(v: [f64; 3], otherwise: [f64; 3]) -> [f64; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length > 0.0 { v.map(|x| x / length) } else { otherwise }
+}
+
+fn links(model: &Model) -> Vec<gyro_show::Link> {
+    let link = |force: &gyro_model::Force| match &force.kind {
+        ForceKind::Link { first, second, stiffness, damping, free_length } => Some(gyro_show::Link {
+            name: force.name.clone(),
+            ends: [first, second].map(|(body, point)| (*body, model.values(point))),
+            stiffness: model.value(stiffness),
+            damping: model.value(damping),
+            free_length: model.value(free_length),
+        }),
+        _ => None,
+    };
+    model.forces.iter().filter_map(link).collect()
+}
+
+fn springs(model: &Model) -> Vec<usize> {
+    let spring = |force: &gyro_model::Force| match force.kind {
+        ForceKind::Spring { on, .. } => Some(on.joint),
+        _ => None,
+    };
+    model.forces.iter().filter_map(spring).collect()
+}
+
+fn loads(model: &Model) -> Vec<gyro_show::Load> {
+    let load = |force: &gyro_model::Force| match &force.kind {
+        ForceKind::Load { body, point, force: value, frame, .. } => Some(gyro_show::Load {
+            name: force.name.clone(),
+            body: *body,
+            point: model.values(point),
+            force: model.values(value),
+            in_body: *frame == LoadFrame::Body,
+        }),
+        _ => None,
+    };
+    model.forces.iter().filter_map(load).collect()
+}
+
+fn run(scene: &Scene, samples: &[Sample]) -> Run {
+    let model = &scene.model;
+    let order = observed(model);
+    let place = |body: usize| order.iter().position(|&(_, b)| b == body);
+    let (mut poses, mut velocities) = (Vec::new(), Vec::new());
+    for (index, body) in model.bodies.iter().enumerate() {
+        let (pose, velocity) = match (place(index), &body.motion) {
+            (Some(k), _) => samples.iter().map(|s| (s.bodies[k].pose, s.bodies[k].velocity)).unzip(),
+            (None, Some(motion)) => samples
+                .iter()
+                .map(|s| motion.state(model, body, s.t))
+                .map(|at| (pose(at.r, at.p.0), join(at.s.into(), at.w.into())))
+                .unzip(),
+            (None, None) => (vec![standing(model, body)], Vec::new()),
+        };
+        poses.push(pose);
+        velocities.push(velocity);
+    }
+    let (columns, reactions) = plotted(scene, samples);
+    Run { times: samples.iter().map(|s| s.t).collect(), poses, velocities, columns, reactions }
+}
+
+fn pose(r: Vector, p: [f64; 4]) -> [f64; 7] {
+    let r: [f64; 3] = r.into();
+    std::array::from_fn(|k| if k < 3 { r[k] } else { p[k - 3] })
+}
+
+fn join(s: [f64; 3], w: [f64; 3]) -> [f64; 6] {
+    std::array::from_fn(|k| if k < 3 { s[k] } else { w[k - 3] })
+}
+
+/// Where a fixed body is.
+fn standing(model: &Model, body: &Body) -> [f64; 7] {
+    let (r, p) = (model.values(&body.position), model.values(&body.orientation));
+    let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
+    let p = if length > 0.0 { p.map(|e| e / length) } else { [1.0, 0.0, 0.0, 0.0] };
+    pose(r.into(), p)
+}
+
+/// What is plotted, in the order of the table: joints, outputs, inputs, energy, violations.
+fn plotted(scene: &Scene, samples: &[Sample]) -> (Vec<Column>, Vec<Reaction>) {
+    let model = &scene.model;
+    let mut plots = Plots { samples, columns: Vec::new() };
+    for (index, shown) in columns::coordinates(model).iter().enumerate() {
+        plots.coordinate(index, shown);
+    }
+    let mut reactions = Vec::new();
+    let mut next = 0;
+    for output in &model.outputs {
+        if let OutputKind::Reaction { joint } = output.kind {
+            reactions.push(Reaction { joint, column: plots.columns.len() });
+        }
+        for (suffix, unit) in columns::output_columns(model, output) {
+            plots.add(("Outputs", &output.name, suffix, unit), move |s| s.outputs[next]);
+            next += 1;
+        }
+    }
+    for (index, input) in model.inputs.iter().enumerate() {
+        let unit = columns::input_unit(model, index);
+        let value = |s: &Sample| columns::inputs_at(model, &scene.start.inputs, s.t)[index];
+        plots.add(("Inputs", &input.name, "", unit), value);
+    }
+    plots.energy(model.has_work());
+    plots.violations();
+    (plots.columns, reactions)
+}
+
+struct Plots<'a> {
+    samples: &'a [Sample],
+    columns: Vec<Column>,
+}
+
+impl Plots<'_> {
+    fn add(
+        &mut self,
+        (group, title, name, unit): (&'static str, &str, &str, &str),
+        value: impl Fn(&Sample) -> f64,
+    ) {
+        self.columns.push(Column {
+            group,
+            title: title.to_owned(),
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            scale: Scale::Linear,
+            values: self.samples.iter().map(value).collect(),
+        });
+    }
+
+    fn coordinate(&mut self, index: usize, shown: &columns::Shown) {
+        let title = &shown.name;
+        if shown.is_orientation() {
+            for (k, name) in ["e0", "e1", "e2", "e3"].into_iter().enumerate() {
+                self.add(("Joints", title, name, "1"), |s| orientation(&s.coordinates[index]).0[k]);
+            }
+            for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+                self.add(("Rates", title, name, "rad/s"), |s| orientation(&s.coordinates[index]).1[k]);
+            }
+            return;
+        }
+        self.add(("Joints", title, "", shown.unit()), |s| scalar(&s.coordinates[index]).0);
+        self.add(("Rates", title, "", shown.rate_unit()), |s| scalar(&s.coordinates[index]).1);
+    }
+
+    fn energy(&mut self, has_work: bool) {
+        let Some(first) = self.samples.first().cloned() else { return };
+        self.add(("Energy", "energy", "kinetic", "J"), |s| s.kinetic);
+        self.add(("Energy", "energy", "potential", "J"), |s| s.potential);
+        if has_work {
+            self.add(("Energy", "energy", "work", "J"), |s| s.work);
+        }
+        self.add(("Energy", "error of the energy balance", "", "J"), |s| energy_error(&first, s));
+    }
+
+    fn violations(&mut self) {
+        let first = self.columns.len();
+        self.add(("Violations", "constraints", "", "1"), |s| s.position_violation);
+        self.add(("Violations", "velocities", "", "1/s"), |s| s.velocity_violation);
+        self.columns[first..].iter_mut().for_each(|column| column.scale = Scale::Log);
+    }
+}

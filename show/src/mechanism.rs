@@ -1,0 +1,120 @@
+//! What a mechanism is made of, as far as a picture of it needs to know.
+
+use serde::Serialize;
+
+/// Bodies and what connects them. Lengths in m, all vectors in the frame of the body that they belong to.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Mechanism {
+    /// Its name.
+    pub name: String,
+    /// Acceleration of gravity, m/s², in the global frame.
+    pub gravity: [f64; 3],
+    /// All bodies.
+    pub bodies: Vec<Body>,
+    /// All joints.
+    pub joints: Vec<Joint>,
+    /// Springs and dampers between points of bodies.
+    pub links: Vec<Link>,
+    /// Indices of joints along whose coordinate a spring acts.
+    pub springs: Vec<usize>,
+    /// Forces at points of bodies.
+    pub loads: Vec<Load>,
+}
+
+/// A rigid body; the origin of its frame is at its mass centre.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Whether it moves.
+    pub support: Support,
+    /// Mass, kg; zero if it is not known.
+    pub mass: f64,
+    /// `[xx, yy, zz, xy, xz, yz]` about the mass centre, kg·m².
+    pub inertia: [f64; 6],
+    /// What it looks like, if that is known.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shapes: Vec<Shape>,
+}
+
+/// How a body is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Support {
+    /// It moves.
+    #[default]
+    Moving,
+    /// It stands still.
+    Fixed,
+    /// Its motion is prescribed.
+    Driven,
+}
+
+/// A simple solid that is part of a body's look.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shape {
+    /// `box`, `cylinder` (its axis is z) or `sphere`.
+    pub kind: &'static str,
+    /// Edges of a box; radius and length of a cylinder; radius of a sphere, m.
+    pub size: Vec<f64>,
+    /// Its centre in the body's frame, m.
+    pub position: [f64; 3],
+    /// Euler parameters `(e0, e1, e2, e3)` of its frame in the body's.
+    pub orientation: [f64; 4],
+}
+
+/// A joint.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// Its kind, as model files write it: `revolute`, `prismatic` …
+    pub kind: String,
+    /// Where it is on its first and on its second body.
+    pub ends: [JointEnd; 2],
+    /// Screw: advance along the axis per radian, m/rad.
+    pub lead: f64,
+}
+
+/// A joint as seen from one of its bodies.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct JointEnd {
+    /// Index of the body.
+    pub body: usize,
+    /// Joint point from the mass centre, m.
+    pub point: [f64; 3],
+    /// Unit joint axis.
+    pub axis: [f64; 3],
+    /// Unit zero direction.
+    pub zero: [f64; 3],
+}
+
+/// A spring, a damper or both between two points.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// Body and point, m, of both ends.
+    pub ends: [(usize, [f64; 3]); 2],
+    /// N/m.
+    pub stiffness: f64,
+    /// N·s/m.
+    pub damping: f64,
+    /// m.
+    pub free_length: f64,
+}
+
+/// A constant force at a point of a body.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Load {
+    /// Its name.
+    pub name: String,
+    /// Index of the body.
+    pub body: usize,
+    /// Point, m.
+    pub point: [f64; 3],
+    /// N.
+    pub force: [f64; 3],
+    /// Whether the force is given in the body's frame, with which it turns.
+    pub in_body: bool,
+}

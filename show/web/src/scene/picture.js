@@ -1,0 +1,208 @@
+// The moving picture.
+import {
+  AmbientLight, AxesHelper, CircleGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial, LineSegments,
+  BufferGeometry, Float32BufferAttribute, Mesh, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, Quaternion, Raycaster,
+  Scene, Vector2, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { element } from '../layout.js';
+import { Actors } from './actors.js';
+import { Arrows } from './arrows.js';
+import { Names } from './names.js';
+import { Trails } from './trails.js';
+import { corners, direction, fit, upOf } from './view.js';
+
+function renderer(canvas) {
+  const context = canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true });
+  if (!context) return null;
+  try {
+    return new WebGLRenderer({ canvas, context, antialias: true, preserveDrawingBuffer: true });
+  } catch { return null; }
+}
+
+export function picture(place, scenes, clock, theme, numbers) {
+  const canvas = element('canvas', { tabindex: 0, 'aria-label': 'moving picture of the mechanism' });
+  const gl = renderer(canvas);
+  if (!gl) {
+    place.word.hidden = false;
+    place.word.textContent = 'No picture: this browser has no WebGL, or it is switched off. Plots and times work without.';
+    return null;
+  }
+  place.picture.append(canvas);
+  gl.shadowMap.enabled = true;
+  gl.shadowMap.type = PCFShadowMap;
+  gl.setPixelRatio(Math.min(devicePixelRatio, 2));
+
+  const world = new Scene();
+  world.background = new Color();
+  const stage = new Group();
+  world.add(stage);
+  const all = scenes.map((scene, run) => new Actors(scene, run, theme.colours));
+  const { size } = all[0].form;
+  // One unit is the mechanism's size, whatever its metres are.
+  stage.scale.setScalar(1 / size);
+  for (const actors of all) stage.add(actors.root);
+  const up = upOf(scenes[0].mechanism);
+  const points = all.flatMap(corners).map((p) => p.divideScalar(size));
+  const from = direction(scenes[0], up, all[0].form);
+
+  const camera = new PerspectiveCamera(28, 1, 0.01, 100);
+  const controls = new OrbitControls(camera, canvas);
+  controls.enableDamping = false;
+  const ground = groundBelow(points, up, all[0].form.thick / size);
+  world.add(ground.group);
+  const sun = lights(world, points, up, from);
+
+  const names = new Names(place.picture, scenes[0].mechanism, all[0]);
+  const trails = new Trails(all, stage);
+  const arrows = new Arrows(all, world, size);
+  const frames = new Group();
+  const ownAxes = all[0].bodies.map(({ group }) => {
+    const axes = new AxesHelper(0.16 * size);
+    axes.visible = false;
+    axes.raycast = () => {};
+    group.add(axes);
+    return axes;
+  });
+  world.add(frames);
+
+  let waiting = false;
+  const draw = () => {
+    waiting = false;
+    all.forEach((actors) => actors.show(clock.t));
+    trails.show(clock.t);
+    arrows.show(clock.t);
+    world.updateMatrixWorld();
+    names.show(camera, canvas);
+    gl.render(world, camera);
+  };
+  const ask = () => { if (!waiting) { waiting = true; requestAnimationFrame(draw); } };
+  const home = () => { fit(camera, controls.target, points, from, up); controls.update(); ask(); };
+
+  const toggles = {
+    f: ['frames', false, (on) => ownAxes.forEach((axes) => { axes.visible = on; })],
+    t: ['trails', false, (on) => trails.turn(on)],
+    i: ['inertia', false, (on) => all.forEach((actors) => actors.showEllipsoids(on))],
+    l: ['names', false, (on) => names.turn(on)],
+    a: ['forces', false, (on) => arrows.turn(on)],
+    g: ['ground', true, (on) => { ground.group.visible = on; }],
+  };
+  const boxes = {};
+  for (const [key, [words, on, apply]] of Object.entries(toggles)) {
+    const box = element('input', { type: 'checkbox' });
+    box.checked = on;
+    box.onchange = () => { apply(box.checked); ask(); };
+    boxes[key] = box;
+    place.options.append(element('label', { title: `${words} (${key.toUpperCase()})` }, box, words));
+    apply(on);
+  }
+  addEventListener('picture-key', ({ detail: key }) => {
+    if (key === 'r') home();
+    if (key === 'escape') numbers.select(null);
+    if (boxes[key]) { boxes[key].checked = !boxes[key].checked; boxes[key].onchange(); }
+  });
+
+  const ray = new Raycaster();
+  const under = ({ offsetX, offsetY }) => {
+    ray.setFromCamera(new Vector2((2 * offsetX) / canvas.clientWidth - 1, 1 - (2 * offsetY) / canvas.clientHeight), camera);
+    for (const { object } of ray.intersectObjects(all.map(({ root }) => root), true)) {
+      for (let up1 = object; up1; up1 = up1.parent) if (up1.userData.body !== undefined) return up1.userData;
+    }
+    return null;
+  };
+  let pressed = null;
+  canvas.addEventListener('pointerdown', (event) => { pressed = [event.clientX, event.clientY]; });
+  canvas.addEventListener('click', (event) => {
+    if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
+    const found = under(event);
+    numbers.select(found ? found.body : null);
+  });
+  canvas.addEventListener('pointermove', (event) => {
+    const found = event.buttons ? null : under(event);
+    place.label.hidden = !found;
+    if (!found) return;
+    place.label.textContent = scenes[found.run].mechanism.bodies[found.body].name + (scenes.length > 1 ? ` · ${scenes[found.run].name}` : '');
+    place.label.style.transform = `translate(${event.offsetX + 14}px, ${event.offsetY + 10}px)`;
+  });
+  canvas.addEventListener('pointerleave', () => { place.label.hidden = true; });
+  numbers.onSelect((b) => { all.forEach((actors) => actors.select(b)); ask(); });
+
+  const paint = () => {
+    world.background.set(theme.colours.sky);
+    ground.paint(theme.colours);
+    for (const actors of all) {
+      actors.materials.made.get('fixed')?.color.set(theme.colours.fixed);
+      actors.materials.made.get('metal')?.color.set(theme.colours.joint);
+    }
+    sun.intensity = theme.name === 'dark' ? 2.2 : 2.6;
+    ask();
+  };
+  theme.listen(paint);
+  let first = true;
+  const resize = () => {
+    const { clientWidth: wide, clientHeight: high } = place.picture;
+    if (!wide || !high) return;
+    gl.setSize(wide, high, false);
+    canvas.style.width = `${wide}px`;
+    canvas.style.height = `${high}px`;
+    camera.aspect = wide / high;
+    camera.updateProjectionMatrix();
+    if (first) home();
+    first = false;
+    draw();
+  };
+  new ResizeObserver(resize).observe(place.picture);
+  paint();
+  resize();
+  controls.addEventListener('change', ask);
+  clock.listen(ask);
+  return { canvas, camera, controls, home, draw, boxes, all, gl, points, under };
+}
+
+// A round of ground below all that moves, with its shadow.
+function groundBelow(points, up, thick) {
+  const low = Math.min(...points.map((p) => p.dot(up))) - 0.3 * thick;
+  const centre = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length || 1);
+  centre.addScaledVector(up, low - centre.dot(up));
+  const wide = 1.25 * Math.max(0.6, ...points.map((p) => p.clone().addScaledVector(up, low - p.dot(up)).distanceTo(centre)));
+  const group = new Group();
+  group.position.copy(centre);
+  group.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), up));
+  const floor = new Mesh(new CircleGeometry(wide, 72), new MeshLambertMaterial());
+  floor.receiveShadow = true;
+  floor.raycast = () => {};
+  const lines = [];
+  const step = 10 ** Math.floor(Math.log10(wide)) / 2;
+  for (let s = -Math.floor(wide / step) * step; s <= wide; s += step) {
+    const half = Math.sqrt(Math.max(0, wide * wide - s * s));
+    lines.push(s, -half, 0, s, half, 0, -half, s, 0, half, s, 0);
+  }
+  const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(lines, 3));
+  const grid = new LineSegments(geometry, new LineBasicMaterial({ transparent: true, opacity: 0.6 }));
+  grid.position.z = 0.002;
+  group.add(floor, grid);
+  const paint = (colours) => { floor.material.color.set(colours.ground); grid.material.color.set(colours.grid); };
+  return { group, paint };
+}
+
+function lights(world, points, up, from) {
+  world.add(new AmbientLight('#ffffff', 0.55));
+  const sky = new HemisphereLight('#ffffff', '#8a8f98', 1.0);
+  sky.position.copy(up);
+  world.add(sky);
+  const far = Math.max(1, ...points.map((p) => p.length()));
+  const sun = new DirectionalLight('#ffffff', 2.4);
+  const side = up.clone().cross(from).normalize();
+  const middle = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length || 1);
+  sun.position.copy(middle).addScaledVector(up, 2.2 * far).addScaledVector(from, 0.8 * far).addScaledVector(side, -1.1 * far);
+  sun.target.position.copy(middle);
+  sun.castShadow = true;
+  sun.shadow.mapSize.set(1024, 1024);
+  const reach = 1.2 * Math.max(...points.map((p) => p.distanceTo(middle)), 0.5);
+  Object.assign(sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.01, far: 8 * far });
+  sun.shadow.bias = -0.0005;
+  sun.shadow.normalBias = 0.01;
+  sun.shadow.radius = 4;
+  world.add(sun, sun.target);
+  return sun;
+}

@@ -1,0 +1,104 @@
+// Where to look from, so that the whole motion is in the picture.
+import { Box3, Vector3 } from 'three';
+import { dot, length, turn, unit } from '../vector.js';
+import { looks } from './forms.js';
+import { poseAt } from '../data.js';
+
+const TURNING = new Set(['Revolute', 'Cylindrical', 'Screw']);
+
+export function upOf(mechanism) {
+  const { gravity } = mechanism;
+  return length(gravity) > 0 ? new Vector3(...unit(gravity)).negate() : new Vector3(0, 1, 0);
+}
+
+// The direction that all hinges share, if the mechanism moves in a plane that stands upright.
+function hinge(scene, up) {
+  const axes = [];
+  for (const joint of scene.mechanism.joints) {
+    if (joint.kind === 'Spherical' || joint.kind === 'Universal') continue;
+    if (!TURNING.has(joint.kind)) continue;
+    const { body, axis } = joint.ends[0];
+    axes.push(turn(poseAt(scene, body, scene.time[0]), axis));
+  }
+  if (!axes.length || axes.some((axis) => Math.abs(dot(axis, axes[0])) < 0.98)) return null;
+  return Math.abs(dot(axes[0], up.toArray())) < 0.3 ? new Vector3(...axes[0]) : null;
+}
+
+// From the mechanism to the camera.
+export function direction(scene, up, form) {
+  const nested = form.parts.flat().some(({ type }) => type === 'ring');
+  const planar = nested ? null : hinge(scene, up);
+  const side = new Vector3(1, 0, 0);
+  if (Math.abs(side.dot(up)) > 0.9) side.set(0, 0, 1);
+  side.addScaledVector(up, -side.dot(up)).normalize();
+  if (planar) {
+    planar.addScaledVector(up, -planar.dot(up)).normalize();
+    if (planar.dot(new Vector3(1, 1.1, 1.2)) < 0) planar.negate();
+    const right = up.clone().cross(planar);
+    return planar.addScaledVector(up, 0.3).addScaledVector(right, 0.42).normalize();
+  }
+  const front = side.clone().cross(up);
+  return front.multiplyScalar(0.82).addScaledVector(side, 0.62).addScaledVector(up, form.hasTop ? 0.12 : 0.38).normalize();
+}
+
+// Corners of all bodies at times of the run.
+export function corners(actors) {
+  const boxes = actors.bodies.map(({ group }) => {
+    const parent = group.parent;
+    group.removeFromParent();
+    group.position.set(0, 0, 0);
+    group.quaternion.identity();
+    group.updateMatrixWorld(true);
+    const box = new Box3();
+    for (const part of group.children) if (!part.userData.ghost) box.expandByObject(part);
+    parent.add(group);
+    return box;
+  });
+  const found = [];
+  const point = new Vector3();
+  for (const t of looks(actors.scene)) {
+    actors.show(t);
+    boxes.forEach((box, b) => {
+      if (box.isEmpty()) return;
+      const { position, quaternion } = actors.bodies[b].group;
+      for (let k = 0; k < 8; k++) {
+        point.set(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z);
+        found.push(point.clone().applyQuaternion(quaternion).add(position));
+      }
+    });
+    for (const { ends } of actors.stretched) {
+      for (const [b, at] of ends) {
+        const { position, quaternion } = actors.bodies[b].group;
+        found.push(new Vector3(...at).applyQuaternion(quaternion).add(position));
+      }
+    }
+  }
+  return found;
+}
+
+// Puts the camera so far away that the points fill the picture.
+export function fit(camera, target, points, from, up) {
+  const back = from.clone().normalize();
+  const right = up.clone().cross(back).normalize();
+  const top = back.clone().cross(right);
+  const range = (axis) => points.reduce(([a, b], p) => [Math.min(a, p.dot(axis)), Math.max(b, p.dot(axis))], [Infinity, -Infinity]);
+  const middle = [right, top, back].map((axis) => { const [a, b] = range(axis); return (a + b) / 2; });
+  const centre = new Vector3();
+  [right, top, back].forEach((axis, k) => centre.addScaledVector(axis, middle[k]));
+  const tall = Math.tan((camera.fov * Math.PI) / 360);
+  const wide = tall * camera.aspect;
+  let far = 1e-9;
+  for (const p of points) {
+    const d = p.clone().sub(centre);
+    far = Math.max(far, Math.abs(d.dot(right)) / wide + d.dot(back), Math.abs(d.dot(top)) / tall + d.dot(back));
+  }
+  far *= 1.12;
+  camera.up.copy(up);
+  camera.position.copy(centre).addScaledVector(back, far);
+  camera.near = far / 200;
+  camera.far = far * 20;
+  camera.updateProjectionMatrix();
+  camera.lookAt(centre);
+  target.copy(centre);
+  return far;
+}
