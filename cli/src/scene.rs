@@ -149,7 +149,7 @@ fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
         Number::Input { index, .. } => {
             inputs.iter().any(|input| input.index == *index && any_varies(std::slice::from_ref(input)))
         }
-        Number::Exact(_) | Number::Parameter { .. } => false,
+        Number::Exact(_) | Number::Parameter { .. } | Number::Computed(_) => false,
     };
     !model.forces.iter().any(|force| match &force.kind {
         ForceKind::Spring { stiffness, free, .. } => varies(stiffness) || varies(free),

@@ -26,6 +26,14 @@ pub enum Number {
     Given(u16),
     /// The negative of the parameter of this place.
     Negated(u16),
+    /// The sum of both.
+    Sum(&'static [Self; 2]),
+    /// The product of both.
+    Product(&'static [Self; 2]),
+    /// The first divided by the second.
+    Quotient(&'static [Self; 2]),
+    /// A power.
+    Power(&'static Self, u32),
 }
 
 /// What must hold of numbers of which at least one is a parameter.
@@ -91,6 +99,13 @@ impl Number {
             Self::Fixed(value) => value,
             Self::Given(place) => of(place),
             Self::Negated(place) => -of(place),
+            Self::Sum([a, b]) => a.value(values) + b.value(values),
+            Self::Product([a, b]) => a.value(values) * b.value(values),
+            Self::Quotient([a, b]) => a.value(values) / b.value(values),
+            Self::Power(base, exponent) => {
+                let base = base.value(values);
+                (0..exponent).fold(1.0, |power, _| power * base)
+            }
         }
     }
 
@@ -98,6 +113,10 @@ impl Number {
         match self {
             Self::Fixed(_) => None,
             Self::Given(place) | Self::Negated(place) => Some(place),
+            Self::Sum([a, b]) | Self::Product([a, b]) | Self::Quotient([a, b]) => {
+                a.parameter().or_else(|| b.parameter())
+            }
+            Self::Power(base, _) => base.parameter(),
         }
     }
 }
@@ -189,6 +208,19 @@ mod tests {
         for (elements, is_allowed) in cases {
             assert_eq!(check(&elements, &[Rule::Inertia(ALL)]).is_ok(), is_allowed, "{elements:?}");
         }
+    }
+
+    /// `m L² / 12 − 1` of m = 3 and L = 2 is zero.
+    #[test]
+    fn computed_numbers_are_judged_by_their_values() {
+        use Number::{Fixed, Given, Power, Product, Quotient, Sum};
+        const SQUARE: Number = Power(&Given(1), 2);
+        const INERTIA: Number = Quotient(&[Product(&[Given(0), SQUARE]), Fixed(12.0)]);
+        let number = Sum(&[INERTIA, Fixed(-1.0)]);
+        assert!(check(&[3.0, 2.0], &[Rule::NotNegative(number)]).is_ok());
+        assert_eq!(check(&[2.9, 2.0], &[Rule::NotNegative(number)]), Err(Inadmissible { parameter: 0 }));
+        assert!(check(&[3.0, 2.0], &[Rule::Positive(number)]).is_err());
+        assert!(check(&[3.0, -2.1], &[Rule::Positive(number)]).is_ok());
     }
 
     #[test]

@@ -9,12 +9,14 @@
 #![deny(missing_docs)]
 
 mod assemble;
+mod computation;
 mod diagnostics;
 mod directions;
 mod elements;
 mod kinematics;
 mod motion;
 mod number;
+mod numbers;
 mod parse;
 mod queries;
 mod redundancy;
@@ -24,6 +26,7 @@ mod tree;
 mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
+pub use computation::Computation;
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
     CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,
@@ -49,6 +52,9 @@ pub struct Model {
     pub gravity: [Number; 3],
     /// The numbers that stay tunable, in the order of the model file.
     pub parameters: Vec<Parameter>,
+    /// The entries of `[parameters]` that are computed from others, in the order of the model file. Wherever the model
+    /// file names one, its computation stands in the model.
+    pub derived_parameters: Vec<DerivedParameter>,
     /// Numbers that the caller sets at every step (motor torques), with their values until then. Only forces use them.
     pub inputs: Vec<Parameter>,
     /// All bodies, fixed ones included, in the order of the model file.
@@ -83,6 +89,17 @@ pub struct Parameter {
     pub name: String,
     /// Value, exact.
     pub value: Rational,
+}
+
+/// An entry of `[parameters]` that is computed from others.
+#[derive(Clone, Debug)]
+pub struct DerivedParameter {
+    /// Identifier in `snake_case`.
+    pub name: String,
+    /// The expression as the model file writes it.
+    pub text: String,
+    /// What it computes.
+    pub number: Number,
 }
 
 /// A rigid body. Its frame has its origin at the mass centre.

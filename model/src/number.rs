@@ -1,7 +1,11 @@
-//! Numbers of the model file: exact rationals, or references to parameters.
+//! Numbers of the model file: exact rationals, references to parameters, or what is computed from these.
+
+use std::sync::Arc;
 
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
+
+use crate::Computation;
 
 /// An exact rational of any size.
 pub type Rational = num_rational::BigRational;
@@ -25,6 +29,8 @@ pub enum Number {
         /// Whether the input enters with a minus sign.
         negated: bool,
     },
+    /// Computed from parameters, of which at least one occurs in it, and exact numbers.
+    Computed(Arc<Computation>),
 }
 
 impl Number {

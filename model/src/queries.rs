@@ -1,8 +1,8 @@
 //! What can be asked of a model: units, rows, sizes, and the model with other parameters.
 
 use crate::{
-    CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Model, Number, PointAxes,
-    Rational, RedundantRow, Row, RowOwner, RowUnit, Support, analyse, to_f64,
+    CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Model, Number, Parameter,
+    PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Support, analyse, to_f64,
 };
 use std::ops::Range;
 
@@ -90,15 +90,16 @@ impl JointKind {
 }
 
 impl Model {
-    /// The value of a number of the model file with the model's parameters as they are.
+    /// The value of a number of the model file with the model's parameters as they are; 0 where it divides by zero,
+    /// which neither the model file nor parameters that are set may do.
     pub fn exact(&self, number: &Number) -> Rational {
-        match number {
-            Number::Exact(value) => value.clone(),
-            Number::Parameter { index, negated: false } => self.parameters[*index].value.clone(),
-            Number::Parameter { index, negated: true } => -self.parameters[*index].value.clone(),
-            Number::Input { index, negated: false } => self.inputs[*index].value.clone(),
-            Number::Input { index, negated: true } => -self.inputs[*index].value.clone(),
-        }
+        self.defined(number).unwrap_or_default()
+    }
+
+    /// The same; `None` where it divides by zero.
+    pub(crate) fn defined(&self, number: &Number) -> Option<Rational> {
+        let values = |parameters: &[Parameter], index: usize| parameters[index].value.clone();
+        number.evaluate(&|index| values(&self.parameters, index), &|index| values(&self.inputs, index))
     }
 
     /// The same, rounded to the nearest `f64`.
@@ -303,7 +304,7 @@ impl Model {
         let mut model = self.clone();
         for (name, value) in settings {
             let Some(parameter) = model.parameters.iter_mut().find(|p| p.name == *name) else {
-                return Err(crate::parse::unknown_parameter(self, name));
+                return Err(crate::parse::not_settable(self, name));
             };
             parameter.value = value.clone();
         }

@@ -2,7 +2,7 @@
 
 use crate::field::Field;
 use crate::program::Source;
-use gyro_model::{Model, Number};
+use gyro_model::{Computation, Model, Number};
 
 /// Values of everything that a mechanism's functions depend on.
 #[derive(Clone, Debug)]
@@ -28,6 +28,23 @@ impl<F: Field> Point<F> {
             Number::Exact(value) => F::from_rational(self.context, value),
             Number::Parameter { index, negated } => signed(&self.parameters[*index], *negated),
             Number::Input { index, negated } => signed(&self.inputs[*index], *negated),
+            Number::Computed(computation) => self.computed(computation),
+        }
+    }
+
+    /// Where it divides by zero, which no model file does, it is 0: a module does not exist there either.
+    fn computed(&self, computation: &Computation) -> F {
+        match computation {
+            Computation::Sum(a, b) => self.number(a).add(&self.number(b)),
+            Computation::Product(a, b) => self.number(a).mul(&self.number(b)),
+            Computation::Quotient(a, b) => {
+                let quotient = self.number(a).div(&self.number(b));
+                quotient.unwrap_or_else(|| F::zero(self.context))
+            }
+            Computation::Power(base, exponent) => {
+                let base = self.number(base);
+                (1..*exponent).fold(base.clone(), |power, _| power.mul(&base))
+            }
         }
     }
 

@@ -33,7 +33,9 @@ impl<T: Number> Amount<T> {
             PageNumber::Input { index, negated } => {
                 Self::Input(*index, if *negated { -T::one() } else { T::one() })
             }
-            PageNumber::Exact(_) | PageNumber::Parameter { .. } => Self::Constant(number(model.value(value))),
+            PageNumber::Exact(_) | PageNumber::Parameter { .. } | PageNumber::Computed(_) => {
+                Self::Constant(number(model.value(value)))
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use crate::expr::differentiate::Direction;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
-use gyro_model::{Attachment, JointCoordinate, JointEnd, Model, Number, RowOwner, Spline, Tree};
+use gyro_model::{Attachment, Computation, JointCoordinate, JointEnd, Model, Number, RowOwner, Spline, Tree};
 use std::array::from_fn;
 
 /// Where a body is and how it moves.
@@ -92,6 +92,41 @@ impl<'m> System<'m> {
             Number::Input { index, negated } => {
                 let symbol = self.graph.symbol(Symbol::Input(*index));
                 if *negated { self.graph.neg(symbol) } else { symbol }
+            }
+            Number::Computed(computation) => self.computed(computation),
+        }
+    }
+
+    fn computed(&mut self, computation: &Computation) -> ExprId {
+        match computation {
+            Computation::Sum(a, b) => {
+                let (a, b) = (self.number(a), self.number(b));
+                self.graph.add(a, b)
+            }
+            Computation::Product(a, b) => {
+                let (a, b) = (self.number(a), self.number(b));
+                self.graph.mul(a, b)
+            }
+            Computation::Quotient(a, b) => {
+                let (a, b) = (self.number(a), self.number(b));
+                self.graph.div(a, b)
+            }
+            Computation::Power(base, exponent) => {
+                let base = self.number(base);
+                self.power(base, *exponent)
+            }
+        }
+    }
+
+    /// A power by repeated squaring.
+    fn power(&mut self, base: ExprId, exponent: u32) -> ExprId {
+        match exponent {
+            0 => self.graph.integer(1),
+            1 => base,
+            _ => {
+                let half = self.power(base, exponent / 2);
+                let even = self.graph.mul(half, half);
+                if exponent.is_multiple_of(2) { even } else { self.graph.mul(even, base) }
             }
         }
     }

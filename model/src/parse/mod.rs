@@ -1,9 +1,10 @@
 //! The reader: from the text of a model file to a checked [`Model`], or to every mistake in it at once.
 
-mod arithmetic;
 mod bodies;
+mod computed;
 mod couplings;
 mod driven;
+mod expression;
 mod forces;
 mod joint_start;
 mod joints;
@@ -28,10 +29,10 @@ pub use names::is_keyword;
 
 use toml::de::DeTable;
 
-use crate::Model;
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::directions;
 use crate::validate::{coordinate_problems, number_problems, topology_problems};
+use crate::{Model, Number};
 use reader::Reader;
 
 /// Reads a model file. The file's name is used in messages only.
@@ -113,8 +114,19 @@ pub fn read_with(
     if mistakes.is_empty() { Ok(model) } else { Err(Diagnostics::new(file_name, text, mistakes)) }
 }
 
-/// The message for a parameter that a model does not have.
-pub(crate) fn unknown_parameter(model: &Model, name: &str) -> String {
+/// The message for a parameter that a model does not have, or computes from others.
+pub(crate) fn not_settable(model: &Model, name: &str) -> String {
+    if let Some(derived) = model.derived_parameters.iter().find(|p| p.name == name) {
+        let (text, numbers) = (&derived.text, derived.number.leaves());
+        let from = model.parameters.iter().enumerate().filter(|(k, _)| {
+            numbers.iter().any(|number| matches!(number, Number::Parameter { index, .. } if index == k))
+        });
+        let from: Vec<&str> = from.map(|(_, parameter)| parameter.name.as_str()).collect();
+        return format!(
+            "the parameter `{name}` is computed as {text:?} and cannot be set: set {}",
+            names::list(&from)
+        );
+    }
     let known: Vec<&str> = model.parameters.iter().map(|p| p.name.as_str()).collect();
     if known.is_empty() {
         return format!("unknown parameter `{name}`: the model `{}` has no parameters", model.name);

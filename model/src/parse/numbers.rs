@@ -1,11 +1,13 @@
-//! Numbers, vectors and tensors of a model file.
+//! Numbers and vectors of a model file.
 
 use num_bigint::BigInt;
 use toml::de::DeValue;
 
+use super::computed::{self, Fault, Meaning};
+use super::expression::{self, Term};
 use super::reader::Reader;
 use super::section::{Item, Section, found};
-use super::{arithmetic, names, units};
+use super::{names, units};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::validate::{Owner, Place};
 use crate::{Number, Rational, parse_decimal};
@@ -42,7 +44,7 @@ impl Section<'_> {
     }
 }
 
-/// A number: a decimal, or a string that names a parameter.
+/// A number: a decimal, or a string that names a parameter or has an expression in it.
 pub(super) fn number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
     referring(reader, item, Names::Parameters)
 }
@@ -64,11 +66,7 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
     let value = match item.value.get_ref() {
         DeValue::Float(float) => decimal(float.as_str()),
         DeValue::Integer(integer) => whole(integer.as_str(), integer.radix()),
-        DeValue::String(text) => {
-            let words = not_plain(reader, item.place, text);
-            item.wrong(reader, words);
-            return None;
-        }
+        DeValue::String(text) => return plain_expression(reader, item, text),
         other => {
             let words = [
                 format!("expected a number for `{}`", item.key()),
@@ -82,28 +80,40 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
     value.map_err(|words| item.wrong(reader, words)).ok()
 }
 
-/// The message for a string in place of a number that must be written out.
-fn not_plain(reader: &Reader<'_>, place: Place, text: &str) -> [String; 3] {
-    let key = place.key;
+/// An expression in place of a number that must be written out: it may not name parameters.
+fn plain_expression(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Rational> {
+    let key = item.key();
     let name = text.trim_start_matches('-');
-    let is = |names: &[String]| names.iter().any(|known| known == name);
-    let what = match (is(&reader.parameters), is(&reader.inputs)) {
+    let what = match (names_parameter(reader, name), reader.inputs.iter().any(|input| input == name)) {
         (true, _) => "a parameter",
         (false, true) => "an input",
+        (false, false) if is_word(text) || parse_decimal(text).is_some() => {
+            let words = [
+                format!("expected a number for `{key}`"),
+                format!("found the string {text:?}"),
+                "write a number such as 0.5 or 100e-7".to_owned(),
+            ];
+            item.wrong(reader, words);
+            return None;
+        }
         _ => {
-            return arithmetic::refused(reader, place, text)
-                .or_else(|| units::with_unit(place, text))
-                .unwrap_or_else(|| {
-                    [
-                        format!("expected a number for `{key}`"),
-                        format!("found the string {text:?}"),
-                        "write a number such as 0.5 or 100e-7".to_owned(),
-                    ]
-                });
+            return match computed(reader, item, text)? {
+                Number::Exact(value) => Some(value),
+                _ => {
+                    let words = [
+                        format!("`{key}` cannot be computed from parameters"),
+                        "names a parameter".to_owned(),
+                        format!("write the number itself in place of {text:?}"),
+                    ];
+                    item.wrong(reader, words);
+                    None
+                }
+            };
         }
     };
     let help = format!("write the number itself in place of {text:?}");
-    [format!("`{key}` cannot be {what}"), what.to_owned(), help]
+    item.wrong(reader, [format!("`{key}` cannot be {what}"), what.to_owned(), help]);
+    None
 }
 
 /// An array of `N` numbers.
@@ -199,23 +209,153 @@ fn example(key: &str, length: usize) -> Vec<&'static str> {
     (0..length).map(|k| if Some(k) == one { "1" } else { "0" }).collect()
 }
 
-/// A reference to a parameter or an input, `"name"` or `"-name"`.
+/// A parameter, an input or an expression.
 fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names) -> Option<Number> {
     let (name, negated) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
-    if let Some(index) = reader.parameters.iter().position(|p| p == name) {
-        return Some(Number::Parameter { index, negated });
+    if let Some(number) = named(reader, name) {
+        return Some(if negated { -number } else { number });
     }
     match (reader.inputs.iter().position(|input| input == name), allowed) {
         (Some(index), Names::ParametersAndInputs) => return Some(Number::Input { index, negated }),
         (Some(_), Names::Parameters) => item.wrong(reader, not_an_input(item.key(), name)),
-        (None, _) => {
-            let words = arithmetic::refused(reader, item.place, text)
-                .or_else(|| units::with_unit(item.place, text))
-                .unwrap_or_else(|| unknown_name(reader, item.key(), text, allowed));
-            item.wrong(reader, words);
+        (None, _) if is_word(text) || parse_decimal(text).is_some() || is_hyphenated(reader, text) => {
+            item.wrong(reader, unknown_name(reader, item.key(), text, allowed));
         }
+        (None, _) => return expression(reader, item, text, allowed),
     }
     None
+}
+
+/// The number that an expression of parameters denotes.
+pub(super) fn computed(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
+    expression(reader, item, text, Names::Parameters)
+}
+
+/// What the model file calls by a name.
+pub(super) fn named(reader: &Reader<'_>, name: &str) -> Option<Number> {
+    let parameter = reader.parameters.iter().position(|p| p == name);
+    let derived = || reader.derived.iter().find(|(p, _)| p == name).map(|(_, number)| number.clone());
+    parameter.map(|index| Number::Parameter { index, negated: false }).or_else(derived)
+}
+
+fn names_parameter(reader: &Reader<'_>, name: &str) -> bool {
+    named(reader, name).is_some()
+}
+
+/// Whether a string is a single word: a name, but for the one that every expression knows.
+fn is_word(text: &str) -> bool {
+    let word = text.strip_prefix('-').unwrap_or(text);
+    word != "pi"
+        && !word.starts_with(|c: char| c.is_ascii_digit())
+        && word.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
+/// Whether a string is a name that is written with hyphens.
+fn is_hyphenated(reader: &Reader<'_>, text: &str) -> bool {
+    let meant = names::snake_case(text);
+    let is_known =
+        |name: &str| names_parameter(reader, name) || reader.inputs.iter().any(|input| input == name);
+    text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+        && is_known(&meant)
+        && !text.split('-').any(is_known)
+}
+
+/// The number that an expression denotes.
+fn expression(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names) -> Option<Number> {
+    let term = match expression::parse(text) {
+        Ok(term) => term,
+        Err(at) => {
+            broken(reader, item, text, at);
+            return None;
+        }
+    };
+    if let Some(words) = misused_unit(item.place, text, &term) {
+        item.wrong(reader, words);
+        return None;
+    }
+    let meaning = Meaning {
+        named: &|name| named(reader, name),
+        unknown: &|name| {
+            if reader.inputs.iter().any(|input| input == name) {
+                input_within(name, allowed)
+            } else {
+                unknown_in_expression(reader, name)
+            }
+        },
+        values: &reader.values,
+    };
+    let number = meaning.number(&term);
+    match number {
+        Ok(number) => Some(number),
+        Err(fault) => {
+            wrong_within(reader, item, text, fault);
+            None
+        }
+    }
+}
+
+/// Reports what is wrong with a part of an expression.
+pub(super) fn wrong_within(reader: &mut Reader<'_>, item: Item<'_>, text: &str, fault: Fault) {
+    let span = reader.within(&item.span(), text, &fault.span);
+    reader.wrong(item.place, span, fault.words);
+}
+
+/// Reports a string that is no expression: a number with a unit, or one that breaks off at a place.
+pub(super) fn broken(reader: &mut Reader<'_>, item: Item<'_>, text: &str, at: usize) {
+    let rest = units::rest(text).unwrap_or_default();
+    let is_known = |word: &str| named(reader, word).is_some();
+    let word = rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
+    let is_unit = !is_known(word)
+        && (rest.starts_with(|c: char| c.is_alphabetic() || c == '°') || rest.starts_with("1/"));
+    match units::with_unit(item.place, text).filter(|_| is_unit) {
+        Some(words) => item.wrong(reader, words),
+        None => {
+            let fault = computed::syntax(text, at, &is_known);
+            wrong_within(reader, item, text, fault);
+        }
+    }
+}
+
+/// The message for a unit of angle, or of its rate, where the key has another.
+fn misused_unit(place: Place, text: &str, term: &Term) -> Option<[String; 3]> {
+    let units = term.units();
+    let expected = units::of_place(place)?;
+    let is_angle = expected.contains("rad") && !expected.contains("rad/s");
+    // Of a motion, coefficients may be of any derivative.
+    let is_motion = place.key == "motion" || matches!(place.owner, Owner::Driven(_));
+    let is_misused = !units.is_empty() && !expected.contains("rad")
+        || is_angle && !is_motion && units.iter().any(|unit| unit.is_rate());
+    is_misused.then(|| {
+        units::with_unit(place, text).unwrap_or_else(|| {
+            [
+                format!("`{}` must be a number in {expected}", place.key),
+                "an expression with a unit of angle".to_owned(),
+                format!("write it without the unit, in {expected}"),
+            ]
+        })
+    })
+}
+
+fn input_within(name: &str, allowed: Names) -> [String; 3] {
+    let help = match allowed {
+        Names::ParametersAndInputs => format!("write the input alone, \"{name}\" or \"-{name}\""),
+        Names::Parameters => format!("declare `{name}` under [parameters]"),
+    };
+    [format!("the input `{name}` cannot be part of an expression"), "an input".to_owned(), help]
+}
+
+/// The message for an unknown name in an expression.
+pub(super) fn unknown_in_expression(reader: &Reader<'_>, name: &str) -> [String; 3] {
+    let derived = reader.derived.iter().map(|(name, _)| name.as_str());
+    let known: Vec<&str> = reader.parameters.iter().map(String::as_str).chain(derived).collect();
+    let help = match name.to_ascii_lowercase().as_str() {
+        "tau" => "write 2*pi".to_owned(),
+        "pi" => "write pi".to_owned(),
+        "sin" | "cos" | "tan" | "exp" => "the only function is sqrt: write the value".to_owned(),
+        _ if known.is_empty() => format!("write a number, or declare `{name}` under [parameters]"),
+        _ => format!("{}, or declare `{name}` under [parameters]", names::instead(name, &known)),
+    };
+    [format!("unknown parameter `{name}`"), "in this expression".to_owned(), help]
 }
 
 fn not_an_input(key: &str, name: &str) -> [String; 3] {
@@ -233,7 +373,8 @@ fn not_an_input(key: &str, name: &str) -> [String; 3] {
 /// A string that neither names a number nor is one with a unit.
 fn unknown_name(reader: &Reader<'_>, key: &str, text: &str, allowed: Names) -> [String; 3] {
     let name = text.strip_prefix('-').unwrap_or(text);
-    let mut known: Vec<&str> = reader.parameters.iter().map(String::as_str).collect();
+    let derived = reader.derived.iter().map(|(name, _)| name.as_str());
+    let mut known: Vec<&str> = reader.parameters.iter().map(String::as_str).chain(derived).collect();
     let (what, tables) = match allowed {
         Names::Parameters => ("parameter", "[parameters]"),
         Names::ParametersAndInputs => {

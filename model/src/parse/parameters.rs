@@ -1,5 +1,7 @@
 //! Parameters and inputs: names with their default numbers. Inputs become fields of the generated mechanism, parameters
-//! those of a type of their own.
+//! those of a type of their own, and those that are computed from others stand for what they compute.
+
+mod derived;
 
 use std::ops::Range;
 
@@ -7,13 +9,14 @@ use num_traits::One;
 use toml::Spanned;
 use toml::de::{DeString, DeValue};
 
+use super::expression;
 use super::names;
 use super::numbers::plain_number;
 use super::reader::Reader;
 use super::section::{Item, Section, keyword, unfit};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{Parameter, Rational};
+use crate::{DerivedParameter, Parameter, Rational};
 
 /// Fields that a generated mechanism has besides its inputs.
 const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
@@ -21,29 +24,58 @@ const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
 /// Names that were met, with where they stand and in which table.
 type Seen = Vec<(String, Range<usize>, &'static str)>;
 
+/// Both tables.
+pub(super) struct Tables {
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) derived: Vec<DerivedParameter>,
+    pub(super) inputs: Vec<Parameter>,
+}
+
+/// An entry of a table.
+type Entry<'t> = (&'t Spanned<DeString<'t>>, &'t Spanned<DeValue<'t>>);
+
 /// Reads both tables, in the order of the model file. All names are known before any number refers to one.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> (Vec<Parameter>, Vec<Parameter>) {
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Tables {
     let mut seen = Seen::new();
-    let parameters = table(reader, page, &mut seen, ("parameters", Owner::Parameter));
-    let inputs = table(reader, page, &mut seen, ("inputs", Owner::Input));
+    let entries = entries(reader, page, "parameters");
+    let names: Vec<&str> = entries.iter().map(|(key, _)| key.get_ref().as_ref()).collect();
+    let (computed, given): (Vec<Entry<'_>>, Vec<Entry<'_>>) =
+        entries.iter().copied().partition(|(_, value)| is_computed(value, &names));
+    let parameters = table(reader, &given, &mut seen, ("parameters", Owner::Parameter));
     reader.parameters = parameters.iter().map(|p| p.name.clone()).collect();
+    reader.values = parameters.iter().map(|p| p.value.clone()).collect();
+    let derived = derived::read(reader, &computed);
+    seen.extend(computed.iter().map(|(key, _)| (key.get_ref().to_string(), key.span(), "parameters")));
+    let given = self::entries(reader, page, "inputs");
+    let inputs = table(reader, &given, &mut seen, ("inputs", Owner::Input));
     reader.inputs = inputs.iter().map(|p| p.name.clone()).collect();
-    (parameters, inputs)
+    Tables { parameters, derived, inputs }
+}
+
+/// Whether an entry names others, or something that should be one.
+fn is_computed(value: &Spanned<DeValue<'_>>, names: &[&str]) -> bool {
+    let term = value.get_ref().as_str().and_then(|text| expression::parse(text).ok());
+    term.is_some_and(|term| term.names().iter().any(|name| *name != "pi" || names.contains(name)))
+}
+
+/// The entries of a table in the order of the model file.
+fn entries<'t>(reader: &mut Reader<'_>, page: &Section<'t>, title: &'static str) -> Vec<Entry<'t>> {
+    let Some(item) = page.get(title) else { return Vec::new() };
+    let example = format!("[{title}] on a line of its own, then name = number");
+    let Some(table) = item.table(reader, &example) else { return Vec::new() };
+    let mut entries: Vec<Entry<'t>> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    entries
 }
 
 fn table(
     reader: &mut Reader<'_>,
-    page: &Section<'_>,
+    entries: &[Entry<'_>],
     seen: &mut Seen,
     (title, owner): (&'static str, fn(usize) -> Owner),
 ) -> Vec<Parameter> {
-    let Some(item) = page.get(title) else { return Vec::new() };
-    let example = format!("[{title}] on a line of its own, then name = number");
-    let Some(table) = item.table(reader, &example) else { return Vec::new() };
-    let mut entries: Vec<_> = table.iter().collect();
-    entries.sort_by_key(|(key, _)| key.span().start);
     let mut parameters = Vec::new();
-    for (index, (key, value)) in entries.into_iter().enumerate() {
+    for (index, (key, value)) in entries.iter().enumerate() {
         let place = Place { owner: owner(index), key: "" };
         clash(reader, place, seen, key);
         if title == "inputs" && OWN_FIELDS.contains(&key.get_ref().as_ref()) {
@@ -83,6 +115,13 @@ fn parameter(
     key: &Spanned<DeString<'_>>,
     value: &Spanned<DeValue<'_>>,
 ) -> Parameter {
+    let name = name(reader, place, (key, value));
+    let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
+    Parameter { name, value: value.unwrap_or_else(Rational::one) }
+}
+
+/// The name of an entry.
+fn name(reader: &mut Reader<'_>, place: Place, (key, value): Entry<'_>) -> String {
     let name = key.get_ref().as_ref();
     reader.mark(place, value.span());
     if let Some(words) = unfit(name) {
@@ -90,6 +129,5 @@ fn parameter(
     } else if names::is_keyword(name) {
         reader.wrong(place, key.span(), keyword(name));
     }
-    let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
-    Parameter { name: name.to_owned(), value: value.unwrap_or_else(Rational::one) }
+    name.to_owned()
 }

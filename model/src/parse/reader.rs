@@ -3,9 +3,9 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
-use crate::JointKind;
 use crate::diagnostics::{Diagnostic, Related};
 use crate::validate::{Owner, Place, Problem};
+use crate::{JointKind, Number, Rational};
 
 /// Gets the text of a table by the path that the model file gives.
 pub(super) type Load<'t> = dyn FnMut(&str) -> Result<String, String> + 't;
@@ -19,6 +19,10 @@ pub(super) struct Reader<'t> {
     broken: HashSet<Place>,
     /// Names of the model file's parameters; numbers may refer to them.
     pub(super) parameters: Vec<String>,
+    /// Their values.
+    pub(super) values: Vec<Rational>,
+    /// Parameters that are computed from others.
+    pub(super) derived: Vec<(String, Number)>,
     /// Names of the model file's inputs; forces may refer to them.
     pub(super) inputs: Vec<String>,
     /// Names of the model file's bodies; joints refer to them.
@@ -61,6 +65,8 @@ impl<'t> Reader<'t> {
             spans: HashMap::new(),
             broken: HashSet::new(),
             parameters: Vec::new(),
+            values: Vec::new(),
+            derived: Vec::new(),
             inputs: Vec::new(),
             bodies: Vec::new(),
             joints: Vec::new(),
@@ -92,6 +98,19 @@ impl<'t> Reader<'t> {
     /// The text of a table.
     pub(super) fn load(&mut self, path: &str) -> Result<String, String> {
         (self.load)(path)
+    }
+
+    /// Where a part of a string is in the text: all of it if it is not written character by character.
+    pub(super) fn within(&self, string: &Range<usize>, text: &str, part: &Range<usize>) -> Range<usize> {
+        let written = self.text.get(string.clone()).unwrap_or_default();
+        let is_plain = written.len() == text.len() + 2 && written.get(1..=text.len()) == Some(text);
+        if !is_plain {
+            return string.clone();
+        }
+        let start = string.start + 1;
+        // Where a string breaks off is its closing quote.
+        let end = (start + part.end).max(start + part.start + 1).min(string.end);
+        start + part.start..end
     }
 
     /// Notes where a place is.

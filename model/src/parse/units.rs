@@ -16,7 +16,7 @@ pub(super) fn pi() -> Rational {
 pub(super) fn with_unit(place: Place, text: &str) -> Option<[String; 3]> {
     let key = place.key;
     let (number, unit) = split(text)?;
-    let expected = of_key(key);
+    let expected = of_place(place);
     let message = match expected {
         Some(expected) => format!("`{key}` must be a number in {expected}, without a unit"),
         None => format!("`{key}` must be a number, without a unit"),
@@ -65,6 +65,14 @@ fn has_degrees(Place { owner, key }: Place) -> bool {
     match key {
         "angle" | "first_angle" | "second_angle" => matches!(owner, Owner::Joint(_)),
         _ => key == "phase",
+    }
+}
+
+/// The unit of the number at a place; none of one that may have any.
+pub(super) fn of_place(place: Place) -> Option<&'static str> {
+    match place.owner {
+        Owner::Parameter(_) | Owner::DerivedParameter(_) | Owner::Input(_) => None,
+        _ => of_key(place.key),
     }
 }
 

@@ -15,7 +15,8 @@ pub(crate) use numbers::problems as number_problems;
 pub use rules::ParameterRule;
 pub(crate) use topology::problems as topology_problems;
 
-use crate::{Model, Rational, to_f64};
+use crate::number::in_range;
+use crate::{Model, Number, Rational, to_f64};
 
 /// A place of the model file: a key of something, or the thing itself where the key is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,6 +31,7 @@ pub(crate) enum Owner {
     Page,
     Simulation,
     Parameter(usize),
+    DerivedParameter(usize),
     Input(usize),
     Body(usize),
     /// The `driven` table of a body.
@@ -108,6 +110,13 @@ impl Side {
 
 /// The first thing that the numbers of a model make unphysical.
 pub(crate) fn physical(model: &Model) -> Option<String> {
+    let is_fit = |number: &Number| model.defined(number).is_some_and(|value| in_range(&value));
+    let computed = |number: &&Number| matches!(number, Number::Computed(_));
+    if !model.numbers().into_iter().filter(computed).all(is_fit) {
+        return Some(
+            "with these parameters an expression divides by zero, or is too large or too small".to_owned(),
+        );
+    }
     number_problems(model).into_iter().next().map(|p| format!("{} ({}): {}", p.message, p.label, p.help))
 }
 

@@ -65,7 +65,13 @@ impl Model {
         for (_, number, sign, _) in self.forces.iter().flat_map(|force| conditions(&force.kind)) {
             rules.push(if sign == Sign::Positive { Positive(number) } else { NotNegative(number) });
         }
-        rules.retain(|rule| rule.numbers().iter().any(|number| matches!(number, Number::Parameter { .. })));
+        for divisor in self.numbers().into_iter().flat_map(Number::divisors) {
+            let rule = NotZero(std::slice::from_ref(divisor));
+            if !rules.contains(&rule) {
+                rules.push(rule);
+            }
+        }
+        rules.retain(|rule| rule.numbers().iter().any(|number| number.has_parameters()));
         rules
     }
 }

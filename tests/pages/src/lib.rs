@@ -22,11 +22,22 @@ mod loops;
 mod page;
 mod vector;
 
+use dice::Dice;
 use page::Page;
 
-/// The model file of a seed, always the same.
+/// The model file of a seed, always the same: some numbers are written as results of arithmetic.
 pub fn page(seed: u64) -> String {
     let mut page = Page::new(seed);
+    page.ways = Some(Dice::new(!seed));
+    text(page)
+}
+
+/// The same mechanism with all numbers and parameters written plainly.
+pub fn plain_page(seed: u64) -> String {
+    text(Page::new(seed))
+}
+
+fn text(mut page: Page) -> String {
     page.tree();
     let chain = (page.is_closed && page.dice.once_in(2)).then(|| page.chain());
     page.drivers();

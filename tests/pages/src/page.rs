@@ -63,8 +63,12 @@ pub struct Joint {
 #[derive(Clone, Debug)]
 pub struct Page {
     pub dice: Dice,
+    /// How numbers are written, apart from what they are; plainly if there is none.
+    pub ways: Option<Dice>,
     pub name: String,
     pub parameters: Vec<(String, String)>,
+    /// Those that are computed from others.
+    pub derived: Vec<(String, String)>,
     pub inputs: Vec<(String, String)>,
     pub gravity: [String; 3],
     pub bodies: Vec<(Hold, String)>,
@@ -94,8 +98,10 @@ impl Page {
         let gravity = if dice.once_in(4) { ["0", "0", "0"] } else { dice.pick(&GRAVITIES) };
         Self {
             dice,
+            ways: None,
             name: format!("page_{seed}"),
             parameters: Vec::new(),
+            derived: Vec::new(),
             inputs: Vec::new(),
             gravity: gravity.map(str::to_owned),
             bodies: Vec::new(),
@@ -114,7 +120,7 @@ impl Page {
     /// The number itself or, seldom, a parameter that has it as its default.
     pub fn tunable(&mut self, number: String) -> String {
         if !self.dice.once_in(8) || value(&number) == 0.0 {
-            return number;
+            return self.written(number);
         }
         let (sign, size) = match number.strip_prefix('-') {
             Some(size) => ("-", size.to_owned()),
@@ -122,7 +128,37 @@ impl Page {
         };
         let name = format!("p{}", self.parameters.len());
         self.parameters.push((name.clone(), size));
-        format!("\"{sign}{name}\"")
+        self.computed(sign, &name)
+    }
+
+    /// A number as it is, or as the result of arithmetic.
+    fn written(&mut self, number: String) -> String {
+        let Some(ways) = self.ways.as_mut().filter(|_| value(&number) != 0.0) else { return number };
+        match ways.below(25) {
+            0 => format!("\"{number} * 3 / 3\""),
+            1 => format!("\"-(-{number})\""),
+            2 => format!("\"2^-1 * ({number} + {number})\""),
+            3 => format!("\"({number} + 1/3) - sqrt(1/9)\""),
+            4 => format!("\"1/(1/{number})\""),
+            _ => number,
+        }
+    }
+
+    /// A parameter as it is, or as the result of arithmetic with it.
+    fn computed(&mut self, sign: &str, name: &str) -> String {
+        let Some(ways) = &mut self.ways else { return format!("\"{sign}{name}\"") };
+        match ways.below(8) {
+            0 => format!("\"{sign}2*{name} / 2\""),
+            1 => format!("\"{sign}{name}^3 / ({name} * {name})\""),
+            2 => format!("\"{sign}({name} + 0.5) {} 1/2\"", if sign == "-" { "+" } else { "-" }),
+            3 | 4 => {
+                let derived = format!("d{}", self.derived.len());
+                let text = ways.pick(&["\"NAME / 3\"", "\"1/3 * NAME\"", "\"NAME^2 / (3*NAME)\""]);
+                self.derived.push((derived.clone(), text.replace("NAME", name)));
+                format!("\"{sign}{derived} * 3\"")
+            }
+            _ => format!("\"{sign}{name}\""),
+        }
     }
 
     /// A strength: a number, a parameter or an input.
@@ -151,7 +187,9 @@ impl Page {
     /// The model file's text.
     pub fn text(&self) -> String {
         let mut text = format!("format = 1\nname = {:?}\ngravity = {}\n", self.name, list(&self.gravity));
-        for (table, entries) in [("parameters", &self.parameters), ("inputs", &self.inputs)] {
+        // What is computed may stand before what it is computed from.
+        let parameters: Vec<_> = self.derived.iter().chain(&self.parameters).cloned().collect();
+        for (table, entries) in [("parameters", &parameters), ("inputs", &self.inputs)] {
             if !entries.is_empty() {
                 let _ = writeln!(text, "\n[{table}]");
                 entries.iter().for_each(|(name, value)| text += &format!("{name} = {value}\n"));

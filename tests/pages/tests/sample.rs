@@ -1,6 +1,7 @@
 //! A sample of random model files is generated and proved.
 //! `cargo run --release -p gyro-pages --example pages -- --count 10000` does more.
 
+use gyro_model::Number;
 use gyro_verifier::{Depth, verify};
 
 /// Seeds of the sample. Any will do: model files are short, and a few of a thousand take long.
@@ -83,9 +84,37 @@ fn pages_have_everything() {
         "pitch",
         "lead",
         "friction =",
+        "* 3 / 3",
+        "sqrt(",
+        "^3 /",
+        "d0 = ",
     ];
     for thing in things {
         let count = pages.iter().filter(|page| page.contains(thing)).count();
         assert!(count >= 3, "{thing}: on {count} of {} model files", pages.len());
     }
+}
+
+/// Arithmetic changes how numbers are written and nothing else: all numbers are the same rationals, and what is written
+/// without a parameter is the same number to every engine.
+#[test]
+fn numbers_written_in_other_ways_are_the_same() {
+    let read = |text: &str| {
+        let model = gyro_model::read_with("page.toml", text, &mut gyro_pages::load);
+        model.unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    };
+    let mut n_computed = 0;
+    for seed in 0..150 {
+        let [written, plain] = [gyro_pages::page(seed), gyro_pages::plain_page(seed)].map(|text| read(&text));
+        let (ours, theirs) = (written.numbers(), plain.numbers());
+        assert_eq!(ours.len(), theirs.len(), "model file {seed}");
+        for (ours, theirs) in ours.iter().zip(&theirs) {
+            assert_eq!(written.exact(ours), plain.exact(theirs), "model file {seed}");
+            match ours {
+                Number::Computed(_) => n_computed += 1,
+                _ => assert_eq!(ours, theirs, "model file {seed}"),
+            }
+        }
+    }
+    assert!(n_computed > 50, "{n_computed} numbers that are computed from parameters");
 }

@@ -4,8 +4,8 @@ use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{ident, index};
 use crate::kernels::Kernel;
-use gyro_model::{Model, Number, Parameter, ParameterRule};
-use proc_macro2::TokenStream;
+use gyro_model::{Computation, Model, Number, Parameter, ParameterRule};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 impl ModuleWriter<'_> {
@@ -186,16 +186,7 @@ impl ModuleWriter<'_> {
 
 /// A rule as `gyro_sim::admissible` has it.
 fn rule_tokens(model: &Model, rule: &ParameterRule<'_>) -> TokenStream {
-    let number = |number: &Number| match number {
-        Number::Parameter { index: place, negated } => {
-            let (kind, place) = (ident(if *negated { "Negated" } else { "Given" }), index(*place));
-            quote! { gyro_sim::admissible::Number::#kind(#place) }
-        }
-        number => {
-            let value = float(model.value(number));
-            quote! { gyro_sim::admissible::Number::Fixed(#value) }
-        }
-    };
+    let number = |number: &Number| number_tokens(model, number);
     let list = |numbers: &[Number]| {
         let numbers = numbers.iter().map(number);
         quote! { [#(#numbers),*] }
@@ -215,6 +206,35 @@ fn rule_tokens(model: &Model, rule: &ParameterRule<'_>) -> TokenStream {
     };
     let kind = ident(kind);
     quote! { gyro_sim::admissible::Rule::#kind(#arguments) }
+}
+
+/// A number of such a rule.
+fn number_tokens(model: &Model, number: &Number) -> TokenStream {
+    let (kind, inside) = match number {
+        Number::Parameter { index: place, negated } => {
+            let place = index(*place);
+            (if *negated { "Negated" } else { "Given" }, quote! { #place })
+        }
+        Number::Computed(computation) => {
+            let operands: Vec<_> =
+                computation.operands().into_iter().map(|number| number_tokens(model, number)).collect();
+            match **computation {
+                Computation::Sum(..) => ("Sum", quote! { &[#(#operands),*] }),
+                Computation::Product(..) => ("Product", quote! { &[#(#operands),*] }),
+                Computation::Quotient(..) => ("Quotient", quote! { &[#(#operands),*] }),
+                Computation::Power(_, exponent) => {
+                    let exponent = Literal::u32_unsuffixed(exponent);
+                    ("Power", quote! { &#(#operands)*, #exponent })
+                }
+            }
+        }
+        Number::Exact(_) | Number::Input { .. } => {
+            let value = float(model.value(number));
+            ("Fixed", quote! { #value })
+        }
+    };
+    let kind = ident(kind);
+    quote! { gyro_sim::admissible::Number::#kind(#inside) }
 }
 
 fn default(parameter: &Parameter) -> f64 {

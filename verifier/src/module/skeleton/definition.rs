@@ -1,7 +1,7 @@
 //! A module's tables, its type and its parameters.
 
 use super::pieces::{lines, list, names, setter};
-use gyro_model::{Model, Number, Parameter, ParameterRule, Spline, to_f64};
+use gyro_model::{Computation, Model, Number, Parameter, ParameterRule, Spline, to_f64};
 
 /// The tables, whose numbers are read elsewhere.
 pub(super) fn constants(tables: &[Spline]) -> String {
@@ -97,14 +97,7 @@ pub(super) fn definition(model: &Model, name: &str, has_parameter_setup: bool) -
 
 /// A rule that parameters must satisfy, as `gyro_sim::admissible` has it.
 fn rule_of_parameters(model: &Model, rule: &ParameterRule<'_>) -> String {
-    let number = |number: &Number| {
-        let inside = match number {
-            Number::Parameter { index, negated: false } => format!("Given({index})"),
-            Number::Parameter { index, negated: true } => format!("Negated({index})"),
-            number => format!("Fixed({:?})", model.value(number)),
-        };
-        format!("gyro_sim::admissible::Number::{inside}")
-    };
+    let number = |number: &Number| number_of_parameters(model, number);
     let several = |numbers: &[Number]| format!("[{}]", list(numbers.iter().map(number)));
     let inside = match rule {
         ParameterRule::Positive(one) => format!("Positive({})", number(one)),
@@ -116,4 +109,21 @@ fn rule_of_parameters(model: &Model, rule: &ParameterRule<'_>) -> String {
         ParameterRule::Inertia(elements) => format!("Inertia({})", several(*elements)),
     };
     format!("gyro_sim::admissible::Rule::{inside}")
+}
+
+/// A number of such a rule.
+fn number_of_parameters(model: &Model, number: &Number) -> String {
+    let inner = |number: &Number| number_of_parameters(model, number);
+    let inside = match number {
+        Number::Parameter { index, negated: false } => format!("Given({index})"),
+        Number::Parameter { index, negated: true } => format!("Negated({index})"),
+        Number::Computed(computation) => match &**computation {
+            Computation::Sum(a, b) => format!("Sum(&[{}, {}])", inner(a), inner(b)),
+            Computation::Product(a, b) => format!("Product(&[{}, {}])", inner(a), inner(b)),
+            Computation::Quotient(a, b) => format!("Quotient(&[{}, {}])", inner(a), inner(b)),
+            Computation::Power(base, exponent) => format!("Power(&{}, {exponent})", inner(base)),
+        },
+        number => format!("Fixed({:?})", model.value(number)),
+    };
+    format!("gyro_sim::admissible::Number::{inside}")
 }

@@ -1,0 +1,84 @@
+//! All numbers of a model.
+
+use crate::{ForceKind, Model, Motion, Number, OutputKind};
+
+impl Model {
+    /// Every number of the model file that stands in the model, those of the start included.
+    pub fn numbers(&self) -> Vec<&Number> {
+        let mut numbers: Vec<&Number> = self.gravity.iter().collect();
+        for body in &self.bodies {
+            numbers.extend([&body.mass, &body.assembly_weight]);
+            numbers.extend(body.inertia.iter().chain(&body.position).chain(&body.orientation));
+            numbers.extend(body.velocity.iter().chain(body.angular_velocity.iter().flatten()));
+            if let Some(motion) = &body.motion {
+                motion.translation.iter().for_each(|motion| motion.add_numbers(&mut numbers));
+                for (axis, angle) in &motion.rotations {
+                    numbers.extend(axis);
+                    angle.add_numbers(&mut numbers);
+                }
+            }
+        }
+        for joint in &self.joints {
+            let ends = [&joint.first, &joint.second];
+            numbers.extend(ends.iter().flat_map(|end| end.point.iter().chain(&end.axis).chain(&end.zero)));
+            numbers.extend([&joint.friction, &joint.lead, &joint.length]);
+            let start = &joint.start;
+            numbers.extend(start.position.iter().flatten().chain(start.rate.iter().flatten()));
+            numbers.extend(start.orientation.iter().flatten());
+        }
+        self.couplers.iter().for_each(|coupler| numbers.extend([&coupler.ratio, &coupler.offset]));
+        self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
+        self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
+        self.outputs.iter().for_each(|output| numbers.extend(output.kind.point().into_iter().flatten()));
+        numbers
+    }
+}
+
+impl Motion {
+    fn add_numbers<'m>(&'m self, numbers: &mut Vec<&'m Number>) {
+        match self {
+            Self::Polynomial(coefficients) => numbers.extend(coefficients),
+            Self::Sinusoid { amplitude, angular_frequency, phase } => {
+                numbers.extend([amplitude, angular_frequency, phase]);
+            }
+            Self::Sum(parts) | Self::Product(parts) => {
+                parts.iter().for_each(|part| part.add_numbers(numbers));
+            }
+            Self::Table(_) => {}
+        }
+    }
+}
+
+impl ForceKind {
+    fn add_numbers<'m>(&'m self, numbers: &mut Vec<&'m Number>) {
+        match self {
+            Self::Spring { stiffness, free, .. } => numbers.extend([stiffness, free]),
+            Self::Damper { damping, .. } => numbers.push(damping),
+            Self::Coulomb { level, rate, .. } => numbers.extend([level, rate]),
+            Self::Stop { limit, stiffness, damping, softness, .. } => {
+                numbers.extend([limit, stiffness, damping, softness]);
+            }
+            Self::Motor { value, .. } => numbers.push(value),
+            Self::Link { first, second, stiffness, damping, free_length } => {
+                numbers.extend(first.1.iter().chain(&second.1));
+                numbers.extend([stiffness, damping, free_length]);
+            }
+            Self::Load { point, force, torque, .. } => {
+                numbers.extend(point.iter().chain(force).chain(torque));
+            }
+        }
+    }
+}
+
+impl OutputKind {
+    /// The point of a body that the output is about.
+    fn point(&self) -> Option<&[Number; 3]> {
+        match self {
+            Self::Pose { point, .. }
+            | Self::Velocity { point, .. }
+            | Self::Acceleration { point, .. }
+            | Self::Inertial { point, .. } => Some(point),
+            Self::Reaction { .. } | Self::Driver { .. } | Self::Energy | Self::Power => None,
+        }
+    }
+}

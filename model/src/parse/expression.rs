@@ -1,0 +1,303 @@
+//! The grammar of expressions: arithmetic in a string, such as `"m * L^2 / 12"` or `"30 deg"`.
+//!
+//! Powers bind before signs, signs before products, products before sums; a unit multiplies all that stands before it
+//! in its product, so that `1/2 deg` is half a degree.
+
+use std::ops::Range;
+
+use winnow::ascii::{digit0, digit1, multispace0};
+use winnow::combinator::{alt, cut_err, delimited, eof, fail, not, opt, preceded, repeat, terminated};
+use winnow::prelude::*;
+use winnow::stream::LocatingSlice;
+use winnow::token::{any, one_of, take_while};
+
+/// A part of an expression, and where it stands in the string, in bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Term {
+    pub(super) kind: Kind,
+    pub(super) span: Range<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A decimal, as it is written.
+    Number(String),
+    /// A parameter, or π.
+    Name(String),
+    Root(Box<Term>),
+    Negative(Box<Term>),
+    Sum(Box<Term>, Box<Term>),
+    Difference(Box<Term>, Box<Term>),
+    Product(Box<Term>, Box<Term>),
+    Quotient(Box<Term>, Box<Term>),
+    /// The exponent as it is written.
+    Power(Box<Term>, String),
+    In(Box<Term>, Unit),
+}
+
+/// Units of angle and of angular rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unit {
+    Radian,
+    Degree,
+    Revolution,
+    RadianPerSecond,
+    DegreePerSecond,
+    RevolutionPerSecond,
+    RevolutionPerMinute,
+}
+
+/// The words for units, those first that others begin with.
+pub(super) const UNITS: [(&str, Unit); 7] = [
+    ("rad/s", Unit::RadianPerSecond),
+    ("deg/s", Unit::DegreePerSecond),
+    ("rev/s", Unit::RevolutionPerSecond),
+    ("rpm", Unit::RevolutionPerMinute),
+    ("rad", Unit::Radian),
+    ("deg", Unit::Degree),
+    ("rev", Unit::Revolution),
+];
+
+/// Longest text of an expression: longer ones only cost time.
+pub(super) const MOST_CHARACTERS: usize = 400;
+
+/// Parentheses within parentheses.
+const DEEPEST: usize = 40;
+
+type Input<'s> = LocatingSlice<&'s str>;
+
+impl Unit {
+    pub(super) fn is_rate(self) -> bool {
+        !matches!(self, Self::Radian | Self::Degree | Self::Revolution)
+    }
+}
+
+impl Term {
+    /// The units that occur in it.
+    pub(super) fn units(&self) -> Vec<Unit> {
+        let mut units: Vec<Unit> = self.parts().into_iter().flat_map(Self::units).collect();
+        if let Kind::In(_, unit) = self.kind {
+            units.push(unit);
+        }
+        units
+    }
+
+    /// The names that occur in it.
+    pub(super) fn names(&self) -> Vec<&str> {
+        match &self.kind {
+            Kind::Name(name) => vec![name],
+            _ => self.parts().into_iter().flat_map(Self::names).collect(),
+        }
+    }
+
+    fn parts(&self) -> Vec<&Self> {
+        match &self.kind {
+            Kind::Number(_) | Kind::Name(_) => Vec::new(),
+            Kind::Root(a) | Kind::Negative(a) | Kind::Power(a, _) | Kind::In(a, _) => vec![a],
+            Kind::Sum(a, b) | Kind::Difference(a, b) | Kind::Product(a, b) | Kind::Quotient(a, b) => {
+                vec![a, b]
+            }
+        }
+    }
+}
+
+/// Reads an expression.
+///
+/// # Errors
+/// Where in the text it cannot go on.
+pub(super) fn parse(text: &str) -> Result<Term, usize> {
+    let mut depth = 0_usize;
+    for (at, c) in text.char_indices() {
+        depth = if c == '(' {
+            depth + 1
+        } else if c == ')' {
+            depth.saturating_sub(1)
+        } else {
+            depth
+        };
+        if depth > DEEPEST || at > MOST_CHARACTERS {
+            return Err(at);
+        }
+    }
+    delimited(multispace0, sum, eof).parse(LocatingSlice::new(text)).map_err(|error| error.offset())
+}
+
+fn sum(input: &mut Input<'_>) -> ModalResult<Term> {
+    let first = product.parse_next(input)?;
+    let further = (word(one_of(['+', '-'])), cut_err(product));
+    further_terms(input, first, further, |sign, a, b| match sign {
+        '+' => Kind::Sum(a, b),
+        _ => Kind::Difference(a, b),
+    })
+}
+
+/// Operands that follow a first one, each with its operator, from left to right.
+fn further_terms<'s>(
+    input: &mut Input<'s>,
+    first: Term,
+    further: impl Parser<Input<'s>, (char, Term), winnow::error::ErrMode<winnow::error::ContextError>>,
+    kind: impl Fn(char, Box<Term>, Box<Term>) -> Kind,
+) -> ModalResult<Term> {
+    let further: Vec<(char, Term)> = repeat(0.., further).parse_next(input)?;
+    Ok(further.into_iter().fold(first, |a, (operator, b)| {
+        let span = a.span.start..b.span.end;
+        Term { kind: kind(operator, Box::new(a), Box::new(b)), span }
+    }))
+}
+
+fn product(input: &mut Input<'_>) -> ModalResult<Term> {
+    let first = in_unit(signed.parse_next(input)?, input)?;
+    let mut whole = first;
+    while let Some(operator) = opt(word(one_of(['*', '/']))).parse_next(input)? {
+        let factor = cut_err(signed).parse_next(input)?;
+        let span = whole.span.start..factor.span.end;
+        let (a, b) = (Box::new(whole), Box::new(factor));
+        let kind = if operator == '*' { Kind::Product(a, b) } else { Kind::Quotient(a, b) };
+        whole = in_unit(Term { kind, span }, input)?;
+    }
+    Ok(whole)
+}
+
+/// A product with the unit that may follow it.
+fn in_unit(term: Term, input: &mut Input<'_>) -> ModalResult<Term> {
+    let Some((unit, end)) = opt(word(unit.with_span())).parse_next(input)?.map(|(unit, at)| (unit, at.end))
+    else {
+        return Ok(term);
+    };
+    let span = term.span.start..end;
+    Ok(Term { kind: Kind::In(Box::new(term), unit), span })
+}
+
+fn unit(input: &mut Input<'_>) -> ModalResult<Unit> {
+    for (name, unit) in UNITS {
+        if opt(terminated(name, not(letter))).parse_next(input)?.is_some() {
+            return Ok(unit);
+        }
+    }
+    fail.parse_next(input)
+}
+
+fn signed(input: &mut Input<'_>) -> ModalResult<Term> {
+    let (signs, at): (Vec<char>, _) = repeat(0.., word(one_of(['-', '+']))).with_span().parse_next(input)?;
+    let term = if signs.is_empty() { power(input)? } else { cut_err(power).parse_next(input)? };
+    if signs.iter().filter(|sign| **sign == '-').count() % 2 == 0 {
+        return Ok(term);
+    }
+    let span = at.start..term.span.end;
+    Ok(Term { kind: Kind::Negative(Box::new(term)), span })
+}
+
+fn power(input: &mut Input<'_>) -> ModalResult<Term> {
+    let base = primary(input)?;
+    let whole = || (opt('-'), digit1).take();
+    let exponent = word(alt((whole(), delimited('(', whole(), ')'))).with_span());
+    let Some((exponent, at)) = opt(preceded(word('^'), cut_err(exponent))).parse_next(input)? else {
+        return Ok(base);
+    };
+    let span = base.span.start..at.end;
+    Ok(Term { kind: Kind::Power(Box::new(base), exponent.to_owned()), span })
+}
+
+fn primary(input: &mut Input<'_>) -> ModalResult<Term> {
+    let of = |kind: fn(String) -> Kind| move |text: &str| kind(text.to_owned());
+    let within = || delimited(word('('), cut_err(sum), cut_err(')'));
+    let root = preceded(word("sqrt"), within()).map(|term| Kind::Root(Box::new(term)));
+    let kind =
+        alt((number.map(of(Kind::Number)), root, name.map(of(Kind::Name)), within().map(|term| term.kind)));
+    word(kind.with_span()).map(|(kind, span)| Term { kind, span }).parse_next(input)
+}
+
+/// Digits with a point and an exponent, as TOML has them and as other languages do.
+fn number<'s>(input: &mut Input<'s>) -> ModalResult<&'s str> {
+    let digits = || take_while(1.., |c: char| c.is_ascii_digit() || c == '_');
+    let mantissa = alt(((digits(), opt(('.', digit0))).void(), ('.', digit1).void()));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
+    (preceded(not('_'), mantissa), opt(exponent)).take().parse_next(input)
+}
+
+fn name<'s>(input: &mut Input<'s>) -> ModalResult<&'s str> {
+    let first = any.verify(|c: &char| c.is_alphabetic());
+    (first, take_while(0.., |c: char| c.is_alphanumeric() || c == '_')).take().parse_next(input)
+}
+
+fn letter(input: &mut Input<'_>) -> ModalResult<char> {
+    any.verify(|c: &char| c.is_alphanumeric() || *c == '_').parse_next(input)
+}
+
+/// Something with the spaces after it.
+fn word<'s, T>(
+    parser: impl Parser<Input<'s>, T, winnow::error::ErrMode<winnow::error::ContextError>>,
+) -> impl Parser<Input<'s>, T, winnow::error::ErrMode<winnow::error::ContextError>> {
+    terminated(parser, multispace0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With all parentheses.
+    fn shown(term: &Term) -> String {
+        let two = |operator: &str, a: &Term, b: &Term| format!("({}{operator}{})", shown(a), shown(b));
+        match &term.kind {
+            Kind::Number(text) | Kind::Name(text) => text.clone(),
+            Kind::Root(a) => format!("sqrt({})", shown(a)),
+            Kind::Negative(a) => format!("(-{})", shown(a)),
+            Kind::Sum(a, b) => two("+", a, b),
+            Kind::Difference(a, b) => two("-", a, b),
+            Kind::Product(a, b) => two("*", a, b),
+            Kind::Quotient(a, b) => two("/", a, b),
+            Kind::Power(a, exponent) => format!("({}^{exponent})", shown(a)),
+            Kind::In(a, unit) => format!("({} {unit:?})", shown(a)),
+        }
+    }
+
+    #[test]
+    fn operators_bind_as_they_do_on_paper() {
+        let check = |text: &str, expected: &str| {
+            assert_eq!(parse(text).map(|term| shown(&term)), Ok(expected.to_owned()), "{text}");
+        };
+        check("m * L^2 / 12", "((m*(L^2))/12)");
+        check("a - b - c*d", "((a-b)-(c*d))");
+        check("-a^2", "(-(a^2))");
+        check(" 2*-x ", "(2*(-x))");
+        check("--x", "x");
+        check("1/2 deg", "((1/2) Degree)");
+        check("90 deg - 5deg", "((90 Degree)-(5 Degree))");
+        check("2*pi/3", "((2*pi)/3)");
+        check("60 rpm", "(60 RevolutionPerMinute)");
+        check("10 deg/s", "(10 DegreePerSecond)");
+        check("10 deg/sum", "((10 Degree)/sum)");
+        check("sqrt(2)/2", "(sqrt(2)/2)");
+        check("(1 + 2)*3", "((1+2)*3)");
+        check("x^-2 + y^(-1)", "((x^-2)+(y^-1))");
+        check("1_000.5e-3 * .5 * 2.", "((1_000.5e-3*.5)*2.)");
+        check("degree * rad", "(degree*rad)");
+    }
+
+    #[test]
+    fn what_is_no_expression_is_refused_where_it_breaks() {
+        for (text, at) in [
+            ("", 0),
+            ("2 *", 3),
+            ("2 * * 3", 4),
+            ("(1 + 2", 6),
+            ("1 + 2)", 5),
+            ("2 length", 2),
+            ("2(length)", 1),
+            ("x^y", 2),
+            ("x^0.5", 3),
+            ("x^2^3", 3),
+            ("sin(x)", 3),
+            ("2 ** 3", 3),
+            ("3 kg", 2),
+            ("_1", 0),
+            ("1,5", 1),
+        ] {
+            assert_eq!(parse(text).map(|term| shown(&term)), Err(at), "{text}");
+        }
+        let deep = format!("{}1{}", "(".repeat(41), ")".repeat(41));
+        assert_eq!(parse(&deep), Err(40));
+        assert!(parse(&deep[1..]).is_err() && parse(&deep[1..82]).is_ok());
+        assert!(parse(&format!("1{}", "+1".repeat(300))).is_err());
+    }
+}
