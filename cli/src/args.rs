@@ -1,5 +1,6 @@
 //! The command line's arguments.
 
+mod export;
 mod simulate;
 
 use clap::{Args, Parser, Subcommand};
@@ -7,6 +8,7 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+pub(crate) use export::{CArgs, ExportArgs, Target};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
 /// The exit codes of every command.
@@ -30,6 +32,7 @@ pub struct Cli {
 pub enum Command {
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
+    Export(ExportArgs),
     Inspect(InspectArgs),
     Import(ImportArgs),
     Verify(VerifyArgs),
