@@ -1,0 +1,5 @@
+//! Exported C: the bits of Rust, and calls that nobody should make.
+
+mod bits;
+mod hostile;
+mod program;
