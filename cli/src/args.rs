@@ -1,5 +1,6 @@
 //! The command line's arguments.
 
+mod export;
 mod show;
 mod simulate;
 
@@ -8,6 +9,7 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+pub(crate) use export::{CArgs, ExportArgs, Target};
 pub(crate) use show::{Change, ShowArgs};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
@@ -33,6 +35,7 @@ pub enum Command {
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
     Show(ShowArgs),
+    Export(ExportArgs),
     Inspect(InspectArgs),
     Import(ImportArgs),
     Verify(VerifyArgs),

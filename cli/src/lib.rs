@@ -5,6 +5,7 @@ mod args;
 pub mod chain;
 mod columns;
 mod compare;
+mod export;
 pub mod failure;
 pub mod files;
 mod fit;
@@ -54,6 +55,7 @@ impl Command {
             Self::Generate(args) => generate::generate(args),
             Self::Simulate(args) => simulate::simulate(args),
             Self::Show(args) => show::show(args),
+            Self::Export(args) => export::export(args),
             Self::Inspect(args) => inspect::inspect(args),
             Self::Import(args) => urdf::import(args),
             Self::Verify(args) => verify::verify_models(args),

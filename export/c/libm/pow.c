@@ -216,7 +216,7 @@ static double libm_pow(double x, double y)
     r  = (z*t1)/(t1-pow_two)-(w+z*w);
     z  = pow_one-(r-z);
     GET_HIGH_WORD(j,z);
-    j += (n<<20);
+    j += (int32_t)((uint32_t)n<<20);
     if((j>>20)<=0) z = libm_scalbn(z,n);
     else SET_HIGH_WORD(z,j);
     return s*z;

@@ -1,0 +1,49 @@
+//! The arguments of `export`.
+
+use super::Precision;
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+
+/// Write a mechanism with its solver for other languages and tools
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    #[command(subcommand)]
+    pub(crate) target: Target,
+}
+
+/// What it is written as.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Target {
+    C(CArgs),
+}
+
+/// Write a C99 header and one C source: all functions of the module, and a solver with error control
+///
+/// The source needs the C library's header <math.h> and nothing else; it allocates nothing and has no global state.
+/// Compiled without contraction of products and sums (-std=c99, or -ffp-contract=off), it computes the bits of the
+/// generated Rust. The module is proved before it is written. See docs/export.md.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} export c models/four-bar.toml --out out/four-bar
+  {program} export c ~/gimbal.toml --out firmware/gimbal --precision f32
+  {program} export c ~/arm.toml --out out/arm --functions all --library")]
+pub struct CArgs {
+    /// Model file, anywhere on disk
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+    /// Folder for NAME.h and NAME.c; it is made if need be
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Number type
+    #[arg(long, value_enum, default_value = "f64")]
+    pub(crate) precision: Precision,
+    /// Functions, by their names or by groups, separated by commas [default: the model file's, or what solvers call]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', long_help = super::functions_help())]
+    pub(crate) functions: Option<Vec<String>>,
+    /// Also compile it, with the C compiler `cc` or that of the variable CC, into a static library libNAME.a
+    #[arg(long)]
+    pub(crate) library: bool,
+    /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+}

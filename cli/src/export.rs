@@ -1,0 +1,132 @@
+//! `cargo xtask export`: a mechanism with its solver for other languages.
+//!
+//! Everything is made in memory, and a library in a folder of its own, before anything is written.
+
+use crate::args::{CArgs, ExportArgs, Precision, Target};
+use crate::failure::Failure;
+use crate::generate::{Asked, modules};
+use crate::progress::Spinner;
+use crate::scene;
+use crate::write::{self, Known};
+use gyro_codegen::Module;
+use gyro_export::Exported;
+use std::ffi::{OsStr, OsString};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, process};
+
+/// Writes what is asked for.
+pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
+    match &args.target {
+        Target::C(args) => c(args),
+    }
+}
+
+/// How a library begins.
+const LIBRARY_MARK: &str = "!<arch>\n";
+
+/// Header, source and, if it is asked for, the library.
+fn c(args: &CArgs) -> Result<(), Failure> {
+    let module = module(args)?;
+    let model = scene::read(&args.model)?;
+    let precision = match args.precision {
+        Precision::F32 => gyro_export::Precision::F32,
+        Precision::F64 => gyro_export::Precision::F64,
+    };
+    let exported = gyro_export::c(&model, &module.code, precision)
+        .map_err(|e| Failure::Run(format!("{}: {e}: please report it", args.model.display())))?;
+    let place = |name: String| args.out.join(name);
+    let header = place(format!("{}.h", module.name));
+    let source = place(format!("{}.c", module.name));
+    let library = place(format!("lib{}.a", module.name));
+    for path in [&header, &source] {
+        write::check(path, Known::Mark(gyro_export::MARK))?;
+    }
+    let compiled = if args.library {
+        write::check(&library, Known::Mark(LIBRARY_MARK))?;
+        Some(compiled(&module.name, &exported)?)
+    } else {
+        None
+    };
+    for (path, text) in [(&header, &exported.header), (&source, &exported.source)] {
+        let is_new = write::write(path, text, Known::Mark(gyro_export::MARK))?;
+        say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, path.display()));
+    }
+    if let Some(bytes) = compiled {
+        let beside = args.out.join(format!(".lib{}.a.{}", module.name, process::id()));
+        fs::write(&beside, bytes)
+            .and_then(|()| fs::rename(&beside, &library))
+            .map_err(|e| Failure::Run(format!("{}: {e}", library.display())))?;
+        say(&format!("wrote {}", library.display()));
+    }
+    Ok(())
+}
+
+/// The module, proved.
+fn module(args: &CArgs) -> Result<Module, Failure> {
+    let asked = |_: &Path| match &args.functions {
+        Some(names) => Asked::Here(names.clone()),
+        None => Asked::ThereOrSolvers,
+    };
+    let made = modules(std::slice::from_ref(&args.model), &asked, args.strict).pop();
+    made.expect("one model file gives one module")
+}
+
+/// The bytes of the library.
+fn compiled(name: &str, exported: &Exported) -> Result<Vec<u8>, Failure> {
+    let spinner = Spinner::new(format!("compiling {name}"));
+    let folder = Scratch::new()?;
+    let [header, source] = [".h", ".c"].map(|end| folder.0.join(format!("{name}{end}")));
+    let [object, library] = ["object.o", "library.a"].map(|file| folder.0.join(file));
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |e: io::Error| Failure::Run(format!("{}: {e}", path.display()))
+    };
+    fs::write(&header, &exported.header).map_err(failed(&header))?;
+    fs::write(&source, &exported.source).map_err(failed(&source))?;
+    let cc = env::var_os("CC").unwrap_or_else(|| "cc".into());
+    let flags = ["-std=c99", "-O2", "-ffp-contract=off", "-c", "-o"].map(OsStr::new);
+    run(&cc, &[&flags[..], &[object.as_os_str(), source.as_os_str()]].concat(), "CC")?;
+    let ar = env::var_os("AR").unwrap_or_else(|| "ar".into());
+    run(&ar, &[OsStr::new("rcs"), library.as_os_str(), object.as_os_str()], "AR")?;
+    drop(spinner);
+    fs::read(&library).map_err(failed(&library))
+}
+
+fn run(program: &OsString, arguments: &[&OsStr], variable: &str) -> Result<(), Failure> {
+    let shown = program.to_string_lossy();
+    let output = Command::new(program).args(arguments).output().map_err(|e| {
+        Failure::Usage(format!(
+            "--library needs `{shown}`, which cannot be started: {e}: install gcc or clang, set {variable}, or leave \
+             --library away"
+        ))
+    })?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let words = String::from_utf8_lossy(&output.stderr).into_owned();
+    Err(Failure::Run(format!("`{shown}` has failed: nothing was written\n{words}")))
+}
+
+/// A folder that is removed in the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> Result<Self, Failure> {
+        let path = env::temp_dir().join(format!("gyro-export-{}", process::id()));
+        fs::create_dir_all(&path).map_err(|e| Failure::Run(format!("{}: {e}", path.display())))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn say(words: &str) {
+    // What was said is only about files that are there already.
+    let _ = writeln!(io::stdout(), "{words}");
+}

@@ -1,0 +1,6 @@
+//! Exported C: the bits of Rust, and calls that nobody should make.
+
+mod bits;
+mod docs;
+mod hostile;
+mod program;
