@@ -207,7 +207,12 @@ export function forms(scene) {
       } else if (isBarBy(solid, ends)) {
         parts.push({ type: 'bar', from: ends[0], to: add([0, 0, 0], unit(ends[0]), -Math.min(solid.height / 2, 1.2 * length(ends[0]))), thick: 1.25 * thick, across: barAcross(held[b], [ends[0], [0, 0, 0]]) });
       } else if (hub) for (const end of ends) { if (distance(end, hub) > 1e-9) parts.push({ type: 'rod', from: hub, to: end, thick }); }
-      else parts.push({ type: 'bar', from: ends[0], to: ends[1], thick: 1.25 * thick, across: barAcross(held[b], ends) });
+      else {
+        const side = barAcross(held[b], ends);
+        // Bars that share a hinge lie side by side.
+        const from = side ? add(ends[0], side, (b % 2 ? 0.75 : -0.75) * thick) : ends[0];
+        parts.push({ type: 'bar', from, to: add(from, add(ends[1], ends[0], -1)), thick: 1.25 * thick, across: side });
+      }
       if (ends.length === 1 && solid && !isBarBy(solid, ends)) {
         // A bar that hangs from one end shows whole by its solid; a bob at a rod's end by a ball.
         parts.push({ ...solid, marked: solid.type === 'cylinder' && solid.radius > solid.height ? solid.axis : null });
@@ -369,7 +374,7 @@ function jointForm(scene, joint, { thick, rings, rotors, size }) {
   const isOnGround = scene.mechanism.bodies[first.body].support === 'fixed';
   switch (kind) {
     case 'Revolute':
-      return isNested ? [] : [pin(second, 1, 2.2 * thick, 1.5 * thick)];
+      return isNested ? [] : [pin(second, 1, 2.6 * thick, 1.4 * thick)];
     case 'Spherical':
       return [{ side: 1, type: 'sphere', at: second.point, radius: 2 * thick }];
     case 'Universal':
