@@ -88,7 +88,7 @@ const tests = {
     assert.equal(await page.locator('.label').textContent(), 'rotor');
     await page.mouse.click(canvas.x + spot.offsetX, canvas.y + spot.offsetY);
     const words = await page.locator('.panel').textContent();
-    assert.match(words, /rotor.*mass0\.08kg.*angular velocity.*100/);
+    assert.match(words, /rotor.*mass \[kg\]0\.08.*angular velocity.*100/);
     await page.keyboard.press('Escape');
     assert.ok(await page.locator('.panel').isHidden());
     return page;
@@ -110,6 +110,15 @@ const tests = {
       return { shown: u.data[0].filter(inside).length, samples: globalThis.gyroPage.scenes[0].time.filter(inside).length };
     });
     assert.ok(samples > 45 && shown === samples, `${shown} of ${samples}`);
+    // The line at the time that is shown stands where the zoomed plot has that time.
+    await page.evaluate(() => globalThis.gyroPage.clock.seek(2.02));
+    await page.waitForTimeout(100);
+    const off = await page.evaluate(() => {
+      const { u } = globalThis.gyroPage.charts.made[0];
+      const hand = u.over.querySelector('.hand').getBoundingClientRect().left - u.over.getBoundingClientRect().left;
+      return hand - u.over.clientWidth * 0.4;
+    });
+    assert.ok(Math.abs(off) < 2, `the line is ${off} pixels off`);
     await page.mouse.dblclick(box.x + box.width / 2, box.y + 20);
     assert.deepEqual(await page.evaluate(() => globalThis.gyroPage.charts.range()), [0, await page.evaluate(() => globalThis.gyroPage.clock.end)]);
     return page;

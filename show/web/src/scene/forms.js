@@ -148,7 +148,7 @@ export function forms(scene) {
   const shaftOf = (b) => {
     const solid = solids[b];
     const isDisc = solid.type === 'cylinder' && Math.abs(dot(solid.axis, rotors[b].axis)) > 0.9;
-    return isDisc ? solid.height / 2 + 0.5 * solid.radius : reach(solid) * 1.2;
+    return isDisc ? solid.height / 2 + 0.7 * solid.radius : reach(solid) * 1.2;
   };
   const formOf = (b) => {
     const each = bodies[b];
@@ -246,6 +246,10 @@ export function forms(scene) {
       } else if (isTop(other, held[other].map((end) => end.point))) {
         const wide = solids[other].radius;
         parts.push({ type: 'foot', at: point, height: 0.8 * wide, wide: 0.5 * wide, thick: 0.07 * wide });
+      } else if (kind === 'Spherical' && held[other].length === 1 && solids[other]?.type === 'cylinder' && solids[other].radius > solids[other].height) {
+        // A disc at the end of a rod that leans on a ball: the ball stands higher than the disc reaches down.
+        const wide = solids[other].radius;
+        parts.push({ type: 'foot', at: point, height: 1.15 * wide, wide: 0.5 * wide, thick: 0.8 * thick });
       } else if (rotors[other] && Math.abs(dot(down, axis)) < 0.8) {
         // Two bearings on posts.
         const half = shaftOf(other);
@@ -285,8 +289,7 @@ export function forms(scene) {
 
   const coilOf = ({ kind, ends: [first, second] }, shaft) => {
     if (kind === 'Prismatic') return { between: [[first.body, first.point], [second.body, second.point]], radius: 2.6 * thick };
-    const from = shaft ? -0.85 * shaft : -2.5 * thick;
-    const to = shaft ? -0.3 * shaft : 2.5 * thick;
+    const [from, to] = shaft ? [0.3 * shaft, 0.85 * shaft] : [-2.5 * thick, 2.5 * thick];
     return { body: first.body, from: add(first.point, first.axis, from), to: add(first.point, first.axis, to), radius: 2.6 * thick };
   };
   const parts = bodies.map((_, b) => formOf(b));
