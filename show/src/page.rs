@@ -24,8 +24,8 @@ const POSE: Rounding = Rounding::Bits(15);
 /// Velocities of bodies, of which four digits are read.
 const VELOCITY: Rounding = Rounding::Bits(13);
 
-/// Numbers that are read and zoomed into: a 4 millionth of a quantity's range.
-const PLOTTED: Rounding = Rounding::Bits(22);
+/// Numbers that are read and zoomed into: a millionth of a quantity's range.
+const PLOTTED: Rounding = Rounding::Bits(20);
 
 /// Times of samples: evenly spaced ones take no room, however finely.
 const TIME: Rounding = Rounding::Bits(30);

@@ -44,7 +44,7 @@ export function panel(place, scenes, clock) {
     const tables = scenes.flatMap((scene) => {
       if (!scene.bodies[selected]) return [];
       const lines = rows(scene, selected, clock.t).map(([what, values, unit]) => element('tr', {},
-        element('th', {}, what), element('td', {}, values.join(', ')), element('td', {}, unit)));
+        element('th', {}, what + (unit ? ` [${unit}]` : '')), element('td', {}, ...values.map((value) => element('div', {}, value)))));
       return [...(scenes.length > 1 ? [element('p', {}, scene.name)] : []), element('table', {}, ...lines)];
     });
     place.panel.replaceChildren(close, element('h2', {}, name.replaceAll('_', ' ') + (support === 'moving' ? '' : ` (${support})`)),

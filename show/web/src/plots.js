@@ -109,6 +109,8 @@ export function plots(place, scenes, clock, theme) {
       ],
       series: [{ label: 't', value: (_, v) => (v === null ? '–' : `${+v.toPrecision(8)} s`) }, ...series],
       hooks: {
+        // Scales are set some time after they are asked for.
+        draw: [() => drawn?.point()],
         setCursor: [(u) => { if (drawn) drawn.read(u.cursor.idx === null || u.cursor.left < 0 ? clock.t : u.posToVal(u.cursor.left, 'x')); }],
         setSelect: [(u) => {
           if (u.select.width < 4) return;

@@ -148,7 +148,7 @@ export function forms(scene) {
   const shaftOf = (b) => {
     const solid = solids[b];
     const isDisc = solid.type === 'cylinder' && Math.abs(dot(solid.axis, rotors[b].axis)) > 0.9;
-    return isDisc ? solid.height / 2 + 0.5 * solid.radius : reach(solid) * 1.2;
+    return isDisc ? solid.height / 2 + 0.7 * solid.radius : reach(solid) * 1.2;
   };
   const formOf = (b) => {
     const each = bodies[b];
@@ -207,7 +207,12 @@ export function forms(scene) {
       } else if (isBarBy(solid, ends)) {
         parts.push({ type: 'bar', from: ends[0], to: add([0, 0, 0], unit(ends[0]), -Math.min(solid.height / 2, 1.2 * length(ends[0]))), thick: 1.25 * thick, across: barAcross(held[b], [ends[0], [0, 0, 0]]) });
       } else if (hub) for (const end of ends) { if (distance(end, hub) > 1e-9) parts.push({ type: 'rod', from: hub, to: end, thick }); }
-      else parts.push({ type: 'bar', from: ends[0], to: ends[1], thick: 1.25 * thick, across: barAcross(held[b], ends) });
+      else {
+        const side = barAcross(held[b], ends);
+        // Bars that share a hinge lie side by side.
+        const from = side ? add(ends[0], side, (b % 2 ? 0.75 : -0.75) * thick) : ends[0];
+        parts.push({ type: 'bar', from, to: add(from, add(ends[1], ends[0], -1)), thick: 1.25 * thick, across: side });
+      }
       if (ends.length === 1 && solid && !isBarBy(solid, ends)) {
         // A bar that hangs from one end shows whole by its solid; a bob at a rod's end by a ball.
         parts.push({ ...solid, marked: solid.type === 'cylinder' && solid.radius > solid.height ? solid.axis : null });
@@ -241,6 +246,10 @@ export function forms(scene) {
       } else if (isTop(other, held[other].map((end) => end.point))) {
         const wide = solids[other].radius;
         parts.push({ type: 'foot', at: point, height: 0.8 * wide, wide: 0.5 * wide, thick: 0.07 * wide });
+      } else if (kind === 'Spherical' && held[other].length === 1 && solids[other]?.type === 'cylinder' && solids[other].radius > solids[other].height) {
+        // A disc at the end of a rod that leans on a ball: the ball stands higher than the disc reaches down.
+        const wide = solids[other].radius;
+        parts.push({ type: 'foot', at: point, height: 1.15 * wide, wide: 0.5 * wide, thick: 0.8 * thick });
       } else if (rotors[other] && Math.abs(dot(down, axis)) < 0.8) {
         // Two bearings on posts.
         const half = shaftOf(other);
@@ -280,8 +289,7 @@ export function forms(scene) {
 
   const coilOf = ({ kind, ends: [first, second] }, shaft) => {
     if (kind === 'Prismatic') return { between: [[first.body, first.point], [second.body, second.point]], radius: 2.6 * thick };
-    const from = shaft ? -0.85 * shaft : -2.5 * thick;
-    const to = shaft ? -0.3 * shaft : 2.5 * thick;
+    const [from, to] = shaft ? [0.3 * shaft, 0.85 * shaft] : [-2.5 * thick, 2.5 * thick];
     return { body: first.body, from: add(first.point, first.axis, from), to: add(first.point, first.axis, to), radius: 2.6 * thick };
   };
   const parts = bodies.map((_, b) => formOf(b));
@@ -369,7 +377,7 @@ function jointForm(scene, joint, { thick, rings, rotors, size }) {
   const isOnGround = scene.mechanism.bodies[first.body].support === 'fixed';
   switch (kind) {
     case 'Revolute':
-      return isNested ? [] : [pin(second, 1, 2.2 * thick, 1.5 * thick)];
+      return isNested ? [] : [pin(second, 1, 2.6 * thick, 1.4 * thick)];
     case 'Spherical':
       return [{ side: 1, type: 'sphere', at: second.point, radius: 2 * thick }];
     case 'Universal':

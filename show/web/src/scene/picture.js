@@ -159,12 +159,14 @@ export function picture(place, scenes, clock, theme, numbers) {
   return { canvas, camera, controls, home, draw, boxes, all, gl, points, under };
 }
 
+const most = (points, value) => points.reduce((best, p) => Math.max(best, value(p)), -Infinity);
+
 // A round of ground below all that moves, with its shadow.
 function groundBelow(points, up, thick) {
-  const low = Math.min(...points.map((p) => p.dot(up))) - 0.3 * thick;
+  const low = -most(points, (p) => -p.dot(up)) - 0.3 * thick;
   const centre = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length || 1);
   centre.addScaledVector(up, low - centre.dot(up));
-  const wide = 1.25 * Math.max(0.6, ...points.map((p) => p.clone().addScaledVector(up, low - p.dot(up)).distanceTo(centre)));
+  const wide = 1.25 * Math.max(0.6, most(points, (p) => p.clone().addScaledVector(up, low - p.dot(up)).distanceTo(centre)));
   const group = new Group();
   group.position.copy(centre);
   group.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), up));
@@ -190,7 +192,7 @@ function lights(world, points, up, from) {
   const sky = new HemisphereLight('#ffffff', '#8a8f98', 1.0);
   sky.position.copy(up);
   world.add(sky);
-  const far = Math.max(1, ...points.map((p) => p.length()));
+  const far = Math.max(1, most(points, (p) => p.length()));
   const sun = new DirectionalLight('#ffffff', 2.4);
   const side = up.clone().cross(from).normalize();
   const middle = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length || 1);
@@ -198,7 +200,7 @@ function lights(world, points, up, from) {
   sun.target.position.copy(middle);
   sun.castShadow = true;
   sun.shadow.mapSize.set(1024, 1024);
-  const reach = 1.2 * Math.max(...points.map((p) => p.distanceTo(middle)), 0.5);
+  const reach = 1.2 * Math.max(most(points, (p) => p.distanceTo(middle)), 0.5);
   Object.assign(sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.01, far: 8 * far });
   sun.shadow.bias = -0.0005;
   sun.shadow.normalBias = 0.01;

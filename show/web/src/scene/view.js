@@ -1,5 +1,5 @@
 // Where to look from, so that the whole motion is in the picture.
-import { Box3, Vector3 } from 'three';
+import { Vector3 } from 'three';
 import { dot, length, turn, unit } from '../vector.js';
 import { looks } from './forms.js';
 import { poseAt } from '../data.js';
@@ -41,37 +41,40 @@ export function direction(scene, up, form) {
   return front.multiplyScalar(0.82).addScaledVector(side, 0.62).addScaledVector(up, form.hasTop ? 0.12 : 0.38).normalize();
 }
 
-// Corners of all bodies at times of the run.
-export function corners(actors) {
-  const boxes = actors.bodies.map(({ group }) => {
-    const parent = group.parent;
-    group.removeFromParent();
-    group.position.set(0, 0, 0);
-    group.quaternion.identity();
-    group.updateMatrixWorld(true);
-    const box = new Box3();
-    for (const part of group.children) if (!part.userData.ghost) box.expandByObject(part);
-    parent.add(group);
-    return box;
-  });
+// Some vertices of a body's meshes, in its frame.
+function outline(group) {
   const found = [];
-  const point = new Vector3();
-  for (const t of looks(actors.scene)) {
-    actors.show(t);
-    boxes.forEach((box, b) => {
-      if (box.isEmpty()) return;
-      const { position, quaternion } = actors.bodies[b].group;
-      for (let k = 0; k < 8; k++) {
-        point.set(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z);
-        found.push(point.clone().applyQuaternion(quaternion).add(position));
-      }
+  const parent = group.parent;
+  group.removeFromParent();
+  group.position.set(0, 0, 0);
+  group.quaternion.identity();
+  group.updateMatrixWorld(true);
+  for (const child of group.children) {
+    if (child.userData.ghost) continue;
+    child.traverse(({ geometry, matrixWorld }) => {
+      const vertices = geometry?.getAttribute('position');
+      if (!vertices) return;
+      const every = Math.max(1, Math.floor(vertices.count / 40));
+      for (let k = 0; k < vertices.count; k += every) found.push(new Vector3().fromBufferAttribute(vertices, k).applyMatrix4(matrixWorld));
     });
-    for (const { ends } of actors.stretched) {
-      for (const [b, at] of ends) {
-        const { position, quaternion } = actors.bodies[b].group;
-        found.push(new Vector3(...at).applyQuaternion(quaternion).add(position));
-      }
-    }
+  }
+  parent.add(group);
+  return found;
+}
+
+// Points of all bodies at times of the run.
+export function corners(actors) {
+  const outlines = actors.bodies.map(({ group }) => outline(group));
+  const found = [];
+  const add = (point, { position, quaternion }) => found.push(point.clone().applyQuaternion(quaternion).add(position));
+  for (const t of looks(actors.scene, 40)) {
+    actors.show(t);
+    outlines.forEach((points, b) => {
+      // What stands still is looked at once.
+      if (t > actors.scene.time[0] && !actors.scene.bodies[b].moves) return;
+      for (const point of points) add(point, actors.bodies[b].group);
+    });
+    for (const { ends } of actors.stretched) for (const [b, at] of ends) add(new Vector3(...at), actors.bodies[b].group);
   }
   return found;
 }

@@ -1,0 +1,17 @@
+// The models of the gallery: file, options of `show`, and the part of the run after which the picture is taken.
+export const MODELS = [
+  ['models/gyroscope.toml', ['--t-end', '10'], 0.22],
+  ['models/gyroscope-four-bar.toml', ['--t-end', '0.2', '--every', '0.002'], 0.02],
+  ['models/pitching-gyroscope.toml', ['--t-end', '1'], 0.3],
+  ['models/heavy-top.toml', ['--t-end', '1'], 0.3],
+  ['models/spinning-top.toml', ['--t-end', '1'], 0.75],
+  ['models/free-body.toml', ['--t-end', '1'], 0.3],
+  ['models/compound-pendulum.toml', ['--t-end', '2'], 0.37],
+  ['models/torsion.toml', ['--t-end', '4'], 0.37],
+  ['models/four-bar-revolute.toml', ['--t-end', '2'], 0.2],
+  ['models/slider-crank.toml', ['--t-end', '1'], 0.05],
+  ['models/stewart-platform.toml', ['--t-end', '0.5', '--every', '0.01'], 0],
+  ['models/double-wishbone.toml', ['--t-end', '1', '--every', '0.01'], 0.5],
+];
+
+export const nameOf = (file) => file.replace(/^.*\//, '').replace(/\.toml$/, '');
