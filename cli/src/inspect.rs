@@ -8,7 +8,8 @@ use crate::verify::verify_quickly;
 use crate::words::table;
 use crate::{files, json, machine_code, nested, remarks, scene};
 use gyro_codegen::{
-    DataSheet, Elimination, Form, Function, Kernel, Module, Operations, generate_by, generate_model, large,
+    DataSheet, Elimination, Form, Function, Kernel, Module, Operations, Repetition, generate_by,
+    generate_model, large,
 };
 use gyro_model::{Model, Row, RowOwner, Tree};
 use rayon::prelude::*;
@@ -149,6 +150,7 @@ impl Inspection {
                  computed once, products with reciprocals as quotients (what is emitted); its results that are always zero";
         text += if self.bytes.is_some() { "; bytes of machine code\n" } else { "\n" };
         text += &table(&self.function_rows());
+        text += &self.loops();
         text += &self.choices();
         text += &self.element_table();
         text
@@ -172,6 +174,22 @@ impl Inspection {
             rows.push(cells.into_iter().chain(bytes).collect());
         }
         rows
+    }
+
+    /// Which functions are written as loops over tables of constants, and what they would be without.
+    fn loops(&self) -> String {
+        let functions = self.data_sheet.functions.iter();
+        let rows = functions.filter_map(|function| {
+            let Repetition { loops, copies, written } = function.repetition?;
+            let numbers = [loops, copies, written, function.operations.total()].map(|n| n.to_string());
+            Some([function.kernel.name().to_owned()].into_iter().chain(numbers).collect::<Vec<_>>())
+        });
+        let head = ["", "loops", "copies", "operations of the text", "straight-line"].map(str::to_owned);
+        let rows: Vec<_> = [head.to_vec()].into_iter().chain(rows).collect();
+        if rows.len() == 1 {
+            return String::new();
+        }
+        format!("\nwritten as loops over tables of constants\n{}", table(&rows))
     }
 
     /// What was compared, and what the normal form did.
@@ -274,6 +292,7 @@ fn function_json(function: &Function, bytes: Option<&BTreeMap<Kernel, u64>>) -> 
         "zeros": function.zeros,
         "forms": function.forms.iter().map(form).collect::<Vec<_>>(),
         "normal_form": function.reductions.iter().map(|r| json!({ "what": r.what, "before": r.before, "after": r.after })).collect::<Vec<_>>(),
+        "loops": function.repetition.map(|r| json!({ "loops": r.loops, "copies": r.copies, "operations": r.written })),
         "machine_code_bytes": bytes.and_then(|bytes| bytes.get(&function.kernel)),
     })
 }

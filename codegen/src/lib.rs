@@ -54,6 +54,7 @@ pub use emit::data_sheet::{DataSheet, Function, large};
 pub use expr::schedule::{Operations, Passes};
 pub use groups::{Functions, Group};
 pub use kernels::Kernel;
+pub use repeat::Repetition;
 pub use selection::UnknownFunction;
 pub use simplify::cheapest::Form;
 pub use simplify::normal_form::Reduction;

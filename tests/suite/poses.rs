@@ -7,6 +7,7 @@ use gyro_model::Model;
 use gyro_reference::Pendulum;
 use gyro_runner::motion::{MotionBuilder, Projecting, WithDuals};
 use gyro_runner::{Approach, Coordinates, Correction, Failure, Grade, Integrator, Sample, Settings, Summary};
+use gyro_sim::{CloseLoops, JointSpace, Mechanism};
 use gyro_sim_suite::generated::two_four_bars::TwoFourBars;
 use gyro_sim_suite::{
     Duals, Engine, coordinate, dense, duals, generated, judged, model, moved, start_of, worst,
@@ -225,6 +226,33 @@ fn joint_coordinates_pass_at_every_tolerance() {
             assert!(error < ADDED_UP * tolerance + ROUNDING, "{page}, {approach}: {error:e}");
             assert!(summary.statistics.leaps > 0, "{summary:?}");
         }
+    }
+}
+
+/// What rounding may do near a pose is counted by how clear of it a state is. Were cells that come into line at once
+/// counted as so many times nearer, leaps over the pose would be allowed to be off by as much.
+#[test]
+fn cells_in_line_at_once_are_about_as_clear_as_one() {
+    let cells = TwoFourBars::<f64>::default();
+    let (mut loops, mut x) = (CloseLoops::new(&cells), cells.joint_start());
+    for angle in [0.5, 0.1, 0.01, 1e-3] {
+        // All bars stand at this angle to the ground, and couplers lie along it.
+        for (coordinate, start) in x.iter_mut().zip(cells.joint_start()) {
+            *coordinate = if start > 0.0 {
+                angle
+            } else if start < 0.0 {
+                -angle
+            } else {
+                0.0
+            };
+        }
+        loops.correct(&cells, 0.0, &mut x).expect("bars of one length");
+        let mut squares = cells.joint_buffers().closure;
+        cells.closure_distances(0.0, &x, &mut squares);
+        let least = squares.iter().copied().fold(f64::INFINITY, f64::min).sqrt() / cells.size();
+        let clearance = loops.clearance(&cells, 0.0, &x).expect("it has loops").pivot;
+        println!("{angle} rad: {clearance:e} where the nearest row is {least:e} away");
+        assert!(clearance <= least && clearance > 0.9 * least, "{angle} rad: {clearance:e}, {least:e}");
     }
 }
 

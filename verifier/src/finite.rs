@@ -42,15 +42,18 @@ pub fn problems(model: &Model, module: &Module, seed: Seed) -> Vec<String> {
     let textbook = Dense::new(model);
     let constants: Vec<f64> = interpreter::constants((), module);
     let (places, mut problems) = (places(model, module, seed), Vec::new());
+    // Many functions ask it of one place: as it is, and of joints that are whole.
+    let mut regular = vec![[None; 2]; places.len()];
     for function in module.programs.keys() {
-        let broken = places.iter().find_map(|place| {
+        let broken = places.iter().zip(&mut regular).find_map(|(place, regular)| {
             let line = not_finite(model, module, &constants, function, place)?;
             let must_be_finite = match function.as_str() {
                 // Every joint state has its maximal state, and is as far from closed loops as that is.
                 "to_maximal" | "loop_closure" => true,
                 function => {
                     let module = is_solve(module, function).then_some(module);
-                    textbook.is_regular(model, &place.state, module)
+                    *regular[usize::from(module.is_some())]
+                        .get_or_insert_with(|| textbook.is_regular(model, &place.state, module))
                 }
             };
             must_be_finite.then_some((place.what, line))

@@ -2,14 +2,16 @@
 //! of the file, which shows of it what the verifier can see for itself.
 
 use crate::equations::Equations;
-use crate::expr::graph::Graph;
+use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::{Operations, Passes};
 use crate::groups::Group;
 use crate::joint_space::obstacle;
 use crate::kernels::{Kernel, Kernels};
+use crate::repeat::Repetition;
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
 use gyro_model::{Model, RowOwner, Support};
+use rustc_hash::FxHashMap as HashMap;
 use std::fmt::Write;
 
 /// What was generated and what was left out.
@@ -50,13 +52,19 @@ pub struct Function {
     pub forms: Vec<Form>,
     /// What the polynomial normal form made of the parts of the form of this name.
     pub reductions: Vec<Reduction>,
+    /// How it is written if it has loops; none if it is straight-line code.
+    pub repetition: Option<Repetition>,
 }
 
 /// How it is said of functions that they were asked for and cannot be.
 const UNAVAILABLE: &str = "the functions of";
 
 impl DataSheet {
-    pub(crate) fn of(equations: &Equations, kernels: &Kernels) -> Self {
+    pub(crate) fn of(
+        equations: &Equations,
+        kernels: &Kernels,
+        repetitions: &HashMap<Vec<ExprId>, Repetition>,
+    ) -> Self {
         let model = equations.model;
         let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.clone());
         Self {
@@ -67,7 +75,12 @@ impl DataSheet {
             phi_pi: equations.phi_pi.len(),
             left_out: left_out(equations),
             spared: spared(equations),
-            functions: kernels.iter().map(|kernel| Function::of(&equations.graph, kernel)).collect(),
+            functions: (kernels.iter())
+                .map(|kernel| {
+                    let repetition = repetitions.get(&kernel.1.roots).copied();
+                    Function { repetition, ..Function::of(&equations.graph, kernel) }
+                })
+                .collect(),
         }
     }
 
@@ -156,6 +169,7 @@ impl Function {
             zeros: roots.iter().filter(|&&root| root == Graph::ZERO).count(),
             forms: forms.clone(),
             reductions: reductions.clone(),
+            repetition: None,
         }
     }
 

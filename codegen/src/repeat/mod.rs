@@ -16,7 +16,7 @@ mod signs;
 mod terms;
 
 pub use loops::Direction;
-pub use rolled::{Local, Repeat, Rolled, Shape};
+pub use rolled::{Local, Repeat, Repetition, Rolled, Shape};
 
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Operations;

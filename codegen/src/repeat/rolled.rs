@@ -61,6 +61,17 @@ pub struct Shape {
     pub columns: usize,
 }
 
+/// How a function with loops is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Repetition {
+    /// Loops, one after the other.
+    pub loops: usize,
+    /// How often the longest of them goes round.
+    pub copies: usize,
+    /// Operations of its text; straight-line code has one for each that it does.
+    pub written: usize,
+}
+
 /// A kernel with loops.
 #[derive(Debug)]
 pub struct Rolled {
@@ -77,6 +88,12 @@ impl Rolled {
     pub fn outside_roots(&self) -> Vec<ExprId> {
         let before = self.loops.iter().flat_map(|(before, _)| before.roots());
         before.chain(self.roots.iter().copied()).collect()
+    }
+
+    /// What the data sheet says of it.
+    pub fn repetition(&self) -> Repetition {
+        let copies = self.loops.iter().map(|(_, repeat)| repeat.count).max().unwrap_or(0);
+        Repetition { loops: self.loops.len(), copies, written: self.n_written() }
     }
 
     /// How many operations its text has.

@@ -66,8 +66,7 @@ impl Signs {
                     }
                     // What the first part has, all have: an orbit and its opposite serve equally well.
                     let mut operand = |slot: usize| {
-                        let form =
-                            of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone());
+                        let form = of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone());
                         *form = equations.reduced(form);
                         form.clone()
                     };

@@ -100,29 +100,37 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
         closure_violation(mechanism, mechanism.joint_layout().closure_rows, self.closure.as_ref())
     }
 
-    /// How near the rows of J are to depending on each other: the least distance of one of them from the span of those
-    /// before it, lengths in units of the mechanism's size, as smooth as J where several are as near (`1/√Σd⁻²`). None
-    /// for trees.
+    /// How near the rows of J are to depending on each other: about the least distance of one of them from the span of
+    /// those before it, lengths in units of the mechanism's size, as smooth as J where several are as near
+    /// (`(Σd⁻⁸)^(-1/8)`: forty loops that come into line at once are nearly as clear of that pose as one). None for
+    /// trees.
     pub fn clearance(&self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Option<Clearance<M::Scalar>> {
         let rows = mechanism.joint_layout().closure_rows;
-        let mut squares = self.closure.clone();
-        mechanism.closure_distances(t, x, &mut squares);
+        let mut inverses = self.closure.clone();
+        mechanism.closure_distances(t, x, &mut inverses);
         let (zero, one, size) = (M::Scalar::constant(0.0), M::Scalar::constant(1.0), mechanism.size());
-        let (mut sum, mut nearest) = (zero, None);
-        for (&row, &square) in rows.iter().zip(squares.as_ref()) {
+        let mut nearest = None;
+        for (&row, square) in rows.iter().zip(inverses.as_mut()) {
             let row = mechanism.description().rows.get(usize::from(row));
             let owner = row.map(|row| row.owner);
-            let square = if row.is_some_and(|row| row.is_length) { square / (size * size) } else { square };
-            let inverse = one / square;
-            if !(square > zero && inverse.is_finite()) {
+            let unit = if row.is_some_and(|row| row.is_length) { size * size } else { one };
+            let inverse = unit / *square;
+            if !(*square > zero && inverse.is_finite()) {
                 return Some(Clearance { pivot: zero, owner });
             }
-            sum = sum + inverse;
+            *square = inverse;
             if nearest.is_none_or(|(largest, _)| inverse > largest) {
                 nearest = Some((inverse, owner));
             }
         }
-        nearest.map(|(_, owner)| Clearance { pivot: one / sum.sqrt(), owner })
+        nearest.map(|(largest, owner)| {
+            let fourth_powers = inverses.as_ref().iter().take(rows.len()).map(|&inverse| {
+                let square = (inverse / largest) * (inverse / largest);
+                square * square
+            });
+            let sum = fourth_powers.fold(zero, |sum, power| sum + power);
+            Clearance { pivot: one / (largest * sum.sqrt().sqrt()).sqrt(), owner }
+        })
     }
 
     /// How large the numbers are that a row subtracts, at least one: mass centres in units of the mechanism's size,

@@ -1,6 +1,6 @@
 //! Loops of long modules: they are proved as straight-line code is, and faults in them are found.
 
-use gyro_codegen::Functions;
+use gyro_codegen::{Functions, Kernel};
 use gyro_verifier::{Depth, verify};
 use std::fmt::Write as _;
 
@@ -37,6 +37,10 @@ fn loops_are_proved_and_their_faults_are_found() {
     let model = gyro_model::read("chain.toml", &chain()).expect("a model file");
     let functions = Functions::named(["maximal"]).expect("there is such a group");
     let module = gyro_codegen::generate_functions("chain.toml", &model, &functions).expect("a module");
+    let function = module.data_sheet.function(Kernel::Accelerations).expect("they are asked for");
+    let repetition = function.repetition.expect("they are long");
+    assert!(repetition.loops > 0 && (4..=LINKS).contains(&repetition.copies), "{repetition:?}");
+    assert!(2 * repetition.written <= function.operations.total(), "{repetition:?}");
     let is_proved = |code: &str| verify(&model, code, &module.constants, Depth::Quick).is_proved();
     assert!(is_proved(&module.code), "the module is not proved");
     for (from, to) in [

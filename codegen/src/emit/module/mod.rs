@@ -22,6 +22,7 @@ use crate::kernels::Kernels;
 use gyro_model::Start;
 use proc_macro2::TokenStream;
 use quote::quote;
+use std::cell::RefCell;
 
 /// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
 pub fn type_name(module_name: &str) -> String {
@@ -51,9 +52,9 @@ pub fn write(
     start: &Start,
 ) -> Text {
     let literals = Literals::default();
-    let module = ModuleWriter { equations, type_name, kernels, literals };
+    let module = ModuleWriter { equations, type_name, kernels, literals, repetitions: RefCell::default() };
     let tokens = module.tokens(start);
-    let data_sheet = DataSheet::of(equations, &module.kernels);
+    let data_sheet = DataSheet::of(equations, &module.kernels, &module.repetitions.borrow());
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);

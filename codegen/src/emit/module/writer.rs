@@ -10,9 +10,11 @@ use crate::expr::graph::ExprId;
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use crate::kernels::{Kernel, Kernels};
-use crate::repeat;
+use crate::repeat::{self, Repetition};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
+use rustc_hash::FxHashMap as HashMap;
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 fn table_of(symbol: &Symbol) -> Option<usize> {
@@ -36,6 +38,8 @@ pub struct ModuleWriter<'a> {
     pub kernels: Kernels,
     /// Exact constants of all functions.
     pub literals: Literals,
+    /// How kernels with loops are written, by what they compute.
+    pub repetitions: RefCell<HashMap<Vec<ExprId>, Repetition>>,
 }
 
 impl ModuleWriter<'_> {
@@ -46,7 +50,10 @@ impl ModuleWriter<'_> {
     pub fn body(&self, roots: &[ExprId]) -> Body {
         let graph = &self.equations.graph;
         let mut body = match repeat::rolled(graph, roots, &|symbol| self.element(symbol)) {
-            Some(rolled) => loops::body(self, &self.literals, &rolled),
+            Some(rolled) => {
+                self.repetitions.borrow_mut().insert(roots.to_vec(), rolled.repetition());
+                loops::body(self, &self.literals, &rolled)
+            }
             None => tokens::body(graph, self, &self.literals, roots),
         };
         let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
