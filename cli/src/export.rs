@@ -36,6 +36,13 @@ fn c(args: &CArgs) -> Result<(), Failure> {
     };
     let exported = gyro_export::c(&model, &module.code, precision)
         .map_err(|e| Failure::Run(format!("{}: {e}: please report it", args.model.display())))?;
+    let texts = (module.code.as_str(), module.constants.as_str());
+    gyro_verifier::same_in_c(&model, texts, (&exported.header, &exported.source)).map_err(|e| {
+        let page = args.model.display();
+        Failure::Run(format!(
+            "{page}: the C text is not what was proved: {e}: please report it with the model file"
+        ))
+    })?;
     let place = |name: String| args.out.join(name);
     let header = place(format!("{}.h", module.name));
     let source = place(format!("{}.c", module.name));

@@ -102,6 +102,13 @@ impl Constants {
         }
         Ok(places)
     }
+
+    /// What the constant of a place is rounded to, as its literal says.
+    pub(crate) fn rounded(&self, place: usize) -> f64 {
+        let after = self.lines.partition_point(|line| line.first <= place);
+        let line = after.checked_sub(1).and_then(|line| self.lines.get(line));
+        line.and_then(|line| line.literal.parse().ok()).unwrap_or(f64::NAN)
+    }
 }
 
 impl Line {

@@ -41,6 +41,7 @@
 #![deny(missing_docs)]
 
 pub mod atoms;
+mod c_text;
 pub mod constants;
 mod data_sheet;
 pub mod divisors;
@@ -65,6 +66,7 @@ mod tape;
 pub mod textbook;
 mod verify;
 
+pub use c_text::same_in_c;
 pub use finite::problems as not_finite;
 pub use prove::{NotProved, prove, prove_with};
 pub use report::{ACCEPTED_LOG10, Finding, Report};

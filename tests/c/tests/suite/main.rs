@@ -4,3 +4,4 @@ mod bits;
 mod docs;
 mod hostile;
 mod program;
+mod proof;

@@ -1,0 +1,160 @@
+//! Whether a C text computes what a module computes: the same operations on the same numbers, in the same order.
+//!
+//! `gyro export c` writes the functions of a module in C. Here the C text is read back, by a reader of its own, and run
+//! symbolically: assignments, loops over tables of constants, and the elementary functions are all that there is. What
+//! each function stores must then be, operation for operation, what the module's function gives. So what is proved of
+//! the module holds of the C text, and both round alike.
+
+mod expression;
+mod statements;
+mod tokens;
+
+use crate::module::Module;
+use crate::program::{Id, Node, Program};
+use crate::refusal::Refusal;
+use gyro_model::Model;
+use statements::Reader;
+use std::collections::HashMap;
+use tokens::{Token, tokens};
+
+/// Compares header and source in C with the text of a module, which they were written from. Returns the number of
+/// functions that are the same; the functions that compute nothing of their own (starts, and those that hand on to
+/// others) are not among them.
+///
+/// # Errors
+/// The first difference, or what in the C text is not of the subset that is written, with its line in the source.
+pub fn same_in_c(
+    model: &Model,
+    (module, constants): (&str, &str),
+    (header, source): (&str, &str),
+) -> Result<usize, Refusal> {
+    let module = Module::read(model, module, constants)?;
+    let named = named_numbers(&tokens(header)?);
+    let source = tokens(source)?;
+    for (name, program) in &module.written {
+        let is_of_charts = ["newton_step", "solve_velocities"].contains(&name.as_str());
+        let c_name = format!("{}_{name}{}", model.name, if is_of_charts { "_on" } else { "" });
+        let place = definition(&source, &c_name)
+            .ok_or_else(|| Refusal::new(1, format!("the C source has no function `{c_name}`")))?;
+        let mut nodes = Nodes::default();
+        let expected = nodes.of_program(program, &module);
+        let line = source[place].line;
+        let stored = Reader::new(&mut nodes, &named, &model.name).function(&source[place..])?;
+        compare(&c_name, line, (program, &expected), &stored)?;
+    }
+    Ok(module.written.len())
+}
+
+/// Something that is stored: the array, where in it, and what.
+#[derive(Clone, Debug)]
+struct Stored {
+    array: String,
+    place: Vec<usize>,
+    value: Id,
+    line: usize,
+}
+
+fn compare(
+    name: &str,
+    line: usize,
+    (program, expected): (&Program, &[Id]),
+    stored: &[Stored],
+) -> Result<(), Refusal> {
+    if stored.len() != expected.len() {
+        let (n, of) = (stored.len(), expected.len());
+        return Err(Refusal::new(line, format!("`{name}` stores {n} numbers where the module gives {of}")));
+    }
+    let (mut array, mut next) = ("", Vec::new());
+    for (n, (stored, expected)) in stored.iter().zip(expected).enumerate() {
+        if stored.value != *expected {
+            let at = format!("{}{:?}", stored.array, stored.place);
+            return Err(Refusal::new(stored.line, format!("`{name}`: {at} is not what the module gives")));
+        }
+        let is_in_place = match program.places.get(n) {
+            Some(place) => stored.place == [*place],
+            None => stored.place == next || stored.array != array && stored.place.iter().all(|k| *k == 0),
+        };
+        if !is_in_place {
+            return Err(Refusal::new(
+                stored.line,
+                format!("`{name}` stores {:?} out of order", stored.place),
+            ));
+        }
+        array = &stored.array;
+        next = after(&stored.place);
+    }
+    Ok(())
+}
+
+/// The next place of an array; arrays of arrays have four columns.
+fn after(place: &[usize]) -> Vec<usize> {
+    match place {
+        [row, 3] => vec![row + 1, 0],
+        [row, column] => vec![*row, column + 1],
+        place => place.iter().map(|k| k + 1).collect(),
+    }
+}
+
+/// Where a function is defined: its name, outside of all braces, with a body behind its arguments.
+fn definition(tokens: &[Token], name: &str) -> Option<usize> {
+    (0..tokens.len()).find(|&at| {
+        let is_head = tokens[at].text == name && tokens.get(at + 1).is_some_and(|next| next.text == "(");
+        let is_declared = at > 0 && tokens[at - 1].text == "void";
+        let body = tokens[at..].iter().position(|token| token.text == ")").map(|end| at + end + 1);
+        is_head && is_declared && body.is_some_and(|body| tokens.get(body).is_some_and(|t| t.text == "{"))
+    })
+}
+
+/// `NAME = 3` in the header: the places of parameters and inputs.
+fn named_numbers(tokens: &[Token]) -> HashMap<String, usize> {
+    let triples = tokens.windows(3).filter(|triple| triple[1].text == "=");
+    triples.filter_map(|triple| Some((triple[0].text.clone(), triple[2].text.parse().ok()?))).collect()
+}
+
+/// Operations, each once: what is computed alike has the same place.
+#[derive(Debug, Default)]
+struct Nodes {
+    nodes: Vec<Node>,
+    places: HashMap<Node, Id>,
+    /// Bits of literals, which [`Node::Constant`] names by their places.
+    literals: Vec<u64>,
+}
+
+impl Nodes {
+    fn push(&mut self, node: Node) -> Id {
+        // A sign before a literal is the literal's.
+        if let Node::Neg(of) = node
+            && let Node::Constant(place) = self.nodes[of]
+        {
+            return self.literal(-f64::from_bits(self.literals[place]));
+        }
+        let next = self.nodes.len();
+        let place = *self.places.entry(node).or_insert(next);
+        if place == next {
+            self.nodes.push(node);
+        }
+        place
+    }
+
+    fn literal(&mut self, value: f64) -> Id {
+        let bits = value.to_bits();
+        let place = self.literals.iter().position(|known| *known == bits).unwrap_or(self.literals.len());
+        if place == self.literals.len() {
+            self.literals.push(bits);
+        }
+        self.push(Node::Constant(place))
+    }
+
+    /// The results of a module's function.
+    fn of_program(&mut self, program: &Program, module: &Module) -> Vec<Id> {
+        let mut places: Vec<Id> = Vec::with_capacity(program.nodes.len());
+        for node in &program.nodes {
+            let place = match *node {
+                Node::Constant(place) => self.literal(module.constants.rounded(place)),
+                node => self.push(node.with_operands(|id| places[id])),
+            };
+            places.push(place);
+        }
+        program.results.iter().map(|&id| places[id]).collect()
+    }
+}
