@@ -17,6 +17,7 @@ mod parameters;
 mod reader;
 mod references;
 mod section;
+mod shapes;
 mod start;
 mod synonyms;
 mod table;
