@@ -11,6 +11,7 @@ mod merge;
 mod names;
 mod page;
 mod robot;
+mod shapes;
 mod wrenches;
 
 use crate::args::ImportArgs;

@@ -20,6 +20,7 @@ mod numbers;
 mod parse;
 mod queries;
 mod redundancy;
+mod shape;
 mod spatial;
 mod spline;
 mod tree;
@@ -37,6 +38,7 @@ pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
 pub use parse::{is_keyword, read, read_with};
 pub use redundancy::{Analysis, analyse};
+pub use shape::{Shape, ShapeKind};
 pub use spatial::{Quaternion, Vector, unit_vector};
 pub use spline::Spline;
 pub use tree::{Attachment, Link, Tree};
@@ -126,6 +128,8 @@ pub struct Body {
     pub motion: Option<BodyMotion>,
     /// How strongly the assembly of the start holds the body near its guess, relative to other bodies; 1 unless given.
     pub assembly_weight: Number,
+    /// What it looks like, as far as the model file says.
+    pub shapes: Vec<Shape>,
 }
 
 /// How a body is held in space.

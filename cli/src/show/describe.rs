@@ -2,7 +2,9 @@
 
 use crate::columns::{self, orientation, scalar};
 use crate::scene::Scene;
-use gyro_model::{Body, ForceKind, JointEnd, LoadFrame, Model, OutputKind, Support, Vector};
+use gyro_model::{
+    Body, ForceKind, JointEnd, LoadFrame, Model, OutputKind, Shape, ShapeKind, Support, Vector,
+};
 use gyro_runner::{Sample, energy_error};
 use gyro_show::{Column, Reaction, Run, Scale};
 
@@ -51,8 +53,24 @@ fn described(model: &Model, body: &Body) -> gyro_show::Body {
         },
         mass: model.value(&body.mass),
         inertia: model.values(&body.inertia),
-        shapes: Vec::new(),
+        shapes: body.shapes.iter().map(|shape| drawn(model, shape)).collect(),
     }
+}
+
+fn drawn(model: &Model, shape: &Shape) -> gyro_show::Shape {
+    let (kind, size) = match &shape.kind {
+        ShapeKind::Box(edges) => ("box", model.values(edges).to_vec()),
+        ShapeKind::Cylinder(sizes) => ("cylinder", model.values(sizes).to_vec()),
+        ShapeKind::Sphere(radius) => ("sphere", vec![model.value(radius)]),
+    };
+    let orientation = upright(model.values(&shape.orientation));
+    gyro_show::Shape { kind, size, position: model.values(&shape.position), orientation }
+}
+
+/// Euler parameters of unit length; of none, the identity.
+fn upright(p: [f64; 4]) -> [f64; 4] {
+    let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
+    if length > 0.0 { p.map(|e| e / length) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
 /// With unit vectors, the zero direction without its part along the axis.
@@ -139,10 +157,7 @@ fn join(s: [f64; 3], w: [f64; 3]) -> [f64; 6] {
 
 /// Where a fixed body is.
 fn standing(model: &Model, body: &Body) -> [f64; 7] {
-    let (r, p) = (model.values(&body.position), model.values(&body.orientation));
-    let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
-    let p = if length > 0.0 { p.map(|e| e / length) } else { [1.0, 0.0, 0.0, 0.0] };
-    pose(r.into(), p)
+    pose(model.values(&body.position).into(), upright(model.values(&body.orientation)))
 }
 
 /// What is plotted, in the order of the table: joints, outputs, inputs, energy, violations.

@@ -182,6 +182,14 @@ impl Page<'_> {
                 let _ = writeln!(text, "# Link {name}: its frame is at {xyz} in the body's, turned by {p}.");
             }
         }
+        for (place, link) in self.merged.places.iter().zip(&self.robot.links) {
+            for shape in link.shapes.iter().filter(|_| place.body == index) {
+                let pose = settled(&(place.pose * shape.pose));
+                let _ = writeln!(text, "\n[[body.shape]]\n{}", shape.kind.text());
+                let _ = writeln!(text, "position = {}", vector(&pose.translation.vector));
+                let _ = writeln!(text, "orientation = {}", euler_parameters(&pose));
+            }
+        }
     }
 
     fn moving(&self, text: &mut String, body: &Body, inertial: &Settled) {

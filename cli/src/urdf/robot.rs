@@ -3,6 +3,7 @@
 use super::angle::Angles;
 use super::element::{Findings, XACRO, child};
 use super::inertia::Inertial;
+use super::shapes;
 use crate::words;
 use nalgebra::{IsometryMatrix3, Matrix3, Vector3};
 use roxmltree::{Document, Node};
@@ -24,6 +25,8 @@ pub(super) struct Link {
     pub(super) line: u32,
     /// In the link's axes; `None` for a link without mass and inertia: a frame.
     pub(super) inertial: Option<Inertial>,
+    /// What it looks like, as far as that is known.
+    pub(super) shapes: Vec<shapes::Shape>,
 }
 
 #[derive(Debug)]
@@ -128,17 +131,19 @@ fn robot(findings: &mut Findings<'_>, root: Node<'_, '_>) -> Robot {
             findings.unused(node);
         }
     }
-    shapes(findings, root);
+    remark_on_shapes(findings, root, &links);
     let name = root.attribute("name").unwrap_or("robot").to_owned();
     Robot { name, links, joints, remarks: Vec::new() }
 }
 
-/// One remark on all shapes.
-fn shapes(findings: &mut Findings<'_>, root: Node<'_, '_>) {
+/// One remark on all shapes that are left out.
+fn remark_on_shapes(findings: &mut Findings<'_>, root: Node<'_, '_>, links: &[Link]) {
     let number = |tag: &str| root.descendants().filter(|node| node.has_tag_name(tag)).count();
-    let (visuals, collisions) = (number("visual"), number("collision"));
+    let kept: usize = links.iter().map(|link| link.shapes.len()).sum();
+    let (visuals, collisions) = (number("visual").saturating_sub(kept), number("collision"));
     if visuals + collisions > 0 {
-        let remark = format!("{visuals} <visual> and {collisions} <collision>: shapes have no counterpart");
+        let remark =
+            format!("{visuals} <visual> and {collisions} <collision>: these shapes have no counterpart");
         findings.remarks.push(remark);
     }
 }
@@ -160,7 +165,8 @@ fn link(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Link> {
         }
     }
     let inertial = child(node, "inertial").and_then(|inertial| read_inertial(findings, inertial));
-    Some(Link { name, line: findings.line(node), inertial })
+    let shapes = shapes::read(findings, node);
+    Some(Link { name, line: findings.line(node), inertial, shapes })
 }
 
 /// Mass, mass centre and inertia; `None` where both are zero.

@@ -316,7 +316,7 @@ fn what_has_no_counterpart_is_listed() {
         "1 <sensor> without counterpart: line 4",
         "1 <calibration> without counterpart: line 5",
         "line 5: <mimic> of joint `f`: a fixed joint follows nothing",
-        "2 <visual> and 0 <collision>: shapes have no counterpart",
+        "2 <visual> and 0 <collision>: these shapes have no counterpart",
         "1 link fixed to `arm`, one body with it: `frame`",
         "the root link `base` is fixed",
     ] {

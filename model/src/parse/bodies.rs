@@ -6,11 +6,11 @@ use super::numbers::{number, plain_number, vector};
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::tensor::tensor;
-use super::{driven, tables};
+use super::{driven, shapes, tables};
 use crate::validate::Owner;
 use crate::{Body, Number, Support};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "name",
     "fixed",
     "free",
@@ -22,6 +22,7 @@ const KEYS: [&str; 11] = [
     "velocity",
     "angular_velocity",
     "assembly_weight",
+    "shape",
 ];
 
 /// Reads all bodies. Their names are with the reader before any joint refers to them.
@@ -57,6 +58,7 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
     // Of a body that is held in an unknown way nothing is asked.
     let support = support.unwrap_or(Support::Fixed);
     let (mass, inertia) = inertial(reader, &section, &title, support);
+    let shapes = section.get("shape").map(|item| shapes::read(reader, index, &title, item));
     let weight = section.get("assembly_weight").and_then(|item| plain_number(reader, item));
     Body {
         name,
@@ -69,6 +71,7 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
         angular_velocity: section.get("angular_velocity").and_then(|item| vector(reader, item)),
         motion: motion.filter(|_| support == Support::Driven),
         assembly_weight: weight.map_or_else(|| Number::integer(1), Number::Exact),
+        shapes: shapes.unwrap_or_default(),
     }
 }
 

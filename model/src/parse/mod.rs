@@ -18,6 +18,7 @@ mod parameters;
 mod reader;
 mod references;
 mod section;
+mod shapes;
 mod start;
 mod synonyms;
 mod table;

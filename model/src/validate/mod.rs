@@ -36,6 +36,8 @@ pub(crate) enum Owner {
     Body(usize),
     /// The `driven` table of a body.
     Driven(usize),
+    /// A shape of a body, by its index.
+    Shape(usize, usize),
     Joint(usize),
     End(usize, Side),
     Coupler(usize),
@@ -89,6 +91,7 @@ impl Place {
             (Owner::End(joint, _), "") => Some(Self::joint(joint, "")),
             (Owner::CouplerEnd(index, _), "") => Some(Self { owner: Owner::Coupler(index), key: "" }),
             (Owner::ForceEnd(index, _), "") => Some(Self { owner: Owner::Force(index), key: "" }),
+            (Owner::Shape(body, _), "") => Some(Self::body(body, "shape")),
             (Owner::Driven(body), "") => Some(Self::body(body, "driven")),
             (_, "") => Some(Self { owner: Owner::Page, key: "" }),
             (owner, _) => Some(Self { owner, key: "" }),

@@ -97,6 +97,7 @@ fn the_tables_know_every_key() {
         within("amplitude = 0.01"),
         within("polynomial = [0, 0, 0.05]"),
         after("[body.driven]\n"),
+        example.replacen("cylinder = [0.1, 0.4]", "qqqqqqqqqqqq = 1\ncylinder = [0.1, 0.4]", 1),
     ];
     for section in sections {
         let keys = known_keys(&section);

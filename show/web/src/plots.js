@@ -140,7 +140,7 @@ export function plots(place, scenes, clock, theme) {
       u,
       chart,
       read(t) {
-        chart.lines.forEach(({ column, time }, k) => { values[k].textContent = number(valueAt(time, column.values, t)); });
+        chart.lines.forEach(({ column, time }, k) => { values[k].textContent = number(kept(valueAt(time, column.values, t), column)); });
       },
       point() {
         if (!(u.cursor.left >= 0)) drawn.read(clock.t);
@@ -180,6 +180,13 @@ export function plots(place, scenes, clock, theme) {
   theme.listen(() => { for (const { u } of made) u.redraw(false); });
   new ResizeObserver(() => { for (const chart of made) chart.resize(); }).observe(place);
   return { made, zoom, range: () => range };
+}
+
+// As many digits as the page keeps.
+function kept(v, { log, channel: { step } }) {
+  if (log || !(step > 0)) return v;
+  const unit = 10 ** Math.floor(Math.log10(step) + 0.7);
+  return Math.round(v / unit) * unit;
 }
 
 // Rounding noise about a constant is drawn as a constant.

@@ -111,7 +111,7 @@ const tests = {
     });
     assert.ok(samples > 45 && shown === samples, `${shown} of ${samples}`);
     // The line at the time that is shown stands where the zoomed plot has that time.
-    await page.evaluate(() => globalThis.gyroPage.clock.seek(2.02));
+    await page.evaluate(() => { globalThis.gyroPage.clock.seek(3.02); globalThis.gyroPage.charts.zoom(3, 3.05); });
     await page.waitForTimeout(100);
     const off = await page.evaluate(() => {
       const { u } = globalThis.gyroPage.charts.made[0];
