@@ -3,6 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use super::numbers::{number, plain_number, vector};
+use super::point_masses::{self, PointMass};
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::tensor::tensor;
@@ -10,13 +11,14 @@ use super::{driven, tables};
 use crate::validate::Owner;
 use crate::{Body, Number, Support};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "name",
     "fixed",
     "free",
     "driven",
     "mass",
     "inertia",
+    "point_mass",
     "position",
     "orientation",
     "velocity",
@@ -24,8 +26,8 @@ const KEYS: [&str; 11] = [
     "assembly_weight",
 ];
 
-/// Reads all bodies. Their names are with the reader before any joint refers to them.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
+/// Reads all bodies, each with its point masses. Their names are with the reader before any joint refers to them.
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<(Body, Vec<PointMass>)> {
     page.require(
         reader,
         "body",
@@ -46,7 +48,7 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
         .collect()
 }
 
-fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String) -> Body {
+fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String) -> (Body, Vec<PointMass>) {
     let title = format!("body `{name}`");
     let section = Section::open(reader, Owner::Body(index), &title, table, &KEYS);
     let support = support(reader, &section);
@@ -56,20 +58,23 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
     let motion = section.get("driven").map(|item| driven::read(reader, index, &title, item));
     // Of a body that is held in an unknown way nothing is asked.
     let support = support.unwrap_or(Support::Fixed);
+    let point_masses = point_masses::read(reader, &section, index, &title);
     let (mass, inertia) = inertial(reader, &section, &title, support);
     let weight = section.get("assembly_weight").and_then(|item| plain_number(reader, item));
-    Body {
+    let body = Body {
         name,
         support,
         mass,
         inertia,
+        frame: [0; 3].map(Number::integer),
         position: section.vector_or(reader, "position", [0; 3]),
         orientation: section.vector_or(reader, "orientation", [1, 0, 0, 0]),
         velocity: section.vector_or(reader, "velocity", [0; 3]),
         angular_velocity: section.get("angular_velocity").and_then(|item| vector(reader, item)),
         motion: motion.filter(|_| support == Support::Driven),
         assembly_weight: weight.map_or_else(|| Number::integer(1), Number::Exact),
-    }
+    };
+    (body, point_masses)
 }
 
 /// How the body is held: `fixed`, `free` and `driven` exclude each other.
@@ -110,7 +115,7 @@ fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, name: &str, 
         Support::Fixed | Support::Constrained => ("fixed", "remove the line, or the line with `fixed`"),
         Support::Driven => ("driven", "remove the line: its motion is prescribed by `driven`"),
     };
-    for key in ["velocity", "angular_velocity", "assembly_weight"] {
+    for key in ["velocity", "angular_velocity", "assembly_weight", "point_mass"] {
         let message = format!("body `{name}` is {is} and takes no {}", key.replace('_', " "));
         section.refuse(reader, key, &message, help);
     }
@@ -123,7 +128,8 @@ fn inertial(
     title: &str,
     support: Support,
 ) -> (Number, [Number; 6]) {
-    let may_lack = matches!(support, Support::Fixed | Support::Driven);
+    // The point masses may be all that there is of a body.
+    let may_lack = matches!(support, Support::Fixed | Support::Driven) || section.has("point_mass");
     let mass = if may_lack {
         section.get("mass")
     } else {

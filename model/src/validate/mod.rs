@@ -36,6 +36,8 @@ pub(crate) enum Owner {
     Body(usize),
     /// The `driven` table of a body.
     Driven(usize),
+    /// A point mass of a body, by its place among them.
+    PointMass(usize, usize),
     Joint(usize),
     End(usize, Side),
     Coupler(usize),
@@ -90,6 +92,7 @@ impl Place {
             (Owner::CouplerEnd(index, _), "") => Some(Self { owner: Owner::Coupler(index), key: "" }),
             (Owner::ForceEnd(index, _), "") => Some(Self { owner: Owner::Force(index), key: "" }),
             (Owner::Driven(body), "") => Some(Self::body(body, "driven")),
+            (Owner::PointMass(body, _), "") => Some(Self::body(body, "point_mass")),
             (_, "") => Some(Self { owner: Owner::Page, key: "" }),
             (owner, _) => Some(Self { owner, key: "" }),
         }
