@@ -1,5 +1,6 @@
 //! The command line's arguments.
 
+mod begin;
 mod simulate;
 
 use clap::{Args, Parser, Subcommand};
@@ -7,6 +8,7 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+pub(crate) use begin::{CheckArgs, NewArgs, Template};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
 /// The exit codes of every command.
@@ -28,6 +30,8 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    New(NewArgs),
+    Check(CheckArgs),
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
     Inspect(InspectArgs),
