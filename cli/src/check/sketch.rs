@@ -77,10 +77,10 @@ impl View {
         });
         let largest = spread.iter().copied().fold(0.0, f64::max);
         let flat = (0..3).filter(|&k| spread[k] <= FLAT * largest && above[k].abs() < 0.5);
-        let normals = flat.map(|k| [Vector::x(), -Vector::y(), Vector::z()][k]);
+        let mut normals = flat.map(|k| [Vector::x(), -Vector::y(), Vector::z()][k]);
         let aside =
             if above.z.abs() > 0.5 { Vector::new(0.5, -0.8, 0.0) } else { Vector::new(0.5, 0.3, 0.8) };
-        let from = normals.last().unwrap_or_else(|| (aside + above * 0.4).normalize());
+        let from = normals.next_back().unwrap_or_else(|| (aside + above * 0.4).normalize());
         let right = above.cross(&from).try_normalize(1e-9).unwrap_or_else(Vector::x);
         let up = from.cross(&right);
         let flat: Vec<[f64; 2]> = points.iter().map(|point| [right.dot(point), up.dot(point)]).collect();
@@ -133,8 +133,8 @@ fn draw(
     put(area.fill(&WHITE))?;
     let grey = RGBColor(110, 110, 110);
     let style = |size: i32, colour: RGBColor, across| {
-        TextStyle::from(("sans-serif", size * FINE).into_font().color(&colour))
-            .pos(Pos::new(across, VPos::Center))
+        let font = ("sans-serif", size * FINE).into_font();
+        font.color(&colour).pos(Pos::new(across, VPos::Center))
     };
     for (index, body) in model.bodies.iter().enumerate() {
         let has_coordinates = body.support.has_coordinates();
