@@ -2,6 +2,7 @@
 
 mod export;
 mod show;
+mod begin;
 mod simulate;
 
 use clap::{Args, Parser, Subcommand};
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 
 pub(crate) use export::{CArgs, ExportArgs, Target};
 pub(crate) use show::{Change, ShowArgs};
+pub(crate) use begin::{CheckArgs, NewArgs, Template};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
 /// The exit codes of every command.
@@ -32,6 +34,8 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    New(NewArgs),
+    Check(CheckArgs),
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
     Show(ShowArgs),

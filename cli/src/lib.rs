@@ -3,6 +3,7 @@
 
 mod args;
 pub mod chain;
+mod check;
 mod columns;
 mod compare;
 mod export;
@@ -20,6 +21,7 @@ mod linearization;
 pub mod machine;
 pub mod machine_code;
 mod nested;
+mod new;
 pub mod places;
 mod plot;
 pub mod programs;
@@ -52,6 +54,8 @@ impl Command {
     /// If the request is invalid, or the command fails.
     pub fn run(&self) -> Result<(), Failure> {
         match self {
+            Self::New(args) => new::new(args),
+            Self::Check(args) => check::check(args),
             Self::Generate(args) => generate::generate(args),
             Self::Simulate(args) => simulate::simulate(args),
             Self::Show(args) => show::show(args),

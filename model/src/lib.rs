@@ -115,6 +115,9 @@ pub struct Body {
     pub mass: Number,
     /// Inertia tensor about the mass centre in the body frame, kg·m²: `[xx, yy, zz, xy, xz, yz]`.
     pub inertia: [Number; 6],
+    /// The origin of the frame in which the model file gives points of the body, seen from the mass centre, m: not zero
+    /// of bodies with point masses.
+    pub frame: [Number; 3],
     /// Position of the mass centre in the global frame, m: of fixed bodies, and the start of free ones.
     pub position: [Number; 3],
     /// Euler parameters `(e0, e1, e2, e3)`, not necessarily of unit length: of fixed bodies, and the start of free

@@ -1,6 +1,6 @@
 //! All numbers of a model.
 
-use crate::{ForceKind, Model, Motion, Number, OutputKind};
+use crate::{ForceKind, Model, Motion, Number, OutputKind, Shape, ShapeKind};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
@@ -10,6 +10,7 @@ impl Model {
             numbers.extend([&body.mass, &body.assembly_weight]);
             numbers.extend(body.inertia.iter().chain(&body.position).chain(&body.orientation));
             numbers.extend(body.velocity.iter().chain(body.angular_velocity.iter().flatten()));
+            body.shapes.iter().for_each(|shape| shape.add_numbers(&mut numbers));
             if let Some(motion) = &body.motion {
                 motion.translation.iter().for_each(|motion| motion.add_numbers(&mut numbers));
                 for (axis, angle) in &motion.rotations {
@@ -31,6 +32,17 @@ impl Model {
         self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
         self.outputs.iter().for_each(|output| numbers.extend(output.kind.point().into_iter().flatten()));
         numbers
+    }
+}
+
+impl Shape {
+    fn add_numbers<'m>(&'m self, numbers: &mut Vec<&'m Number>) {
+        match &self.kind {
+            ShapeKind::Box(sides) => numbers.extend(sides),
+            ShapeKind::Cylinder(sizes) => numbers.extend(sizes),
+            ShapeKind::Sphere(radius) => numbers.push(radius),
+        }
+        numbers.extend(self.position.iter().chain(&self.orientation));
     }
 }
 

@@ -31,6 +31,22 @@ impl JointKind {
         }
     }
 
+    /// The kind's name in the model file.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Revolute => "revolute",
+            Self::Spherical => "spherical",
+            Self::Fixed => "fixed",
+            Self::Universal => "universal",
+            Self::Cylindrical => "cylindrical",
+            Self::Prismatic => "prismatic",
+            Self::Planar => "planar",
+            Self::Screw => "screw",
+            Self::PointOnLine => "point_on_line",
+            Self::Rod => "rod",
+        }
+    }
+
     /// Number of relative motions that the joint leaves free.
     pub fn n_free(self) -> usize {
         6 - self.row_units().len()

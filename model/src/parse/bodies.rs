@@ -3,6 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use super::numbers::{number, plain_number, vector};
+use super::point_masses::{self, PointMass};
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::tensor::tensor;
@@ -10,13 +11,14 @@ use super::{driven, shapes, tables};
 use crate::validate::Owner;
 use crate::{Body, Number, Support};
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "name",
     "fixed",
     "free",
     "driven",
     "mass",
     "inertia",
+    "point_mass",
     "position",
     "orientation",
     "velocity",
@@ -25,8 +27,8 @@ const KEYS: [&str; 12] = [
     "shape",
 ];
 
-/// Reads all bodies. Their names are with the reader before any joint refers to them.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
+/// Reads all bodies, each with its point masses. Their names are with the reader before any joint refers to them.
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<(Body, Vec<PointMass>)> {
     page.require(
         reader,
         "body",
@@ -47,7 +49,7 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Body> {
         .collect()
 }
 
-fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String) -> Body {
+fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String) -> (Body, Vec<PointMass>) {
     let title = format!("body `{name}`");
     let section = Section::open(reader, Owner::Body(index), &title, table, &KEYS);
     let support = support(reader, &section);
@@ -57,14 +59,16 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
     let motion = section.get("driven").map(|item| driven::read(reader, index, &title, item));
     // Of a body that is held in an unknown way nothing is asked.
     let support = support.unwrap_or(Support::Fixed);
+    let point_masses = point_masses::read(reader, &section, index, &title);
     let (mass, inertia) = inertial(reader, &section, &title, support);
     let shapes = section.get("shape").map(|item| shapes::read(reader, index, &title, item));
     let weight = section.get("assembly_weight").and_then(|item| plain_number(reader, item));
-    Body {
+    let body = Body {
         name,
         support,
         mass,
         inertia,
+        frame: [0; 3].map(Number::integer),
         position: section.vector_or(reader, "position", [0; 3]),
         orientation: section.vector_or(reader, "orientation", [1, 0, 0, 0]),
         velocity: section.vector_or(reader, "velocity", [0; 3]),
@@ -72,7 +76,8 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
         motion: motion.filter(|_| support == Support::Driven),
         assembly_weight: weight.map_or_else(|| Number::integer(1), Number::Exact),
         shapes: shapes.unwrap_or_default(),
-    }
+    };
+    (body, point_masses)
 }
 
 /// How the body is held: `fixed`, `free` and `driven` exclude each other.
@@ -113,7 +118,7 @@ fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, name: &str, 
         Support::Fixed | Support::Constrained => ("fixed", "remove the line, or the line with `fixed`"),
         Support::Driven => ("driven", "remove the line: its motion is prescribed by `driven`"),
     };
-    for key in ["velocity", "angular_velocity", "assembly_weight"] {
+    for key in ["velocity", "angular_velocity", "assembly_weight", "point_mass"] {
         let message = format!("body `{name}` is {is} and takes no {}", key.replace('_', " "));
         section.refuse(reader, key, &message, help);
     }
@@ -126,7 +131,8 @@ fn inertial(
     title: &str,
     support: Support,
 ) -> (Number, [Number; 6]) {
-    let may_lack = matches!(support, Support::Fixed | Support::Driven);
+    // The point masses may be all that there is of a body.
+    let may_lack = matches!(support, Support::Fixed | Support::Driven) || section.has("point_mass");
     let mass = if may_lack {
         section.get("mass")
     } else {

@@ -5,18 +5,20 @@ use super::section::Section;
 use crate::{CoordinateKind, JointKind};
 
 /// The names of the kinds.
-pub(super) const KINDS: [(&str, JointKind); 10] = [
-    ("revolute", JointKind::Revolute),
-    ("spherical", JointKind::Spherical),
-    ("fixed", JointKind::Fixed),
-    ("universal", JointKind::Universal),
-    ("cylindrical", JointKind::Cylindrical),
-    ("prismatic", JointKind::Prismatic),
-    ("planar", JointKind::Planar),
-    ("screw", JointKind::Screw),
-    ("point_on_line", JointKind::PointOnLine),
-    ("rod", JointKind::Rod),
-];
+pub(super) const KINDS: [(&str, JointKind); 10] = {
+    use JointKind::{
+        Cylindrical, Fixed, Planar, PointOnLine, Prismatic, Revolute, Rod, Screw, Spherical, Universal,
+    };
+    let all =
+        [Revolute, Spherical, Fixed, Universal, Cylindrical, Prismatic, Planar, Screw, PointOnLine, Rod];
+    let mut named = [("", Revolute); 10];
+    let mut k = 0;
+    while k < all.len() {
+        named[k] = (all[k].name(), all[k]);
+        k += 1;
+    }
+    named
+};
 
 /// Keys that only some kinds have.
 const OF_KINDS: [&str; 17] = [
@@ -75,12 +77,8 @@ pub(super) fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, k
 pub(super) fn title(kind: JointKind) -> String {
     match kind {
         JointKind::Rod => "rod".to_owned(),
-        _ => format!("{} joint", name(kind)),
+        _ => format!("{} joint", kind.name()),
     }
-}
-
-fn name(kind: JointKind) -> &'static str {
-    KINDS.iter().find(|(_, other)| *other == kind).map_or("", |(name, _)| name)
 }
 
 fn has(kind: JointKind, key: &str) -> bool {

@@ -15,6 +15,7 @@ mod numbers;
 mod outputs;
 mod page;
 mod parameters;
+mod point_masses;
 mod reader;
 mod references;
 mod section;

@@ -7,7 +7,7 @@ use super::names;
 use super::numbers::{plain_number, positive};
 use super::reader::Reader;
 use super::section::{Section, keyword};
-use super::{bodies, couplings, forces, joints, outputs, parameters};
+use super::{bodies, couplings, forces, joints, outputs, parameters, point_masses};
 use crate::validate::{Owner, Place};
 use crate::{Method, Model, Rational, Simulation, to_f64};
 
@@ -41,14 +41,14 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
     let functions = functions(reader, &page);
     let simulation = simulation(reader, &page);
-    let bodies = bodies::read(reader, &page);
+    let (bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
     let joints = joints::read(reader, &page);
     let couplers = couplings::couplers(reader, &page);
     let drivers = couplings::drivers(reader, &page);
     let forces = forces::read(reader, &page);
     let outputs = outputs::read(reader, &page);
     let redundant = Vec::new();
-    Model {
+    let mut model = Model {
         name,
         gravity,
         parameters,
@@ -65,7 +65,9 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         functions,
         nearly_exact: Vec::new(),
         simulation,
-    }
+    };
+    point_masses::add(&mut model, &point_masses);
+    model
 }
 
 fn format(reader: &mut Reader<'_>, page: &Section<'_>) {

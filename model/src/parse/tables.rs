@@ -17,7 +17,8 @@ pub(super) fn tables<'t>(
     key: &'static str,
 ) -> Vec<(Range<usize>, &'t DeTable<'t>)> {
     let Some(item) = page.get(key) else { return Vec::new() };
-    let example = format!("[[{key}]] on a line of its own above each {key}");
+    let within = if let Owner::Body(_) = page.owner { "body." } else { "" };
+    let example = format!("[[{within}{key}]] on a line of its own above each {}", key.replace('_', " "));
     let Some(elements) = item.value.get_ref().as_array() else {
         item.wrong_type(reader, "an array of tables", &example);
         return Vec::new();

@@ -83,7 +83,8 @@ fn of_key(key: &str) -> Option<&'static str> {
         "t_end" | "step" | "correct_every" | "sample_every" => "s",
         "mass" => "kg",
         "inertia" | "xx" | "yy" | "zz" | "xy" | "xz" | "yz" => "kg.m2",
-        "position" | "point" | "displacement" | "x" | "y" | "length" | "free_length" | "translation" => "m",
+        "position" | "point" | "at" | "displacement" | "x" | "y" | "length" | "free_length"
+        | "translation" => "m",
         "velocity" => "m/s",
         "angular_velocity" | "angular_frequency" => "rad/s",
         "angle" | "first_angle" | "second_angle" | "phase" => "rad",

@@ -3,6 +3,7 @@
 use num_traits::Signed;
 
 use super::{Place, Problem, shown};
+use crate::number::{SIZE_EXPONENT, in_range};
 use crate::{Body, Model, Number, Rational, Support};
 
 /// A folded body may leave its mass and inertia out.
@@ -22,6 +23,23 @@ pub(super) fn mass(model: &Model, index: usize, body: &Body) -> Option<Problem> 
         message: format!("the mass of body `{}` is not positive", body.name),
         label: format!("{} kg", shown(&value)),
         help: "write a mass greater than 0, in kg".to_owned(),
+    })
+}
+
+/// What point masses make of a body: what is written was checked as it was read.
+pub(super) fn size(model: &Model, index: usize, body: &Body) -> Option<Problem> {
+    let numbers = std::iter::once(&body.mass).chain(&body.inertia);
+    let mut numbers = numbers.chain(&body.frame).chain(&body.position).chain(&body.velocity);
+    let is_wide = numbers.any(|number| !in_range(&model.exact(number)));
+    is_wide.then(|| Problem {
+        place: Place::body(index, "point_mass"),
+        also: None,
+        message: format!(
+            "body `{}` with its point masses is too large or too small to compute with",
+            body.name
+        ),
+        label: "make a moment of inertia or a place of such a size".to_owned(),
+        help: format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
     })
 }
 

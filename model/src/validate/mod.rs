@@ -38,6 +38,8 @@ pub(crate) enum Owner {
     Driven(usize),
     /// A shape of a body, by its index.
     Shape(usize, usize),
+    /// A point mass of a body, by its place among them.
+    PointMass(usize, usize),
     Joint(usize),
     End(usize, Side),
     Coupler(usize),
@@ -93,6 +95,7 @@ impl Place {
             (Owner::ForceEnd(index, _), "") => Some(Self { owner: Owner::Force(index), key: "" }),
             (Owner::Shape(body, _), "") => Some(Self::body(body, "shape")),
             (Owner::Driven(body), "") => Some(Self::body(body, "driven")),
+            (Owner::PointMass(body, _), "") => Some(Self::body(body, "point_mass")),
             (_, "") => Some(Self { owner: Owner::Page, key: "" }),
             (owner, _) => Some(Self { owner, key: "" }),
         }

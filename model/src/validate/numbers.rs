@@ -13,6 +13,7 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     for (index, body) in model.bodies.iter().enumerate() {
         found.extend(inertia::mass(model, index, body));
         found.extend(inertia::inertia(model, index, body));
+        found.extend(inertia::size(model, index, body));
         found.extend(directions::of_body(model, index, body));
         found.extend(directions::of_motion(model, index, body));
         found.extend(weight(model, index, body));

@@ -129,6 +129,12 @@ enum Edit {
     Replace(Index, &'static str),
 }
 
+/// What expressions are made of.
+const PARTS: [&str; 24] = [
+    "1", "0.5", "2e3", "1e99", "1e-99", "m", "n", "d", "pi", "+", "-", "*", "/", "^", "^2", "^99", "^-3",
+    "(", ")", "sqrt(", " deg", " rpm", " ", "é",
+];
+
 fn edit() -> impl Strategy<Value = Edit> {
     let token = || prop::sample::select(TOKENS.to_vec());
     prop_oneof![
@@ -271,6 +277,15 @@ proptest! {
     #[test]
     fn token_soup_is_refused(tokens in prop::collection::vec(prop::sample::select(TOKENS.to_vec()), 0..60), spaced: bool) {
         check(&tokens.join(if spaced { " " } else { "" }));
+    }
+
+    #[test]
+    fn any_expression_is_a_number_or_refused(parts in prop::collection::vec(prop::sample::select(PARTS.to_vec()), 0..25)) {
+        let expression = parts.concat();
+        check(&format!(
+            "format = 1\nname = \"x\"\n[parameters]\nm = 2\nn = 0\nd = {expression:?}\n[[body]]\nname = \"b\"\nfree = true\n\
+             mass = {expression:?}\ninertia = [1, 1, \"d\"]\npoint_mass = [{{ mass = \"m\", at = [0, {expression:?}, 0] }}]\n"
+        ));
     }
 
     #[test]

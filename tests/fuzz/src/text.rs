@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 /// Words at the ends of what can be read, and what texts of both kinds are made of.
-const TOKENS: [&str; 56] = [
+const TOKENS: [&str; 62] = [
     "0",
     "1",
     "-1",
@@ -23,6 +23,12 @@ const TOKENS: [&str; 56] = [
     "true",
     "\"\"",
     "\"30 deg\"",
+    "\"2*pi/3\"",
+    "\"1/(1 - 1)\"",
+    "\"(length^9)^9 / mass\"",
+    "\"-sqrt((2))\"",
+    "^",
+    "/",
     "\"base\"",
     "\"é\\n\"",
     "[",

@@ -32,7 +32,10 @@ impl Page {
         let place = self.place();
         let text = match hold {
             Hold::Fixed => format!("fixed = true\n{place}"),
-            Hold::Constrained => format!("fixed = \"constrained\"\n{}{place}", self.solid()),
+            Hold::Constrained => {
+                let (mass, inertia) = self.mass_and_inertia();
+                format!("fixed = \"constrained\"\nmass = {mass}\ninertia = {inertia}\n{place}")
+            }
             Hold::Driven => format!("{place}{}", self.prescribed()),
             Hold::Free => {
                 let velocity = self.dice.point();
@@ -198,8 +201,14 @@ impl Page {
         format!("angular_velocity = {}\n", list(&spin))
     }
 
-    /// Mass and inertia: a box, as tables, people and programs give them.
+    /// Mass and inertia, and point masses.
     pub fn solid(&mut self) -> String {
+        let (mass, inertia) = self.mass_and_inertia();
+        self.point_masses(&mass, &inertia).unwrap_or_else(|| format!("mass = {mass}\ninertia = {inertia}\n"))
+    }
+
+    /// Those of a box, as tables, people and programs give them.
+    fn mass_and_inertia(&mut self) -> (String, String) {
         let mass = self.dice.number();
         let [x, y, z] = [(); 3].map(|()| self.dice.pick(&[0.1, 0.3, 1.0, 0.02, 0.5]));
         let square = value(&mass) / 12.0;
@@ -220,7 +229,33 @@ impl Page {
             }
             _ => self.tunables(moments),
         };
-        format!("mass = {}\ninertia = {inertia}\n", self.tunable(mass))
+        (self.tunable(mass), inertia)
+    }
+
+    /// The same body with a part of its mass in two points, whose mass centre is its own.
+    fn point_masses(&mut self, mass: &str, inertia: &str) -> Option<String> {
+        let ways = self.ways.as_mut().filter(|_| inertia.starts_with('[') && !inertia.starts_with("[["))?;
+        if !ways.once_in(4) {
+            return None;
+        }
+        let moments: Vec<&str> = inertia.trim_matches(['[', ']']).split(", ").collect();
+        let [x, y] = [ways.pick(&["0.1", "0.25", "1/30"]), ways.pick(&["0.2", "-0.05", "1/7"])];
+        let less = |number: &str, what: &str| format!("\"({}) - {what}\"", number.trim_matches('"'));
+        // Of 0.02 kg at (2x, 2y) and 0.04 kg at (-x, -y).
+        let part = |square: &str| format!("0.12*({square})");
+        let squares = [format!("({y})^2"), format!("({x})^2"), format!("({x})^2 + ({y})^2")];
+        let rest: Vec<String> =
+            moments.iter().zip(&squares).map(|(moment, square)| less(moment, &part(square))).collect();
+        let xy = format!("\"0.12*({x})*({y})\"");
+        Some(format!(
+            "mass = {}\ninertia = {{ xx = {}, yy = {}, zz = {}, xy = {xy} }}\n\
+             point_mass = [{{ mass = 0.02, at = [\"2*{x}\", \"2*({y})\", 0] }}, \
+             {{ mass = \"1/25\", at = [\"-({x})\", \"-({y})\", 0] }}]\n",
+            less(mass, "0.06"),
+            rest[0],
+            rest[1],
+            rest[2]
+        ))
     }
 
     /// With products of inertia, small beside the moments.

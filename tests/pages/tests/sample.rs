@@ -88,6 +88,7 @@ fn pages_have_everything() {
         "sqrt(",
         "^3 /",
         "d0 = ",
+        "point_mass",
     ];
     for thing in things {
         let count = pages.iter().filter(|page| page.contains(thing)).count();
