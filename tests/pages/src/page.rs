@@ -63,6 +63,8 @@ pub struct Joint {
 #[derive(Clone, Debug)]
 pub struct Page {
     pub dice: Dice,
+    /// Decides on armatures.
+    pub rotors: Dice,
     pub name: String,
     pub parameters: Vec<(String, String)>,
     pub inputs: Vec<(String, String)>,
@@ -94,6 +96,7 @@ impl Page {
         let gravity = if dice.once_in(4) { ["0", "0", "0"] } else { dice.pick(&GRAVITIES) };
         Self {
             dice,
+            rotors: Dice::new(!seed),
             name: format!("page_{seed}"),
             parameters: Vec::new(),
             inputs: Vec::new(),
